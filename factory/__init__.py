@@ -1,0 +1,1 @@
+"""Datasets of simulated pokes: built, resumed, inspected, verified."""

@@ -1,0 +1,1 @@
+"""tisim: many soft bodies at once, by hyperelastic finite elements. SI units."""

@@ -1,0 +1,189 @@
+"""What can be simulated: beams, pokes and coupons of one material. SI units throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from tisim.mesh import Mesh
+
+Vector = tuple[float, float, float]
+ElementChoice = Literal["default", "tet4", "tet10", "hex8"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """A constitutive law with its parameters.
+
+    law: a name in `tisim.laws.names()`.
+    parameters: by name as the law's docstring states them (moduli in Pa); a tuple for a series (Ogden).
+    density: rest density [kg/m3].
+    """
+
+    law: str
+    parameters: Mapping[str, float | tuple[float, ...]]
+    density: float = 1000.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circle:
+    """Circular section; radius [m]."""
+
+    radius: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rectangle:
+    """Rectangular section; width along y, height along z [m]."""
+
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solver:
+    """How a scene is brought to its answer.
+
+    method: "static" (equilibrium), "implicit" (dynamics) or "explicit" (dynamics).
+    tolerance: equilibrium when the free nodes' residual falls below this part of the applied load.
+    duration: end time of the dynamic methods [s]; they also end when the motion has died down to
+        equilibrium, where `until_rest` is set.
+    time_step: step of the implicit method [s] (the explicit one takes its stable step).
+    mass_damping, stiffness_damping: Rayleigh coefficients [1/s] and [s].
+    max_iterations: Newton iterations a step.
+    """
+
+    method: Literal["static", "implicit", "explicit"] = "static"
+    tolerance: float = 1e-6
+    duration: float = 2.0
+    time_step: float = 2e-3
+    mass_damping: float = 0.0
+    stiffness_damping: float = 0.0
+    until_rest: bool = False
+    max_iterations: int = 40
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beam:
+    """A prismatic beam along x, held in grips at x < 0 (and x > length), under gravity and a tip load.
+
+    length: free length [m]; grip_length: part held in each grip [m], all of its nodes fixed.
+    gravity [m/s2], tip_force: dead load on the free end face [N].
+    element: "default" is the mixed 10-node tetrahedron; "tet4" the paper's.
+    mesh: an own mesh with node sets "clamp" (and "far_clamp"), instead of the structured one;
+        facet set "tip" where a tip force acts.
+    layer: length of the structured elements along the beam [m]; rings: elements from axis to surface.
+    """
+
+    material: Material
+    length: float
+    section: Circle | Rectangle = field(default_factory=lambda: Circle(radius=0.010))
+    supports: Literal["clamped-free", "clamped-clamped"] = "clamped-free"
+    grip_length: float = 0.020
+    gravity: Vector = (0.0, 0.0, -9.81)
+    tip_force: Vector = (0.0, 0.0, 0.0)
+    element: ElementChoice = "default"
+    mesh: Mesh | None = None
+    layer: float = 0.007
+    rings: int = 2
+    solver: Solver = field(default_factory=Solver)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoxInclusion:
+    """Rigid box: size (a, b, c) along its own axes, centre [m], turned by `angle` [rad] about z."""
+
+    size: Vector
+    centre: Vector
+    angle: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class SphereInclusion:
+    """Rigid sphere: radius and centre [m]."""
+
+    radius: float
+    centre: Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylinderInclusion:
+    """Rigid upright cylinder: radius, height and centre [m]."""
+
+    radius: float
+    height: float
+    centre: Vector
+
+
+Inclusion = BoxInclusion | SphereInclusion | CylinderInclusion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """A rectangular soft block, x and y centred on 0, z from 0 (fixed base) to size[2] (free top) [m].
+
+    inclusion: a rigid body embedded in it, bonded; its part below z = 0 or outside does not count.
+    """
+
+    size: Vector = (0.100, 0.100, 0.032)
+    inclusion: Inclusion | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rod:
+    """A rigid round rod.
+
+    radius, length [m]; tip "flat" with a rounded edge of edge_radius [m], or "hemisphere".
+    """
+
+    radius: float = 0.0025
+    length: float = 0.040
+    tip: Literal["flat", "hemisphere"] = "flat"
+    edge_radius: float = 0.001
+
+
+@dataclass(frozen=True, kw_only=True)
+class Poke:
+    """A rod pushed along its axis into the top of a block.
+
+    site: where the rod's axis meets the rest surface, (x, y) [m].
+    direction: of the push, unit length on use; up to 45 degrees from -z.
+    depth: travel asked for [m], counted from first touch of the undeformed surface.
+    friction: Coulomb coefficient (0 slides freely).
+    frame_spacing: a frame is kept each time the tip has moved this far [m].
+    element: "default" is the 8-node hexahedron with element pressure on a mesh made for the rod.
+    mesh: an own mesh, with node set "base" (fixed) and facet set "top".
+    refinement: elements get smaller by this factor (1 = default).
+    gravity [m/s2]: none by default, as in the paper.
+    """
+
+    material: Material
+    site: tuple[float, float] = (0.0, 0.0)
+    direction: Vector = (0.0, 0.0, -1.0)
+    depth: float = 0.030
+    block: Block = field(default_factory=Block)
+    rod: Rod = field(default_factory=Rod)
+    friction: float = 0.6
+    frame_spacing: float = 0.001
+    element: ElementChoice = "default"
+    mesh: Mesh | None = None
+    refinement: float = 1.0
+    gravity: Vector = (0.0, 0.0, 0.0)
+    solver: Solver = field(default_factory=Solver)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coupon:
+    """A homogeneous material test.
+
+    stretches: values of the stretch (simple-shear: 1 + gamma), each solved in turn.
+    """
+
+    material: Material
+    mode: Literal["uniaxial", "equibiaxial", "planar", "simple-shear"] = "uniaxial"
+    stretches: tuple[float, ...] = (1.1, 1.2, 1.5, 2.0)
+    solver: Solver = field(default_factory=Solver)
+
+
+Scene = Beam | Poke | Coupon
