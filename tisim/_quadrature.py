@@ -1,0 +1,132 @@
+"""Shape functions, quadrature and rest-shape gradients of tet4, tet10 and hex8 elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.mesh import ElementKind, Mesh
+
+Array = NDArray[np.float64]
+
+_G = 1.0 / np.sqrt(3.0)
+_HEX_CORNERS = np.array(
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+    dtype=float,
+)
+_A, _B = 0.5854101966249685, 0.1381966011250105
+_TET10_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+
+
+def quadrature(kind: ElementKind) -> tuple[Array, Array]:
+    """Points (q, 3) and weights (q,) on the reference element."""
+    if kind == "tet4":
+        return np.full((1, 3), 0.25), np.array([1.0 / 6.0])
+    if kind == "tet10":
+        points = np.full((4, 3), _B)
+        points[np.arange(1, 4), np.arange(3)] = _A
+        return points, np.full(4, 1.0 / 24.0)
+    return _HEX_CORNERS * _G, np.ones(8)
+
+
+def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
+    """Shape functions (q, a) and their reference gradients (q, a, 3) at reference points (q, 3)."""
+    if kind == "hex8":
+        s = 1.0 + points[:, None, :] * _HEX_CORNERS
+        n = s.prod(axis=2) / 8.0
+        d = np.stack(
+            [
+                _HEX_CORNERS[:, 0] * s[:, :, 1] * s[:, :, 2],
+                _HEX_CORNERS[:, 1] * s[:, :, 0] * s[:, :, 2],
+                _HEX_CORNERS[:, 2] * s[:, :, 0] * s[:, :, 1],
+            ],
+            axis=2,
+        )
+        return n, d / 8.0
+    bary = np.column_stack([1.0 - points.sum(axis=1), points])
+    dbary = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    if kind == "tet4":
+        return bary, np.broadcast_to(dbary, (len(points), 4, 3)).copy()
+    n = np.empty((len(points), 10))
+    d = np.empty((len(points), 10, 3))
+    n[:, :4] = bary * (2.0 * bary - 1.0)
+    d[:, :4] = (4.0 * bary - 1.0)[:, :, None] * dbary
+    for e, (i, j) in enumerate(_TET10_EDGES):
+        n[:, 4 + e] = 4.0 * bary[:, i] * bary[:, j]
+        d[:, 4 + e] = 4.0 * (bary[:, i, None] * dbary[j] + bary[:, j, None] * dbary[i])
+    return n, d
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What integration over a mesh's rest shape needs.
+
+    values (q, a); gradients (m, q, a, 3) [1/m]; weights (m, q), rest volumes of the points [m3].
+    """
+
+    values: Array
+    gradients: Array
+    weights: Array
+
+
+def reference(mesh: Mesh) -> Reference:
+    """Rest-shape gradients and weights; ValueError where an element is inside-out at a quadrature point."""
+    points, weights = quadrature(mesh.kind)
+    n, d = shape(mesh.kind, points)
+    corners = mesh.nodes[mesh.elements]
+    jac = np.einsum("eai,qak->eqik", corners, d)
+    det = np.linalg.det(jac)
+    if not (det > 0).all():
+        bad = int(np.argmin(det.min(axis=1)))
+        raise ValueError(
+            f"mesh: {int((det.min(axis=1) <= 0).sum())} elements are inside-out, the first is element {bad}"
+        )
+    gradients = np.einsum("qak,eqki->eqai", d, np.linalg.inv(jac))
+    return Reference(n, np.ascontiguousarray(gradients), np.ascontiguousarray(det * weights))
+
+
+def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]:
+    """Points of a facet of 3, 4 or 6 nodes: shape values (q, a), reference gradients (q, a, 2), weights (q,).
+
+    order: points along each side (collapsed Gauss points on triangles).
+    """
+    g, w = np.polynomial.legendre.leggauss(order)
+    u, v = (c.ravel() for c in np.meshgrid(g, g, indexing="ij"))
+    weights = np.outer(w, w).ravel()
+    if n_nodes == 4:
+        cu, cv = np.array([-1.0, 1, 1, -1]), np.array([-1.0, -1, 1, 1])
+        a, b = 1 + u[:, None] * cu, 1 + v[:, None] * cv
+        return a * b / 4, np.stack([cu * b, cv * a], axis=2) / 4, weights
+    r = 0.5 * (1 + u)
+    s = 0.5 * (1 + v) * (1 - r)
+    weights = weights * 0.25 * (1 - r)
+    bary = np.column_stack([1 - r - s, r, s])
+    d = np.array([[-1.0, -1], [1, 0], [0, 1]])
+    if n_nodes == 3:
+        return bary, np.broadcast_to(d, (len(r), 3, 2)).copy(), weights
+    n = np.empty((len(r), 6))
+    dn = np.empty((len(r), 6, 2))
+    n[:, :3] = bary * (2 * bary - 1)
+    dn[:, :3] = (4 * bary - 1)[:, :, None] * d
+    for e, (i, j) in enumerate(((0, 1), (1, 2), (2, 0))):
+        n[:, 3 + e] = 4 * bary[:, i] * bary[:, j]
+        dn[:, 3 + e] = 4 * (bary[:, i, None] * d[j] + bary[:, j, None] * d[i])
+    return n, dn, weights
+
+
+def facet_areas(mesh: Mesh, facets: NDArray[np.int32], order: int = 3) -> tuple[Array, Array]:
+    """Shape values (q, a) and rest area of each facet's points (f, q) [m2]."""
+    n, dn, w = facet_quadrature(facets.shape[1], order)
+    tangents = np.einsum("fai,qad->fqdi", mesh.nodes[facets], dn)
+    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2) * w
+    return n, area
+
+
+def facet_load(mesh: Mesh, facets: NDArray[np.int32]) -> Array:
+    """Consistent share of a uniform traction at each node, shape (n,); sums to the facets' area."""
+    n, area = facet_areas(mesh, facets)
+    share = np.zeros(mesh.n_nodes)
+    np.add.at(share, facets.ravel(), (area @ n).ravel())
+    return share

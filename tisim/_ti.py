@@ -1,0 +1,50 @@
+"""The one place where Taichi is imported and started, so that a successor can replace it.
+
+Kernels run serially on one core: a batch is spread over processes, one scene a core, which makes every
+result independent of the number of workers, bit by bit.
+"""
+
+import contextlib
+import io
+import os
+import warnings
+from typing import Any
+
+os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
+    import taichi as ti
+
+f64 = ti.f64
+i32 = ti.i32
+_started = False
+
+
+def ensure_runtime() -> None:
+    """Start Taichi's CPU runtime once in this process."""
+    global _started
+    if _started:
+        return
+    with contextlib.redirect_stdout(io.StringIO()):  # it prints the backend's name
+        _init()
+    _started = True
+
+
+def _init() -> None:
+    ti.init(
+        arch=ti.cpu,
+        cpu_max_num_threads=1,
+        default_fp=ti.f64,
+        default_ip=ti.i32,
+        fast_math=False,  # a reassociated sum would make results depend on the compiler's mood
+        offline_cache=True,
+        log_level=ti.WARN,
+        verbose=False,
+    )
+
+
+Kernel = Any
+"""A compiled Taichi kernel or function (Taichi has no types for them)."""
+
+__all__ = ["Kernel", "ensure_runtime", "f64", "i32", "ti"]

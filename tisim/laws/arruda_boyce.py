@@ -1,0 +1,78 @@
+"""Arruda-Boyce (eight chains), five-term series, isochoric plus volumetric.
+
+    Psi = mu sum_i C_i / L^(2i-2) (I1bar^i - 3^i) + K/2 (ln J)^2,
+    C = 1/2, 1/20, 11/1050, 19/7000, 519/673750
+
+mu, bulk = K [Pa]; locking = L, the locking stretch (free).
+Small strain: G = 2 mu sum_i i C_i 3^(i-1) / L^(2i-2), K.
+The paper prints I1 in place of I1bar (eq. Psi_AB); that form is not stress-free at rest: its stress there
+is 2 dW/dI1 = G times the identity. The isochoric form differs from it by nothing else at J = 1.
+SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.0851 mu.
+"""
+
+import numpy as np
+
+from tisim._ti import ti
+from tisim.laws._law import Law, Moduli, Parameters, scalar
+
+C = (1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673750.0)
+SOFA_LOCKING = 8.0**0.5
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):
+    mu = prm[0]
+    r = 1.0 / (prm[1] * prm[1])
+    a = ti.exp(-2.0 / 3.0 * ti.log(J))
+    i1 = a * I1
+    w = 0.0
+    d = 0.0
+    dd = 0.0
+    for k in ti.static(range(5)):
+        n = k + 1
+        c = mu * C[k] * r**k
+        w += c * (i1**n - 3.0**n)
+        d += c * n * i1**k
+        if ti.static(k > 0):
+            dd += c * n * k * i1 ** (k - 1)
+    jac = -2.0 / 3.0 * i1 / J
+    return ti.Vector(
+        [
+            w,
+            d * a,
+            0.0,
+            d * jac,
+            dd * a * a,
+            0.0,
+            dd * jac * jac + d * 10.0 / 9.0 * i1 / (J * J),
+            0.0,
+            dd * a * jac - d * 2.0 / 3.0 * a / J,
+            0.0,
+        ]
+    )
+
+
+def _shear_factor(locking: float) -> float:
+    return 2.0 * sum((i + 1) * c * 3.0**i / locking ** (2 * i) for i, c in enumerate(C))
+
+
+def _moduli(p: Parameters) -> Moduli:
+    return Moduli(shear=scalar(p, "mu") * _shear_factor(scalar(p, "locking")), bulk=scalar(p, "bulk"))
+
+
+LAW = Law(
+    name="arruda-boyce",
+    title="Arruda-Boyce",
+    parameters={"mu": ("Pa", "scalar"), "locking": ("-", "scalar"), "bulk": ("Pa", "scalar")},
+    family="invariant",
+    theta="log",
+    energy=energy,
+    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "locking")]),
+    kappa=lambda p: scalar(p, "bulk"),
+    moduli=_moduli,
+    from_moduli=lambda shear, bulk: {
+        "mu": shear / _shear_factor(SOFA_LOCKING),
+        "locking": SOFA_LOCKING,
+        "bulk": bulk,
+    },
+)

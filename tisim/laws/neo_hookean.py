@@ -1,0 +1,45 @@
+"""Neo-Hookean, compressible.
+
+    Psi = mu/2 (I1 - 3) - mu ln J + lam/2 (ln J)^2           (paper, eq. Psi_NH)
+
+mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-free at rest.
+SOFA: `NeoHookean`, ParameterSet "mu lambda", the same energy.
+"""
+
+import numpy as np
+
+from tisim._ti import ti
+from tisim.laws._law import Law, Moduli, scalar
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):
+    mu = prm[0]
+    return ti.Vector(
+        [
+            mu * (0.5 * (I1 - 3.0) - ti.log(J)),
+            0.5 * mu,
+            0.0,
+            -mu / J,
+            0.0,
+            0.0,
+            mu / (J * J),
+            0.0,
+            0.0,
+            0.0,
+        ]
+    )
+
+
+LAW = Law(
+    name="neo-hookean",
+    title="Neo-Hookean",
+    parameters={"mu": ("Pa", "scalar"), "lam": ("Pa", "scalar")},
+    family="invariant",
+    theta="log",
+    energy=energy,
+    pack=lambda p: np.array([scalar(p, "mu")]),
+    kappa=lambda p: scalar(p, "lam"),
+    moduli=lambda p: Moduli(shear=scalar(p, "mu"), bulk=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0),
+    from_moduli=lambda shear, bulk: {"mu": shear, "lam": bulk - 2.0 * shear / 3.0},
+)

@@ -1,0 +1,36 @@
+"""Stable Neo-Hookean (Smith et al. 2018).
+
+    Psi = mu/2 (I1 - 3) - mu (J - 1) + (lam + mu)/2 (J - 1)^2   (paper, eq. Psi_SNH)
+
+mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-free at rest, and finite
+where an element is turned over: tisim's line search keeps J > 0 all the same.
+SOFA: `StableNeoHookean`, ParameterSet "mu lambda": the same energy up to a constant, written as
+1/2 [mu (I1 - 3) + (lam + mu)(J - a)^2] with a = 1 + mu/(lam + mu).
+"""
+
+import numpy as np
+
+from tisim._ti import ti
+from tisim.laws._law import Law, Moduli, scalar
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):
+    mu = prm[0]
+    return ti.Vector(
+        [mu * (0.5 * (I1 - 3.0) - (J - 1.0)), 0.5 * mu, 0.0, -mu, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    )
+
+
+LAW = Law(
+    name="stable-neo-hookean",
+    title="Stable Neo-Hookean",
+    parameters={"mu": ("Pa", "scalar"), "lam": ("Pa", "scalar")},
+    family="invariant",
+    theta="linear",
+    energy=energy,
+    pack=lambda p: np.array([scalar(p, "mu")]),
+    kappa=lambda p: scalar(p, "lam") + scalar(p, "mu"),
+    moduli=lambda p: Moduli(shear=scalar(p, "mu"), bulk=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0),
+    from_moduli=lambda shear, bulk: {"mu": shear, "lam": bulk - 2.0 * shear / 3.0},
+)

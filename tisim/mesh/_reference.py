@@ -1,0 +1,75 @@
+"""Reference elements: node places, shape-function gradients, quadrature. Natural coordinates (r, s, t):
+tetrahedra on the unit simplex, hexahedra on [-1, 1]^3, both numbered as VTK numbers them."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.mesh._mesh import ElementKind
+
+# tet10: the corners of the edge in whose middle each of nodes 4 to 9 lies
+TET_EDGES = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
+
+_TET4 = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+NODE_PLACES: dict[ElementKind, NDArray[np.float64]] = {
+    "tet4": _TET4,
+    "tet10": np.concatenate([_TET4, _TET4[TET_EDGES].mean(axis=1)]),
+    "hex8": np.array(
+        [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))]
+    ),
+}
+
+_BARYCENTRIC_GRADIENT = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+
+
+def shape_gradients(kind: ElementKind, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Derivatives of the shape functions by (r, s, t) at places (q, 3): shape (q, nodes, 3)."""
+    if kind == "tet4":
+        return np.broadcast_to(_BARYCENTRIC_GRADIENT, (len(places), 4, 3))
+    if kind == "tet10":
+        L = np.concatenate([1 - places.sum(axis=1, keepdims=True), places], axis=1)
+        D = _BARYCENTRIC_GRADIENT
+        a, b = TET_EDGES.T
+        corners = (4 * L - 1)[:, :, None] * D
+        edges = 4 * (L[:, a, None] * D[b] + L[:, b, None] * D[a])
+        return np.concatenate([corners, edges], axis=1)
+    sign = NODE_PLACES["hex8"]
+    factor = 1 + places[:, None, :] * sign
+    others = factor[..., [1, 2, 0]] * factor[..., [2, 0, 1]]
+    return 0.125 * sign * others
+
+
+def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places (q, 3) and weights (q,) exact for the volume of a curved element (det J is cubic at most
+    for tet10, quadratic in each coordinate for hex8)."""
+    if kind == "tet4":
+        return np.full((1, 3), 0.25), np.array([1 / 6])
+    if kind == "tet10":
+        # degree 3 (Stroud T3:3-1): the centre with a negative weight, and four points around it
+        around = np.full((4, 3), 1 / 6)
+        around[np.arange(3), np.arange(3)] = 0.5
+        return np.concatenate([np.full((1, 3), 0.25), around]), np.array([-0.8, *[0.45] * 4]) / 6
+    return NODE_PLACES["hex8"] / 3**0.5, np.ones(8)
+
+
+def det_jacobian(
+    kind: ElementKind,
+    nodes: NDArray[np.float64],
+    elements: NDArray[np.int32],
+    places: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Determinant of the map from the reference element at each place, shape (m, q) [m3]."""
+    gradient = shape_gradients(kind, places)
+    return np.linalg.det(np.einsum("qnk,mni->mqik", gradient, nodes[elements]))
+
+
+def corner_triads(kind: ElementKind) -> NDArray[np.int64]:
+    """Each corner and its three neighbours, right-handed: shape (corners, 4)."""
+    if kind != "hex8":
+        return np.array([[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [3, 0, 2, 1]])
+    ring = [*range(4), 0]
+    low = [(b, c, a, b + 4) for (a, b), c in zip(pairwise([3, *ring[:-1]]), ring[1:], strict=True)]
+    return np.array(low + [(n + 4, p + 4, m + 4, u - 4) for n, m, p, u in low])
