@@ -142,6 +142,12 @@ class BeamSystem:
             self._pressure = self.body.pressures(x, moved - x)
         return moved
 
+    def residual_norm(self, x: Array) -> float:
+        layout = self.body.layout
+        residual = (self.body.internal_forces(x)[0] - self.body.dead_load)[layout.pattern.free]
+        residual[layout.held] = 0.0
+        return float(np.linalg.norm(residual))
+
     def largest_step(self) -> float:
         return self.step_limit
 

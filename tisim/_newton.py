@@ -35,6 +35,9 @@ class System(Protocol):
     def searches(self) -> bool:
         """Whether steps are damped by the potential; else taken whole while no element turns over."""
 
+    def residual_norm(self, x: Array) -> float:
+        """Size of the residual at x [N]; the second opinion of the line search."""
+
     def largest_step(self) -> float:
         """Largest displacement of a node one iteration may make [m]."""
 
@@ -63,7 +66,7 @@ def newton(system: System, x: Array, *, tolerance: float, max_iterations: int) -
         if iteration == max_iterations:
             break
         try:
-            step = system.step(residual, forcing=float(np.clip(0.1 * relative / previous, 1e-5, 1e-2)))
+            step = system.step(residual, forcing=float(np.clip(0.1 * relative / previous, 1e-3, 1e-2)))
         except LinearSolveError:
             return Outcome(x, Status.SINGULAR, relative, iteration)
         peak = float(np.sqrt((step * step).sum(axis=1).max()))
@@ -86,12 +89,16 @@ def _line_search(
     slope = float(np.vdot(residual, step))
     # energy differences below this are rounding; the residual will judge
     noise = 1e-13 * abs(start) + 1e-18
+    size = float(np.linalg.norm(residual))
     turned = False
     for _ in range(14):
         trial = system.advance(x, scale * step)
         energy, min_jacobian = system.potential(trial)
         if min_jacobian > 0.0 and np.isfinite(energy):
-            if energy <= start + 1e-4 * scale * slope + noise:
+            if energy <= start + 1e-4 * scale * min(slope, 0.0) + noise:
+                return trial, Status.CONVERGED
+            # friction has no potential: a step that lowers the energy too little may still be right
+            if system.residual_norm(trial) < (1.0 - 0.1 * scale) * size:
                 return trial, Status.CONVERGED
             turned = False
         else:

@@ -19,13 +19,12 @@ def facet_edges(facets: NDArray[np.integer]) -> NDArray[np.integer]:
     return facets[:, [[0, 1], [1, 2], [2, 0]]]
 
 
-def inherited_sets(
-    mesh: Mesh, edges: NDArray[np.int64], first_new: int
-) -> dict[str, NDArray[np.int32]]:
+def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict[str, NDArray[np.int32]]:
     """Node sets of a tet4 mesh extended by the nodes first_new + k in the middle of edges (k, 2).
 
     A set that lies on the boundary passes on only along boundary facets that lie in it as a whole: an
-    edge through the body from the base to the inclusion has both ends held, yet its middle is free. Any
+    edge through the body from the base to the inclusion has both ends held, yet its middle is free. (A
+    facet between two faces of the set, one element from each other, counts as in it.) Any
     other set (a gripped volume) passes on along every edge with both ends in it.
     """
     boundary = boundary_facets(mesh.kind, mesh.elements)
@@ -38,8 +37,8 @@ def inherited_sets(
         member[old] = True
         if on_boundary[old].all():
             inside = boundary[member[boundary].all(axis=1)]
-            new = np.isin(keys, edge_keys(facet_edges(inside), mesh.n_nodes).ravel())
+            new: NDArray[np.bool_] = np.isin(keys, edge_keys(facet_edges(inside), mesh.n_nodes).ravel())
         else:
-            new = member[edges].all(axis=1)
+            new = np.asarray(member[edges].all(axis=1))
         result[name] = np.concatenate([old, first_new + np.flatnonzero(new)]).astype(np.int32)
     return result

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,19 +14,29 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+SAMPLES = 60
+
+
 @dataclass(frozen=True, kw_only=True)
 class PlaneGrid:
-    """A grid of quadrilaterals and triangles in the plane.
+    """A grid of quadrilaterals in the plane.
 
-    points: shape (n, 2) [m]. cells: shape (m, 4), counter-clockwise; a triangle repeats its last node.
+    points: shape (n, 2) [m]. cells: shape (m, 4), counter-clockwise.
     border: indices of the points on the rectangle's border, shape (b,).
-    fixed: points that smoothing leaves where they are (the rod's disc and rings, the border), shape (n,).
     """
 
     points: Floats
     cells: Ints
     border: Ints
-    fixed: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Focus:
+    """A disc (centre, reach [m]) that rays and rings should cross no farther apart than `spacing` [m]."""
+
+    centre: Floats
+    reach: float
+    spacing: float
 
 
 def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
@@ -39,7 +50,6 @@ def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
     square = np.stack([x.ravel(), y.ravel()], axis=1)
     # rounding the square half way to a circle keeps its corner cells from becoming flat
     norm_inf = np.abs(square).max(axis=1)
-    norm_two = np.where(norm_inf > 0, np.hypot(square[:, 0], square[:, 1]), 1.0)
     angle = np.where(
         np.abs(square[:, 0]) >= np.abs(square[:, 1]),
         np.pi / 4 * square[:, 1] / np.where(square[:, 0] == 0, 1, square[:, 0]) + np.pi * (square[:, 0] < 0),
@@ -47,8 +57,7 @@ def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
         - np.pi / 4 * square[:, 0] / np.where(square[:, 1] == 0, 1, square[:, 1]),
     )
     disc = norm_inf[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    chord = square / np.where(norm_two > 0, 1.0, 1.0)[:, None] * np.sqrt(0.5)
-    inner = (m / (m + 1.6)) * (0.45 * disc + 0.55 * chord)
+    inner = (m / (m + 1.6)) * (0.45 * disc + 0.55 * np.sqrt(0.5) * square)
     grid = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
     cells = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=-1).reshape(-1, 4)
     rim = np.concatenate([grid[0, :-1], grid[:-1, -1], grid[-1, :0:-1], grid[:0:-1, 0]])
@@ -63,18 +72,26 @@ def band(inner: Ints, outer: Ints) -> Ints:
     return np.stack([inner, outer, np.roll(outer, -1), np.roll(inner, -1)], axis=1)
 
 
-def border_points(site: Floats, half: Floats, n: int) -> Floats:
+def border_points(site: Floats, half: Floats, n: int, focus: Focus | None = None) -> Floats:
     """n points on the rectangle |x| <= half[0], |y| <= half[1], counter-clockwise, its corners among them.
 
-    They are spread by a mean of the angle seen from the site and of the length along the side.
+    They are spread by a mean of the angle seen from the site and of the length along the side, with more of
+    them in the direction of the focus. Returns shape (n, 2).
     """
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half
-    seen = corners - site
-    angles = np.arctan2(seen[:, 1], seen[:, 0])
-    spans = np.mod(np.roll(angles, -1) - angles, 2 * np.pi)
-    lengths = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-    share = 0.5 * spans / spans.sum() + 0.5 * lengths / lengths.sum()
-    wanted = n * share
+    t = np.linspace(0.0, 1.0, SAMPLES + 1)[None, :, None]
+    line = corners[:, None] + t * (np.roll(corners, -1, axis=0) - corners)[:, None]  # (4, SAMPLES + 1, 2)
+    seen = line - site
+    bearing = np.arctan2(seen[..., 1], seen[..., 0])
+    angle = np.mod(np.diff(bearing, axis=1), 2 * np.pi)
+    length = np.linalg.norm(np.diff(line, axis=1), axis=2)
+    share = 0.5 * angle / angle.sum() + 0.5 * length / length.sum()
+    if focus is not None:
+        extra, off, width = _toward(site, half, n, focus, bearing)
+        bump = np.maximum(0.0, 1.0 - 0.5 * (off / width) ** 2)[:, :-1] * angle
+        if extra > 0.0 and bump.sum() > 0.0:
+            share = share * (1.0 - extra) + bump * (extra / bump.sum())
+    wanted = n * share.sum(axis=1)
     counts = np.maximum(2, np.floor(wanted).astype(int))
     while counts.sum() < n:
         counts[np.argmax(wanted - counts)] += 1
@@ -82,15 +99,39 @@ def border_points(site: Floats, half: Floats, n: int) -> Floats:
         counts[np.argmax(np.where(counts > 2, counts - wanted, -np.inf))] -= 1
     out = []
     for k in range(4):
-        start, stop = corners[k], corners[(k + 1) % 4]
-        t = np.arange(counts[k]) / counts[k]
-        # where a ray of the evenly turned angle meets this side
-        turn = angles[k] + spans[k] * t
-        along = (stop - start) / lengths[k]
-        distance = abs(float(np.dot([along[1], -along[0]], start - site)))
-        normal_angle = np.arctan2(-along[0], along[1])
-        by_angle = distance * np.tan(turn - normal_angle) - np.dot(along, start - site)
-        out.append(start + along * (0.5 * by_angle + 0.5 * lengths[k] * t)[:, None])
+        rise = np.concatenate([[0.0], np.cumsum(share[k])])
+        at = np.interp(np.arange(counts[k]) * rise[-1] / counts[k], rise, t[0, :, 0])
+        out.append(corners[k] + at[:, None] * (corners[(k + 1) % 4] - corners[k]))
+    return np.concatenate(out)
+
+
+def _toward(site: Floats, half: Floats, n: int, focus: Focus, bearing: Floats) -> tuple[float, Floats, float]:
+    """Part of the rays to turn to the focus; the angles of `bearing` off its direction; its half width."""
+    way = focus.centre - site
+    distance = float(np.hypot(*way))
+    off = np.abs(np.mod(bearing - np.arctan2(way[1], way[0]) + np.pi, 2 * np.pi) - np.pi)
+    if distance < 1.3 * focus.reach:
+        return 0.0, off, 1.0
+    width = float(np.arcsin(focus.reach / distance)) * 1.15
+    # rays are straight, so bunching them on the border by so much bunches them by a part of it here
+    room = np.where(way > 0, half - site, half + site) / np.maximum(np.abs(way), 1e-12)
+    part = max(0.35, 1.0 / float(room.min()))
+    wanted = 2.0 * focus.reach / focus.spacing + 1.0
+    return float(np.clip((wanted / n - width / np.pi) / part, 0.0, 0.3)), off, width
+
+
+def _split_rings(rings: Floats, focus: Focus) -> Floats:
+    """More rings (k, n_theta, 2) where they pass the focus farther apart than its spacing."""
+    out = [rings[:1]]
+    for inner, outer in pairwise(rings):
+        way = outer - inner
+        length = np.linalg.norm(way, axis=1)
+        t = np.clip(np.sum((focus.centre - inner) * way, axis=1) / np.maximum(length, 1e-12) ** 2, 0.0, 1.0)
+        near = np.linalg.norm(inner + t[:, None] * way - focus.centre, axis=1) < 1.1 * focus.reach
+        widest = float(length[near].max(initial=0.0))
+        parts = int(np.clip(np.ceil(widest / focus.spacing - 0.3), 1, 12))
+        steps = np.arange(1, parts + 1) / parts
+        out.append(np.where((steps == 1.0)[:, None, None], outer, inner + steps[:, None, None] * way))
     return np.concatenate(out)
 
 
@@ -104,20 +145,23 @@ def o_grid(
     stretch: float,
     n_theta: int,
     n_outer: int,
+    focus: Focus | None = None,
+    turn: float = 0.0,
 ) -> PlaneGrid:
     """The grid around `site` (x, y) in the rectangle of half sides `half` [m].
 
     flat: radius of the disc [m]; rings: radii of the fine rings after it, rising, shape (k,); both are
     stretched by `stretch` along `azimuth` [rad], where a tilted rod cuts the surface in an ellipse.
     n_theta: rays, a multiple of 4; n_outer: rings from the last fine one to the border.
+    focus: where else the grid should be fine; turn: of the rays around the rod, in parts of their spacing.
     """
     disc, cells, outer = butterfly(n_theta // 4)
-    border = border_points(site, half, n_theta)
+    border = border_points(site, half, n_theta, focus)
     # turn the disc so that its rays meet the border's points most nearly straight on
     seen = border - site
     bearing = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
     even = 2 * np.pi * np.arange(n_theta) / n_theta
-    start = float(np.mean(bearing - even))
+    start = float(np.mean(bearing - even)) + turn * 2 * np.pi / n_theta
     c, s = np.cos(start + 0.75 * np.pi), np.sin(start + 0.75 * np.pi)
     disc = disc @ np.array([[c, s], [-s, c]])
 
@@ -133,15 +177,11 @@ def o_grid(
     at = graded(length, first, n_outer)[:, 1:] / length[:, None]
     far = last[None] + at.T[:, :, None] * way[None]
     far[-1] = border
+    if focus is not None:
+        far = _split_rings(np.concatenate([last[None], far]), focus)[1:]
 
     points = np.concatenate([site + local[0], site + local[1], far.reshape(-1, 2)])
-    ring_nodes = np.concatenate(
-        [outer[None], len(disc) + np.arange((len(rings) + n_outer) * n_theta).reshape(-1, n_theta)]
-    )
-    bands = [band(a, b) for a, b in zip(ring_nodes[:-1], ring_nodes[1:], strict=True)]
-    fixed = np.zeros(len(points), dtype=bool)
-    fixed[: len(disc) + len(rings) * n_theta] = True
-    fixed[ring_nodes[-1]] = True
-    return PlaneGrid(
-        points=points, cells=np.concatenate([cells, *bands]), border=ring_nodes[-1], fixed=fixed
-    )
+    n_ring = len(rings) + len(far)
+    ring_nodes = np.concatenate([outer[None], len(disc) + np.arange(n_ring * n_theta).reshape(-1, n_theta)])
+    bands = [band(a, b) for a, b in pairwise(ring_nodes)]
+    return PlaneGrid(points=points, cells=np.concatenate([cells, *bands]), border=ring_nodes[-1])

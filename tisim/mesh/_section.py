@@ -80,7 +80,9 @@ def circle_quadrangles(radius: float, rings: int) -> Section:
     # the core's sides bulge a little, for better angles at its corners
     core *= (1 - 0.12 * np.linalg.norm(core, axis=1) / 0.55)[:, None]
     index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
-    cells = [np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)]
+    cells = [
+        np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)
+    ]
     rim = np.concatenate([index[:-1, 0], index[-1, :-1], index[:0:-1, -1], index[0, :0:-1]])
     angle = -0.75 * np.pi + np.arange(4 * m) * (np.pi / (2 * m))
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -99,9 +101,7 @@ def rectangle(width: float, height: float, rings: int, *, triangles: bool) -> Se
     t = np.linspace(-0.5, 0.5, 2 * rings + 1)
     y, z = (a.ravel() for a in np.meshgrid(t * width, t * height, indexing="ij"))
     index = np.arange(len(y)).reshape(len(t), len(t))
-    a, b, c, d = (
-        s.ravel() for s in (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:])
-    )
+    a, b, c, d = (s.ravel() for s in (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]))
     points = _clean(np.stack([y, z], axis=1))
     cells = np.stack([a, b, c, d], axis=1)
     if triangles:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from tisim.mesh._outline import Outline
+from tisim.mesh._inclusion import Outline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -17,6 +17,8 @@ Bools = NDArray[np.bool_]
 SWEEPS = 12
 # a quadrilateral whose flattest corner has a smaller sine is cut into two triangles where that is better
 FLAT_CORNER = 0.25
+# three nodes on a circle or on one straight side make a sliver; over a corner they make a better triangle
+WORTH_HAVING = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,26 +46,25 @@ def snap(*, points: Floats, cells: Ints, border: Ints, outline: Outline) -> Snap
     rest = points
     edges = np.unique(np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)), axis=0)
     mean = _averaging(rest, edges)
-    size = np.full(len(points), np.inf)
-    length = np.hypot(*(rest[edges[:, 0]] - rest[edges[:, 1]]).T)
-    np.minimum.at(size, edges.ravel(), np.repeat(length, 2))
     held = np.zeros(len(points), dtype=bool)
     held[border] = True
 
     points = rest.copy()
     on = np.zeros(len(points), dtype=bool)
     for corner in outline.corners:
-        node = int(np.argmin(np.where(held | on, np.inf, np.hypot(*(points - corner).T) / size)))
+        node = _nearest(rest, cells, held | on, corner)
+        if node is None:
+            return None
         points[node], on[node] = corner, True
     if on.any():
         points = _spread(rest, points, mean, held | on)
     if not _onto(points, edges, cells, held, on, outline):
         return None
-    points = _spread(rest, points, mean, held | on)
-
-    distance = outline.signed(points)
-    side = np.where(on, 0, np.sign(distance)).astype(np.int64)
-    cells, within = _divide(points, cells, side)
+    side = np.where(on, 0, np.sign(outline.signed(points))).astype(np.int64)
+    followed = _spread(rest, points, mean, held | on)
+    same = np.sign(outline.signed(followed)) == side  # a node that would cross the outline stays
+    points = np.where(same[:, None], followed, points)
+    cells, within = _divide(points, cells, side, outline)
     if not within.any():
         return None
     quality = cell_quality(points, cells)
@@ -84,6 +85,25 @@ def _averaging(points: Floats, edges: Ints) -> csr_array:
     total = np.bincount(np.r_[i, j], np.r_[weight, weight], minlength=len(points))
     data = np.r_[weight, weight] / total[np.r_[i, j]]
     return csr_array((data, (np.r_[i, j], np.r_[j, i])), shape=(len(points), len(points)))
+
+
+def _nearest(points: Floats, cells: Ints, taken: Bools, place: Floats) -> int | None:
+    """The free node to move to a place: the nearest in the natural coordinates of the cell around it, so that
+    it moves by no more than half a cell either way however long and thin the cells are."""
+    p = points[cells] - place
+    ahead = np.roll(p, -1, axis=1)
+    around = (p[..., 0] * ahead[..., 1] - p[..., 1] * ahead[..., 0]).min(axis=1)
+    cell = cells[around.argmax()]
+    a, b, c, d = points[cell]
+    s = t = 0.5
+    for _ in range(6):
+        off = (1 - s) * (1 - t) * a + s * (1 - t) * b + s * t * c + (1 - s) * t * d - place
+        by_s, by_t = (1 - t) * (b - a) + t * (c - d), (1 - s) * (d - a) + s * (c - b)
+        change = np.linalg.solve(np.stack([by_s, by_t], axis=1), off)
+        s, t = s - change[0], t - change[1]
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    far = np.abs(corners - [s, t]).max(axis=1) + 10.0 * taken[cell]
+    return None if far.min() >= 10.0 else int(cell[far.argmin()])
 
 
 def _spread(rest: Floats, points: Floats, mean: csr_array, held: Bools) -> Floats:
@@ -110,7 +130,13 @@ def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outl
     share = np.hypot(*(at - points[inside]).T) / length
     nodes, places = np.concatenate([inside, outside]), np.concatenate([at, at])
     other = np.concatenate([outside, inside])
-    order = np.argsort(np.concatenate([share, 1.0 - share]), kind="stable")
+    # an inside node with edges through two sides of a polygon would leave the corner between them uncovered
+    # if it moved to one of them: its partners go first
+    face = outline.face(at)
+    least, most = np.full(len(points), 99), np.full(len(points), -1)
+    np.minimum.at(least, inside, face)
+    np.maximum.at(most, inside, face)
+    order = np.argsort(np.concatenate([share + (least < most)[inside], 1.0 - share]), kind="stable")
     around: dict[int, list[int]] = {}
     for c, cell in enumerate(cells.tolist()):
         for node in cell:
@@ -127,14 +153,35 @@ def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outl
         points[node], on[node] = places[k], True
         count[mine] += 1
     left: Bools = on[inside] | on[outside]
+    for _ in range(3 if len(outline.corners) else 0):
+        # an edge from one side of a corner, through the inside, out at the corner's other side
+        start = np.concatenate([a[on[a] & ~on[b]], b[on[b] & ~on[a]]])
+        stop = np.concatenate([b[on[a] & ~on[b]], a[on[b] & ~on[a]]])
+        probe = points[start] + 1e-3 * (points[stop] - points[start])
+        through = (outline.signed(probe) < -1e-9) & (outline.signed(points[stop]) > 1e-9)
+        places = outline.crossing(probe[through], points[stop[through]])
+        for node, place in zip(stop[through].tolist(), places, strict=True):
+            if not on[node] and not held[node] and not (count[around[node]] >= 3).any():
+                points[node], on[node] = place, True
+                count[around[node]] += 1
     return bool(left.all())
 
 
-def _divide(points: Floats, cells: Ints, side: Ints) -> tuple[Ints, Bools]:
+def _divide(points: Floats, cells: Ints, side: Ints, outline: Outline) -> tuple[Ints, Bools]:
     """Cuts cells that lie on both sides, or are too flat, into triangles; says which cells lie inside."""
+    # first the corner of a polygon that a cell covers with three nodes on it, the fourth being outside
+    s = side[cells]
+    fourth = s.argmax(axis=1)
+    rolled = cells[np.arange(len(cells))[:, None], (fourth[:, None] + np.arange(4)) % 4]
+    covers = (s.min(axis=1) == 0) & ((s == 0).sum(axis=1) == 3)
+    covers[covers] = _inside(points, rolled[covers, 1:], outline)
+    corner = rolled[covers]
+    cells = np.concatenate([cells[~covers], corner[:, [1, 2, 3, 3]], corner[:, [3, 0, 1, 1]]])
+
     s = side[cells]
     both = (s.min(axis=1) < 0) & (s.max(axis=1) > 0)
-    flat = corner_sines(points, cells).min(axis=1) < FLAT_CORNER
+    quad = cells[:, 2] != cells[:, 3]
+    flat = quad & (corner_sines(points, cells).min(axis=1) < FLAT_CORNER)
     cut = both | flat
     quads, todo = cells[~cut], cells[cut]
     first = np.stack([todo[:, [0, 1, 2, 2]], todo[:, [0, 2, 3, 3]]], axis=1)
@@ -151,13 +198,17 @@ def _divide(points: Floats, cells: Ints, side: Ints) -> tuple[Ints, Bools]:
     as_is = np.where(both[cut], -100.0, cell_quality(points, todo))
     stay = as_is >= np.maximum(one, two)
     cells = np.concatenate([quads, todo[stay], best[~stay].reshape(-1, 4)])
-    within = outside_or_in(side[cells])
+    # in a convex outline a cell lies inside where one node does; a triangle of three nodes on it may
+    within = side[cells].min(axis=1) < 0
+    rim = (cells[:, 2] == cells[:, 3]) & (side[cells] == 0).all(axis=1)
+    within[rim] = _inside(points, cells[rim, :3], outline)
     return cells, within
 
 
-def outside_or_in(side: Ints) -> Bools:
-    """Cells inside: one node or more inside, the others inside or on the outline; shape (m,)."""
-    return np.asarray(side.min(axis=1) < 0)
+def _inside(points: Floats, triangles: Ints, outline: Outline) -> Bools:
+    """Whether triangles with their nodes on the outline cover a part of its inside worth having."""
+    good = cell_quality(points, triangles[:, [0, 1, 2, 2]]) > WORTH_HAVING
+    return good & (outline.signed(points[triangles].mean(axis=1)) < 0.0)
 
 
 def corner_sines(points: Floats, cells: Ints) -> Floats:

@@ -30,7 +30,9 @@ def outline(mesh: Mesh, positions: NDArray[np.float64]) -> Outline:
     """
     positions = np.asarray(positions, dtype=np.float64)
     if positions.shape != mesh.nodes.shape:
-        raise MeshError(f"positions must have shape {mesh.nodes.shape} as the mesh's nodes, got {positions.shape}")
+        raise MeshError(
+            f"positions must have shape {mesh.nodes.shape} as the mesh's nodes, got {positions.shape}"
+        )
     x, y, z = mesh.nodes.T
     planes, place = np.unique(np.round(x, 12), return_inverse=True)
     lines = []

@@ -58,11 +58,11 @@ def _straighten(
 ) -> None:
     """Set back (in place) the middles of elements that the curve turns over."""
     n = len(corners)
-    for _ in range(10):
+    plain = det_jacobian("tet4", corners, elements[:, :4], NODE_PLACES["tet4"][:1])[:, 0]
+    while True:  # each round straightens an edge at least, and straight elements are good
         nodes = np.concatenate([corners, middles])
         det = det_jacobian("tet10", nodes, elements, NODE_PLACES["tet10"])
-        plain = np.concatenate([corners, straight])
-        bad = det.min(axis=1) < 0.1 * det_jacobian("tet10", plain, elements, NODE_PLACES["tet10"]).mean(axis=1)
+        bad = det.min(axis=1) < 0.1 * plain
         if not bad.any():
             return
         back = np.unique(elements[bad, 4:]) - n

@@ -59,7 +59,9 @@ def refine(mesh: Mesh, *, size: Size, max_nodes: int = 200_000) -> Mesh:
     The boundary keeps its shape: its triangles are cut, not moved. Raises MeshError past max_nodes.
     """
     if mesh.kind != "tet4":
-        raise MeshError(f"only a tet4 mesh can be refined, this one is {mesh.kind}: refine, then to_quadratic")
+        raise MeshError(
+            f"only a tet4 mesh can be refined, this one is {mesh.kind}: refine, then to_quadratic"
+        )
     while True:
         fine = _pass(mesh, size)
         if fine is None:

@@ -53,10 +53,19 @@ class Outline:
         """Below 0 inside, 0 on the outline, above 0 outside; the distance [m] but near corners outside."""
         if not len(self.corners):
             away = points - self.centre
-            return np.hypot(away[..., 0], away[..., 1]) - self.radius
+            return np.asarray(np.hypot(away[..., 0], away[..., 1]) - self.radius)
+        return np.asarray(self._beyond(points).max(axis=-1))
+
+    def face(self, points: Floats) -> NDArray[np.int64]:
+        """Which side of the polygon points on the outline lie on; 0 for a circle."""
+        if not len(self.corners):
+            return np.zeros(len(points), dtype=np.int64)
+        return np.asarray(self._beyond(points).argmax(axis=-1), dtype=np.int64)
+
+    def _beyond(self, points: Floats) -> Floats:
         along = np.roll(self.corners, -1, axis=0) - self.corners
         normal = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
-        return np.asarray((points @ normal.T - np.sum(normal * self.corners, axis=1)).max(axis=-1))
+        return np.asarray(points @ normal.T - np.sum(normal * self.corners, axis=1))
 
     def crossing(self, inside: Floats, outside: Floats) -> Floats:
         """Where segments from inside points to outside points cross the outline; shapes (n, 2)."""
@@ -68,7 +77,7 @@ class Outline:
         return inside + (0.5 * (low + high))[:, None] * (outside - inside)
 
     def cap(self, points: Floats) -> tuple[Floats, Floats]:
-        """Heights of the lower and the upper surface over points (n, 2); outside, those of the outline [m]."""
+        """Heights of the lower and upper surface over points (n, 2); outside, those of the outline [m]."""
         low, high = np.full(len(points), self.low), np.full(len(points), self.high)
         if self.dome is not None:
             radius, height = self.dome
@@ -93,7 +102,7 @@ def outline_of(inclusion: Inclusion, *, size: tuple[float, float, float]) -> Out
         _positive("sphere radius", inclusion.radius)
         low = high = max(0.0, float(centre[2]))
         if centre[2] <= -inclusion.radius + THINNEST_GAP:
-            raise MeshError(f"inclusion: the sphere lies below the base of the block (centre z {centre[2]} m)")
+            raise MeshError(f"inclusion: the sphere lies below the block's base (centre z {centre[2]} m)")
         radius = float(np.sqrt(inclusion.radius**2 - min(0.0, float(centre[2])) ** 2))
         reach, dome = radius, (float(inclusion.radius), float(centre[2]))
     elif isinstance(inclusion, BoxInclusion):
@@ -126,7 +135,11 @@ def _fits(outline: Outline, size: tuple[float, float, float]) -> None:
             f"inclusion: its top, z = {1e3 * outline.apex:.1f} mm, leaves less than "
             f"{1e3 * THINNEST_COVER:.0f} mm of soft material below the block's top ({1e3 * size[2]:.0f} mm)"
         )
-    ends = outline.corners if len(outline.corners) else outline.centre + outline.radius * np.array([[1, 1], [-1, -1]])
+    ends = (
+        outline.corners
+        if len(outline.corners)
+        else outline.centre + outline.radius * np.array([[1, 1], [-1, -1]])
+    )
     if not np.all(np.abs(ends) + THINNEST_GAP <= 0.5 * np.array(size[:2])):
         raise MeshError(
             "inclusion: its outline comes within 1 mm of the block's side, or leaves the block "

@@ -1,0 +1,163 @@
+"""Reference force of a normal poke, by FElupe on an axisymmetric model; writes poke.json beside this file.
+
+    python benchmarks/references/poke.py --levels 1 2
+    python benchmarks/references/poke.py --levels 3 --frictions 0.6 inf         # 100 s
+    python benchmarks/references/poke.py --levels 2 --frictions 0.6 --penalty 2e10
+    python benchmarks/references/poke.py --levels 1 --frictions inf 0 --penalty 2e10
+
+Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
+
+Disc of radius 50 mm and height 32 mm, base fixed, side free, Neo-Hookean of the paper with mu = 30 kPa,
+K = 600 kPa (lam = K - 2 mu/3); rigid flat rod of radius 2.5 mm with an edge radius of 1 mm pushed down its
+axis. Force on the rod [N] at 1, 2, 5 and 10 mm for friction 0, 0.6 and full stick.
+
+9-node quadrilaterals with discontinuous linear pressure and volume ratio (Q2/P-1), refined under the rod;
+level m cuts every element of level 1 into m x m. Penalty contact at 7 points an edge, see rod.py: the deepest
+penetration is in the file. The travel steps are at most 0.25 mm / m.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import felupe as fe
+import numpy as np
+from cylinder import graded
+from laws import mixed_law
+from mixed import MixedModel, clock, mixed_fields
+from rod import FlatRod
+
+Array = np.ndarray[Any, Any]
+FILE = Path(__file__).with_suffix(".json")
+RADIUS, HEIGHT, ROD, EDGE = 0.050, 0.032, 0.0025, 0.001
+MU, BULK, PENALTY = 30e3, 600e3, 6e9
+DEPTHS = (0.001, 0.002, 0.005, 0.010)
+
+
+def corners(knots: tuple[float, ...], counts: tuple[int, ...], level: int) -> Array:
+    """Corners and middles of intervals cut evenly between the knots."""
+    spans = zip(knots[:-1], knots[1:], counts, strict=True)
+    ends = [np.linspace(a, b, n * level, endpoint=False) for a, b, n in spans]
+    c = np.append(np.concatenate(ends), knots[-1])
+    out = np.empty(2 * len(c) - 1)
+    out[::2], out[1::2] = c, (c[1:] + c[:-1]) / 2
+    return out
+
+
+def disc(level: int) -> fe.Mesh:
+    """9-node quadrilaterals, (axial, radial), small at the top under the rod."""
+    near = corners((0.0, 0.0012, 0.0036), (2, 8), level)
+    far = near[-1] + (RADIUS - near[-1]) * graded(8 * level, 4.0)
+    radial = np.concatenate([near, far[1:]])
+    axial = HEIGHT * (1 - graded(10 * level, 2.2))[::-1]
+    grid = np.stack(np.meshgrid(axial, radial, indexing="ij"), -1)
+    number = np.arange(grid[..., 0].size).reshape(grid.shape[:2])
+    reference = fe.BiQuadraticQuad().points.astype(int) + 1
+    n = number.shape
+    pick = [tuple(slice(o, n[k] - 2 + o, 2) for k, o in enumerate(p)) for p in reference]
+    return fe.Mesh(grid.reshape(-1, 2), np.stack([number[p].ravel() for p in pick], -1), "quad9")
+
+
+def poke(friction: float, level: int, penalty: float = PENALTY) -> dict[str, dict[str, float]]:
+    """Force and checks at every depth reached."""
+    mesh = disc(level)
+    field = mixed_fields(fe.RegionBiQuadraticQuad(mesh), axisymmetric=True)
+    dof = np.arange(2 * mesh.npoints).reshape(-1, 2)
+    base, axis = mesh.points[:, 0] < 1e-9, mesh.points[:, 1] < 1e-9
+    fixed = np.unique(np.concatenate([dof[base].ravel(), dof[axis, 1]]))
+    top = np.flatnonzero(mesh.points[:, 0] > HEIGHT - 1e-9)
+    top = top[np.argsort(mesh.points[top, 1])]
+    top = top[mesh.points[top, 1] < 0.012]
+    top = top[: len(top) - 1 + len(top) % 2]
+    edges = np.stack([top[:-2:2], top[2::2], top[1:-1:2]], -1)
+    rod = FlatRod(mesh, edges, HEIGHT, ROD, EDGE, friction, penalty)
+    law = mixed_law("neo_hookean", BULK, mu=MU)
+    zero = np.zeros(field[0].values.size)
+    model = MixedModel(field, law, fixed, lambda _: zero, tolerance=1e-7, contact=rod)
+    vertical = np.isin(fixed, dof[base, 0])
+    out: dict[str, dict[str, float]] = {}
+
+    def report(depth: float) -> None:
+        reaction = float(model.reaction[vertical].sum())
+        J = np.linalg.det(np.moveaxis(field.extract()[0], (0, 1), (-2, -1)))
+        key = f"{depth * 1e3:g}"
+        out[key] = {"force": rod.force, "base": reaction}
+        out[key] |= {"penetration": rod.deepest, "min_J": float(J.min())}
+        what = f"friction {friction} level {level} penalty {penalty:g} depth {key} mm"
+        forces = f"force {rod.force:.4f} N, base {reaction:.4f}, penetration {rod.deepest * 1e6:.1f} um"
+        print(f"{what}: {forces}, min J {J.min():.3f}, {model.solves} solves, {clock():.0f} s", flush=True)
+
+    if not model.path(0.0, DEPTHS, report, 1e-4, 2.5e-4 / level):
+        print(f"friction {friction} level {level}: no equilibrium beyond the values above", flush=True)
+    return out
+
+
+def estimate(found: dict[str, Any]) -> dict[str, Any]:
+    """Force for a rigid contact at each friction and depth, from the finest level, and its error [%].
+
+    The penalty's part is c / penalty, c from two penalties on one level at that friction, else stick's.
+    Error: half of that correction plus the difference of the two finest levels; nothing from one level.
+    """
+
+    def slope(name: str, depth: str) -> float | None:
+        for key, values in found.get(name, {}).items():
+            level, _, penalty = key.partition(", penalty ")
+            base = found[name].get(level, {})
+            if penalty and depth in values and depth in base:
+                gain = values[depth]["force"] - base[depth]["force"]
+                return float(gain / (1 / PENALTY - 1 / float(penalty)))
+        return None
+
+    out: dict[str, Any] = {}
+    for name, runs in found.items():
+        for depth in (f"{d * 1e3:g}" for d in DEPTHS):
+            forces = [runs[k][depth]["force"] for k in sorted(runs) if k.isdigit() and depth in runs[k]]
+            c = slope(name, depth)
+            c = slope("stick", depth) if c is None else c
+            if len(forces) < 2 or c is None:
+                continue
+            force = forces[-1] + c / PENALTY
+            error = abs(c / PENALTY) / 2 + abs(forces[-1] - forces[-2])
+            out.setdefault(name, {})[depth] = {"force": force, "error_percent": round(100 * error / force, 2)}
+    return out
+
+
+def write(found: dict[str, Any]) -> None:
+    """Write poke.json."""
+    about = {
+        "units": "m, N, Pa; depths in mm",
+        "radius": RADIUS,
+        "height": HEIGHT,
+        "rod_radius": ROD,
+        "edge_radius": EDGE,
+        "mu": MU,
+        "K": BULK,
+        "felupe": fe.__version__,
+        "values": "friction: depth: rigid contact, estimated from the runs",
+        "forces": "friction: level: depth: what was computed",
+    }
+    text = json.dumps({"about": about, "values": estimate(found), "forces": found}, indent=1)
+    FILE.write_text(text + "\n")
+
+
+def main() -> None:
+    """Solve what is asked for, adding to poke.json."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--levels", type=int, nargs="+", default=[1, 2])
+    parser.add_argument("--frictions", type=float, nargs="+", default=[0.6, float("inf"), 0.0])
+    parser.add_argument("--penalty", type=float, default=PENALTY, help="Pa/m")
+    args = parser.parse_args()
+    found: dict[str, Any] = json.loads(FILE.read_text())["forces"] if FILE.exists() else {}
+    for level in args.levels:
+        for friction in args.frictions:
+            name = "stick" if np.isinf(friction) else f"{friction:g}"
+            key = f"{level}" if args.penalty == PENALTY else f"{level}, penalty {args.penalty:g}"
+            found.setdefault(name, {})[key] = poke(friction, level, args.penalty)
+            write(found)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""What any mesh must satisfy, whoever built it."""
+
+import numpy as np
+
+from tisim.mesh._mesh import ELEMENT_FACETS, Mesh, boundary_facets
+from tisim.mesh._reference import TET_EDGES
+from tisim.mesh.quality import nodal_determinants, volumes
+
+
+def assert_conforming(mesh: Mesh) -> None:
+    """Every facet belongs to one or two elements with the very same nodes, turned against each other;
+    every edge of 10-node tetrahedra has one middle node; every node is used."""
+    assert np.array_equal(np.unique(mesh.elements), np.arange(mesh.n_nodes))
+    local = np.array(ELEMENT_FACETS[mesh.kind])
+    facets = mesh.elements[:, local].reshape(-1, local.shape[1])
+    _, count = np.unique(np.sort(facets, axis=1), axis=0, return_counts=True)
+    assert set(count.tolist()) <= {1, 2}
+    # the same nodes seen from the two sides: each directed edge of a facet occurs as often as its reverse
+    # inside the body, so what is left over is a closed, oriented boundary
+    assert_closed(boundary_facets(mesh.kind, mesh.elements), mesh)
+    assert (count == 1).sum() == len(boundary_facets(mesh.kind, mesh.elements))
+    if mesh.kind == "tet10":
+        pairs = np.sort(mesh.elements[:, TET_EDGES].reshape(-1, 2), axis=1)
+        with_middle = np.unique(np.column_stack([pairs, mesh.elements[:, 4:].ravel()]), axis=0)
+        assert len(with_middle) == len(np.unique(pairs, axis=0)) == len(np.unique(with_middle[:, 2]))
+
+
+def assert_closed(facets: np.ndarray, mesh: Mesh, euler: int = 2) -> None:
+    """A closed surface turned outwards, of the Euler number of a ball's surface unless told."""
+    corners = facets[:, :4] if mesh.kind == "hex8" else facets[:, :3]
+    directed = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
+    assert len(np.unique(directed, axis=0)) == len(directed)
+    assert {tuple(e) for e in directed.tolist()} == {tuple(e) for e in directed[:, ::-1].tolist()}
+    assert len(np.unique(corners)) - len(directed) // 2 + len(corners) == euler
+    x = mesh.nodes[corners]
+    if corners.shape[1] == 4:
+        x = np.concatenate([x[:, [0, 1, 2]], x[:, [0, 2, 3]]])
+    assert np.linalg.det(x).sum() > 0
+
+
+def assert_positive(mesh: Mesh) -> None:
+    """No element is turned over, at any of its nodes, and none is nearly so."""
+    assert (nodal_determinants(mesh) > 0.05 * np.abs(nodal_determinants(mesh)).max(axis=1)[:, None]).all()
+    assert volumes(mesh).min() > 0
+
+
+def facet_set(facets: np.ndarray) -> set[tuple[int, ...]]:
+    """Facets as a set, whatever the order of their nodes."""
+    return {tuple(f) for f in np.sort(facets, axis=1).tolist()}

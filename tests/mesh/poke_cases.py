@@ -1,0 +1,122 @@
+"""Random pokes into blocks with inclusions, and what their meshes must satisfy."""
+
+import numpy as np
+
+from tisim.mesh._mesh import ELEMENT_FACETS, Mesh, boundary_facets
+from tisim.mesh._reference import det_jacobian, quadrature
+from tisim.scene import Block, BoxInclusion, CylinderInclusion, SphereInclusion
+
+
+def gauss_jacobians(mesh: Mesh) -> np.ndarray:
+    """det J times weight at the quadrature points: a row sums to the element's volume."""
+    places, weights = quadrature(mesh.kind)
+    return det_jacobian(mesh.kind, mesh.nodes, mesh.elements, places) * weights
+
+
+def random_poke(rng: np.random.Generator) -> dict:
+    """Arguments of poke_mesh but the rod; inclusions stand on the base, or a little above or below."""
+    x, y = rng.uniform(-0.030, 0.030, 2)
+    kind = rng.integers(3)
+    if kind == 0:
+        a, b, h = rng.uniform(0.008, 0.026, 3)
+        z = h / 2 + rng.choice([0.0, 0.0, -0.002, 0.003])
+        inclusion = BoxInclusion(size=(a, b, h), centre=(x, y, z), angle=rng.uniform(-4, 4))
+    elif kind == 1:
+        r = rng.uniform(0.004, 0.0135)
+        inclusion = SphereInclusion(radius=r, centre=(x, y, r * rng.choice([1.0, 1.0, 0.5, 0.0, -0.4, 1.2])))
+    else:
+        r, h = rng.uniform(0.004, 0.014), rng.uniform(0.005, 0.026)
+        inclusion = CylinderInclusion(radius=r, height=h, centre=(x, y, h / 2 + rng.choice([0.0, 0.003])))
+    tilt, azimuth = rng.uniform(0, np.pi / 4), rng.uniform(-np.pi, np.pi)
+    s = np.sin(tilt)
+    direction = (s * np.cos(azimuth), s * np.sin(azimuth), -np.cos(tilt))
+    return {
+        "block": Block(inclusion=inclusion),
+        "site": tuple(rng.uniform(-0.030, 0.030, 2)),
+        "direction": direction,
+    }
+
+
+def gap_to_rigid(inclusion: object, points: np.ndarray) -> np.ndarray:
+    """How far points (n, 3) [m] lie off the inclusion's surface, along the nearest face; unsigned."""
+    p = points - np.array(inclusion.centre)
+    if isinstance(inclusion, SphereInclusion):
+        return np.abs(np.linalg.norm(p, axis=1) - inclusion.radius)
+    if isinstance(inclusion, CylinderInclusion):
+        across, half = np.hypot(p[:, 0], p[:, 1]) - inclusion.radius, inclusion.height / 2
+    else:
+        c, s = np.cos(inclusion.angle), np.sin(inclusion.angle)
+        q = np.abs(p[:, :2] @ np.array([[c, -s], [s, c]]))
+        across, half = (q - np.array(inclusion.size[:2]) / 2).max(axis=1), inclusion.size[2] / 2
+    return np.abs(np.maximum(across, np.abs(p[:, 2]) - half))
+
+
+def true_volume(inclusion: object) -> float:
+    """Volume of the inclusion above z = 0 [m3]."""
+    z = inclusion.centre[2]
+    if isinstance(inclusion, SphereInclusion):
+        r = inclusion.radius
+        t = min(z, r)
+        return np.pi * (r**3 * 2 / 3 + r**2 * t - t**3 / 3)
+    if isinstance(inclusion, CylinderInclusion):
+        h, area = inclusion.height, np.pi * inclusion.radius**2
+    else:
+        h, area = inclusion.size[2], inclusion.size[0] * inclusion.size[1]
+    return area * (z + h / 2 - max(0.0, z - h / 2))
+
+
+def assert_matching_facets(mesh: Mesh) -> None:
+    """Each facet, as the set of its nodes, lies in one or two elements; the single ones close the body.
+
+    Unlike a list of four nodes, a set also tells a triangle of a wedge from half of a quadrilateral.
+    """
+    local = np.array([f[:3] if mesh.kind == "tet10" else f for f in ELEMENT_FACETS[mesh.kind]])
+    facets = np.sort(mesh.elements[:, local].reshape(-1, local.shape[1]), axis=1)
+    sets = [tuple(sorted(set(f))) for f in facets.tolist()]
+    count: dict[tuple[int, ...], int] = {}
+    for s in sets:
+        if len(s) >= 3:
+            count[s] = count.get(s, 0) + 1
+    assert set(count.values()) <= {1, 2}
+    surface = boundary_facets(mesh.kind, mesh.elements)
+    corners = surface[:, :3] if mesh.kind == "tet10" else surface
+    assert {tuple(sorted(set(f))) for f in corners.tolist()} == {s for s, n in count.items() if n == 1}
+    directed = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
+    directed = directed[directed[:, 0] != directed[:, 1]]
+    # closed and turned the same way everywhere: each edge is run through as often one way as the other
+    directed = directed.astype(np.int64)
+    key = directed.min(axis=1) * mesh.n_nodes + directed.max(axis=1)
+    _, edge = np.unique(key, return_inverse=True)
+    assert not np.bincount(edge, np.sign(directed[:, 1] - directed[:, 0])).any()
+    assert np.array_equal(np.unique(mesh.elements), np.arange(mesh.n_nodes))
+
+
+def assert_good(mesh: Mesh, block: Block) -> None:
+    """Positive elements, the volume of block less inclusion, held nodes on rigid surfaces."""
+    determinants = gauss_jacobians(mesh)
+    assert determinants.min() > 0
+    assert (determinants.min(axis=1) > 0.03 * determinants.max(axis=1)).all()
+    inclusion = block.inclusion
+    lost = np.prod(block.size) - determinants.sum()
+    ratio = lost / true_volume(inclusion)
+    held = mesh.nodes[mesh.node_sets["base"]]
+    off = np.minimum(np.abs(held[:, 2]), gap_to_rigid(inclusion, held))
+    if isinstance(inclusion, BoxInclusion):
+        assert abs(ratio - 1) < 1e-9
+    elif isinstance(inclusion, CylinderInclusion):
+        assert 0.90 - 1e-9 < ratio < 1 + 1e-9
+    else:
+        # facets under the dome, and a rigid fill where the gap to the base is thin
+        assert 0.65 < ratio < 1.10
+        p = held - np.array(inclusion.centre)
+        in_fill = (p[:, 2] < 0) & (np.hypot(p[:, 0], p[:, 1]) < inclusion.radius * (1 + 1e-9))
+        off[in_fill] = 0.0
+    assert off.max() < 1e-9
+    # everything on the rigid surface is held: what is left of the boundary is the top and the sides
+    facets = mesh.facet_sets["surface"]
+    free = ~np.isin(facets, mesh.node_sets["base"]).all(axis=1)
+    at = mesh.nodes[facets[free]]
+    walls = [np.abs(at[..., k] - e * block.size[k] / 2).max(axis=1) < 1e-9 for k in (0, 1) for e in (-1, 1)]
+    walls.append(np.abs(at[..., 2] - block.size[2]).max(axis=1) < 1e-9)
+    assert np.any(walls, axis=0).all()
+    assert np.isin(facets[~free], mesh.node_sets["base"]).all()

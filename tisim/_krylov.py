@@ -1,0 +1,124 @@
+"""GMRES in double precision, preconditioned by a single-precision factor of an older matrix.
+
+A factorisation costs some forty solves with it, and a poke's matrix changes slowly: one factor serves
+several Newton iterations and load steps. Deep under a rod the tangent becomes indefinite and friction
+makes it unsymmetric: LDL^T factorises the first, GMRES takes both.
+"""
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim._linear import DirectSolver
+from tisim._pattern import Pattern
+from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
+
+Array = NDArray[np.float64]
+
+
+@cache
+def _multiply_kernel() -> Kernel:
+    ensure_runtime()
+
+    @ti.kernel
+    def multiply(
+        indptr: ti.types.ndarray(dtype=i32, ndim=1),
+        indices: ti.types.ndarray(dtype=i32, ndim=1),
+        blocks: ti.types.ndarray(dtype=f64, ndim=3),
+        v: ti.types.ndarray(dtype=f64, ndim=2),
+        out: ti.types.ndarray(dtype=f64, ndim=2),
+    ):
+        """out += A v, A by its upper triangle."""
+        ti.loop_config(serialize=True)
+        for r in range(indptr.shape[0] - 1):
+            s = ti.Vector([0.0, 0.0, 0.0])
+            vr = ti.Vector([v[r, 0], v[r, 1], v[r, 2]])
+            for k in range(indptr[r], indptr[r + 1]):
+                c = indices[k]
+                for i in ti.static(range(3)):
+                    for j in ti.static(range(3)):
+                        s[i] += blocks[k, i, j] * v[c, j]
+                if c != r:
+                    for i in ti.static(range(3)):
+                        t = 0.0
+                        for j in ti.static(range(3)):
+                            t += blocks[k, j, i] * vr[j]
+                        out[c, i] = out[c, i] + t
+            for i in ti.static(range(3)):
+                out[r, i] = out[r, i] + s[i]
+
+    return multiply
+
+
+class FactorGMRES:
+    """Solves with blocks of one pattern; renews its factor once a solve takes over `patience` iterations.
+
+    negative: negative pivots of the factor in use.
+    """
+
+    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 30) -> None:
+        self._pattern = pattern
+        self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
+        self._patience, self._limit = patience, limit
+        self._stale = True
+        self.factorisations = 0
+        self.iterations = 0
+
+    @property
+    def negative(self) -> int:
+        return self._factor.negative
+
+    def solve(
+        self, blocks: Array, rhs: Array, *, tolerance: float, skew: Callable[[Array, Array], None] | None = None
+    ) -> Array:
+        """A^-1 rhs to a relative residual, or as near as `limit` iterations with a new factor come.
+
+        skew: (v, out) adds the unsymmetric part of A times v to out. LinearSolveError from the factor.
+        """
+        fresh = self._stale
+        if fresh:
+            self._refresh(blocks)
+        x, used, good = self._gmres(blocks, rhs, tolerance, skew)
+        if not good and not fresh:
+            self._refresh(blocks)
+            x, used, good = self._gmres(blocks, rhs, tolerance, skew)
+        self._stale = used > self._patience
+        return x
+
+    def _refresh(self, blocks: Array) -> None:
+        self._factor.factorise(blocks)
+        self.factorisations += 1
+
+    def _gmres(
+        self, blocks: Array, rhs: Array, tolerance: float, skew: Callable[[Array, Array], None] | None
+    ) -> tuple[Array, int, bool]:
+        """One cycle, right-preconditioned, so that the residual it minimises is the true one."""
+        p, multiply = self._pattern, _multiply_kernel()
+        beta = float(np.linalg.norm(rhs))
+        basis, images = [rhs / beta], []
+        H = np.zeros((self._limit + 1, self._limit))
+        for k in range(self._limit):
+            z = self._factor.solve(basis[k])
+            w = np.zeros_like(rhs)
+            multiply(p.indptr, p.indices, blocks, z, w)
+            if skew is not None:
+                skew(z, w)
+            images.append(z)
+            for j, v in enumerate(basis):
+                H[j, k] = np.vdot(v, w)
+                w -= H[j, k] * v
+            H[k + 1, k] = np.linalg.norm(w)
+            e = np.zeros(k + 2)
+            e[0] = beta
+            y, *_ = np.linalg.lstsq(H[: k + 2, : k + 1], e)
+            left = float(np.linalg.norm(H[: k + 2, : k + 1] @ y - e))
+            if left <= tolerance * beta or H[k + 1, k] <= 1e-14 * beta:
+                break
+            basis.append(w / H[k + 1, k])
+        self.iterations += len(images)
+        x = np.zeros_like(rhs)
+        for c, z in zip(y, images, strict=True):
+            x += c * z
+        return x, len(images), left <= tolerance * beta

@@ -1,0 +1,137 @@
+"""Stands columns on a plane grid, around, above and below a rigid inclusion."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.mesh._inclusion import THINNEST_GAP, Outline
+from tisim.mesh._layers import graded, layer_count
+from tisim.mesh._mesh import ElementKind, Mesh, boundary_facets
+from tisim.mesh._prisms import tetrahedra
+from tisim.mesh.quadratic import to_quadratic
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+TOP_LAYER = 0.0015
+BOTTOM_LAYER = 0.0042
+# layers thinner than this turn over under a rod's edge
+THINNEST_LAYER = 0.0012
+
+
+def extrude(
+    *,
+    points: Floats,
+    cells: Ints,
+    size: tuple[float, float, float],
+    refinement: float,
+    kind: ElementKind = "hex8",
+    outline: Outline | None = None,
+    side: Ints | None = None,
+    within: Bools | None = None,
+    top_points: Floats | None = None,
+) -> Mesh:
+    """The block over a grid of points (n, 2) and cells (m, 4): hexahedra, wedges over triangles, or
+    tetrahedra from these.
+
+    side: per point -1 inside the outline, 0 on it, 1 outside; within: cells inside it.
+    top_points: where the columns end on the top face (n, 2); they lean from the inclusion's apex upwards.
+    """
+    height, n = size[2], len(points)
+    low = high = np.zeros(n)
+    parts: list[tuple[Floats, Bools]] = []  # per stack: levels (n, k + 1) and cells kept (m,)
+    everywhere = np.ones(len(cells), dtype=bool)
+    split = np.zeros(n, dtype=bool)
+    if outline is not None and side is not None and within is not None:
+        low, high = outline.cap(points)
+        if outline.dome is not None:
+            # over the dome and under the belly columns of their own, that meet at the outline
+            split = side < 0
+            low = np.where(split, low, outline.low)
+            high = np.where(split, high, outline.high)
+            thick = low[cells].min(axis=1) >= THINNEST_GAP
+            if outline.low > 0.0:
+                parts.append((_rising(low, height, refinement, outline.low), ~within | thick))
+        else:
+            if outline.low > 0.0:
+                parts.append((_rising(low, height, refinement, outline.low), everywhere))
+            wall = np.full(n, outline.high - outline.low)
+            parts.append((outline.low + _rising(wall, height, refinement, outline.high), ~within))
+    parts.append((_hanging(high, height, refinement), everywhere))
+
+    nodes, elements, offset, last = [], [], 0, None
+    for levels, keep in parts:
+        k = levels.shape[1]
+        index = offset + np.arange(k * n).reshape(k, n)
+        if last is not None:
+            index[0] = np.where(split, index[0], last)
+        offset, last = offset + k * n, index[-1]
+        xyz = np.empty((k, n, 3))
+        xyz[:, :, :2] = points
+        xyz[:, :, 2] = levels.T
+        if top_points is not None and outline is not None:
+            lean = np.clip((xyz[:, :, 2:] - outline.apex) / (height - outline.apex), 0.0, 1.0)
+            xyz[:, :, :2] += lean * (top_points - points)
+        nodes.append(xyz.reshape(-1, 3))
+        under = index[:-1][:, cells[keep]].reshape(-1, 4)
+        elements.append(np.concatenate([under, index[1:][:, cells[keep]].reshape(-1, 4)], axis=1))
+    all_nodes, all_elements = np.concatenate(nodes), np.concatenate(elements)
+    used, all_elements = np.unique(all_elements, return_inverse=True)
+    all_elements = all_elements.reshape(-1, 8).astype(np.int32)
+    if kind == "hex8":
+        return _named("hex8", all_nodes[used], all_elements, size)
+    # diagonals from the columns inside the outline: the others would leave nodes of a sphere's rim unheld
+    rank = np.argsort(np.argsort(side, kind="stable")) if side is not None else np.arange(n)
+    linear = _named("tet4", all_nodes[used], tetrahedra(all_elements, rank[used % n]), size)
+    return linear if kind == "tet4" else to_quadratic(linear)
+
+
+def _hanging(bottom: Floats, height: float, refinement: float) -> Floats:
+    """Levels from `bottom` (n,) up to the top face, finest there: (n, k + 1)."""
+    top = max(THINNEST_LAYER, TOP_LAYER / refinement)
+    room, least = height - float(bottom.min()), height - float(bottom.max())
+    k = layer_count(height=room, top=top, bottom=BOTTOM_LAYER / refinement, total=height)
+    k = max(1, min(k, int(least / THINNEST_LAYER)))
+    levels = height - graded(height - bottom, top, k)[:, ::-1]
+    levels[:, 0] = bottom
+    return levels
+
+
+def _rising(top: Floats, height: float, refinement: float, deepest: float) -> Floats:
+    """Even levels from 0 to `top` (n,), as many as a stack that ends at `deepest` wants: (n, k + 1)."""
+    thin = max(THINNEST_LAYER, TOP_LAYER / refinement)
+    k = layer_count(
+        height=float(top.max()),
+        top=thin,
+        bottom=BOTTOM_LAYER / refinement,
+        total=height,
+        start=height - deepest,
+    )
+    levels = top[:, None] * (np.arange(k + 1) / k)
+    levels[:, -1] = top
+    return levels
+
+
+def _named(
+    kind: ElementKind, nodes: Floats, elements: NDArray[np.int32], size: tuple[float, float, float]
+) -> Mesh:
+    """The mesh with its sets: what lies neither on the top nor on a side is held."""
+    surface = boundary_facets(kind, elements)
+    at = nodes[surface]
+    top = (at[:, :, 2] == size[2]).all(axis=1)
+    lateral = np.zeros(len(surface), dtype=bool)
+    for axis in (0, 1):
+        for end in (-0.5, 0.5):
+            lateral |= (np.abs(at[:, :, axis] - end * size[axis]) < 1e-12).all(axis=1)
+    return Mesh(
+        kind=kind,
+        nodes=nodes,
+        elements=elements,
+        node_sets={
+            "base": np.unique(surface[~top & ~lateral]).astype(np.int32),
+            "top": np.unique(surface[top]).astype(np.int32),
+        },
+        facet_sets={"top": surface[top], "surface": surface},
+    )

@@ -1,0 +1,109 @@
+"""An unstructured block with a rigid inclusion of any shape cut out of it."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+import trimesh
+
+from tisim.mesh._errors import MeshError
+from tisim.mesh._mesh import Mesh, boundary_facets
+from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.surface import Units, checked_surface
+from tisim.mesh.tetrahedralise import body_from_surface
+
+# fTetWild makes another mesh each time: one that does not fit the planes is made anew
+_ATTEMPTS = 3
+
+
+def block_around(
+    surface: Any,
+    *,
+    size: tuple[float, float, float],
+    edge_length: float,
+    units: Units = "m",
+    kind: Literal["tet4", "tet10"] = "tet4",
+    tolerance: float | None = None,
+) -> Mesh:
+    """A block, x and y centred on 0 and z from 0 to size[2], without the inclusion inside `surface`.
+
+    surface: closed surface of the rigid inclusion in the block's coordinates (a file, a trimesh.Trimesh,
+        or None for a plain block); what reaches below z = 0 does not count, and it may not reach the top
+        or the sides.
+    size, edge_length, tolerance: [m], the last two as in `body_from_surface`; units: of the surface.
+
+    node_sets: "base" (the plane z = 0 and the inclusion's surface, which a poke holds fixed) and
+    "inclusion" (its surface only); facet_sets: "surface", "top", "base", "inclusion".
+    """
+    if min(size) <= 0 or not np.isfinite(size).all():
+        raise MeshError(f"the block's size must be three positive lengths in metres, got {size!r}")
+    block = trimesh.creation.box(extents=size)
+    block.apply_translation((0.0, 0.0, size[2] / 2))
+    if tolerance is None:
+        tolerance = edge_length / 50
+    if surface is not None:
+        block = _cut_out(block, checked_surface(surface, units=units), size)
+    for attempt in range(_ATTEMPTS):
+        body = body_from_surface(block, edge_length=edge_length, tolerance=tolerance, allow_cavities=True)
+        mesh = _onto_planes(body, size, 2 * tolerance)
+        corner = mesh.nodes[mesh.elements]
+        if np.linalg.det(corner[:, 1:] - corner[:, :1]).min() > 0:
+            break
+        if attempt == _ATTEMPTS - 1:
+            raise MeshError("the planes of the block turn an element over: ask for a smaller tolerance")
+    if surface is not None and "inclusion" not in mesh.facet_sets:
+        raise MeshError("the inclusion got lost in the mesh: ask for a smaller edge length or tolerance")
+    return to_quadratic(mesh) if kind == "tet10" else mesh
+
+
+def _onto_planes(body: Mesh, size: tuple[float, float, float], reach: float) -> Mesh:
+    """The mesh with the nodes of its plane faces, which fTetWild keeps within its tolerance only, exactly
+    on the planes, and with named sets. Slivers that lie in a plane as a whole are left out."""
+    width, depth, height = size
+    planes = ((2, 0.0), (2, height), (0, -width / 2), (0, width / 2), (1, -depth / 2), (1, depth / 2))
+    elements = body.elements
+    while True:
+        facets = boundary_facets("tet4", elements)
+        on = [(np.abs(body.nodes[facets, axis] - value) <= reach).all(axis=1) for axis, value in planes]
+        flat = np.zeros(len(elements), dtype=bool)
+        for chosen in on:
+            flat |= np.isin(elements, facets[chosen]).all(axis=1)
+        if not flat.any():
+            break
+        elements = elements[~flat]
+    nodes = body.nodes.copy()
+    for (axis, value), chosen in zip(planes, on, strict=True):
+        nodes[np.unique(facets[chosen]), axis] = value
+    used, place = np.unique(elements, return_inverse=True)
+    facets = np.searchsorted(used, facets).astype(np.int32)
+    base, top, inclusion = on[0], on[1], ~np.logical_or.reduce(on)
+    node_sets = {"surface": np.unique(facets), "base": np.unique(facets[base | inclusion])}
+    facet_sets = {"surface": facets, "top": facets[top], "base": facets[base]}
+    if inclusion.any():
+        node_sets["inclusion"] = np.unique(facets[inclusion])
+        facet_sets["inclusion"] = facets[inclusion]
+    return Mesh(
+        kind="tet4",
+        nodes=nodes[used],
+        elements=place.reshape(-1, 4).astype(np.int32),
+        node_sets=node_sets,
+        facet_sets=facet_sets,
+    )
+
+
+def _cut_out(block: Any, inclusion: Any, size: tuple[float, float, float]) -> Any:
+    low, high = inclusion.bounds
+    if high[2] <= 0:
+        raise MeshError("the inclusion lies below the block, whose base is z = 0")
+    if high[2] >= size[2]:
+        raise MeshError(f"the inclusion reaches z = {high[2]:.4g} m, the block's top is at {size[2]:.4g} m")
+    if (np.maximum(np.abs(low[:2]), np.abs(high[:2])) >= np.array(size[:2]) / 2).any():
+        raise MeshError("the inclusion reaches the block's sides: move it inwards, or take a larger block")
+    try:
+        rest = trimesh.boolean.difference([block, inclusion], engine="manifold")
+    except ImportError as error:
+        raise MeshError(
+            "cutting an inclusion out needs the package manifold3d: pip install manifold3d"
+        ) from error
+    return rest

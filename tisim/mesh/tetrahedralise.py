@@ -1,0 +1,119 @@
+"""A tetrahedral mesh of what a closed surface holds, by fTetWild (Hu et al. 2020, pytetwild).
+
+fTetWild does not give the same mesh twice, not even in one thread (wildmeshing/fTetWild issue 72): where
+a result must be repeatable to the byte, make the mesh once and keep it.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Literal
+
+import numpy as np
+
+from tisim.mesh._errors import MeshError
+from tisim.mesh._mesh import Mesh, boundary_facets
+from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.surface import Units, checked_surface
+
+# A body of more elements than this (a regular tetrahedron holds 0.118 edge lengths cubed) is a mistake.
+_MOST_ELEMENTS = 5_000_000
+
+
+def body_from_surface(
+    surface: Any,
+    *,
+    edge_length: float,
+    units: Units = "m",
+    kind: Literal["tet4", "tet10"] = "tet4",
+    tolerance: float | None = None,
+    stop_energy: float = 10.0,
+    time_limit: float = 600.0,
+    allow_cavities: bool = False,
+) -> Mesh:
+    """The body inside a closed surface, as tetrahedra (another mesh of the same kind on each call).
+
+    surface: a file that trimesh reads (STL, PLY, OBJ, OFF), or a trimesh.Trimesh.
+    edge_length: wanted length of the edges [m]; units: of the surface's coordinates.
+    kind: "tet10" puts a node in the middle of each (straight) edge.
+    tolerance: how far the mesh's surface may lie from the given one [m]; edge_length / 50 by default.
+        Smaller takes longer.
+    stop_energy: shape at which the optimisation stops; 3 is a regular tetrahedron, smaller than the
+        default of 10 gives better shapes and takes longer.
+    time_limit: seconds after which to give up.
+    allow_cavities: whether the surface may have inner pieces, turned inwards.
+
+    node_sets and facet_sets "surface": the boundary. Raises MeshError with one sentence that says what
+    is wrong with the surface.
+    """
+    shell = checked_surface(surface, units=units, allow_cavities=allow_cavities)
+    extent = float(np.linalg.norm(shell.extents))
+    if not (np.isfinite(edge_length) and 0 < edge_length <= extent):
+        raise MeshError(
+            f"edge length must lie between 0 and the body's size of {extent:.3g} m, got {edge_length!r} m"
+        )
+    expected = shell.volume / (0.118 * edge_length**3)
+    if expected > _MOST_ELEMENTS:
+        raise MeshError(
+            f"edges of {edge_length:.3g} m would give about {expected:.1g} tetrahedra: ask for a longer one"
+        )
+    if tolerance is None:
+        tolerance = edge_length / 50
+    nodes, elements = _run(
+        vertices=np.asarray(shell.vertices, dtype=np.float64),
+        faces=np.asarray(shell.faces, dtype=np.int32),
+        edge_length=edge_length,
+        epsilon=tolerance / extent,
+        stop_energy=stop_energy,
+        time_limit=time_limit,
+    )
+    used, place = np.unique(elements, return_inverse=True)
+    nodes, elements = nodes[used], place.reshape(-1, 4).astype(np.int32)
+    corner = nodes[elements]
+    volume = np.linalg.det(corner[:, 1:] - corner[:, :1]) / 6
+    if abs(np.abs(volume).sum() / shell.volume - 1) > 0.05:
+        raise MeshError(
+            f"the mesh holds {np.abs(volume).sum() / shell.volume:.2f} times the surface's volume: "
+            "ask for a smaller edge length or tolerance"
+        )
+    turned = volume < 0  # fTetWild numbers the other way round
+    elements[turned] = elements[turned][:, [0, 2, 1, 3]]
+    boundary = boundary_facets("tet4", elements)
+    mesh = Mesh(
+        kind="tet4",
+        nodes=nodes,
+        elements=elements,
+        node_sets={"surface": np.unique(boundary)},
+        facet_sets={"surface": boundary},
+    )
+    return to_quadratic(mesh) if kind == "tet10" else mesh
+
+
+def _run(*, time_limit: float, **data: Any) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    with TemporaryDirectory(prefix="tisim-mesh-") as folder:
+        source, target = Path(folder) / "surface.npz", Path(folder) / "mesh.npz"
+        np.savez(source, **data)
+        script = Path(__file__).with_name("_ftetwild.py")
+        try:
+            # -P: this folder's modules must not stand in for others of the same name
+            done = subprocess.run(
+                [sys.executable, "-P", str(script.resolve()), source.name, target.name],
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=time_limit,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise MeshError(
+                f"fTetWild was not done after {time_limit:g} s: ask for a larger edge length or tolerance"
+            ) from None
+        if done.returncode or not target.exists():
+            last = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+            raise MeshError(f"fTetWild could not mesh the surface: {last}")
+        with np.load(target) as result:
+            return result["vertices"], result["tetrahedra"]
