@@ -1,8 +1,10 @@
-"""Static beams: structured mesh, start from the rod theory, Newton at full load, load steps where that fails."""
+"""Static beams: structured mesh, Newton at full load from the rod's shape, load steps where that fails."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -21,15 +23,32 @@ from tisim.scene import Beam, Circle
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True, eq=False)
+class Neighbour:
+    """A solved candidate to start the next one from: its layout, positions, rod shape and pressures."""
+
+    layout: Layout
+    x: Array
+    rod: Array
+    pressure: Array
+
+
 def solve_beam(scene: Beam) -> Result:
     """Equilibrium of a beam. The result has one frame, at load 1."""
-    mesh_start = time.process_time()
-    layout = beam_layout(scene)
-    mesh_seconds = time.process_time() - mesh_start
-    start = time.process_time()
-    system = beam_system(scene, layout)
-    outcome, counts = equilibrium(scene, system)
-    return _result(scene, system, outcome, counts, mesh_seconds, time.process_time() - start)
+    return next(solve_beams([scene]))
+
+
+def solve_beams(scenes: Sequence[Beam]) -> Iterator[Result]:
+    """Equilibria of beams one after the other, each started from the one before on the same mesh."""
+    neighbour: Neighbour | None = None
+    for scene in scenes:
+        mesh_start = time.process_time()
+        layout = beam_layout(scene)
+        mesh_seconds = time.process_time() - mesh_start
+        start = time.process_time()
+        system = beam_system(scene, layout)
+        outcome, counts, neighbour = equilibrium(scene, system, neighbour)
+        yield _result(scene, system, outcome, counts, mesh_seconds, time.process_time() - start)
 
 
 def beam_layout(scene: Beam) -> Layout:
@@ -77,10 +96,16 @@ def _planar(scene: Beam) -> bool:
 
 
 class BeamSystem:
-    """A beam under a part `factor` of its load (see `tisim._newton.System`)."""
+    """A beam under a part `factor` of its load (see `tisim._newton.System`).
 
-    def __init__(self, body: Body) -> None:
+    tolerance: what the residual will be asked to reach, relative to the load. Where rounding is more than
+    that (stiffness times the last digit of the positions: thin beams, nearly incompressible), `linearise`
+    returns the load that makes it just reachable.
+    """
+
+    def __init__(self, body: Body, *, tolerance: float = 1e-6) -> None:
         self.body = body
+        self.tolerance = tolerance
         self.full_load = body.dead_load
         self.factor = 1.0
         self.step_limit = np.inf
@@ -88,13 +113,15 @@ class BeamSystem:
         self._blocks: Array | None = None
         self._pressure: Array | None = None
 
-    def free_pressures(self, free: bool) -> None:
-        """Iterate the element pressures as unknowns of their own, from zero, without a line search.
+    def free_pressures(self, start: Array | None) -> None:
+        """Iterate the element pressures as unknowns, from `start` (m,) [Pa], without a line search.
+
+        None: back to pressures that follow the positions.
 
         A step that is right to first order leaves an error in volume of second order; the potential
         punishes it by the bulk modulus and would cut the step, the mixed iteration does not see it.
         """
-        self._pressure = np.zeros(self.body.layout.mesh.n_elements) if free else None
+        self._pressure = start
 
     def searches(self) -> bool:
         return self._pressure is None
@@ -114,7 +141,17 @@ class BeamSystem:
         residual[layout.held] = 0.0
         if min_jacobian <= 0.0:
             residual[:] = np.nan
-        return residual, float(np.linalg.norm(self.body.dead_load[layout.pattern.free]))
+        return residual, max(self.load_norm(), self._rounding(x) / self.tolerance)
+
+    def load_norm(self) -> float:
+        """Size of the load at the free nodes [N]."""
+        return float(np.linalg.norm(self.body.dead_load[self.body.layout.pattern.free]))
+
+    def _rounding(self, x: Array) -> float:
+        """Size of the residual that rounding the positions makes [N]; 2 to 3 times what is measured."""
+        assert self._blocks is not None
+        diagonal = self._blocks[self.body.layout.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+        return 0.5 * float(np.finfo(float).eps * np.linalg.norm(diagonal) * np.abs(x).max())
 
     def step(self, residual: Array, *, forcing: float) -> Array:  # noqa: ARG002 - the solve is exact
         layout = self.body.layout
@@ -134,6 +171,9 @@ class BeamSystem:
             self._blocks[diagonal] += (more - shift) * np.eye(3)
             shift = more
         return -residual / scale
+
+    def second_step(self, residual: Array) -> Array | None:  # noqa: ARG002
+        return None
 
     def advance(self, x: Array, step: Array) -> Array:
         moved = x.copy()
@@ -160,42 +200,70 @@ def beam_system(scene: Beam, layout: Layout) -> BeamSystem:
             raise ValueError("beam: a tip force needs a free end (mesh facet set 'tip')")
         share = facet_load(layout.mesh, layout.mesh.facet_sets["tip"])
         load += share[:, None] / share.sum() * np.asarray(scene.tip_force) / layout.multiplicity
-    return BeamSystem(Body(layout, scene.material, dead_load=load))
+    return BeamSystem(Body(layout, scene.material, dead_load=load), tolerance=scene.solver.tolerance)
 
 
-def equilibrium(scene: Beam, system: BeamSystem) -> tuple[Outcome, dict[str, int]]:
-    """Full load from the rod's shape; else from rest with adaptive load steps."""
-    options = scene.solver
-    rest = system.body.layout.mesh.nodes
-    counts = {"steps": 1, "cuts": 0}
+def equilibrium(
+    scene: Beam, system: BeamSystem, neighbour: Neighbour | None = None
+) -> tuple[Outcome, dict[str, int], Neighbour | None]:
+    """Full load from a neighbour's or the rod's shape; else from rest with adaptive load steps.
+
+    A neighbour on the same layout is moved on by what rod theory says of the change, and its pressures
+    are kept: 3.2 to 3.8 linearisations against 4.3 to 4.6 from the rod's shape alone, over designs
+    within a factor of 1.35 to 3.3 of their centre in stiffness and in K/mu.
+    """
+    layout = system.body.layout
     if not system.full_load.any():
-        return Outcome(rest.copy(), Status.CONVERGED, 0.0, 0), counts
-    guess = rod_shape(scene, system.body)
-    if guess is not None and system.potential(guess)[1] > 0.0:
-        system.free_pressures(True)
-        outcome = newton(
-            system, guess, tolerance=options.tolerance, max_iterations=min(15, options.max_iterations)
-        )
-        system.free_pressures(False)
-        if outcome.status is Status.CONVERGED:
-            return outcome, counts
-    x, reached, step = rest.copy(), 0.0, 0.25
-    system.step_limit = 0.02
+        return Outcome(layout.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0), {"steps": 1, "cuts": 0}, None
+    rod = rod_shape(scene, system.body)
+    if rod is not None:
+        # the rod's shape is right in shape, not in volume: its pressures would be wrong by far
+        starts = [(rod, np.zeros(layout.mesh.n_elements))]
+        if neighbour is not None and neighbour.layout is layout:
+            starts.insert(0, (neighbour.x + (rod - neighbour.rod), neighbour.pressure))
+        for guess, pressure in starts:
+            if system.potential(guess)[1] > 0.0:
+                outcome = _mixed_newton(scene, system, guess, pressure)
+                if outcome.status is Status.CONVERGED:
+                    found = Neighbour(layout, outcome.x, rod, system.body.pressures(outcome.x))
+                    return outcome, {"steps": 1, "cuts": 0}, found
+    return *_load_steps(scene, system), None
+
+
+def _mixed_newton(scene: Beam, system: BeamSystem, x: Array, pressure: Array) -> Outcome:
+    """Newton with the element pressures as unknowns; quick or not at all."""
+    options = scene.solver
+    system.free_pressures(pressure)
+    outcome = newton(system, x, tolerance=options.tolerance, max_iterations=min(15, options.max_iterations))
+    system.free_pressures(None)
+    return outcome
+
+
+def _load_steps(scene: Beam, system: BeamSystem) -> tuple[Outcome, dict[str, int]]:
+    """From rest; a step that fails with free pressures is tried once more on the potential, then halved."""
+    options, body = scene.solver, system.body
+    counts = {"steps": 0, "cuts": 0}
+    outcome = Outcome(body.layout.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
+    reached, step = 0.0, 0.25
+    system.step_limit = 0.2 * scene.length
     while reached < 1.0:
         factor = min(1.0, reached + step)
         system.set_factor(factor)
-        outcome = newton(
-            system, x, tolerance=options.tolerance, max_iterations=options.max_iterations
-        )
+        trial = _mixed_newton(scene, system, outcome.x, body.pressures(outcome.x))
+        if trial.status is not Status.CONVERGED:
+            trial = newton(
+                system, outcome.x, tolerance=options.tolerance, max_iterations=options.max_iterations
+            )
         counts["steps"] += 1
-        if outcome.status is Status.CONVERGED:
-            x, reached = outcome.x, factor
-            step *= 2.0 if outcome.iterations < 8 else 1.0
-        else:
-            step *= 0.5
-            counts["cuts"] += 1
-            if step < 1.0 / 512.0:
-                return Outcome(x, outcome.status, outcome.residual, outcome.iterations), counts
+        if trial.status is Status.CONVERGED:
+            outcome, reached = trial, factor
+            step *= 2.0 if trial.iterations < 8 else 1.0
+            continue
+        step *= 0.5
+        counts["cuts"] += 1
+        if step < 1.0 / 512.0:
+            system.set_factor(reached)
+            return Outcome(outcome.x, trial.status, trial.residual, trial.iterations), counts
     return outcome, counts
 
 
@@ -252,10 +320,14 @@ def _result(
     for axis in body.layout.mesh.symmetry:
         support["xyz".index(axis)] = 0.0
     done = outcome.status is Status.CONVERGED
+    load = system.load_norm()
+    residual = system.residual_norm(outcome.x) / load if load > 0.0 else 0.0
     return Result(
         scene=scene,
         status=outcome.status,
-        message="" if done else f"stopped at {system.factor:.3g} of the load, residual {outcome.residual:.1e}",
+        message=""
+        if done
+        else f"no equilibrium found beyond {system.factor:.3g} of the load ({outcome.status.value})",
         mesh=body.layout.mesh,
         load=np.array([1.0]) if done else np.zeros(0),
         positions=outcome.x[None] if done else np.zeros((0, *outcome.x.shape)),
@@ -264,7 +336,7 @@ def _result(
         rod_tip=np.zeros((int(done), 3)),
         penetration=np.zeros(int(done)),
         min_jacobian=np.full(int(done), min_jacobian),
-        residual=np.full(int(done), outcome.residual),
+        residual=np.full(int(done), residual),
         nominal_stress=np.zeros(int(done)),
         cost=Cost(
             core_seconds=core_s,

@@ -16,9 +16,11 @@ from tisim.scene import Material
 
 Array = NDArray[np.float64]
 
-# Part of the volumetric stiffness that stays pointwise, in units of the shear modulus, by element: one
-# pressure a tet10 is a little too soft in bending without it (docs/architecture.md has the figures).
-POINTWISE = {"tet4": np.inf, "tet10": 1.0, "hex8": 0.0}
+# Bulk modulus that stays pointwise, what W itself resists included, in units of the shear modulus, by
+# element. One pressure a tet10 is too soft in bending without it: against benchmarks/references/beams.json
+# (K/mu 20 to 1000, mu 9 and 40 kPa) the default beams are within -0.43 and +0.61 % with 0 left to W of
+# Ogden, -0.51 and +0.16 % with 2/3, -0.70 and +0.03 % with 1. The Neo-Hookean W has 2/3 of its own.
+POINTWISE = {"tet4": np.inf, "tet10": 2.0 / 3.0, "hex8": 1.0}
 
 
 @dataclass(eq=False)
@@ -74,7 +76,8 @@ class Layout:
         rows = np.repeat(np.arange(len(p.free)), np.diff(p.indptr))
         diagonal = p.indptr[:-1]
         scale = np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean()
-        touched = np.flatnonzero(self.held.any(axis=1)[rows] | self.held.any(axis=1)[p.indices])
+        partly: NDArray[np.bool_] = np.any(self.held, axis=1, keepdims=True)[:, 0]
+        touched = np.flatnonzero(partly[rows] | partly[p.indices])
         keep = ~self.held[rows[touched]][:, :, None] & ~self.held[p.indices[touched]][:, None, :]
         blocks[touched] *= keep
         node, axis = np.nonzero(self.held)
@@ -82,7 +85,7 @@ class Layout:
 
 
 class Body:
-    """A material on a layout, with dead nodal loads: potential, forces and stiffness at positions x (n, 3)."""
+    """A material on a layout under dead nodal loads: potential, forces, stiffness at positions x (n, 3)."""
 
     def __init__(self, layout: Layout, material: Material, *, dead_load: Array | None = None) -> None:
         law = laws.get(material.law)
@@ -94,8 +97,8 @@ class Body:
         self._energy, self._forces, self._stiffness, self._pressures = element_kernels(law.name)
         self._prm = np.ascontiguousarray(law.pack(material.parameters), dtype=np.float64)
         kappa = law.kappa(material.parameters)
-        share = POINTWISE[layout.mesh.kind]
-        self._kp = float(np.clip(share * self.moduli.shear, min(kappa, 0.0), kappa)) if kappa > 0 else kappa
+        wanted = POINTWISE[layout.mesh.kind] * self.moduli.shear - (self.moduli.bulk - kappa)
+        self._kp = float(np.clip(wanted, 0.0, kappa)) if kappa > 0 else kappa
         self._kb = kappa - self._kp
 
     def _common(self, x: Array) -> tuple[Any, ...]:

@@ -10,10 +10,11 @@ Energy of a point of rest area A:   A [kn/2 min(d, 0)^2 + huber(g)],  with g the
 and huber(g) = kt/2 g^2 up to the Coulomb limit mu p, mu p g - (mu p)^2/(2 kt) beyond: a return mapping
 whose memory is g at the last converged step, so that a sticking point does not creep with the steps.
 p = kn max(-d, 0) is frozen during a line search and refreshed at every linearisation: the residual is
-Coulomb's law without lag. Where a point slips, the dependence of mu p on x makes the tangent unsymmetric;
-that part, of rank one a point, is kept aside for the linear solver (without it the iteration creeps).
-A point feels friction from the first accepted state in which it touches: before, it has no place to
-slip from.
+Coulomb's law without lag. The dependence of mu p and of the tangent plane on x makes the tangent
+unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
+creeps where points slip and where they pass the rounded edge).
+A point that touches first in this step slips for the part of the step that it touches, as the step's
+start value sees it.
 """
 
 from functools import cache
@@ -80,13 +81,14 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
         return y
 
     @ti.func
-    def elastic_slip(y, z, n, shift, memory: ti.template(), f, q):
-        """Slip since the last step, added to the remembered one; tangential part.
+    def total_slip(y, z, shift, memory: ti.template(), part: ti.template(), f, q):
+        """Slip since the last step, added to the remembered one; its tangential part is the elastic slip.
 
-        z: the point at the last converged step; shift: the rod's displacement since then.
+        z: the point at the last converged step; shift: the rod's displacement since then; part: of the
+        step in which the point touches, 0 where it has no friction yet.
         """
-        g = ti.Vector([memory[f, q, 0], memory[f, q, 1], memory[f, q, 2]]) + y - z - shift
-        return g - g.dot(n) * n
+        g = ti.Vector([memory[f, q, 0], memory[f, q, 1], memory[f, q, 2]])
+        return g + part[f, q] * (y - z - shift)
 
     @ti.kernel
     def measure(x: _f2, conn: _i2, shape: _f2, rod: _f1, distance: _f2):
@@ -100,7 +102,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
     @ti.kernel
     def energy(
         x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
-        memory: _f3, gap: _f2, pressure: _f2, out: _f1,
+        memory: _f3, part: _f2, pressure: _f2, out: _f1,
     ):  # fmt: skip
         """out[0]: energy [J] with the pressures frozen; out[1]: smallest distance [m]."""
         total = 0.0
@@ -115,11 +117,10 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
                     if d < 0.0:
                         total += area[f, q] * 0.5 * law[0] * d * d
                     limit = law[2] * pressure[f, q]
-                    if limit > 0.0 and gap[f, q] <= 0.0:
+                    if limit > 0.0 and part[f, q] > 0.0:
                         shift = ti.Vector([rod[8], rod[9], rod[10]])
-                        g = elastic_slip(
-                            y, sample(z, conn, shape, f, q), n, shift, memory, f, q
-                        ).norm()
+                        g0 = total_slip(y, sample(z, conn, shape, f, q), shift, memory, part, f, q)
+                        g = (g0 - g0.dot(n) * n).norm()
                         if law[1] * g <= limit:
                             total += area[f, q] * 0.5 * law[1] * g * g
                         else:
@@ -130,13 +131,13 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
     @ti.kernel
     def assemble(
         x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
-        memory: _f3, gap: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
+        memory: _f3, part: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
         force: _f2, blocks: _f3, out: _f1,
     ):  # fmt: skip
         """Refreshes `pressure` (f, q) and `slip` (f, q, 3; the elastic slip after return), adds energy
         gradient to force (n, 3) and the tangent to blocks. out[0:3]: force of the body on the rod [N],
-        out[3]: smallest distance [m], out[4]: area in contact [m2], out[5]: 1 where a point slips.
-        skew (f, q, 6): a, b of the unsymmetric part a b^T of each point's tangent."""
+        out[3]: smallest distance [m], out[4]: area in contact [m2], out[5]: 1 where friction acts.
+        skew (f, q, 9): what `blocks` lacks of each point's tangent, row by row."""
         out[5] = 0.0
         total = ti.Vector([0.0, 0.0, 0.0])
         least = 1e300
@@ -151,6 +152,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
                     pressure[f, q] = law[0] * ti.max(0.0, -d)
                     for i in ti.static(range(3)):
                         slip[f, q, i] = 0.0
+                    for i in ti.static(range(9)):
                         skew[f, q, i] = 0.0
                     if d < 0.0:
                         touching += area[f, q]
@@ -161,28 +163,31 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
                             km * m.outer_product(m) + kr * t.outer_product(t)
                         )
                         limit = law[2] * pressure[f, q]
-                        if limit > 0.0 and gap[f, q] <= 0.0:
+                        if limit > 0.0 and part[f, q] > 0.0:
                             shift = ti.Vector([rod[8], rod[9], rod[10]])
                             z_q = sample(z, conn, shape, f, q)
-                            g = elastic_slip(y, z_q, n, shift, memory, f, q)
+                            g0 = total_slip(y, z_q, shift, memory, part, f, q)
+                            g = g0 - g0.dot(n) * n
                             size = g.norm()
-                            I = ti.Matrix.identity(f64, 3)
-                            T = I - n.outer_product(n)
-                            if law[1] * size <= limit:
-                                grad += law[1] * g
-                                H += law[1] * T
-                                for i in ti.static(range(3)):
-                                    slip[f, q, i] = g[i]
-                            else:
+                            N = km * m.outer_product(m) + kr * t.outer_product(t)  # dn/dy
+                            T = ti.Matrix.identity(f64, 3) - n.outer_product(n)
+                            G = part[f, q] * T - n.outer_product(N @ g0) - g0.dot(n) * N  # dg/dy
+                            D = law[1] * G
+                            symmetric = part[f, q] * law[1] * T
+                            pull = law[1] * g
+                            if law[1] * size > limit:
                                 u = g / size
-                                grad += limit * u
-                                H += limit / size * (T - u.outer_product(u))
-                                for i in ti.static(range(3)):
-                                    skew[f, q, i] = -area[f, q] * law[2] * law[0] * u[i]
-                                    skew[f, q, 3 + i] = n[i]
-                                out[5] = 1.0
-                                for i in ti.static(range(3)):
-                                    slip[f, q, i] = limit / law[1] * u[i]
+                                across = limit / size * (ti.Matrix.identity(f64, 3) - u.outer_product(u))
+                                pull = limit * u
+                                D = across @ G - law[2] * law[0] * u.outer_product(n)
+                                symmetric = part[f, q] * limit / size * (T - u.outer_product(u))
+                            grad += pull
+                            H += symmetric
+                            for i in ti.static(range(3)):
+                                slip[f, q, i] = pull[i] / law[1]
+                                for j in ti.static(range(3)):
+                                    skew[f, q, 3 * i + j] = area[f, q] * (D[i, j] - symmetric[i, j])
+                            out[5] = 1.0
                         w = area[f, q]
                         total += w * grad
                         for b in range(conn.shape[1]):
@@ -206,24 +211,29 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
             out[4] = touching
 
     @ti.kernel
-    def multiply_skew(conn: _i2, index: _i1, shape: _f2, skew: _f3, v: _f2, out: _f2):
+    def multiply_skew(
+        conn: _i2, index: _i1, shape: _f2, pressure: _f2, part: _f2, skew: _f3, v: _f2, out: _f2
+    ):
         """out += (unsymmetric part) v, over the free nodes; index: node -> row or -1."""
         ti.loop_config(serialize=True)
         for f in range(conn.shape[0]):
             for q in range(shape.shape[0]):
-                size = skew[f, q, 0] ** 2 + skew[f, q, 1] ** 2 + skew[f, q, 2] ** 2
-                if size > 0.0:
-                    s = 0.0
+                if pressure[f, q] > 0.0 and part[f, q] > 0.0:
+                    s = ti.Vector([0.0, 0.0, 0.0])
                     for b in range(conn.shape[1]):
                         row = index[conn[f, b]]
                         if row >= 0:
                             for i in ti.static(range(3)):
-                                s += shape[q, b] * skew[f, q, 3 + i] * v[row, i]
+                                s[i] += shape[q, b] * v[row, i]
+                    t = ti.Vector([0.0, 0.0, 0.0])
+                    for i in ti.static(range(3)):
+                        for j in ti.static(range(3)):
+                            t[i] += skew[f, q, 3 * i + j] * s[j]
                     for b in range(conn.shape[1]):
                         row = index[conn[f, b]]
                         if row >= 0:
                             for i in ti.static(range(3)):
-                                out[row, i] = out[row, i] + shape[q, b] * s * skew[f, q, i]
+                                out[row, i] = out[row, i] + shape[q, b] * t[i]
 
     return measure, energy, assemble, multiply_skew
 

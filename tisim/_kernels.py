@@ -7,6 +7,9 @@ The energy of an element is  sum_q w_q (W + kp/2 theta^2) + kb/2 V mean(theta)^2
 displacement element, else one with a constant pressure kb mean(theta), condensed ("P2/P0", "Q1/P0").
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
+# (Taichi compiles these functions; their annotations mean something to Taichi only)
+
 from functools import cache
 
 from tisim import laws
@@ -33,13 +36,14 @@ def deformation_gradient(x: ti.template(), conn: ti.template(), grad: ti.templat
 
 
 @cache
-def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
-    """(energy, forces, stiffness, pressures) kernels of a law; compiled at first use, then for any mesh and values."""
-    ensure_runtime()
-    theta, psi_only, stress, tangent = make_response(laws.get(law_name))
+def force_functions(law_name: str) -> tuple[Kernel, Kernel]:
+    """Taichi functions of a law for use inside kernels: (mean_theta, add_forces)."""
+    theta, _, stress, _ = make_response(laws.get(law_name))
 
     @ti.func
-    def mean_theta(x: ti.template(), conn: ti.template(), grad: ti.template(), weight: ti.template(), e, minj):
+    def mean_theta(
+        x: ti.template(), conn: ti.template(), grad: ti.template(), weight: ti.template(), e, minj
+    ):
         """Volume-weighted mean of theta, rest volume, smallest det F; theta of a turned point is skipped."""
         s = 0.0
         v = 0.0
@@ -52,10 +56,56 @@ def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
             v += weight[e, q]
         return s / v, v, minj
 
-    @ti.kernel
-    def energy(
-        x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, kp: f64, kb: f64, out: _f1
+    @ti.func
+    def add_forces(
+        x: ti.template(),
+        conn: ti.template(),
+        grad: ti.template(),
+        weight: ti.template(),
+        prm: ti.template(),
+        kp,
+        kb,
+        f: ti.template(),
     ):
+        """f += dEnergy/dx (internal forces), shape (n, 3) [N]; returns energy [J] and smallest det F."""
+        total = 0.0
+        minj = 1e300
+        for e in range(conn.shape[0]):
+            mean = 0.0
+            if kb != 0.0:
+                mean, v, minj = mean_theta(x, conn, grad, weight, e, minj)
+                total += 0.5 * kb * v * mean * mean
+            for q in range(weight.shape[1]):
+                F = deformation_gradient(x, conn, grad, e, q)
+                J = determinant(F)
+                minj = ti.min(minj, J)
+                if J > 0.0:
+                    psi, P = stress(F, J, prm, kp, kb * mean)
+                    th = 0.0
+                    if kb != 0.0:
+                        th = theta(F.norm_sqr(), J)[0]
+                    total += weight[e, q] * (psi - kb * mean * th)
+                    for a in range(conn.shape[1]):
+                        n = conn[e, a]
+                        for i in ti.static(range(3)):
+                            s = 0.0
+                            for k in ti.static(range(3)):
+                                s += P[i, k] * grad[e, q, a, k]
+                            f[n, i] = f[n, i] + weight[e, q] * s
+        return total, minj
+
+    return mean_theta, add_forces
+
+
+@cache
+def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
+    """(energy, forces, stiffness, pressures) kernels of a law, compiled once for any mesh and values."""
+    ensure_runtime()
+    theta, psi_only, _, tangent = make_response(laws.get(law_name))
+    mean_theta, add_forces = force_functions(law_name)
+
+    @ti.kernel
+    def energy(x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, kp: f64, kb: f64, out: _f1):
         """out: energy [J], smallest det F; the energy means nothing where that is not positive."""
         total = 0.0
         minj = 1e300
@@ -77,36 +127,11 @@ def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
             out[1] = minj
 
     @ti.kernel
-    def forces(
-        x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, kp: f64, kb: f64, f: _f2, out: _f1
-    ):
+    def forces(x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, kp: f64, kb: f64, f: _f2, out: _f1):
         """f += dEnergy/dx (internal forces), shape (n, 3) [N]; out as in `energy`."""
-        total = 0.0
-        minj = 1e300
         ti.loop_config(serialize=True)
         for _ in range(1):
-            for e in range(conn.shape[0]):
-                mean = 0.0
-                if kb != 0.0:
-                    mean, v, minj = mean_theta(x, conn, grad, weight, e, minj)
-                    total += 0.5 * kb * v * mean * mean
-                for q in range(weight.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
-                    J = determinant(F)
-                    minj = ti.min(minj, J)
-                    if J > 0.0:
-                        psi, P = stress(F, J, prm, kp, kb * mean)
-                        th = 0.0
-                        if kb != 0.0:
-                            th = theta(F.norm_sqr(), J)[0]
-                        total += weight[e, q] * (psi - kb * mean * th)
-                        for a in range(conn.shape[1]):
-                            n = conn[e, a]
-                            for i in ti.static(range(3)):
-                                s = 0.0
-                                for k in ti.static(range(3)):
-                                    s += P[i, k] * grad[e, q, a, k]
-                                f[n, i] = f[n, i] + weight[e, q] * s
+            total, minj = add_forces(x, conn, grad, weight, prm, kp, kb, f)
             out[0] = total
             out[1] = minj
 

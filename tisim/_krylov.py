@@ -1,8 +1,10 @@
 """GMRES in double precision, preconditioned by a single-precision factor of an older matrix.
 
 A factorisation costs some forty solves with it, and a poke's matrix changes slowly: one factor serves
-several Newton iterations and load steps. Deep under a rod the tangent becomes indefinite and friction
-makes it unsymmetric: LDL^T factorises the first, GMRES takes both.
+several Newton iterations and load steps. Friction makes the matrix unsymmetric, so GMRES. Deep under a
+rod it becomes indefinite, where the surface snaps from one fold to another: the factor's inertia says so,
+and the matrix is shifted until it is positive, so that the step leads downhill to a stable equilibrium
+(the shift fades as the iteration comes near one; the residual it is judged by knows nothing of it).
 """
 
 from collections.abc import Callable
@@ -16,6 +18,7 @@ from tisim._pattern import Pattern
 from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
 
 Array = NDArray[np.float64]
+SMALLEST_SHIFT = 1e-4
 
 
 @cache
@@ -55,7 +58,7 @@ def _multiply_kernel() -> Kernel:
 class FactorGMRES:
     """Solves with blocks of one pattern; renews its factor once a solve takes over `patience` iterations.
 
-    negative: negative pivots of the factor in use.
+    shift: what stands added to the diagonal in units of its mean, 0 while the matrix is positive.
     """
 
     def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 30) -> None:
@@ -63,12 +66,10 @@ class FactorGMRES:
         self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
         self._patience, self._limit = patience, limit
         self._stale = True
+        self._added = 0.0
+        self.shift = 0.0
         self.factorisations = 0
         self.iterations = 0
-
-    @property
-    def negative(self) -> int:
-        return self._factor.negative
 
     def solve(
         self, blocks: Array, rhs: Array, *, tolerance: float, skew: Callable[[Array, Array], None] | None = None
@@ -84,12 +85,24 @@ class FactorGMRES:
         if not good and not fresh:
             self._refresh(blocks)
             x, used, good = self._gmres(blocks, rhs, tolerance, skew)
-        self._stale = used > self._patience
+        self._stale = used > self._patience or self.shift > 0.0
         return x
 
     def _refresh(self, blocks: Array) -> None:
-        self._factor.factorise(blocks)
-        self.factorisations += 1
+        diagonal = self._pattern.indptr[:-1]
+        scale = float(np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
+        self.shift = self.shift / 8.0 if self.shift > SMALLEST_SHIFT else 0.0
+        for _ in range(8):
+            matrix = blocks
+            if self.shift:
+                matrix = blocks.copy()
+                matrix[diagonal] += self.shift * scale * np.eye(3)
+            self._factor.factorise(matrix)
+            self.factorisations += 1
+            if self._factor.negative == 0:
+                break
+            self.shift = max(4.0 * self.shift, SMALLEST_SHIFT)
+        self._added = self.shift * scale
 
     def _gmres(
         self, blocks: Array, rhs: Array, tolerance: float, skew: Callable[[Array, Array], None] | None
@@ -103,6 +116,8 @@ class FactorGMRES:
             z = self._factor.solve(basis[k])
             w = np.zeros_like(rhs)
             multiply(p.indptr, p.indices, blocks, z, w)
+            if self._added:
+                w += self._added * z
             if skew is not None:
                 skew(z, w)
             images.append(z)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +36,8 @@ class DirectSolver:
     ) -> None:
         self._indptr, self._indices = indptr, indices
         self._single, self._positive = single, positive
-        self._pardiso: object | None = None
-        self._lu: object | None = None
+        self._pardiso: Any = None
+        self._lu: Any = None
         self.negative = 0
 
     def factorise(self, blocks: Array) -> None:
@@ -52,10 +53,7 @@ class DirectSolver:
         from tisim._pardiso import FactorisationError, Pardiso
 
         if self._pardiso is None:
-            self._pardiso = Pardiso(
-                self._indptr, self._indices, single=self._single, positive=self._positive
-            )
-        assert isinstance(self._pardiso, Pardiso)
+            self._pardiso = Pardiso(self._indptr, self._indices, single=self._single, positive=self._positive)
         try:
             self._pardiso.factorise(blocks)
         except FactorisationError as error:
@@ -65,5 +63,5 @@ class DirectSolver:
     def solve(self, rhs: Array) -> Array:
         """rhs (n, 3) -> (n, 3), with the last factor."""
         if self._pardiso is not None:
-            return self._pardiso.solve(rhs)  # type: ignore[attr-defined, no-any-return]
-        return np.asarray(self._lu.solve(rhs.ravel())).reshape(-1, 3)  # type: ignore[union-attr, attr-defined]
+            return np.asarray(self._pardiso.solve(rhs))
+        return np.asarray(self._lu.solve(rhs.ravel())).reshape(-1, 3)

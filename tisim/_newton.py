@@ -29,6 +29,9 @@ class System(Protocol):
     def step(self, residual: Array, *, forcing: float) -> Array:
         """Newton step -K^-1 r at the last linearised x, a descent direction; LinearSolveError."""
 
+    def second_step(self, residual: Array) -> Array | None:
+        """Another step to try where the line search refuses the first; None if there is none."""
+
     def advance(self, x: Array, step: Array) -> Array:
         """x with the step added at the free nodes."""
 
@@ -66,16 +69,23 @@ def newton(system: System, x: Array, *, tolerance: float, max_iterations: int) -
         if iteration == max_iterations:
             break
         try:
-            step = system.step(residual, forcing=float(np.clip(0.1 * relative / previous, 1e-3, 1e-2)))
+            step = system.step(residual, forcing=float(np.clip(0.1 * relative / previous, 3e-3, 2e-2)))
         except LinearSolveError:
             return Outcome(x, Status.SINGULAR, relative, iteration)
-        peak = float(np.sqrt((step * step).sum(axis=1).max()))
-        scale = min(1.0, system.largest_step() / peak) if peak > 0 else 1.0
-        found, status = _line_search(system, x, step, residual, scale)
+        found, status = _line_search(system, x, step, residual, _scale(system, step))
+        if found is None:
+            second = system.second_step(residual)
+            if second is not None:
+                found, status = _line_search(system, x, second, residual, _scale(system, second))
         if found is None:
             return Outcome(x, status, relative, iteration)
         x = found
     return Outcome(x, Status.NOT_CONVERGED, relative, max_iterations)
+
+
+def _scale(system: System, step: Array) -> float:
+    peak = float(np.sqrt((step * step).sum(axis=1).max()))
+    return min(1.0, system.largest_step() / peak) if peak > 0 else 1.0
 
 
 def _line_search(
@@ -91,7 +101,7 @@ def _line_search(
     noise = 1e-13 * abs(start) + 1e-18
     size = float(np.linalg.norm(residual))
     turned = False
-    for _ in range(14):
+    for _ in range(7):
         trial = system.advance(x, scale * step)
         energy, min_jacobian = system.potential(trial)
         if min_jacobian > 0.0 and np.isfinite(energy):

@@ -7,6 +7,7 @@ three times cheaper, and single precision halves the factorisation.
 from __future__ import annotations
 
 import ctypes
+import sys
 from typing import Any
 
 import numpy as np
@@ -78,23 +79,19 @@ class Pardiso:
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
         """rhs (n, 3) -> solution (n, 3)."""
-        b = np.ascontiguousarray(rhs, dtype=self._dtype).ravel()
+        b: NDArray[Any] = np.ascontiguousarray(rhs, dtype=self._dtype).ravel()
         x = np.zeros_like(b)
         self._call(_SOLVE, b, x)
         return x.astype(np.float64).reshape(-1, 3)
 
-    def _call(
-        self, phase: int, b: NDArray[np.floating] | None = None, x: NDArray[np.floating] | None = None
-    ) -> None:
-        dummy = np.zeros(1, dtype=self._dtype)
-        b = dummy if b is None else b
-        x = dummy if x is None else x
+    def _call(self, phase: int, b: NDArray[Any] | None = None, x: NDArray[Any] | None = None) -> None:
+        dummy: NDArray[Any] = np.zeros(1, dtype=self._dtype)
         error = ctypes.c_int(0)
 
         def integer(value: int) -> object:
             return ctypes.byref(ctypes.c_int(value))
 
-        def pointer(array: NDArray) -> ctypes.c_void_p:
+        def pointer(array: NDArray[Any]) -> ctypes.c_void_p:
             return array.ctypes.data_as(ctypes.c_void_p)
 
         assert Pardiso._function is not None
@@ -102,11 +99,12 @@ class Pardiso:
             pointer(self._pt), integer(1), integer(1), integer(self._type), integer(phase),
             integer(self._n), pointer(self._values), pointer(self._ia), pointer(self._ja),
             pointer(np.zeros(1, dtype=np.int32)), integer(1), pointer(self._iparm), integer(0),
-            pointer(b), pointer(x), ctypes.byref(error),
+            pointer(dummy if b is None else b), pointer(dummy if x is None else x), ctypes.byref(error),
         )  # fmt: skip
         if error.value != 0:
             raise FactorisationError(f"PARDISO phase {phase} returned error {error.value}")
 
     def __del__(self) -> None:
-        if getattr(self, "_analysed", False) and Pardiso._function is not None:
+        # when the interpreter ends, the process frees the memory and ctypes may be gone
+        if getattr(self, "_analysed", False) and not sys.is_finalizing():
             self._call(_RELEASE)

@@ -5,6 +5,9 @@ A_(iK)(jL) = d2Psi / dF_iK dF_jL. The volumetric part is added here for all laws
 stiffness `kp` and a constant pressure `p` of the element, Psi = W + kp/2 theta^2 + p theta.
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles these functions; their annotations mean something to Taichi only)
+
 from typing import Any
 
 from tisim._ti import ti
@@ -134,7 +137,7 @@ def make_response(law: Law) -> tuple[Any, Any, Any, Any]:
         th = theta(I1, J)
         w = 0.5 * kp * th[0] * th[0] + p * th[0]
         if ti.static(principal):
-            lam, V = stretches(C)
+            lam, _V = stretches(C)
             w += energy(lam[0], lam[1], lam[2], prm)[0]
         else:
             w += energy(I1, I2, J, prm)[0]

@@ -1,7 +1,7 @@
 """Large-deflection start values: a planar, inextensible Euler-Bernoulli rod under weight and a tip force.
 
-EI theta'' = -[V(s) x t], with the internal force V(s) the load beyond s. Solved by Newton on the angles
-theta at the segments' ends (energy minimisation, so it works for both supports with a stretch spring).
+Nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps, serves both
+supports. The continuous rod obeys EI theta'' + V(s) x t = 0, V(s) the load beyond s.
 """
 
 from __future__ import annotations
@@ -84,8 +84,8 @@ def _equilibrium(
 def _forces(x: Array, h: float, ei: float, ea: float, clamped_end: bool) -> tuple[Array, Array]:
     """Internal forces (k, 2) and the banded tangent (11, 2k) of the discrete rod.
 
-    Stretch energy ea/(2h) (|e| - h)^2 an edge; bending ei/(2 h) tan-free form ei/h (1 - cos turn) * 2 is
-    replaced by ei/(2h^3) |x_(i-1) - 2 x_i + x_(i+1)|^2, equal for an inextensible rod.
+    Stretch energy EA/(2h) (|e| - h)^2 an edge; bending EI/(2h^3) |x_(i-1) - 2 x_i + x_(i+1)|^2 a node,
+    which for edges of length h is EI/h (1 - cos turn).
     """
     ghost0 = x[:1] - np.array([[h, 0.0]])
     points = np.vstack([ghost0, x])
@@ -109,18 +109,18 @@ def _forces(x: Array, h: float, ei: float, ea: float, clamped_end: bool) -> tupl
     m = len(points)
     dense = np.zeros((11, 2 * m))
 
-    def add(i: Array, j: Array, block: Array) -> None:
+    def add(i: NDArray[np.intp], j: NDArray[np.intp], block: Array) -> None:
         for a in range(2):
             for b in range(2):
                 rows, cols = 2 * i + a, 2 * j + b
                 np.add.at(dense, (5 + rows - cols, cols), block[..., a, b])
 
-    i = np.arange(m - 1)
+    i = np.arange(m - 1, dtype=np.intp)
     add(i, i, stiff)
     add(i + 1, i + 1, stiff)
     add(i, i + 1, -stiff)
     add(i + 1, i, -stiff)
-    j = np.arange(m - 2)
+    j = np.arange(m - 2, dtype=np.intp)
     eye = np.broadcast_to(c * np.eye(2), (m - 2, 2, 2))
     coefficient = (1.0, -2.0, 1.0)
     for p in range(3):

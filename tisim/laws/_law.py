@@ -44,6 +44,7 @@ class Law:
     kappa: parameters -> the factor of theta^2 / 2 [Pa].
     moduli: parameters -> small-strain moduli.
     from_moduli: (shear, bulk) [Pa] -> parameters with these moduli (other constants at a plain default).
+    fault: parameters -> what is wrong with them beyond numbers and moduli, or "".
     """
 
     name: str
@@ -56,6 +57,7 @@ class Law:
     kappa: Callable[[Parameters], float]
     moduli: Callable[[Parameters], Moduli]
     from_moduli: Callable[[float, float], dict[str, float | tuple[float, ...]]]
+    fault: Callable[[Parameters], str] = lambda _: ""
 
     def check(self, parameters: Parameters) -> None:
         """Raise ValueError, in one sentence, unless names, shapes and small-strain moduli are sound."""
@@ -68,14 +70,20 @@ class Law:
                 + (f" missing: {', '.join(missing)};" if missing else "")
             )
         for name, (unit, shape) in self.parameters.items():
-            values = np.atleast_1d(np.asarray(parameters[name], dtype=float))
-            if shape == "scalar" and np.ndim(parameters[name]) != 0:
-                raise ValueError(f"{self.name}: parameter {name} [{unit}]: expected one number")
+            try:
+                values = np.asarray(parameters[name], dtype=float)
+            except (TypeError, ValueError):
+                values = np.array(np.nan)
             if not np.isfinite(values).all() or values.size == 0:
                 raise ValueError(f"{self.name}: parameter {name} [{unit}]: expected finite numbers")
+            if values.ndim > (shape == "series"):
+                wanted = "a plain series of numbers" if shape == "series" else "one number"
+                raise ValueError(f"{self.name}: parameter {name} [{unit}]: expected {wanted}")
         series = {name: np.size(parameters[name]) for name, p in self.parameters.items() if p[1] == "series"}
         if len(set(series.values())) > 1:
             raise ValueError(f"{self.name}: {', '.join(series)} must have the same number of terms")
+        if fault := self.fault(parameters):
+            raise ValueError(f"{self.name}: {fault}")
         moduli = self.moduli(parameters)
         if not (moduli.shear > 0 and moduli.bulk > 0):
             raise ValueError(

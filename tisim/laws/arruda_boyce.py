@@ -6,9 +6,13 @@
 mu, bulk = K [Pa]; locking = L, the locking stretch (free).
 Small strain: G = 2 mu sum_i i C_i 3^(i-1) / L^(2i-2), K.
 The paper prints I1 in place of I1bar (eq. Psi_AB); that form is not stress-free at rest: its stress there
-is 2 dW/dI1 = G times the identity. The isochoric form differs from it by nothing else at J = 1.
+is 2 dW/dI1 = G times the identity. At J = 1 the two energies agree, and the printed stress is ours plus a
+pressure 2/3 dW/dI1 I1 times F^-T.
 SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.0851 mu.
 """
+
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
 import numpy as np
 
@@ -20,7 +24,7 @@ SOFA_LOCKING = 8.0**0.5
 
 
 @ti.func
-def energy(I1, I2, J, prm: ti.template()):
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
     r = 1.0 / (prm[1] * prm[1])
     a = ti.exp(-2.0 / 3.0 * ti.log(J))
@@ -75,4 +79,5 @@ LAW = Law(
         "locking": SOFA_LOCKING,
         "bulk": bulk,
     },
+    fault=lambda p: "" if scalar(p, "locking") > 1.0 else "parameter locking [-]: expected a stretch above 1",
 )

@@ -8,6 +8,9 @@ SOFA: `MooneyRivlin`, ParameterSet "C10 C01 K"; its forces follow this energy (t
 does not: integer division in its exponents).
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
 import numpy as np
 
 from tisim._ti import ti

@@ -6,6 +6,9 @@ mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-fr
 SOFA: `NeoHookean`, ParameterSet "mu lambda", the same energy.
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
 import numpy as np
 
 from tisim._ti import ti
@@ -13,7 +16,7 @@ from tisim.laws._law import Law, Moduli, scalar
 
 
 @ti.func
-def energy(I1, I2, J, prm: ti.template()):
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
     return ti.Vector(
         [

@@ -8,6 +8,9 @@ its stress vanishes again before a volume is crushed to nothing: not for deep po
 SOFA: `StVenantKirchhoff`, ParameterSet "mu lambda", the same energy.
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
 import numpy as np
 
 from tisim._ti import ti
@@ -15,7 +18,7 @@ from tisim.laws._law import Law, Moduli, scalar
 
 
 @ti.func
-def energy(I1, I2, J, prm: ti.template()):
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
     return ti.Vector(
         [

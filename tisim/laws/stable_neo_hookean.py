@@ -8,6 +8,9 @@ SOFA: `StableNeoHookean`, ParameterSet "mu lambda": the same energy up to a cons
 1/2 [mu (I1 - 3) + (lam + mu)(J - a)^2] with a = 1 + mu/(lam + mu).
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
 import numpy as np
 
 from tisim._ti import ti
@@ -15,11 +18,9 @@ from tisim.laws._law import Law, Moduli, scalar
 
 
 @ti.func
-def energy(I1, I2, J, prm: ti.template()):
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
-    return ti.Vector(
-        [mu * (0.5 * (I1 - 3.0) - (J - 1.0)), 0.5 * mu, 0.0, -mu, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
-    )
+    return ti.Vector([mu * (0.5 * (I1 - 3.0) - (J - 1.0)), 0.5 * mu, 0.0, -mu, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
 LAW = Law(

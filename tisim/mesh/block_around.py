@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Literal
 
 import numpy as np
-import trimesh
 
 from tisim.mesh._errors import MeshError
 from tisim.mesh._mesh import Mesh, boundary_facets
@@ -36,6 +35,8 @@ def block_around(
     node_sets: "base" (the plane z = 0 and the inclusion's surface, which a poke holds fixed) and
     "inclusion" (its surface only); facet_sets: "surface", "top", "base", "inclusion".
     """
+    import trimesh  # takes longer to import than tisim itself
+
     if min(size) <= 0 or not np.isfinite(size).all():
         raise MeshError(f"the block's size must be three positive lengths in metres, got {size!r}")
     block = trimesh.creation.box(extents=size)
@@ -100,6 +101,8 @@ def _cut_out(block: Any, inclusion: Any, size: tuple[float, float, float]) -> An
         raise MeshError(f"the inclusion reaches z = {high[2]:.4g} m, the block's top is at {size[2]:.4g} m")
     if (np.maximum(np.abs(low[:2]), np.abs(high[:2])) >= np.array(size[:2]) / 2).any():
         raise MeshError("the inclusion reaches the block's sides: move it inwards, or take a larger block")
+    import trimesh
+
     try:
         rest = trimesh.boolean.difference([block, inclusion], engine="manifold")
     except ImportError as error:

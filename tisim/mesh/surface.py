@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from tisim.mesh._crossing import crossing_faces
@@ -60,6 +59,8 @@ def checked_surface(surface: Any, *, units: Units = "m", allow_cavities: bool = 
 
 def _piece_volumes(shell: Any) -> NDArray[np.float64]:
     """Volume of each connected piece [m3], negative where it is turned inwards."""
+    import trimesh
+
     label = trimesh.graph.connected_component_labels(shell.face_adjacency, len(shell.faces))
     corner = np.asarray(shell.triangles) - np.asarray(shell.vertices).mean(axis=0)
     volumes: NDArray[np.float64] = np.zeros(label.max() + 1)
@@ -68,6 +69,8 @@ def _piece_volumes(shell: Any) -> NDArray[np.float64]:
 
 
 def _load(surface: Any) -> tuple[Any, str]:
+    import trimesh  # takes longer to import than tisim itself
+
     if isinstance(surface, trimesh.Trimesh):
         return surface.copy(), "the surface"
     path = Path(surface)

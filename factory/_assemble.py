@@ -1,0 +1,282 @@
+"""From finished parts to the Zarr store: one writer, whole shards, in the order of the plan.
+
+Nothing here depends on time, on the number of workers or on the order in which pokes finished, so that
+the same plan gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import warnings
+import zipfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import zarr
+import zarr.codecs
+from numpy.typing import NDArray
+
+from factory._grid import SIZE, grid_points
+from factory._layout import FIRST_DIMENSION, FIXED_DIMENSION, MESSAGE_BYTES, SPECS, Rows, Spec
+from factory._manifest import write_manifest
+from factory._parts import Parts, read_ledger, sync_folder
+from factory._profile import LEVELS, level_depths, profiles
+from factory._record import COUNTERS
+from factory._store import PROVENANCE
+from factory.errors import InputError
+from factory.materials import LAWS
+from factory.plan import FORMAT, Plan
+from tisim.scene import BoxInclusion, Inclusion, SphereInclusion
+
+_RAGGED: dict[Rows, str] = {"frame": "depth", "node": "surface_rest", "triangle": "surface_triangle"}
+
+
+def assemble(plan: Plan, parts: Parts, target: Path) -> None:
+    """Writes the store beside, then puts it in the target's place. Safe to repeat after any kill."""
+    shutil.rmtree(parts.store, ignore_errors=True)
+    try:
+        _write(plan, parts, parts.store)
+        _sync_tree(parts.store)
+    except zipfile.BadZipFile as error:
+        raise InputError(f"{parts.parts}: a part is damaged ({error}); delete it and run again") from None
+    except BaseException:
+        shutil.rmtree(parts.store, ignore_errors=True)  # a full disk needs the room
+        raise
+    old = parts.folder / "old"
+    shutil.rmtree(old, ignore_errors=True)
+    if target.exists():
+        target.rename(old)
+    parts.store.rename(target)
+    sync_folder(target.parent)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _write(plan: Plan, parts: Parts, folder: Path) -> None:
+    done, errors = parts.done(), parts.errors()
+    small = _poke_arrays(plan, parts, done, errors)
+    totals: dict[Rows, int] = {
+        "poke": len(plan.pokes),
+        "geometry": len(plan.inclusions) * len(plan.materials),
+        **{kind: int(small[f"{kind}_count"].sum()) for kind in ("frame", "node", "triangle", "value")},
+    }
+    group = zarr.create_group(store=folder, zarr_format=3, attributes=_attributes(plan, done))
+    fixed = {**small, **_fixed_arrays(plan), **_geometry_arrays(plan)}
+    streams: dict[str, _Appender] = {}
+    for name, spec in SPECS.items():
+        if name in fixed:
+            array = _create(group, name, spec, fixed[name].shape)
+            array[...] = fixed[name]
+        else:
+            array = _create(group, name, spec, (totals[spec.rows], *spec.row))
+            streams[name] = _Appender(array, spec)
+    for poke in plan.pokes:
+        if poke.index not in done:
+            continue
+        with parts.opened(poke.index) as part:
+            frames = len(part["depth"])
+            derived: dict[str, NDArray[Any]] = {
+                "frame_poke": np.full(frames, poke.index, dtype=np.int32),
+                "rod_axis": np.tile(_unit(poke.scene.direction), (frames, 1)),
+            }
+            for name, stream in streams.items():
+                rows = derived[name] if name in derived else part[name]
+                stream.append(rows.reshape(-1, *SPECS[name].row))
+    for stream in streams.values():
+        stream.finish()
+    zarr.create_group(store=folder, path=PROVENANCE, zarr_format=3)
+    with warnings.catch_warnings():
+        # consolidated metadata is an extension of Zarr 3; without it plain xarray.open_zarr warns
+        warnings.simplefilter("ignore")
+        zarr.consolidate_metadata(folder, zarr_format=3)
+    _provenance(parts, folder)
+    write_manifest(folder)
+
+
+class _Appender:
+    """Rows in, whole shards out: a shard is written once, by this process alone."""
+
+    def __init__(self, array: Any, spec: Spec) -> None:
+        self._array, self._shard = array, spec.shard
+        self._rows: list[NDArray[Any]] = []
+        self._held = 0
+        self._written = 0
+
+    def append(self, rows: NDArray[Any]) -> None:
+        while self._held + len(rows) >= self._shard:
+            room = self._shard - self._held
+            self._rows.append(rows[:room])
+            self._flush()
+            rows = rows[room:]
+        if len(rows):
+            self._rows.append(rows)
+            self._held += len(rows)
+
+    def finish(self) -> None:
+        if self._rows:
+            self._flush()
+        if self._written != self._array.shape[0]:
+            raise ValueError(f"{self._array.path}: {self._written} rows of {self._array.shape[0]} came")
+
+    def _flush(self) -> None:
+        block = np.concatenate(self._rows)
+        self._array[self._written : self._written + len(block)] = block
+        self._written += len(block)
+        self._rows, self._held = [], 0
+
+
+def _create(group: zarr.Group, name: str, spec: Spec, shape: tuple[int, ...]) -> Any:
+    first = FIXED_DIMENSION[name] if spec.rows == "fixed" else FIRST_DIMENSION[spec.rows]
+    attributes = {"long_name": spec.text, **({"units": spec.units} if spec.units else {}), **spec.attributes}
+    chunks = (spec.chunk, *shape[1:])
+    return group.create_array(
+        name,
+        shape=shape,
+        dtype=spec.dtype,
+        chunks=chunks,
+        shards=(spec.shard, *shape[1:]) if spec.shard > spec.chunk else None,
+        compressors=compressor(np.dtype(spec.dtype)),
+        fill_value=0,
+        dimension_names=(first, *spec.dims),
+        attributes=attributes,
+    )
+
+
+def compressor(dtype: np.dtype[Any]) -> zarr.codecs.BloscCodec:
+    """Blosc with zstd; see benchmarks/store_layout.py for what else was measured."""
+    return zarr.codecs.BloscCodec(
+        cname="zstd",
+        clevel=3,
+        shuffle="shuffle",
+        typesize=dtype.itemsize,
+    )
+
+
+def _unit(direction: Iterable[float]) -> NDArray[np.float64]:
+    vector = np.array(tuple(direction))
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
+    recipe = plan.recipe
+    return {
+        "title": f"Simulated pokes: recipe {recipe.name}, {plan.model}",
+        "format": FORMAT,
+        "uuid": plan.uuid,
+        "fingerprint": plan.fingerprint,
+        "model": plan.model,
+        "seed": recipe.seed,
+        "pokes": len(plan.pokes),
+        "pokes_done": len(done),
+        "shapes": [shape.id for shape in recipe.shapes],
+        "softness": list(recipe.softness),
+        "parameter_names": _parameter_names(plan),
+        "solver_tolerance": plan.pokes[0].scene.solver.tolerance,
+        "identity": plan.identity,
+    }
+
+
+def _parameter_names(plan: Plan) -> list[str]:
+    names = []
+    for key, value in plan.materials[0].parameters.items():
+        names += [f"{key}_{i + 1}" for i in range(len(value))] if isinstance(value, tuple) else [key]
+    return names
+
+
+def _parameters(plan: Plan, softness: int) -> list[float]:
+    values: list[float] = []
+    for value in plan.materials[softness].parameters.values():
+        values += value if isinstance(value, tuple) else [value]
+    return values
+
+
+def _poke_arrays(plan: Plan, parts: Parts, done: set[int], errors: dict[int, str]) -> dict[str, NDArray[Any]]:
+    """The arrays with one row a poke."""
+    n = len(plan.pokes)
+    width = len(_parameter_names(plan))
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, spec in SPECS.items():
+        if spec.rows == "poke":
+            row = (width,) if name == "parameter" else spec.row
+            arrays[name] = np.zeros((n, *row), dtype=spec.dtype)
+    for poke in plan.pokes:
+        i, scene = poke.index, poke.scene
+        arrays["poke_shape"][i] = poke.shape
+        arrays["poke_softness"][i] = poke.softness
+        arrays["poke_geometry"][i] = poke.geometry
+        arrays["law"][i] = LAWS.index(plan.model)
+        arrays["parameter"][i] = _parameters(plan, poke.softness)
+        arrays["site_shared"][i] = poke.shared
+        arrays["site_number"][i] = poke.site
+        arrays["seed"][i] = poke.seed
+        arrays["site"][i] = scene.site
+        arrays["direction"][i] = _unit(scene.direction)
+        arrays["depth_asked"][i] = scene.depth
+        text = errors.get(i, "").encode()
+        if i in done:
+            with parts.opened(i) as part:
+                arrays["done"][i] = True
+                text = part["message"].tobytes()
+                for name in ("status", "path_start", "path_end", "mesh_nodes", "mesh_elements"):
+                    arrays[name][i] = part[name]
+                for name, value in zip(COUNTERS, part["counters"], strict=True):
+                    arrays[name][i] = value
+                for kind, source in _RAGGED.items():
+                    arrays[f"{kind}_count"][i] = len(part[source])
+        arrays["message"][i, : min(len(text), MESSAGE_BYTES)] = np.frombuffer(text[:MESSAGE_BYTES], np.uint8)
+    arrays["value_count"] = arrays["frame_count"] * arrays["node_count"]
+    for kind in ("frame", "node", "triangle", "value"):
+        count = arrays[f"{kind}_count"]
+        arrays[f"{kind}_start"] = np.cumsum(count) - count
+    return arrays
+
+
+def _fixed_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
+    return {"grid_rest": grid_points(plan.block), "level_depth": level_depths(plan.block[2])}
+
+
+def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
+    grid, height = grid_points(plan.block), plan.block[2]
+    pairs = [(inclusion, card) for inclusion in plan.inclusions for card in plan.cards]
+    levels = np.zeros((len(pairs), SIZE, SIZE, LEVELS), dtype=np.uint8)
+    for row, (inclusion, card) in enumerate(pairs):
+        levels[row] = profiles(grid, height, inclusion, card.stiffness)
+    described = [_describe(inclusion) for inclusion, _ in pairs]
+    return {
+        "profile": levels,
+        "inclusion_kind": np.array([d[0] for d in described], dtype=np.uint8),
+        "inclusion_size": np.array([d[1] for d in described]),
+        "inclusion_angle": np.array([d[2] for d in described]),
+        "inclusion_centre": np.array([inclusion.centre for inclusion, _ in pairs]),
+    }
+
+
+def _describe(inclusion: Inclusion) -> tuple[int, tuple[float, float, float], float]:
+    if isinstance(inclusion, BoxInclusion):
+        return 0, inclusion.size, inclusion.angle
+    if isinstance(inclusion, SphereInclusion):
+        return 1, (inclusion.radius, 0.0, 0.0), 0.0
+    return 2, (inclusion.radius, inclusion.height, 0.0), 0.0
+
+
+def _provenance(parts: Parts, folder: Path) -> None:
+    """Wall times go into a file of their own: they differ from run to run, the store must not."""
+    ledger = read_ledger(parts.ledger_file)
+    text = "".join(json.dumps(ledger[i]) + "\n" for i in sorted(ledger))
+    (folder / PROVENANCE / "ledger.jsonl").write_text(text, encoding="utf-8")
+
+
+def _sync_tree(folder: Path) -> None:
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            handle = os.open(path, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
+        else:
+            sync_folder(path)
+    sync_folder(folder)

@@ -1,0 +1,140 @@
+"""A tiny recipe, builds with a stand-in simulator, and digests of what they wrote."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Generator, Sequence
+from pathlib import Path
+
+import pytest
+
+from factory import _build
+from factory._build import build
+from factory._manifest import LEDGER
+from factory._record import Outcome
+from factory._worker import run_poke
+from factory.plan import Plan, PlannedPoke, make_plan
+from factory.recipe import Recipe, load_recipe
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+
+# run as a process of its own, as a user would, but with the stand-in for tisim
+COMMAND = """
+import functools, sys
+import factory._build, factory.build
+if __name__ == "__main__":
+    factory.build.build = functools.partial(factory._build.build, simulator="standin:simulate")
+    factory.build.app()
+"""
+
+TINY = """
+name: tiny
+description: for the tests
+seed: 3
+block_mm: [100, 100, 32]
+rod: {radius_mm: 2.5, length_mm: 40, tip: flat, edge_radius_mm: 1}
+friction: 0.6
+protocol: {shared_sites: 1, own_sites: 1, margin_mm: 20, max_angle_deg: 45, depth_mm: 30, frame_spacing_mm: 1}
+softness: [S0, S1]
+border_mm: 10
+cover_mm: 8
+shapes:
+  - {kind: cube, id: cube-18, side_mm: 18}
+"""
+
+
+@pytest.fixture(autouse=True)
+def _plain_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in list(os.environ):
+        if name.startswith("STANDIN_"):
+            monkeypatch.delenv(name)
+    # a slow disk would make these tests slow; what a power cut needs cannot be tested here
+    monkeypatch.setattr(os, "fsync", lambda _handle: None)
+
+
+@pytest.fixture
+def tiny_file(tmp_path: Path) -> Path:
+    path = tmp_path / "tiny.yaml"
+    path.write_text(TINY)
+    return path
+
+
+@pytest.fixture
+def tiny(tiny_file: Path) -> Recipe:
+    return load_recipe(str(tiny_file))
+
+
+@pytest.fixture
+def plan(tiny: Recipe) -> Plan:
+    """Four pokes."""
+    return make_plan(tiny, "ogden")
+
+
+@pytest.fixture
+def quick() -> Plan:
+    """Twelve pokes."""
+    return make_plan(load_recipe("quick"), "ogden")
+
+
+@pytest.fixture
+def serial(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pokes are simulated in this process, one after the other: no process has to start."""
+
+    def run(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> Generator[Outcome]:
+        del workers
+        for poke in pokes:
+            yield run_poke(poke, simulator)
+
+    monkeypatch.setattr(_build, "run_local", run)
+
+
+Builder = Callable[..., _build.Built]
+
+
+@pytest.fixture
+def standin_build(serial: None) -> Builder:
+    """`build` in this process with the stand-in."""
+    del serial
+
+    def run(plan: Plan, target: Path, **options: object) -> _build.Built:
+        return build(plan, target, **{"simulator": "standin:simulate", **options})  # type: ignore[arg-type]
+
+    return run
+
+
+def digest(store: Path) -> dict[str, str]:
+    """sha256 of each file but the ledger."""
+    assert store.is_dir(), store
+    return {
+        path.relative_to(store).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(store.rglob("*"))
+        if path.is_file() and path.relative_to(store).as_posix() != LEDGER
+    }
+
+
+def environment(**more: str) -> dict[str, str]:
+    """For a process that must find the repository and the stand-in."""
+    return {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{HERE}", **more}
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
+    """Starts `python -m factory.build` with the stand-in, in a process group of its own."""
+    script = tmp_path / "command.py"
+    script.write_text(COMMAND)
+
+    def start(*arguments: str, **variables: str) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, str(script), *arguments],
+            env=environment(**variables),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    return start

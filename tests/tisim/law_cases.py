@@ -1,0 +1,115 @@
+"""What the law tests share: parameters and deformations to draw, and the energies written down once more.
+
+The energies here are NumPy, in principal stretches by SVD, and import nothing from tisim's laws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from hypothesis import strategies as st
+
+from tisim.scene import Material
+
+LAWS = (
+    "st-venant-kirchhoff",
+    "neo-hookean",
+    "stable-neo-hookean",
+    "mooney-rivlin",
+    "ogden",
+    "arruda-boyce",
+)
+AB = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
+_shear = st.floats(1e3, 1e5)
+_ratio = st.floats(5.0, 1000.0)
+
+
+@st.composite
+def materials(draw: st.DrawFn, law: str) -> Material:
+    """Parameters of soft silicones: G of 1 to 100 kPa, K/G of 5 to 1000, Ogden with 1 to 3 terms."""
+    G, ratio = draw(_shear), draw(_ratio)
+    if law == "mooney-rivlin":
+        part = draw(st.floats(0.0, 1.0))
+        parameters = {"c10": G / 2 * part, "c01": G / 2 * (1 - part), "bulk": ratio * G}
+    elif law == "ogden":
+        n = draw(st.integers(1, 3))
+        size = st.floats(0.5, 8.0)
+        alpha = [draw(size) * draw(st.sampled_from((1, -1))) for _ in range(n)]
+        share = [draw(st.floats(0.1, 1.0)) for _ in range(n)]
+        mu = [2 * G * s / sum(share) / a for s, a in zip(share, alpha, strict=True)]
+        parameters = {"mu": tuple(mu), "alpha": tuple(alpha), "bulk": ratio * G}
+    elif law == "arruda-boyce":
+        parameters = {"mu": G, "locking": draw(st.floats(1.5, 6.0)), "bulk": ratio * G}
+    else:
+        parameters = {"mu": G, "lam": (ratio - 2 / 3) * G}
+    return Material(law=law, parameters=parameters)
+
+
+def rotation(seed: int) -> np.ndarray:
+    """A random proper rotation."""
+    q = np.random.default_rng(seed).normal(size=4)
+    w, x, y, z = q / np.linalg.norm(q)
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * K + 2 * K @ K
+
+
+rotations = st.integers(0, 2**32 - 1).map(rotation)
+
+
+@st.composite
+def deformations(draw: st.DrawFn) -> np.ndarray:
+    """F = R diag(stretches) Q: large, near the identity, with two or three stretches equal or nearly so."""
+    kind = draw(st.sampled_from(("large", "near identity", "two alike", "three alike")))
+    stretch = st.floats(0.5, 2.5)
+    gap = draw(st.sampled_from((0.0, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 1e-9)))
+    if kind == "large":
+        stretches = np.array([draw(stretch) for _ in range(3)])
+    elif kind == "near identity":
+        stretches = 1.0 + draw(st.sampled_from((1e-2, 1e-4, 1e-6, 1e-8))) * np.array(
+            [1.0, -0.6, draw(stretch)]
+        )
+    elif kind == "two alike":
+        first = draw(stretch)
+        stretches = np.array([first, draw(stretch), first + gap])
+    else:
+        stretches = draw(stretch) + gap * np.array([0.0, 1.0, draw(stretch)])
+    return draw(rotations) @ np.diag(stretches) @ draw(rotations)
+
+
+def energy(material: Material, F: np.ndarray, *, printed: bool = False) -> np.ndarray:
+    """Energy at F (..., 3, 3); printed: Ogden and Arruda-Boyce as the paper has them, without the split."""
+    p = {k: np.asarray(v) for k, v in material.parameters.items()}
+    l = np.linalg.svd(F, compute_uv=False)
+    J = np.linalg.det(F)
+    lbar = l / np.cbrt(J)[..., None]
+    I1 = (l**2).sum(-1)
+    i1, i2 = (lbar**2).sum(-1), (lbar**-2).sum(-1)
+    E = (l**2 - 1) / 2
+    if printed:
+        lbar, i1 = l, I1
+    forms: dict[str, Callable[[], np.ndarray]] = {
+        "st-venant-kirchhoff": lambda: p["lam"] / 2 * E.sum(-1) ** 2 + p["mu"] * (E**2).sum(-1),
+        "neo-hookean": lambda: p["mu"] / 2 * (I1 - 3) - p["mu"] * np.log(J) + p["lam"] / 2 * np.log(J) ** 2,
+        "stable-neo-hookean": lambda: (
+            p["mu"] / 2 * (I1 - 3) - p["mu"] * (J - 1) + (p["lam"] + p["mu"]) / 2 * (J - 1) ** 2
+        ),
+        "mooney-rivlin": lambda: p["c10"] * (i1 - 3) + p["c01"] * (i2 - 3) + p["bulk"] / 2 * np.log(J) ** 2,
+        "ogden": lambda: (
+            sum(m / a * ((lbar**a).sum(-1) - 3) for m, a in zip(p["mu"], p["alpha"], strict=True))
+            + p["bulk"] / 2 * np.log(J) ** 2
+        ),
+        "arruda-boyce": lambda: (
+            p["mu"]
+            * sum(c / p["locking"] ** (2 * i) * (i1 ** (i + 1) - 3 ** (i + 1)) for i, c in enumerate(AB))
+            + p["bulk"] / 2 * np.log(J) ** 2
+        ),
+    }
+    return forms[material.law]()
+
+
+def slope(function: Callable[[np.ndarray], np.ndarray], F: np.ndarray, h: float = 1e-3) -> np.ndarray:
+    """d function / dF at F (3, 3) by central differences of fourth order: (3, 3, *value's shape)."""
+    step = h * np.eye(9).reshape(9, 3, 3)
+    parts = [function(F + k * step) for k in (-2, -1, 1, 2)]
+    return ((parts[0] - parts[3] + 8 * (parts[2] - parts[1])) / (12 * h)).reshape(3, 3, *parts[0].shape[1:])

@@ -1,0 +1,76 @@
+"""Where the rod's shape is no start: load steps from rest, and an honest end where there is no answer."""
+
+import numpy as np
+import pytest
+from static_cases import neo_hookean
+
+from tisim import _beam
+from tisim._beam import solve_beam
+from tisim.result import Status
+from tisim.scene import Beam, Material, Solver
+
+BEAMS = [("clamped-free", 0.05), ("clamped-free", 0.1), ("clamped-clamped", 0.15)]
+
+
+@pytest.mark.parametrize("ratio", [20.0, 1000.0])
+@pytest.mark.parametrize("mu", [9e3, 4e4])
+@pytest.mark.parametrize(("supports", "length"), BEAMS)
+def test_load_steps_from_rest_give_the_same_answer(supports, length, mu, ratio, monkeypatch):
+    scene = Beam(material=neo_hookean(mu, ratio), length=length, supports=supports)
+    quick = solve_beam(scene)
+    monkeypatch.setattr(_beam, "rod_shape", lambda *_: None)
+    slow = solve_beam(scene)
+    assert quick.ok
+    assert slow.ok
+    assert slow.cost.steps > 1
+    # the potential alone takes 227 for the worst of these; element pressures as unknowns take 23
+    assert slow.cost.newton_iterations < 40
+    size = np.abs(quick.positions - quick.mesh.nodes).max()
+    assert np.abs(slow.positions - quick.positions).max() < 1e-6 * size
+
+
+def test_load_steps_without_element_pressures(monkeypatch):
+    """Where the mixed iteration fails the potential with its line search takes over."""
+    scene = Beam(material=neo_hookean(4e4, 100.0), length=0.1, solver=Solver(max_iterations=100))
+    quick = solve_beam(scene)
+    monkeypatch.setattr(_beam, "rod_shape", lambda *_: None)
+    failed = _beam.Outcome(quick.mesh.nodes, Status.NOT_CONVERGED, 1.0, 1)
+    monkeypatch.setattr(_beam, "_mixed_newton", lambda *_: failed)
+    slow = solve_beam(scene)
+    assert slow.ok
+    size = np.abs(quick.positions - quick.mesh.nodes).max()
+    assert np.abs(slow.positions - quick.positions).max() < 1e-6 * size
+
+
+@pytest.mark.parametrize("ratio", [20.0, 1000.0])
+def test_absurd_load_ends_with_a_status(ratio):
+    """10 Pa: the body's own weight is 50 times its stiffness."""
+    scene = Beam(material=neo_hookean(10.0, ratio), length=0.05, solver=Solver(max_iterations=15))
+    result = solve_beam(scene)
+    if result.ok:
+        weight = 1000 * 9.81 * np.pi * 0.01**2 * 0.05
+        assert result.residual[0] <= scene.solver.tolerance
+        assert result.min_jacobian[0] > 0
+        assert result.support_force[0, 2] == pytest.approx(weight, rel=1e-5)
+    else:
+        assert result.positions.shape == (0, result.mesh.n_nodes, 3)
+        assert result.support_force.shape == (0, 3)
+        assert result.load.size == result.residual.size == result.min_jacobian.size == 0
+        assert "no equilibrium found beyond" in result.message
+        assert result.status.value in result.message
+
+
+def test_law_without_answer_under_pressure_ends_with_a_status():
+    """St Venant-Kirchhoff, standing on its grip under fifty times gravity, is crushed."""
+    stiff = Material(law="st-venant-kirchhoff", parameters={"mu": 1e4, "lam": 5e4})
+    scene = Beam(material=stiff, length=0.05, gravity=(-500.0, 0.0, 0.0), solver=Solver(max_iterations=15))
+    result = solve_beam(scene)
+    assert result.status is not Status.CONVERGED
+    assert result.positions.shape[0] == 0
+
+
+def test_no_load_is_rest():
+    result = solve_beam(Beam(material=neo_hookean(1e4, 20.0), length=0.05, gravity=(0, 0, 0)))
+    assert result.ok
+    assert np.array_equal(result.positions[0], result.mesh.nodes)
+    assert np.abs(result.support_force).max() < 1e-12

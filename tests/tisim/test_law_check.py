@@ -1,0 +1,55 @@
+"""Unsound parameters are refused in one sentence that says what was expected."""
+
+import pytest
+
+from tisim import laws
+
+OGDEN = {"mu": (1e3, 2e3), "alpha": (2.0, 3.0), "bulk": 1e5}
+BAD = [
+    ("neo-hookean", {"mu": 1e3}, "expected parameters mu, lam; missing: lam"),
+    ("neo-hookean", {"mu": 1e3, "lam": 1e5, "nu": 0.4}, "expected parameters mu, lam; unknown: nu"),
+    ("neo-hookean", {"mu": (1e3, 2e3), "lam": 1e5}, r"parameter mu \[Pa\]: expected one number"),
+    ("neo-hookean", {"mu": float("nan"), "lam": 1e5}, r"parameter mu \[Pa\]: expected finite numbers"),
+    ("neo-hookean", {"mu": 1e3, "lam": float("inf")}, r"parameter lam \[Pa\]: expected finite numbers"),
+    ("neo-hookean", {"mu": "soft", "lam": 1e5}, r"parameter mu \[Pa\]: expected finite numbers"),
+    ("neo-hookean", {"mu": None, "lam": 1e5}, r"parameter mu \[Pa\]: expected finite numbers"),
+    (
+        "neo-hookean",
+        {"mu": -1e3, "lam": 1e5},
+        "small-strain shear and bulk modulus must be positive, got -1000",
+    ),
+    ("stable-neo-hookean", {"mu": 1e3, "lam": -1e3}, "shear and bulk modulus must be positive"),
+    ("st-venant-kirchhoff", {"mu": 0.0, "lam": 1e5}, "shear and bulk modulus must be positive"),
+    ("mooney-rivlin", {"c10": 1e3, "c01": -1e3, "bulk": 1e5}, "shear and bulk modulus must be positive"),
+    ("ogden", OGDEN | {"alpha": (2.0,)}, "mu, alpha must have the same number of terms"),
+    ("ogden", OGDEN | {"mu": (), "alpha": ()}, r"parameter mu \[Pa\]: expected finite numbers"),
+    ("ogden", OGDEN | {"mu": ((1e3, 2e3),)}, r"parameter mu \[Pa\]: expected a plain series of numbers"),
+    ("ogden", OGDEN | {"alpha": (2.0, 0.0)}, r"parameter alpha \[-\]: expected exponents other than 0"),
+    ("ogden", OGDEN | {"alpha": (-2.0, -3.0)}, "shear and bulk modulus must be positive"),
+    ("arruda-boyce", {"mu": 1e3, "locking": 0.0, "bulk": 1e5}, "locking .*: expected a stretch above 1"),
+    ("arruda-boyce", {"mu": 1e3, "locking": 2.0, "bulk": 0.0}, "shear and bulk modulus must be positive"),
+]
+
+
+@pytest.mark.parametrize(("law", "parameters", "message"), BAD)
+def test_unsound_parameters_get_one_sentence(law, parameters, message):
+    with pytest.raises(ValueError, match=message) as caught:
+        laws.get(law).check(parameters)
+    text = str(caught.value)
+    assert text.startswith(f"{law}: ")
+    assert "\n" not in text
+    assert len(text) < 140
+
+
+@pytest.mark.parametrize("law", laws.names())
+def test_sound_parameters_pass(law):
+    laws.get(law).check(laws.get(law).from_moduli(3e4, 6e5))
+
+
+def test_one_term_may_be_a_plain_number():
+    laws.get("ogden").check({"mu": 1e3, "alpha": 2.0, "bulk": 1e5})
+
+
+def test_unknown_law_names_the_ones_there_are():
+    with pytest.raises(ValueError, match=r"expected one of st-venant-kirchhoff, .*arruda-boyce, got 'hooke'"):
+        laws.get("hooke")

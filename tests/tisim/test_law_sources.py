@@ -1,0 +1,93 @@
+"""How our laws stand to the formulas the paper prints and to what SOFA computes."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from law_cases import AB, deformations, energy, materials, slope
+
+from tisim import laws
+from tisim.laws.evaluate import evaluate
+from tisim.scene import Material
+
+
+def pressure(material, F):
+    """What the docstrings say: at J = 1 the printed stress is ours plus this times F^-T [Pa]."""
+    p = material.parameters
+    l = np.linalg.svd(F, compute_uv=False)
+    if material.law == "ogden":
+        return sum(m * (l**a).sum() / 3 for m, a in zip(p["mu"], p["alpha"], strict=True))
+    I1 = (l**2).sum()
+    slope_I1 = p["mu"] * sum(c * (i + 1) * I1**i / p["locking"] ** (2 * i) for i, c in enumerate(AB))
+    return 2 / 3 * slope_I1 * I1
+
+
+@pytest.mark.parametrize("law", ["ogden", "arruda-boyce"])
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_printed_formula_is_not_stress_free_and_differs_by_a_pressure(law, data):
+    material = data.draw(materials(law))
+    moduli = laws.get(law).moduli(material.parameters)
+    at_rest = slope(lambda G: energy(material, G, printed=True), np.eye(3))
+    p = material.parameters
+    stated = sum(p["mu"]) if law == "ogden" else moduli.shear
+    assert at_rest == pytest.approx(
+        stated * np.eye(3), abs=1e-6 * max(moduli.shear, abs(stated)) + 1e-9 * moduli.bulk
+    )
+    assert np.abs(evaluate(law, p, np.eye(3)[None])[1]).max() < 1e-12 * moduli.shear
+
+    F = data.draw(deformations())
+    F /= np.cbrt(np.linalg.det(F))
+    psi, P, _ = (v[0] for v in evaluate(law, p, F[None]))
+    printed = slope(lambda G: energy(material, G, printed=True), F)
+    difference = pressure(material, F) * np.linalg.inv(F).T
+    scale = max(np.abs(printed).max(), np.abs(P).max(), np.abs(difference).max())
+    assert energy(material, F, printed=True) == pytest.approx(psi, rel=1e-9, abs=1e-12 * moduli.bulk)
+    assert np.abs(printed - P - difference).max() < 1e-6 * scale + 1e-9 * moduli.bulk
+
+
+def sofa(law, values, F):
+    """Energy that SOFA's stress follows for a ParameterSet (physics.md, section 1; SOFA 26.12-dev)."""
+    C = np.swapaxes(F, -1, -2) @ F
+    J, I1 = np.linalg.det(F), np.trace(C, axis1=-2, axis2=-1)
+    I2 = (I1**2 - np.trace(C @ C, axis1=-2, axis2=-1)) / 2
+    i1, i2, ln = I1 / np.cbrt(J) ** 2, I2 / np.cbrt(J) ** 4, np.log(J)
+    if law == "ogden":
+        mu1, alpha, K = values
+        power = (np.linalg.eigvalsh(C) ** (alpha / 2)).sum(-1)
+        return mu1 / alpha**2 * (J ** (-alpha / 3) * power - 3) + K / 2 * ln**2
+    if law == "arruda-boyce":
+        mu, K = values
+        return mu * sum(c / 8**i * (i1 ** (i + 1) - 3 ** (i + 1)) for i, c in enumerate(AB)) + K / 2 * ln**2
+    if law == "mooney-rivlin":
+        c10, c01, K = values
+        return c10 * (i1 - 3) + c01 * (i2 - 3) + K / 2 * ln**2
+    mu, lam = values
+    if law == "neo-hookean":
+        return mu / 2 * (I1 - 3) - mu * ln + lam / 2 * ln**2
+    if law == "stable-neo-hookean":
+        return (mu * (I1 - 3) + (lam + mu) * (J - 1 - mu / (lam + mu)) ** 2) / 2
+    E = (C - np.eye(3)) / 2
+    trace = np.trace(E, axis1=-2, axis2=-1)
+    return lam / 2 * trace**2 + mu * np.trace(E @ E, axis1=-2, axis2=-1)
+
+
+# law, SOFA's ParameterSet, the same in our parameters, (G, K) by physics.md
+SOFA = [
+    ("st-venant-kirchhoff", (7e3, 9e4), {"mu": 7e3, "lam": 9e4}, (7e3, 9e4 + 14e3 / 3)),
+    ("neo-hookean", (7e3, 9e4), {"mu": 7e3, "lam": 9e4}, (7e3, 9e4 + 14e3 / 3)),
+    ("stable-neo-hookean", (7e3, 9e4), {"mu": 7e3, "lam": 9e4}, (7e3, 9e4 + 14e3 / 3)),
+    ("mooney-rivlin", (3e3, 1e3, 9e4), {"c10": 3e3, "c01": 1e3, "bulk": 9e4}, (8e3, 9e4)),
+    ("ogden", (8e3, 5.0, 9e4), {"mu": 8e3 / 5.0, "alpha": 5.0, "bulk": 9e4}, (4e3, 9e4)),
+    ("arruda-boyce", (7e3, 9e4), {"mu": 7e3, "locking": 8**0.5, "bulk": 9e4}, (1.0851 * 7e3, 9e4)),
+]
+
+
+@pytest.mark.parametrize(("law", "values", "parameters", "moduli"), SOFA)
+def test_sofas_parameter_set_maps_as_the_docstrings_say(law, values, parameters, moduli):
+    F = np.eye(3) + 0.4 * np.random.default_rng(5).uniform(-1, 1, (20, 3, 3))
+    ours, theirs = evaluate(law, parameters, F)[0], sofa(law, values, F)
+    constant = sofa(law, values, np.eye(3))
+    assert ours == pytest.approx(theirs - constant, rel=1e-10)
+    found = laws.get(law).moduli(Material(law=law, parameters=parameters).parameters)
+    assert (found.shear, found.bulk) == pytest.approx(moduli, rel=5e-5)

@@ -1,0 +1,220 @@
+"""Whether a scene can be solved at all, said in one sentence before any work is done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from tisim import laws
+from tisim.mesh import Mesh
+from tisim.scene import (
+    Beam,
+    Block,
+    BoxInclusion,
+    Circle,
+    Coupon,
+    CylinderInclusion,
+    Material,
+    Poke,
+    Rectangle,
+    Rod,
+    Scene,
+    Solver,
+    SphereInclusion,
+)
+
+LARGEST = 10.0  # of any length [m]: beyond it somebody wrote millimetres
+STEEPEST = 45.0  # of a push against the normal [degrees]
+
+
+class _Bad(Exception):
+    """field: where; expected: what was wanted; got: what was there."""
+
+    def __init__(self, field: str, expected: str, got: object) -> None:
+        super().__init__(f"{field}: expected {expected}, got {got!r}")
+
+
+def check_scene(index: int, scene: Scene) -> None:
+    """Raise ValueError that names the scene by its place in the list, the field and what is expected."""
+    for kind, check in _CHECKS.items():
+        if isinstance(scene, kind):
+            try:
+                _material(scene.material)
+                _solver(scene.solver)
+                check(scene)
+            except _Bad as bad:
+                raise ValueError(f"scene {index}: {kind.__name__}.{bad}") from None
+            return
+    raise ValueError(f"scene {index}: expected a Beam, Poke or Coupon, got {type(scene).__name__}")
+
+
+def _number(field: str, value: object, expected: str, good: Callable[[float], bool]) -> None:
+    number = isinstance(value, Real) and not isinstance(value, bool)
+    if not number or not np.isfinite(float(value)) or not good(float(value)):  # type: ignore[arg-type]
+        raise _Bad(field, expected, value)
+
+
+def _length(field: str, value: object) -> None:
+    _number(field, value, f"a length above 0 and up to {LARGEST:g} m", lambda v: 0.0 < v <= LARGEST)
+
+
+def _positive(field: str, value: object, what: str = "a number above 0") -> None:
+    _number(field, value, what, lambda v: v > 0.0)
+
+
+def _not_negative(field: str, value: object, what: str = "a number not below 0") -> None:
+    _number(field, value, what, lambda v: v >= 0.0)
+
+
+def _vector(field: str, value: Any, size: int = 3) -> None:
+    try:
+        good = np.shape(value) == (size,) and bool(np.isfinite(np.asarray(value, dtype=float)).all())
+    except (TypeError, ValueError):
+        good = False
+    if not good:
+        raise _Bad(field, f"{size} finite numbers", value)
+
+
+def _whole(field: str, value: object) -> None:
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
+        raise _Bad(field, "a whole number of at least 1", value)
+
+
+def _one_of(field: str, value: object, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise _Bad(field, f"one of {', '.join(choices)}", value)
+
+
+def _a(field: str, value: object, kinds: tuple[type, ...]) -> None:
+    if not isinstance(value, kinds):
+        raise _Bad(field, " or ".join(kind.__name__ for kind in kinds), type(value).__name__)
+
+
+def _material(material: Material) -> None:
+    _a("material", material, (Material,))
+    _one_of("material.law", material.law, laws.names())
+    _positive("material.density", material.density, "a density above 0 kg/m3")
+    try:
+        laws.get(material.law).check(material.parameters)
+        # the packing has rules of its own (exponents other than zero)
+        laws.get(material.law).pack(material.parameters)
+    except (ValueError, TypeError) as error:
+        raise _Bad("material.parameters", f"a sound set ({error})", dict(material.parameters)) from None
+
+
+def _solver(solver: Solver) -> None:
+    _a("solver", solver, (Solver,))
+    _one_of("solver.method", solver.method, ("static", "implicit", "explicit"))
+    _number("solver.tolerance", solver.tolerance, "a number between 0 and 1", lambda v: 0.0 < v < 1.0)
+    _positive("solver.duration", solver.duration, "a time above 0 s")
+    _positive("solver.time_step", solver.time_step, "a time above 0 s")
+    _not_negative("solver.mass_damping", solver.mass_damping)
+    _not_negative("solver.stiffness_damping", solver.stiffness_damping)
+    _whole("solver.max_iterations", solver.max_iterations)
+
+
+def _mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tuple[str, ...]) -> None:
+    if mesh is None:
+        return
+    _a("mesh", mesh, (Mesh,))
+    for what, wanted, there in (
+        ("node", node_sets, mesh.node_sets),
+        ("facet", facet_sets, mesh.facet_sets),
+    ):
+        for name in wanted:
+            if name not in there or not len(there[name]):
+                raise _Bad("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
+    if not mesh.n_elements:
+        raise _Bad("mesh", "at least one element", 0)
+
+
+def _beam(scene: Beam) -> None:
+    _length("length", scene.length)
+    _length("grip_length", scene.grip_length)
+    _a("section", scene.section, (Circle, Rectangle))
+    if isinstance(scene.section, Circle):
+        _length("section.radius", scene.section.radius)
+    else:
+        _length("section.width", scene.section.width)
+        _length("section.height", scene.section.height)
+    _one_of("supports", scene.supports, ("clamped-free", "clamped-clamped"))
+    _vector("gravity", scene.gravity)
+    _vector("tip_force", scene.tip_force)
+    _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))
+    _length("layer", scene.layer)
+    _whole("rings", scene.rings)
+    pulled = any(scene.tip_force)
+    if pulled and scene.supports == "clamped-clamped":
+        raise _Bad("tip_force", "no force on a beam that is clamped at both ends", scene.tip_force)
+    held = ("clamp",) if scene.supports == "clamped-free" else ("clamp", "far_clamp")
+    _mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled else ())
+
+
+def _poke(scene: Poke) -> None:
+    _block(scene.block)
+    _rod(scene.rod)
+    _vector("site", scene.site, 2)
+    inside = np.abs(np.asarray(scene.site)) < 0.5 * np.asarray(scene.block.size[:2])
+    if not inside.all():
+        raise _Bad("site", f"a place on the block's top, {scene.block.size[:2]} m large", scene.site)
+    _vector("direction", scene.direction)
+    size = float(np.linalg.norm(scene.direction))
+    angle = np.degrees(np.arccos(np.clip(-scene.direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
+    if angle > STEEPEST + 1e-6:
+        raise _Bad("direction", f"a push within {STEEPEST:g} degrees of (0, 0, -1)", scene.direction)
+    _length("depth", scene.depth)
+    if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
+        raise _Bad("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+    _not_negative("friction", scene.friction)
+    _length("frame_spacing", scene.frame_spacing)
+    _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))
+    _positive("refinement", scene.refinement)
+    _vector("gravity", scene.gravity)
+    _mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))
+
+
+def _block(block: Block) -> None:
+    _a("block", block, (Block,))
+    _vector("block.size", block.size)
+    for value in block.size:
+        _length("block.size", value)
+    body = block.inclusion
+    if body is None:
+        return
+    _a("block.inclusion", body, (BoxInclusion, SphereInclusion, CylinderInclusion))
+    _vector("block.inclusion.centre", body.centre)
+    if isinstance(body, BoxInclusion):
+        _vector("block.inclusion.size", body.size)
+        for value in body.size:
+            _length("block.inclusion.size", value)
+        _number("block.inclusion.angle", body.angle, "an angle in radians", lambda _v: True)
+        return
+    _length("block.inclusion.radius", body.radius)
+    if isinstance(body, CylinderInclusion):
+        _length("block.inclusion.height", body.height)
+
+
+def _rod(rod: Rod) -> None:
+    _a("rod", rod, (Rod,))
+    _length("rod.radius", rod.radius)
+    _length("rod.length", rod.length)
+    _one_of("rod.tip", rod.tip, ("flat", "hemisphere"))
+    _length("rod.edge_radius", rod.edge_radius)
+    if rod.tip == "flat" and rod.edge_radius > rod.radius:
+        raise _Bad("rod.edge_radius", f"at most the rod's radius of {rod.radius:g} m", rod.edge_radius)
+
+
+def _coupon(scene: Coupon) -> None:
+    _one_of("mode", scene.mode, ("uniaxial", "equibiaxial", "planar", "simple-shear"))
+    if not isinstance(scene.stretches, tuple | list) or not len(scene.stretches):
+        raise _Bad("stretches", "at least one stretch", scene.stretches)
+    for value in scene.stretches:
+        _positive("stretches", value, "stretches above 0")
+    if scene.solver.method != "static":
+        raise _Bad("solver.method", "static, the only one offered for coupons", scene.solver.method)
+
+
+_CHECKS: dict[type, Callable[[Any], None]] = {Beam: _beam, Poke: _poke, Coupon: _coupon}
