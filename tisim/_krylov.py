@@ -18,7 +18,7 @@ from tisim._pattern import Pattern
 from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
 
 Array = NDArray[np.float64]
-SMALLEST_SHIFT = 1e-4
+SMALLEST_SHIFT = 1e-3
 
 
 @cache
@@ -101,7 +101,7 @@ class FactorGMRES:
             self.factorisations += 1
             if self._factor.negative == 0:
                 break
-            self.shift = max(4.0 * self.shift, SMALLEST_SHIFT)
+            self.shift = max(8.0 * self.shift, SMALLEST_SHIFT)
         self._added = self.shift * scale
 
     def _gmres(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,7 @@ class Pardiso:
         if error.value != 0:
             raise FactorisationError(f"PARDISO phase {phase} returned error {error.value}")
 
-    def __del__(self) -> None:
-        # when the interpreter ends, the process frees the memory and ctypes may be gone
-        if getattr(self, "_analysed", False) and not sys.is_finalizing():
+    def __del__(self, finalizing: Callable[[], bool] = sys.is_finalizing) -> None:
+        # when the interpreter ends, the process frees the memory, and modules (sys, ctypes) may be gone
+        if getattr(self, "_analysed", False) and not finalizing():
             self._call(_RELEASE)

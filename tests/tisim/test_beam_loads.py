@@ -39,8 +39,8 @@ def test_linear_elements_come_near_as_the_mesh_gets_finer():
         finer = Beam(material=scene.material, length=0.05, element=element, rings=rings, layer=0.014 / rings)
         errors[element, rings] = 1 - deflection(solve_beam(finer))[2] / right
     assert 0.5 < errors["tet4", 4] < errors["tet4", 2] < 0.75
-    assert abs(errors["hex8", 4]) < 0.02
-    assert abs(errors["hex8", 4]) < abs(errors["hex8", 2]) < 0.08
+    assert abs(errors["hex8", 4]) < 0.03
+    assert abs(errors["hex8", 4]) < abs(errors["hex8", 2]) < 0.10
 
 
 def test_load_sideways_is_the_load_down_turned():
