@@ -17,6 +17,8 @@ A point that touches first in this step slips for the part of the step that it t
 start value sees it.
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
+
 from functools import cache
 from typing import Any
 
@@ -96,7 +98,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
         ti.loop_config(serialize=True)
         for f in range(conn.shape[0]):
             for q in range(shape.shape[0]):
-                d, n, km, kr, t = rod_distance(sample(x, conn, shape, f, q), rod)
+                d, _n, _km, _kr, _t = rod_distance(sample(x, conn, shape, f, q), rod)
                 distance[f, q] = d
 
     @ti.kernel
@@ -112,7 +114,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
             for f in range(conn.shape[0]):
                 for q in range(shape.shape[0]):
                     y = sample(x, conn, shape, f, q)
-                    d, n, km, kr, t = rod_distance(y, rod)
+                    d, n, _km, _kr, _t = rod_distance(y, rod)
                     least = ti.min(least, d)
                     if d < 0.0:
                         total += area[f, q] * 0.5 * law[0] * d * d

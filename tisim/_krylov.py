@@ -7,6 +7,8 @@ and the matrix is shifted until it is positive, so that the step leads downhill 
 (the shift fades as the iteration comes near one; the residual it is judged by knows nothing of it).
 """
 
+# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
+
 from collections.abc import Callable
 from functools import cache
 
@@ -72,7 +74,12 @@ class FactorGMRES:
         self.iterations = 0
 
     def solve(
-        self, blocks: Array, rhs: Array, *, tolerance: float, skew: Callable[[Array, Array], None] | None = None
+        self,
+        blocks: Array,
+        rhs: Array,
+        *,
+        tolerance: float,
+        skew: Callable[[Array, Array], None] | None = None,
     ) -> Array:
         """A^-1 rhs to a relative residual, or as near as `limit` iterations with a new factor come.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 
 from tisim._body import Body, Layout, gravity_load
 from tisim._contact import contact_kernels, pack_rod
-from tisim._newton import newton
 from tisim._krylov import FactorGMRES
+from tisim._newton import newton
 from tisim._quadrature import facet_areas, facet_quadrature
 from tisim.mesh import Mesh
 from tisim.mesh.poke_block import poke_mesh
@@ -21,14 +22,13 @@ from tisim.scene import Poke, Rod
 Array = NDArray[np.float64]
 
 # Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
-# shear moduli is a twentieth of the edge radius.
+# shear moduli is a fortieth of the edge radius.
 NORMAL_STIFFNESS = 400.0
 TANGENT_STIFFNESS = 100.0
 POINTS_PER_SIDE = 4
+# Penetration, as a part of the edge radius, at which the contact is made stiffer, and a step refused.
+STIFFEN_AT, REFUSE_AT = 0.25, 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
-# Equilibrium of a poke: residual of the free nodes relative to the rod's force. Contact points that come and
-# go at the rod's edge keep the iteration from doing much better.
-TOLERANCE = 5e-4
 SAME = 1e-9  # depths closer than this are one [m]
 
 
@@ -131,6 +131,10 @@ class PokeSystem:
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
 
+    def stiffen(self) -> None:
+        """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
+        self._law[0] *= 2.0
+
     def potential(self, x: Array) -> tuple[float, float]:
         if self._known is None or self._known[0] is not x:
             self._known = (x, *self.body.energy(x))  # an accepted trial is the next search's start
@@ -173,7 +177,14 @@ class PokeSystem:
 
     def _skew_product(self, v: Array, out: Array) -> None:
         self._multiply_skew(
-            self.facets, self.layout.pattern.index, self._shape, self._pressure, self._part, self._skew, v, out
+            self.facets,
+            self.layout.pattern.index,
+            self._shape,
+            self._pressure,
+            self._part,
+            self._skew,
+            v,
+            out,
         )
 
     def residual_norm(self, x: Array) -> float:
@@ -207,8 +218,11 @@ class PokeSystem:
         return (self.internal[fixed] - self.body.dead_load[fixed]).sum(axis=0)
 
 
-def solve_poke(scene: Poke, *, trace: bool = False) -> Result:
-    """Push the rod in until the depth asked for, or until the solution ends; frames at every spacing."""
+def solve_poke(scene: Poke, *, trace: Callable[[str], None] | None = None) -> Result:
+    """Push the rod in until the depth asked for, or until the solution ends; frames at every spacing.
+
+    trace: called with one line of text for each step tried.
+    """
     mesh_start = time.process_time()
     mesh = scene.mesh or poke_mesh(
         block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod,
@@ -228,13 +242,10 @@ def solve_poke(scene: Poke, *, trace: bool = False) -> Result:
         linear_iterations=system.linear.iterations,
         step_cuts=cuts,
     )
-    return _result(scene, mesh, frames, status, system, cost)
+    return _result(scene, mesh, frames, status, cost)
 
 
-def _push(
-    scene: Poke, system: PokeSystem, *, trace: bool
-) -> tuple[list[Frame], Status, int, int, int]:
-    tolerance = max(scene.solver.tolerance, TOLERANCE)
+def _push(scene: Poke, system: PokeSystem, *, trace: bool) -> tuple[list[Frame], Status, int, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
     depth, step = 0.0, FIRST_STEP
@@ -250,18 +261,19 @@ def _push(
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
         outcome = newton(
-            system, guess, tolerance=tolerance, max_iterations=min(20, scene.solver.max_iterations)
+            system, guess, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations
         )
         steps += 1
         iterations += outcome.iterations
         overlap = -float(system.report[3])
         failed: Status | None = None if outcome.status is Status.CONVERGED else outcome.status
-        if failed is None and overlap > 0.5 * system.edge:
+        if failed is None and overlap > REFUSE_AT * system.edge:
             failed = Status.PENETRATION
-        if trace:
-            print(
-                f"{target * 1e3:7.3f} step {step * 1e3:.3f} it {outcome.iterations:2d} {outcome.status.value:14s}"
-                f" F {system.report[:3] @ -system.axis:8.4f} overlap {overlap * 1e3:.3f}"
+        if trace is not None:
+            trace(
+                f"{target * 1e3:7.3f} step {step * 1e3:.3f} it {outcome.iterations:2d}"
+                f" {outcome.status.value:14s} F {system.report[:3] @ -system.axis:8.4f}"
+                f" overlap {overlap * 1e3:.3f}"
                 f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} cg {system.linear.iterations}"
                 f" fac {system.linear.factorisations} shift {system.linear.shift:.0e}"
             )
@@ -275,6 +287,8 @@ def _push(
         velocity = (outcome.x - x) / (target - depth)
         x, depth = outcome.x, target
         system.accept(x)
+        if overlap > STIFFEN_AT * system.edge:
+            system.stiffen()
         if outcome.iterations <= 6:
             step = min(step * 2.0, LARGEST_STEP)
         elif outcome.iterations > 12:
@@ -301,9 +315,7 @@ def _predict(system: PokeSystem, x: Array, move: Array) -> Array:
     return x.copy()
 
 
-def _result(
-    scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, system: PokeSystem, cost: Cost
-) -> Result:
+def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: Cost) -> Result:
     def stack(values: list[Array], width: tuple[int, ...]) -> Array:
         return np.array(values) if values else np.zeros((0, *width))
 

@@ -61,8 +61,10 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
 
 # The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
 _HEX_CUTS = np.array(
-    [[0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]]
-    + [[1, 2, 0, 5], [3, 0, 2, 7], [4, 5, 0, 7], [6, 7, 2, 5], [0, 7, 5, 2]]
+    [
+        *([0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]),
+        *([1, 2, 0, 5], [3, 0, 2, 7], [4, 5, 0, 7], [6, 7, 2, 5], [0, 7, 5, 2]),
+    ]
 )
 # Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra`.
 TETRAHEDRAL_PART = 0.4
