@@ -245,7 +245,9 @@ def solve_poke(scene: Poke, *, trace: Callable[[str], None] | None = None) -> Re
     return _result(scene, mesh, frames, status, cost)
 
 
-def _push(scene: Poke, system: PokeSystem, *, trace: bool) -> tuple[list[Frame], Status, int, int, int]:
+def _push(
+    scene: Poke, system: PokeSystem, *, trace: Callable[[str], None] | None
+) -> tuple[list[Frame], Status, int, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
     depth, step = 0.0, FIRST_STEP

@@ -185,7 +185,7 @@ def _edit(name: str, row: int, change: Callable[[Any], Any]) -> Callable[[Datase
     ("edit", "words"),
     [
         (_edit("base_force", 2, lambda f: 1.02 * f), "base reaction = rod force: poke 0"),
-        (_edit("residual", 0, lambda _: 2e-6), "residual above 1e-06"),
+        (_edit("residual", 0, lambda _: 6e-4), "residual above 0.0005"),
         (_edit("min_jacobian", 0, lambda _: -0.1), "an element turned over"),
         (_edit("penetration", 1, lambda _: 6e-4), "penetration above half the edge radius (0.5 mm)"),
         (_edit("depth", 1, lambda d: d + 1e-4), "the tip is off the rod's path"),
