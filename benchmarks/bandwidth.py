@@ -6,8 +6,8 @@
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
 Limits, measured here on one core: copy (NumPy, 16 B an entry of float64: read and written) and reading
-(a float32 dot product of two arrays), both out of memory (256 MiB) and over as many bytes as the factor has, which
-the caches may hold; arithmetic by a matrix product (float64 of 1000 x 1000).
+(a float32 dot product of two arrays), both out of memory (256 MiB) and over as many bytes as the factor has,
+which the caches may hold; arithmetic by a matrix product (float64 of 1000 x 1000).
 
 Bytes that must move at least: a solve reads the factor (float32) forward and back again; assembly reads
 gradients, weights, node numbers and slots of each element once, and reads and writes each block once.

@@ -6,8 +6,8 @@
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
-Neo-Hookean, mu = 30 kPa, K = 600 kPa, friction 0.6, flat rod of 2.5 mm radius with an edge of 1 mm, pushed into
-the middle of the default block. CPU seconds of one core, mesh and layout included, kernels loaded before; the
+Neo-Hookean, mu = 30 kPa, K = 600 kPa, friction 0.6, flat rod of 2.5 mm radius with an edge of 1 mm, pushed
+into the middle of the default block. CPU seconds of one core, mesh and layout included, kernels loaded before; the
 median of --repeats on the default mesh, one run on the fine one and to 20 mm. Parts: one more run under
 cProfile (its own cost is 1 to 3 %), in % of it.
     assembly   tangent of the elements                  factor     PARDISO's numerical factorisation
@@ -37,7 +37,7 @@ from tisim._poke import solve_poke
 FILE = Path(__file__).parent / "references" / "poke.json"
 GOALS = {10: 3.0, 20: 10.0}  # depth [mm]: core seconds
 FORCE_GOAL = 3.0  # % at 5 mm
-# part: file and function, by cumulative time; none of them calls another, but for "Krylov", which calls "solves"
+# part: file and function, by cumulative time; none calls another, but for "Krylov", which calls "solves"
 PARTS = {
     "assembly": ("_body.py", "stiffness"),
     "factor": ("_pardiso.py", "factorise"),

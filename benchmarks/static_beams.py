@@ -5,12 +5,12 @@
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1. Needs `ccx` and the extra `bench`.
 
-Circular beams of 10 mm radius under gravity, K = 100 G. Seconds are CPU seconds of one core, what the solver's
-process is charged from mesh to equilibrium: ours and FElupe without imports, CalculiX with reading and
-writing its files. Ours: median of --repeats; peers: one run where it takes over 5 s, else the median of 3.
-Error: vertical deflection against references/beams.json, in % of the reference's displacement; minus is too stiff.
-Ours takes the half beam where the loads are planar, by itself; the peers get the whole beam, and CalculiX
-C3D10 also the half one.
+Circular beams of 10 mm radius under gravity, K = 100 G. Seconds are CPU seconds of one core, from mesh to
+equilibrium: ours and FElupe without imports, CalculiX with reading and writing its files. Ours: median of
+--repeats; peers: one run where it takes over 5 s, else the median of 3. Error: vertical deflection against
+references/beams.json, in % of the reference's displacement; minus is too stiff, nan did not converge.
+Ours takes the half beam where the loads are planar, by itself; CalculiX C3D10 gets the half beam too (on the
+whole one, of 4,508 nodes, it did not converge), C3D4 and FElupe the whole one.
 """
 
 from __future__ import annotations
@@ -167,15 +167,14 @@ def batch(law: str, repeats: int) -> Batch:
 
 
 def peer(run: Callable[[], Any], law: str, points: Array) -> Timed:
-    """One run of a peer, two more if it is quick."""
+    """One run of a peer, two more if it is quick; its error is nan where it did not converge."""
     found = [run()]
     if found[0].cpu_seconds < 5:
         found += [run(), run()]
-    if not found[0].converged:
-        raise RuntimeError("the peer did not converge")
+    err = error(*ALONE[:1], law, ALONE[1], points, found[0].displacement)
     return Timed(
         statistics.median(f.cpu_seconds for f in found),
-        error(*ALONE[:1], law, ALONE[1], points, found[0].displacement),
+        err if found[0].converged else float("nan"),
         len(points),
     )
 
@@ -236,8 +235,8 @@ def main() -> None:
     batches = {}
     for law in LAWS:
         b = batches[law] = batch(law, args.repeats)
-        print(f"{'ours, ' + law:47s} {b.nodes:>9s} {b.error:+8.2f} {b.process:9.4f} {b.solve:9.4f} {b.mesh:9.4f}"
-              f" {b.wall:9.2f} s", flush=True)  # fmt: skip
+        print(f"{'ours, ' + law:47s} {b.nodes:>9s} {b.error:+8.2f} {b.process:9.4f} {b.solve:9.4f}"
+              f" {b.mesh:9.4f} {b.wall:9.2f} s", flush=True)  # fmt: skip
 
     print(f"\n2. one beam, {ALONE[0]} mm, G = {ALONE[1] / 1e3:g} kPa; the last two columns: times ours, new"
           " mesh; times ours, in a batch\n" + head)  # fmt: skip
@@ -262,7 +261,6 @@ def main() -> None:
         whole, half = beam_mesh(**size), beam_mesh(**size, mirror=True)
         runs = [
             ("CalculiX C3D4, the paper's fineness", calculix_run(law, paper), paper),
-            ("CalculiX C3D10", calculix_run(law, whole), whole),
             ("CalculiX C3D10, half beam", calculix_run(law, half), half),
             ("FElupe 10-node", felupe_run(law, whole), whole),
         ]

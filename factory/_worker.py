@@ -19,7 +19,6 @@ THREAD_VARIABLES = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
-    "TI_CPU_MAX_NUM_THREADS": "1",
     # MKL may otherwise pick another path for another memory alignment, and the bytes would differ
     "MKL_CBWR": "AUTO,STRICT",
 }

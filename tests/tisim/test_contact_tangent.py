@@ -1,0 +1,138 @@
+"""Contact kernels: distance against a sampled rod, forces and tangents against finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import tisim
+from tisim._body import Layout
+from tisim._contact import contact_kernels, pack_rod
+from tisim._poke import PokeSystem
+from tisim.mesh.poke_block import poke_mesh
+
+Array = NDArray[np.float64]
+AXIS = np.array([0.3, -0.2, -0.9]) / np.linalg.norm([0.3, -0.2, -0.9])
+
+
+def sampled_rod(rod: tisim.Rod, tip: Array) -> Array:
+    """Points on the rod's surface, a few micrometres apart near the edge."""
+    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
+    across = np.cross(AXIS, [0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    around = np.cross(AXIS, across)
+    bend = np.linspace(0, np.pi / 2, 120)
+    core = rod.radius - edge
+    profile = np.concatenate(
+        [
+            np.column_stack([np.linspace(0, core, 80), np.zeros(80)]),
+            np.column_stack([core + edge * np.sin(bend), -edge * (1 - np.cos(bend))]),
+            np.column_stack([np.full(200, rod.radius), -edge - np.linspace(0, 0.008, 200)]),
+        ]
+    )
+    phi = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+    ring = np.cos(phi)[:, None] * across + np.sin(phi)[:, None] * around
+    return (tip + profile[:, None, 1:] * AXIS + profile[:, None, :1] * ring).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("rod", [tisim.Rod(), tisim.Rod(tip="hemisphere")], ids=["flat", "hemisphere"])
+def test_distance_is_that_of_the_rod(rod: tisim.Rod) -> None:
+    tip = np.array([0.001, 0.002, 0.003])
+    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
+    surface = sampled_rod(rod, tip)
+    rng = np.random.default_rng(0)
+    points = tip - 0.001 * AXIS + rng.uniform(-0.004, 0.004, (150, 3))
+    packed = pack_rod(tip, AXIS, rod.radius, edge, np.zeros(3))
+    conn = np.arange(len(points) * 4, dtype=np.int32).reshape(-1, 4) // 4  # facets shrunk to a point
+    distance = np.empty((len(points), 1))
+    contact_kernels()[0](points, np.ascontiguousarray(conn), np.full((1, 4), 0.25), packed, distance)
+    nearest = np.array([np.linalg.norm(surface - p, axis=1).min() for p in points])
+    assert np.abs(distance[:, 0]) == pytest.approx(nearest, abs=3e-5)
+    s = (points - tip) @ AXIS
+    r = np.linalg.norm(points - tip - s[:, None] * AXIS, axis=1)
+    deep = (s < -edge - 1e-4) & (r < rod.radius - 1e-4)
+    far = (s > 1e-4) | (r > rod.radius + 1e-4)
+    assert deep.any()
+    assert (distance[deep] < 0).all()
+    assert (distance[far] > 0).all()
+
+
+def system(friction: float) -> tuple[PokeSystem, Array]:
+    """A rod 0.2 mm into a block that is pushed out of shape a little, part of the contact slipping."""
+    scene = tisim.Poke(
+        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        friction=friction,
+        direction=tuple(AXIS),  # type: ignore[arg-type]
+        depth=0.002,
+    )
+    mesh = poke_mesh(
+        block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod, refinement=0.5
+    )
+    it = PokeSystem(scene, Layout.build(mesh, mesh.node_sets["base"]))
+    it.move_to(0.0008)
+    rng = np.random.default_rng(2)
+    x = mesh.nodes + 2e-5 * rng.standard_normal(mesh.nodes.shape)
+    x[mesh.node_sets["base"]] = mesh.nodes[mesh.node_sets["base"]]
+    it.touch(x)
+    return it, x
+
+
+def residual(it: PokeSystem, x: Array) -> Array:
+    return it.linearise(x)[0].copy()
+
+
+def tangent_times(it: PokeSystem, v: Array) -> Array:
+    from tisim._krylov import _multiply_kernel
+
+    p = it.layout.pattern
+    out = np.zeros_like(v)
+    _multiply_kernel()(p.indptr, p.indices, it._blocks, v, out)
+    if it.report[5] > 0:
+        it._skew_product(v, out)
+    return out
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 5.0], ids=["slippery", "slipping", "sticking"])
+def test_tangent_is_the_derivative_of_the_residual(friction: float) -> None:
+    it, x = system(friction)
+    rng = np.random.default_rng(3)
+    free = it.layout.pattern.free
+    touched = np.unique(it.facets)
+    v = np.zeros((len(free), 3))
+    rows = it.layout.pattern.index[touched]
+    v[rows[rows >= 0]] = rng.standard_normal((int((rows >= 0).sum()), 3))
+    h = 2e-10
+    step = np.zeros_like(x)
+    step[free] = h * v
+    numeric = (residual(it, x + step) - residual(it, x - step)) / (2 * h)
+    residual(it, x)
+    assert it.report[4] > 1e-7  # area in contact
+    exact = tangent_times(it, v)
+    assert np.linalg.norm(exact - numeric) < 2e-3 * np.linalg.norm(numeric)
+
+
+def test_force_is_the_derivative_of_the_energy_without_friction() -> None:
+    it, x = system(0.0)
+    r = residual(it, x)
+    rng = np.random.default_rng(4)
+    free = it.layout.pattern.free
+    v = rng.standard_normal((len(free), 3))
+    h = 1e-9
+    step = np.zeros_like(x)
+    step[free] = h * v
+    numeric = (it.potential(x + step)[0] - it.potential(x - step)[0]) / (2 * h)
+    assert float(np.vdot(r, v)) == pytest.approx(numeric, rel=1e-5)
+
+
+def test_coulomb_bound_and_no_tension() -> None:
+    it, x = system(0.05)
+    residual(it, x)
+    assert (it._pressure >= 0).all()
+    traction = it._law[1] * np.linalg.norm(it._slip, axis=2)
+    assert (traction <= 0.05 * it._pressure * (1 + 1e-12)).all()
+    assert (traction > 0).any()
+    it.move_to(-0.002)  # lifted off
+    residual(it, x)
+    assert it.report[4] == 0.0
+    assert np.abs(it.report[:3]).max() == 0.0

@@ -1,0 +1,125 @@
+"""Whole pokes: balance of forces, penetration, frames, friction, an independent reference, endings."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tisim
+from tisim._poke import rod_start, solve_poke
+
+REFERENCE = json.loads(
+    (Path(__file__).parents[2] / "benchmarks" / "references" / "poke.json").read_text(encoding="utf-8")
+)
+SOFT = tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3)
+
+
+def poke(**changes: object) -> tisim.Poke:
+    """2 mm deep on a coarse mesh, unless told otherwise."""
+    return tisim.Poke(**({"material": SOFT, "depth": 0.002, "refinement": 0.7} | changes))  # type: ignore[arg-type]
+
+
+def tilted(degrees: float) -> tuple[float, float, float]:
+    angle = np.radians(degrees)
+    return float(np.sin(angle)), 0.0, -float(np.cos(angle))
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, tisim.Result]:
+    scenes = {
+        "normal": poke(),
+        "slippery": poke(friction=0.0),
+        "tilted": poke(direction=tilted(30.0)),
+        "tilted slippery": poke(direction=tilted(30.0), friction=0.0),
+        "hemisphere": poke(rod=tisim.Rod(tip="hemisphere")),
+    }
+    return {name: solve_poke(scene) for name, scene in scenes.items()}
+
+
+NAMES = ("normal", "slippery", "tilted", "tilted slippery", "hemisphere")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_rod_force_is_base_reaction(results: dict[str, tisim.Result], name: str) -> None:
+    result = results[name]
+    assert result.ok
+    size = np.linalg.norm(result.rod_force, axis=1)
+    assert (size > 0.01).all()
+    # the body pushes the rod as the base pushes the body
+    assert np.linalg.norm(result.rod_force - result.support_force, axis=1) == pytest.approx(
+        0, abs=0.01 * size[0]
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_frames_are_good(results: dict[str, tisim.Result], name: str) -> None:
+    result = results[name]
+    assert result.load == pytest.approx([0.001, 0.002])
+    assert isinstance(result.scene, tisim.Poke)
+    assert (result.penetration < 0.5 * result.scene.rod.edge_radius).all()
+    assert (result.min_jacobian > 0).all()
+    assert (result.residual <= result.scene.solver.tolerance).all()
+    moved = np.linalg.norm(np.diff(result.rod_tip, axis=0), axis=1)
+    assert moved == pytest.approx(0.001)
+
+
+def test_a_normal_poke_pushes_straight_back(results: dict[str, tisim.Result]) -> None:
+    for name in ("normal", "slippery", "hemisphere"):
+        force = results[name].rod_force[-1]
+        assert force[2] > 0
+        assert np.abs(force[:2]).max() < 0.01 * force[2]
+
+
+def test_friction_holds_the_surface(results: dict[str, tisim.Result]) -> None:
+    """Without friction the tilted rod's edge slides along: less force, and turned towards the normal."""
+    stick, slide = results["tilted"].rod_force[-1], results["tilted slippery"].rod_force[-1]
+    assert np.linalg.norm(slide) < 0.98 * np.linalg.norm(stick)
+    assert np.linalg.norm(slide - stick) > 0.03 * np.linalg.norm(stick)
+
+
+def test_depth_counts_from_first_touch() -> None:
+    """The lowest point of a sampled rod lies on the surface, for random tilts."""
+    rng = np.random.default_rng(1)
+    rod = tisim.Rod()
+    for _ in range(20):
+        tilt, turn = rng.uniform(0, np.pi / 4), rng.uniform(0, 2 * np.pi)
+        axis = np.array([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), -np.cos(tilt)])
+        tip = rod_start(rod, (0.01, -0.02), 0.032, axis)
+        across = np.cross(axis, [0.0, 1.0, 0.0])
+        across /= np.linalg.norm(across)
+        around = np.cross(axis, across)
+        phi, edge = np.meshgrid(np.linspace(0, 2 * np.pi, 721), np.linspace(0, np.pi / 2, 361))
+        r = rod.radius - rod.edge_radius * (1 - np.sin(edge))
+        s = -rod.edge_radius * (1 - np.cos(edge))
+        ring = np.cos(phi)[..., None] * across + np.sin(phi)[..., None] * around
+        points = tip + s[..., None] * axis + r[..., None] * ring
+        assert points[..., 2].min() == pytest.approx(0.032, abs=1e-7)
+        # the axis meets the surface at the site
+        meets = tip + axis * (0.032 - tip[2]) / axis[2]
+        assert meets[:2] == pytest.approx([0.01, -0.02], abs=1e-12)
+
+
+def test_a_poke_that_cannot_go_on_says_so() -> None:
+    """Through a thin block: it stops before its base, with its status, its frames and a sentence."""
+    result = solve_poke(poke(block=tisim.Block(size=(0.06, 0.06, 0.006)), depth=0.0058, frame_spacing=5e-4))
+    assert not result.ok
+    assert len(result.load) >= 2
+    assert (result.min_jacobian > 0).all()
+    assert f"{result.load[-1] * 1e3:.2f} mm" in result.message
+
+
+@pytest.mark.slow
+def test_axisymmetric_reference() -> None:
+    """Force at 1, 2 and 5 mm against axisymmetric quadratic elements (FElupe): within 8 %, finer 5 %."""
+    forces = {int(d): v["force"] for d, v in REFERENCE["values"]["0.6"].items() if float(d) <= 5}
+    errors = {}
+    for refinement in (1.0, 1.5):
+        result = solve_poke(poke(depth=0.005, refinement=refinement))
+        assert result.ok
+        found = dict(zip((result.load * 1e3).round().astype(int), result.rod_force[:, 2], strict=True))
+        errors[refinement] = {d: found[d] / f - 1.0 for d, f in forces.items()}
+    assert max(map(abs, errors[1.0].values())) < 0.08, errors
+    assert max(map(abs, errors[1.5].values())) < 0.05, errors
