@@ -7,9 +7,9 @@
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
 Neo-Hookean, mu = 30 kPa, K = 600 kPa, friction 0.6, flat rod of 2.5 mm radius with an edge of 1 mm, pushed
-into the middle of the default block. CPU seconds of one core, mesh and layout included, kernels loaded before; the
-median of --repeats on the default mesh, one run on the fine one and to 20 mm. Parts: one more run under
-cProfile (its own cost is 1 to 3 %), in % of it.
+into the middle of the default block. CPU seconds of one core, mesh and layout included, kernels loaded
+before; the median of --repeats on the default mesh, one run on the fine one and to 20 mm. Parts: one more
+run under cProfile (its own cost is 1 to 3 %), in % of it.
     assembly   tangent of the elements                  factor     PARDISO's numerical factorisation
     solves     forward and back substitution            Krylov     products, orthogonalisation
     search     energies and residuals of the line search

@@ -9,23 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim._body import Body, Layout, gravity_load
-from tisim._contact import contact_kernels, pack_rod
-from tisim._krylov import FactorGMRES
+from tisim._body import Layout
 from tisim._newton import newton
-from tisim._quadrature import facet_areas, facet_quadrature
+from tisim._poke_system import PokeSystem
 from tisim.mesh import Mesh
 from tisim.mesh.poke_block import poke_mesh
 from tisim.result import Cost, Result, Status
-from tisim.scene import Poke, Rod
+from tisim.scene import Poke
 
 Array = NDArray[np.float64]
 
-# Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
-# shear moduli is a fortieth of the edge radius.
-NORMAL_STIFFNESS = 400.0
-TANGENT_STIFFNESS = 100.0
-POINTS_PER_SIDE = 4
 # Penetration, as a part of the edge radius, at which the contact is made stiffer, and a step refused.
 STIFFEN_AT, REFUSE_AT = 0.25, 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
@@ -44,178 +37,6 @@ class Frame:
     penetration: float
     min_jacobian: float
     residual: float
-
-
-def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
-    """Tip centre where the rod, its axis through the site, first touches the plane z = height."""
-    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
-    core = rod.radius - edge
-    tilt = np.sqrt(max(0.0, 1.0 - axis[2] ** 2))
-    # lowest point below the tip's centre: the edge torus, e ahead of its centre circle
-    reach = core * tilt + edge - edge * abs(axis[2])
-    target = np.array([site[0], site[1], height])
-    return target - axis * (reach / abs(axis[2]))
-
-
-class PokeSystem:
-    """The block under a rod at one pose (see `tisim._newton.System`)."""
-
-    def __init__(self, scene: Poke, layout: Layout) -> None:
-        mesh, rod = layout.mesh, scene.rod
-        self.scene, self.layout = scene, layout
-        self.body = Body(
-            layout, scene.material, dead_load=gravity_load(layout, scene.material.density, scene.gravity)
-        )
-        self.axis = np.asarray(scene.direction, dtype=float) / np.linalg.norm(scene.direction)
-        self.edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
-        height = float(mesh.nodes[mesh.facet_sets["top"], 2].max())
-        self.start = rod_start(rod, scene.site, height, self.axis)
-        self.facets = np.ascontiguousarray(self._near(mesh), dtype=np.int32)
-        self._slot = layout.pattern.slots(self.facets)
-        self._shape = np.ascontiguousarray(facet_quadrature(self.facets.shape[1], POINTS_PER_SIDE)[0])
-        self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE)[1]
-        points = self._area.shape
-        g = self.body.moduli.shear
-        kn = NORMAL_STIFFNESS * g / self.edge
-        self._law = np.array([kn, TANGENT_STIFFNESS * g / self.edge, scene.friction])
-        self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
-        self._skew = np.zeros((*points, 9))
-        self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
-        self._part = np.zeros(points)
-        self._measure, self._energy, self._assemble, self._multiply_skew = contact_kernels()
-        self.linear = FactorGMRES(layout.pattern)
-        self.linearisations = 0
-        self._known: tuple[Array, float, float] | None = None
-        self.previous = mesh.nodes.copy()
-        self.depth = self.previous_depth = 0.0
-        self._pose(0.0)
-        self._measure(self.previous, self.facets, self._shape, self._rod, self._gap)
-        self.report = np.zeros(6)
-
-    def _near(self, mesh: Mesh) -> NDArray[np.int32]:
-        """Facets of the top that the rod can come to touch."""
-        top = mesh.facet_sets["top"]
-        centres = mesh.nodes[top].mean(axis=1)[:, :2] - np.asarray(self.scene.site)
-        along = np.array(self.axis[:2])
-        reach = 0.5 * self.scene.depth + 4.0 * self.scene.rod.radius
-        travel = np.clip(centres @ along / max(float(along @ along), 1e-12), 0.0, self.scene.depth)
-        off = np.linalg.norm(centres - travel[:, None] * along, axis=1)
-        return top[off < reach]
-
-    def _pose(self, depth: float) -> None:
-        self.depth = depth
-        rod = self.scene.rod
-        self._rod = pack_rod(
-            self.tip, self.axis, rod.radius, self.edge, (depth - self.previous_depth) * self.axis
-        )
-
-    @property
-    def tip(self) -> Array:
-        return self.start + self.depth * self.axis
-
-    def move_to(self, depth: float) -> None:
-        """Put the rod at this depth; slip counts from the last accepted state."""
-        self._pose(depth)
-
-    def touch(self, guess: Array) -> None:
-        """Set the part of the step in which each point touches, by the step's start value."""
-        distance = np.empty_like(self._gap)
-        self._measure(guess, self.facets, self._shape, self._rod, distance)
-        gap = np.maximum(self._gap, 0.0)
-        overlap = np.maximum(-distance, 0.0)
-        self._part = np.where(self._gap <= 0.0, 1.0, overlap / (gap + overlap + 1e-15))
-
-    def accept(self, x: Array) -> None:
-        """Take x as the converged state: friction remembers it."""
-        self._memory = self._slip.copy()
-        self._measure(x, self.facets, self._shape, self._rod, self._gap)
-        self.previous, self.previous_depth = x, self.depth
-
-    def stiffen(self) -> None:
-        """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
-        self._law[0] *= 2.0
-
-    def potential(self, x: Array) -> tuple[float, float]:
-        if self._known is None or self._known[0] is not x:
-            self._known = (x, *self.body.energy(x))  # an accepted trial is the next search's start
-        _, energy, min_jacobian = self._known
-        out = np.empty(2)
-        self._energy(
-            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
-            self._memory, self._part, self._pressure, out,
-        )  # fmt: skip
-        return energy + float(out[0]), min_jacobian
-
-    def linearise(self, x: Array) -> tuple[Array, float]:
-        layout = self.layout
-        blocks, force, min_jacobian = self.body.stiffness(x)
-        self.internal = force.copy()
-        self._assemble(
-            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, self._pressure, self._slip, self._skew, self._slot, force, blocks, self.report,
-        )  # fmt: skip
-        layout.hold(blocks)
-        self._blocks = blocks
-        self.min_jacobian = min_jacobian
-        self.linearisations += 1
-        residual = (force - self.body.dead_load)[layout.pattern.free]
-        residual[layout.held] = 0.0
-        # before first touch there is no force to compare with: a millinewton-scale floor
-        floor = 1e-4 * self.body.moduli.shear * self.edge**2
-        load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
-        return residual, float(load)
-
-    def step(self, residual: Array, *, forcing: float) -> Array:
-        skew = self._skew_product if self.report[5] > 0.0 else None
-        return self.linear.solve(self._blocks, -residual, tolerance=forcing, skew=skew)
-
-    def second_step(self, residual: Array) -> Array | None:
-        """Without the unsymmetric part of friction, which can make the whole tangent near singular."""
-        if self.report[5] == 0.0:
-            return None
-        return self.linear.solve(self._blocks, -residual, tolerance=1e-2)
-
-    def _skew_product(self, v: Array, out: Array) -> None:
-        self._multiply_skew(
-            self.facets,
-            self.layout.pattern.index,
-            self._shape,
-            self._pressure,
-            self._part,
-            self._skew,
-            v,
-            out,
-        )
-
-    def residual_norm(self, x: Array) -> float:
-        """Size of the residual at x, with Coulomb's law without lag [N]."""
-        layout = self.layout
-        force, _ = self.body.internal_forces(x)
-        report, pressure = np.zeros(6), np.zeros_like(self._pressure)
-        none = np.full_like(self._slot, -1)
-        self._assemble(
-            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, pressure, self._slip, self._skew, none, force, np.zeros((1, 3, 3)), report,
-        )  # fmt: skip
-        residual = (force - self.body.dead_load)[layout.pattern.free]
-        residual[layout.held] = 0.0
-        return float(np.linalg.norm(residual))
-
-    def advance(self, x: Array, step: Array) -> Array:
-        moved = x.copy()
-        moved[self.layout.pattern.free] += step
-        return moved
-
-    def searches(self) -> bool:
-        return True
-
-    def largest_step(self) -> float:
-        return 2e-3
-
-    def base_force(self) -> Array:
-        """Force of the fixed nodes on the body, from the last linearisation [N]."""
-        fixed = self.layout.fixed
-        return (self.internal[fixed] - self.body.dead_load[fixed]).sum(axis=0)
 
 
 def solve_poke(scene: Poke, *, trace: Callable[[str], None] | None = None) -> Result:

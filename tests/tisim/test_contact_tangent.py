@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 import tisim
 from tisim._body import Layout
 from tisim._contact import contact_kernels, pack_rod
-from tisim._poke import PokeSystem
+from tisim._poke_system import PokeSystem
 from tisim.mesh.poke_block import poke_mesh
 
 Array = NDArray[np.float64]

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import tisim
-from tisim._poke import rod_start, solve_poke
+from tisim._poke import solve_poke
+from tisim._poke_system import rod_start
 
 REFERENCE = json.loads(
     (Path(__file__).parents[2] / "benchmarks" / "references" / "poke.json").read_text(encoding="utf-8")
