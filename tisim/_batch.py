@@ -100,7 +100,7 @@ def _portable(scene: Scene) -> Scene:
     """The scene with plain parameters, which any mapping may have held and pickle may not take."""
     plain: dict[str, float | tuple[float, ...]] = {}
     for name, value in scene.material.parameters.items():
-        plain[name] = tuple(float(v) for v in value) if hasattr(value, "__len__") else float(value)  # type: ignore[arg-type, union-attr]
+        plain[name] = tuple(float(v) for v in value) if hasattr(value, "__len__") else float(value)  # type: ignore[union-attr]
     return replace(scene, material=replace(scene.material, parameters=plain))
 
 
@@ -134,7 +134,7 @@ def solve_chunk(chunk: Chunk) -> Iterator[tuple[int, Result]]:
     own = None if isinstance(scenes[0], Coupon) else scenes[0].mesh
     if own is not None:
         known = _known_mesh(chunk.mesh_key, own)
-        scenes = tuple(replace(scene, mesh=known) for scene in scenes)  # type: ignore[call-arg]
+        scenes = tuple(replace(scene, mesh=known) for scene in scenes if not isinstance(scene, Coupon))
     if all(_is_run(scene) for scene in scenes):
         from tisim._beam import solve_beams
 

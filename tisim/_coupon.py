@@ -106,7 +106,7 @@ class CouponSystem(BeamSystem):
 def _drive(
     scene: Coupon, system: CouponSystem, x: Array, here: float, target: float
 ) -> tuple[Outcome, float, int, int]:
-    """From stretch `here` to `target` in steps that are cut where they fail: outcome, stretch, steps, cuts."""
+    """From stretch `here` to `target` in steps, cut where they fail: outcome, stretch, steps, cuts."""
     part, reached, steps, cuts = 1.0, 0.0, 0, 0
     outcome = Outcome(x, Status.CONVERGED, 0.0, 0)
     begin = here
@@ -140,9 +140,7 @@ def _moved(scene: Coupon, system: CouponSystem, x: Array, here: float, stretch: 
 def _equilibrium(scene: Coupon, system: CouponSystem, x: Array) -> Outcome:
     if system.potential(x)[1] <= 0.0:
         return Outcome(x, Status.INVERTED, np.inf, 0)
-    return newton(
-        system, x, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations
-    )
+    return newton(system, x, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations)
 
 
 @dataclass(frozen=True, eq=False)

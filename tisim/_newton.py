@@ -16,6 +16,9 @@ from tisim.result import Status
 
 Array = NDArray[np.float64]
 
+# det F below which an element counts as turned over: St Venant-Kirchhoff has equilibria of no volume at all.
+CRUSHED = 1e-4
+
 
 class System(Protocol):
     """One load level of a scene. x is (n, 3) over all nodes, residual and step over free nodes."""
@@ -93,7 +96,7 @@ def _line_search(
 ) -> tuple[Array | None, Status]:
     if not system.searches():
         trial = system.advance(x, scale * step)
-        good = system.potential(trial)[1] > 0.0
+        good = system.potential(trial)[1] > CRUSHED
         return (trial, Status.CONVERGED) if good else (None, Status.INVERTED)
     start, _ = system.potential(x)
     slope = float(np.vdot(residual, step))
@@ -104,7 +107,7 @@ def _line_search(
     for _ in range(7):
         trial = system.advance(x, scale * step)
         energy, min_jacobian = system.potential(trial)
-        if min_jacobian > 0.0 and np.isfinite(energy):
+        if min_jacobian > CRUSHED and np.isfinite(energy):
             if energy <= start + 1e-4 * scale * min(slope, 0.0) + noise:
                 return trial, Status.CONVERGED
             # friction has no potential: a step that lowers the energy too little may still be right

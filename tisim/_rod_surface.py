@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array:
-    """Quadrangles (k, 4, 3) [m], outward, of a rod whose tip's centre is at `tip` and which points along `axis`."""
+    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`."""
     radius, height = _profile(rod)
     axis = axis / np.linalg.norm(axis)
     u = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])

@@ -30,7 +30,7 @@ LARGEST = 10.0  # of any length [m]: beyond it somebody wrote millimetres
 STEEPEST = 45.0  # of a push against the normal [degrees]
 
 
-class _Bad(Exception):
+class _FieldError(Exception):
     """field: where; expected: what was wanted; got: what was there."""
 
     def __init__(self, field: str, expected: str, got: object) -> None:
@@ -45,7 +45,7 @@ def check_scene(index: int, scene: Scene) -> None:
                 _material(scene.material)
                 _solver(scene.solver)
                 check(scene)
-            except _Bad as bad:
+            except _FieldError as bad:
                 raise ValueError(f"scene {index}: {kind.__name__}.{bad}") from None
             return
     raise ValueError(f"scene {index}: expected a Beam, Poke or Coupon, got {type(scene).__name__}")
@@ -54,7 +54,7 @@ def check_scene(index: int, scene: Scene) -> None:
 def _number(field: str, value: object, expected: str, good: Callable[[float], bool]) -> None:
     number = isinstance(value, Real) and not isinstance(value, bool)
     if not number or not np.isfinite(float(value)) or not good(float(value)):  # type: ignore[arg-type]
-        raise _Bad(field, expected, value)
+        raise _FieldError(field, expected, value)
 
 
 def _length(field: str, value: object) -> None:
@@ -75,22 +75,22 @@ def _vector(field: str, value: Any, size: int = 3) -> None:
     except (TypeError, ValueError):
         good = False
     if not good:
-        raise _Bad(field, f"{size} finite numbers", value)
+        raise _FieldError(field, f"{size} finite numbers", value)
 
 
 def _whole(field: str, value: object) -> None:
     if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
-        raise _Bad(field, "a whole number of at least 1", value)
+        raise _FieldError(field, "a whole number of at least 1", value)
 
 
 def _one_of(field: str, value: object, choices: tuple[str, ...]) -> None:
     if value not in choices:
-        raise _Bad(field, f"one of {', '.join(choices)}", value)
+        raise _FieldError(field, f"one of {', '.join(choices)}", value)
 
 
 def _a(field: str, value: object, kinds: tuple[type, ...]) -> None:
     if not isinstance(value, kinds):
-        raise _Bad(field, " or ".join(kind.__name__ for kind in kinds), type(value).__name__)
+        raise _FieldError(field, " or ".join(kind.__name__ for kind in kinds), type(value).__name__)
 
 
 def _material(material: Material) -> None:
@@ -102,7 +102,9 @@ def _material(material: Material) -> None:
         # the packing has rules of its own (exponents other than zero)
         laws.get(material.law).pack(material.parameters)
     except (ValueError, TypeError) as error:
-        raise _Bad("material.parameters", f"a sound set ({error})", dict(material.parameters)) from None
+        raise _FieldError(
+            "material.parameters", f"a sound set ({error})", dict(material.parameters)
+        ) from None
 
 
 def _solver(solver: Solver) -> None:
@@ -126,9 +128,9 @@ def _mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tuple[st
     ):
         for name in wanted:
             if name not in there or not len(there[name]):
-                raise _Bad("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
+                raise _FieldError("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
     if not mesh.n_elements:
-        raise _Bad("mesh", "at least one element", 0)
+        raise _FieldError("mesh", "at least one element", 0)
 
 
 def _beam(scene: Beam) -> None:
@@ -148,7 +150,7 @@ def _beam(scene: Beam) -> None:
     _whole("rings", scene.rings)
     pulled = any(scene.tip_force)
     if pulled and scene.supports == "clamped-clamped":
-        raise _Bad("tip_force", "no force on a beam that is clamped at both ends", scene.tip_force)
+        raise _FieldError("tip_force", "no force on a beam that is clamped at both ends", scene.tip_force)
     held = ("clamp",) if scene.supports == "clamped-free" else ("clamp", "far_clamp")
     _mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled else ())
 
@@ -159,15 +161,15 @@ def _poke(scene: Poke) -> None:
     _vector("site", scene.site, 2)
     inside = np.abs(np.asarray(scene.site)) < 0.5 * np.asarray(scene.block.size[:2])
     if not inside.all():
-        raise _Bad("site", f"a place on the block's top, {scene.block.size[:2]} m large", scene.site)
+        raise _FieldError("site", f"a place on the block's top, {scene.block.size[:2]} m large", scene.site)
     _vector("direction", scene.direction)
     size = float(np.linalg.norm(scene.direction))
     angle = np.degrees(np.arccos(np.clip(-scene.direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
     if angle > STEEPEST + 1e-6:
-        raise _Bad("direction", f"a push within {STEEPEST:g} degrees of (0, 0, -1)", scene.direction)
+        raise _FieldError("direction", f"a push within {STEEPEST:g} degrees of (0, 0, -1)", scene.direction)
     _length("depth", scene.depth)
     if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
-        raise _Bad("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+        raise _FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
     _not_negative("friction", scene.friction)
     _length("frame_spacing", scene.frame_spacing)
     _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))
@@ -204,17 +206,17 @@ def _rod(rod: Rod) -> None:
     _one_of("rod.tip", rod.tip, ("flat", "hemisphere"))
     _length("rod.edge_radius", rod.edge_radius)
     if rod.tip == "flat" and rod.edge_radius > rod.radius:
-        raise _Bad("rod.edge_radius", f"at most the rod's radius of {rod.radius:g} m", rod.edge_radius)
+        raise _FieldError("rod.edge_radius", f"at most the rod's radius of {rod.radius:g} m", rod.edge_radius)
 
 
 def _coupon(scene: Coupon) -> None:
     _one_of("mode", scene.mode, ("uniaxial", "equibiaxial", "planar", "simple-shear"))
     if not isinstance(scene.stretches, tuple | list) or not len(scene.stretches):
-        raise _Bad("stretches", "at least one stretch", scene.stretches)
+        raise _FieldError("stretches", "at least one stretch", scene.stretches)
     for value in scene.stretches:
         _positive("stretches", value, "stretches above 0")
     if scene.solver.method != "static":
-        raise _Bad("solver.method", "static, the only one offered for coupons", scene.solver.method)
+        raise _FieldError("solver.method", "static, the only one offered for coupons", scene.solver.method)
 
 
 _CHECKS: dict[type, Callable[[Any], None]] = {Beam: _beam, Poke: _poke, Coupon: _coupon}

@@ -25,9 +25,7 @@ def unfold(mesh: Mesh, positions: NDArray[np.float64]) -> tuple[Mesh, NDArray[np
     return mesh, positions
 
 
-def _unfold_once(
-    mesh: Mesh, positions: NDArray[np.float64], name: str
-) -> tuple[Mesh, NDArray[np.float64]]:
+def _unfold_once(mesh: Mesh, positions: NDArray[np.float64], name: str) -> tuple[Mesh, NDArray[np.float64]]:
     axis, n = "xyz".index(name), mesh.n_nodes
     plane = f"mirror_{name}"
     copied = np.ones(n, dtype=bool)
