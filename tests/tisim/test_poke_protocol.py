@@ -15,7 +15,11 @@ from tisim._poke_system import rod_start
 REFERENCE = json.loads(
     (Path(__file__).parents[2] / "benchmarks" / "references" / "poke.json").read_text(encoding="utf-8")
 )
-SOFT = tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3)
+SHEAR, BULK = 30e3, 600e3
+SOFT = tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=BULK)
+_YOUNG = 9 * BULK * SHEAR / (3 * BULK + SHEAR)
+_POISSON = (3 * BULK - 2 * SHEAR) / (2 * (3 * BULK + SHEAR))
+PLANE_MODULUS = _YOUNG / (1 - _POISSON**2)
 
 
 def poke(**changes: object) -> tisim.Poke:
@@ -124,3 +128,28 @@ def test_axisymmetric_reference() -> None:
         errors[refinement] = {d: found[d] / f - 1.0 for d, f in forces.items()}
     assert max(map(abs, errors[1.0].values())) < 0.08, errors
     assert max(map(abs, errors[1.5].values())) < 0.05, errors
+
+
+def _deep_block(**changes: object) -> tisim.Result:
+    """Frictionless, on a block so large that it is a half space to 2 %."""
+    return solve_poke(poke(block=tisim.Block(size=(0.3, 0.3, 0.15)), friction=0.0, refinement=1.0, **changes))
+
+
+@pytest.mark.slow
+def test_flat_punch_at_small_depth() -> None:
+    """F = 2 a E d / (1 - nu^2), with a between the flat and the whole radius; the mesh adds up to 6 %."""
+    rod = tisim.Rod(edge_radius=2.5e-4)
+    result = _deep_block(rod=rod, depth=1e-4, frame_spacing=5e-5)
+    radius = result.rod_force[:, 2] / (2 * PLANE_MODULUS * result.load)
+    assert (radius > rod.radius - rod.edge_radius).all()
+    assert (radius < 1.06 * rod.radius).all()
+
+
+@pytest.mark.slow
+def test_hertz_for_the_hemisphere() -> None:
+    """F = 4/3 E* sqrt(R) d^1.5: within 8 % where the contact is 1 mm wide, two cells of the mesh."""
+    result = _deep_block(rod=tisim.Rod(tip="hemisphere"), depth=4e-4, frame_spacing=2e-4)
+    hertz = 4 / 3 * PLANE_MODULUS * np.sqrt(0.0025) * result.load**1.5
+    ratio = result.rod_force[:, 2] / hertz
+    assert ratio[-1] == pytest.approx(1.0, abs=0.08)
+    assert abs(ratio[-1] - 1) < abs(ratio[0] - 1)  # and better with more cells in contact
