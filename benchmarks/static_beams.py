@@ -10,7 +10,7 @@ equilibrium: ours and FElupe without imports, CalculiX with reading and writing 
 --repeats; peers: one run where it takes over 5 s, else the median of 3. Error: vertical deflection against
 references/beams.json, in % of the reference's displacement; minus is too stiff, nan did not converge.
 Ours takes the half beam where the loads are planar, by itself; CalculiX C3D10 gets the half beam too (on the
-whole one, of 4,508 nodes, it did not converge), C3D4 and FElupe the whole one.
+whole one, of 4,445 nodes, it did not converge), C3D4 and FElupe the whole one.
 """
 
 from __future__ import annotations
