@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
 import tisim
 from tisim._poke import solve_poke
@@ -128,6 +130,7 @@ def test_axisymmetric_reference() -> None:
         errors[refinement] = {d: found[d] / f - 1.0 for d, f in forces.items()}
     assert max(map(abs, errors[1.0].values())) < 0.08, errors
     assert max(map(abs, errors[1.5].values())) < 0.05, errors
+    assert abs(errors[1.5][5]) < abs(errors[1.0][5])
 
 
 def _deep_block(**changes: object) -> tisim.Result:
@@ -135,14 +138,35 @@ def _deep_block(**changes: object) -> tisim.Result:
     return solve_poke(poke(block=tisim.Block(size=(0.3, 0.3, 0.15)), friction=0.0, refinement=1.0, **changes))
 
 
+def _half_space_force(rod: tisim.Rod, depth: float) -> float:
+    """Force [N] on a frictionless half space (Galin, Sneddon), for a flat with a circular edge.
+
+    F = 2 E* int f' r^2 / sqrt(a^2 - r^2) dr and d = int f' a / sqrt(a^2 - r^2) dr over r < a, with f the
+    edge's profile beyond the flat. It tends to the flat punch's 2 a E* d as the edge gets small.
+    """
+    b = rod.radius - rod.edge_radius
+
+    def over(power: int, a: float) -> float:
+        def integrand(angle: float) -> float:
+            r = a * np.sin(angle)
+            s = max(0.0, (r - b) / rod.edge_radius)
+            return float(s / np.sqrt(1 - s * s) * r**power)
+
+        return float(quad(integrand, np.arcsin(b / a), np.pi / 2, epsabs=0.0, epsrel=1e-9)[0])
+
+    a = brentq(lambda a: a * over(0, a) - depth, b * (1 + 1e-9), b + 0.98 * rod.edge_radius)
+    return 2 * PLANE_MODULUS * over(2, a)
+
+
 @pytest.mark.slow
 def test_flat_punch_at_small_depth() -> None:
-    """F = 2 a E d / (1 - nu^2), with a between the flat and the whole radius; the mesh adds up to 6 %."""
+    """Too stiff by 14 % on the default mesh: the disc's rings are as wide as the edge is round."""
     rod = tisim.Rod(edge_radius=2.5e-4)
     result = _deep_block(rod=rod, depth=1e-4, frame_spacing=5e-5)
-    radius = result.rod_force[:, 2] / (2 * PLANE_MODULUS * result.load)
-    assert (radius > rod.radius - rod.edge_radius).all()
-    assert (radius < 1.06 * rod.radius).all()
+    exact = np.array([_half_space_force(rod, float(d)) for d in result.load])
+    ratio = result.rod_force[:, 2] / exact
+    assert (ratio > 1.0).all()
+    assert (ratio < 1.17).all()
 
 
 @pytest.mark.slow
