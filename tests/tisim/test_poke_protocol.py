@@ -152,7 +152,7 @@ def _half_space_force(rod: tisim.Rod, depth: float) -> float:
             s = max(0.0, (r - b) / rod.edge_radius)
             return float(s / np.sqrt(1 - s * s) * r**power)
 
-        return float(quad(integrand, np.arcsin(b / a), np.pi / 2, epsabs=0.0, epsrel=1e-9)[0])
+        return float(quad(integrand, np.arcsin(b / a), np.pi / 2, epsabs=1e-16, epsrel=1e-7)[0])
 
     a = brentq(lambda a: a * over(0, a) - depth, b * (1 + 1e-9), b + 0.98 * rod.edge_radius)
     return 2 * PLANE_MODULUS * over(2, a)
