@@ -1,1 +1,1 @@
-"""Measured experiments: `read(folder)` checks everything that FORMAT.md asks for and returns SI dataclasses."""
+"""Measured experiments (`measured/FORMAT.md`): read, checked, in SI."""
