@@ -1,1 +1,41 @@
-"""Measured experiments (`measured/FORMAT.md`): read, checked, in SI."""
+"""A measured experiment: what a lab writes down (`measured/FORMAT.md`), read, checked and in SI."""
+
+from calibration.experiment._read import read
+from calibration.experiment.model import (
+    BeamTrial,
+    Capture,
+    Checkerboard,
+    CouponMode,
+    CouponTrial,
+    Experiment,
+    Marker,
+    MaterialBelief,
+    PokeRecord,
+    PokeTrial,
+    Registration,
+    Supports,
+    SurfaceScan,
+    TracedOutline,
+    Trial,
+    Vector,
+)
+
+__all__ = [
+    "BeamTrial",
+    "Capture",
+    "Checkerboard",
+    "CouponMode",
+    "CouponTrial",
+    "Experiment",
+    "Marker",
+    "MaterialBelief",
+    "PokeRecord",
+    "PokeTrial",
+    "Registration",
+    "Supports",
+    "SurfaceScan",
+    "TracedOutline",
+    "Trial",
+    "Vector",
+    "read",
+]

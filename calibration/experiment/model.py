@@ -63,12 +63,17 @@ class Checkerboard:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Capture:
-    """One photograph of a beam, `time` [s] after its release: traced, or still to be traced."""
+    """One photograph of a beam, `time` [s] after its release: traced, or still to be traced.
+
+    registration: what the lab says of where the photograph lies, None where it does not; a traced outline has
+    it too.
+    """
 
     time: float
     outline: TracedOutline | None = None
     photo: Path | None = None
     checkerboard: Checkerboard | None = None
+    registration: Registration | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

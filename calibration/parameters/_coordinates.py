@@ -27,6 +27,7 @@ class Coordinate:
     name: what cards and reports call it; unit: of its value, not of its logarithm.
     log: the optimiser moves the natural logarithm of the value.
     low, high: bounds of the value; start: where a search begins (None: from the data).
+    spread: a plain step in the coordinate itself: initial sd of a search, ten times a finite difference.
     prior: (centre, sd) of a normal prior on the coordinate itself (so on the logarithm, where log is set);
         None where the data alone decide.
     """
@@ -36,6 +37,7 @@ class Coordinate:
     log: bool
     low: float
     high: float
+    spread: float
     start: float | None = None
     prior: tuple[float, float] | None = None
 
@@ -95,6 +97,11 @@ class Parametrisation:
             [c.inside(shear / len(shears) if c.start is None else c.start) for c in self.coordinates]
         )
 
+    @property
+    def spread(self) -> Array:
+        """Plain steps in u, (n,)."""
+        return np.array([c.spread for c in self.coordinates])
+
     def prior(self) -> tuple[Array, Array]:
         """Centre and sd of the normal prior on u, each (n,); sd is inf where there is none."""
         pairs = [c.prior or (0.0, np.inf) for c in self.coordinates]
@@ -103,7 +110,7 @@ class Parametrisation:
 
 def shear_modulus(name: str = "shear_modulus") -> Coordinate:
     """Small-strain shear modulus [Pa] (of one term, where a law has several)."""
-    return Coordinate(name=name, unit="Pa", log=True, low=SHEAR_LOW, high=SHEAR_HIGH)
+    return Coordinate(name=name, unit="Pa", log=True, low=SHEAR_LOW, high=SHEAR_HIGH, spread=0.3)
 
 
 def bulk_ratio() -> Coordinate:
@@ -114,6 +121,7 @@ def bulk_ratio() -> Coordinate:
         log=True,
         low=3.0,
         high=5000.0,
+        spread=1.0,
         start=BULK_RATIO,
         prior=(float(np.log(BULK_RATIO)), BULK_RATIO_LOG_SD),
     )

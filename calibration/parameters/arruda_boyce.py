@@ -24,7 +24,7 @@ def _assemble(v: dict[str, float]) -> Parameters:
 
 
 def arruda_boyce(terms: int) -> Parametrisation:  # noqa: ARG001 - one form only
-    locking = Coordinate(name="locking", unit="-", log=True, low=1.2, high=20.0, start=3.0)
+    locking = Coordinate(name="locking", unit="-", log=True, low=1.2, high=20.0, spread=0.4, start=3.0)
     return Parametrisation(
         law="arruda-boyce",
         label="arruda-boyce",

@@ -24,7 +24,7 @@ def _assemble(v: dict[str, float]) -> Parameters:
 
 
 def mooney_rivlin(terms: int) -> Parametrisation:  # noqa: ARG001 - one form only
-    share = Coordinate(name="second_share", unit="-", log=False, low=-0.5, high=1.0, start=0.2)
+    share = Coordinate(name="second_share", unit="-", log=False, low=-0.5, high=1.0, spread=0.3, start=0.2)
     return Parametrisation(
         law="mooney-rivlin",
         label="mooney-rivlin",

@@ -40,6 +40,7 @@ def ogden(terms: int) -> Parametrisation:
             log=False,
             low=0.5 if terms == 1 else -12.0,
             high=20.0,
+            spread=2.0,
             start=_START[p],
         )
         for p in range(terms)

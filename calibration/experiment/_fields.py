@@ -1,0 +1,139 @@
+"""Kinds of values in an experiment.yaml, and the strict model that they stand in."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import PurePosixPath
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+# beyond these a number is a slip of the unit, not a specimen
+_LONGEST_MM = 1e5
+_UNITS = ("_kg_m3", "_m_s2", "_kPa", "_mm", "_deg", "_s", "_N", "_sd")
+
+
+class Strict(BaseModel):
+    """Base of everything read from YAML: unknown keys, keys without a value, NaN and infinity are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        # before pydantic's own check, since only here it is known which keys were expected
+        if isinstance(data, dict):
+            for key, value in data.items():
+                if key not in cls.model_fields:
+                    raise PydanticCustomError(
+                        "unknown_key",
+                        "expected {expected}",
+                        {"key": str(key), "expected": expected_key(str(key), list(cls.model_fields))},
+                    )
+                if value is None:
+                    raise PydanticCustomError(
+                        "no_value", "expected a value, or the key left out", {"key": str(key)}
+                    )
+        return data
+
+
+def expected_key(key: str, known: list[str]) -> str:
+    """What a key that is not known was meant to be: the same quantity in the unit that files hold, else the
+    nearest in spelling, else all that there are."""
+    stem = _stem(key)
+    for name in known:
+        if _stem(name) == stem:
+            return name
+    near = difflib.get_close_matches(key, known, n=1, cutoff=0.75)
+    return near[0] if near else f"one of {', '.join(known)}"
+
+
+def _stem(key: str) -> str:
+    """radius_sd of radius_sd_mm and of radius_sd_m."""
+    for unit in _UNITS[:-1]:
+        if key.endswith(unit):
+            return key.removesuffix(unit).lower()
+    head, _, tail = key.rpartition("_")
+    return (head if head and tail != "sd" and len(tail) <= 3 else key).lower()
+
+
+def say(key: str, text: str) -> PydanticCustomError:
+    """The error of a model's own check, laid to one of its keys (dots lead deeper)."""
+    return PydanticCustomError("own_check", "{text}", {"key": key, "text": text})
+
+
+def _inside(suffixes: tuple[str, ...]) -> AfterValidator:
+    def check(name: str) -> str:
+        path = PurePosixPath(name)
+        if not name.isprintable() or len(name) > 300:
+            raise PydanticCustomError("path", "expected a path of at most 300 printable characters")
+        if path.is_absolute() or "\\" in name or ":" in name or ".." in path.parts:
+            raise PydanticCustomError(
+                "path",
+                "expected a path inside the experiment's folder, relative to it, got {name}",
+                {"name": repr(name)},
+            )
+        if path.suffix.lower() not in suffixes:
+            raise PydanticCustomError(
+                "path",
+                "expected a file {suffixes}, got {name}",
+                {"suffixes": " or ".join(suffixes), "name": repr(name)},
+            )
+        return str(path)
+
+    return AfterValidator(check)
+
+
+Length = Annotated[float, Field(gt=0, le=_LONGEST_MM)]
+Coordinate = Annotated[float, Field(ge=-_LONGEST_MM, le=_LONGEST_MM)]
+Position = tuple[Coordinate, Coordinate, Coordinate]
+Component = Annotated[float, Field(ge=-1e6, le=1e6)]
+Numbers3 = tuple[Component, Component, Component]
+# of a nominal value: 0 where the lab takes it for exact
+Doubt = Annotated[float, Field(ge=0, le=_LONGEST_MM)]
+# of a measurement: never exact
+Noise = Annotated[float, Field(gt=0, le=_LONGEST_MM)]
+Name = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
+CsvFile = Annotated[str, _inside((".csv",))]
+MeshFile = Annotated[str, _inside((".stl", ".obj", ".ply"))]
+PhotoFile = Annotated[str, _inside((".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp"))]
+
+
+class CircleSection(Strict):
+    """A circular section."""
+
+    radius_mm: Length
+    radius_sd_mm: Doubt = 0.0
+
+    @model_validator(mode="after")
+    def _doubt(self) -> CircleSection:
+        below("radius_sd_mm", self.radius_sd_mm, "radius_mm", self.radius_mm)
+        return self
+
+
+class RectangleSection(Strict):
+    """A rectangular section, width along y, height along z."""
+
+    width_mm: Length
+    height_mm: Length
+    width_sd_mm: Doubt = 0.0
+    height_sd_mm: Doubt = 0.0
+
+    @model_validator(mode="after")
+    def _doubt(self) -> RectangleSection:
+        below("width_sd_mm", self.width_sd_mm, "width_mm", self.width_mm)
+        below("height_sd_mm", self.height_sd_mm, "height_mm", self.height_mm)
+        return self
+
+
+def below(key: str, value: float, limit_key: str, limit: float) -> None:
+    """Refuses a standard deviation as large as what it belongs to."""
+    if value >= limit:
+        raise say(key, f"expected less than {limit_key} = {limit:g}, got {value:g}")
+
+
+def only_one(**given: object) -> None:
+    """Refuses all but exactly one of the keys."""
+    if sum(value is not None for value in given.values()) != 1:
+        raise PydanticCustomError("one_of", "expected exactly one of {keys}", {"keys": ", ".join(given)})
