@@ -4,6 +4,7 @@ the lab states, with registration, radius, free length and density as nuisances.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -28,9 +29,9 @@ class Fidelity:
     solver: Solver = field(default_factory=lambda: Solver(tolerance=1e-6))
 
 
-# The beams that a search solves (14 core-ms each), and those that correct them where nuisances are taken. What
-# the search's mesh gets wrong (0.5 % of the deflection, waves of 10 to 20 micrometres along a strongly bent
-# edge) is small and hardly depends on the material, but the likelihood of nine photographs sees it.
+# The beams that a search solves (14 core-ms each), and those that correct them where nuisances are taken.
+# What the search's mesh gets wrong (0.5 % of the deflection, waves of 10 to 20 micrometres along a strongly
+# bent edge) is small and hardly depends on the material, but the likelihood of nine photographs sees it.
 COARSE = Fidelity(rings=1)
 REFERENCE = Fidelity(layer=0.0025, rings=4)
 
@@ -107,6 +108,7 @@ class OutlineObjective:
                     self.photographs.append(Photograph(name, i, traced, contour_root(traced)))
         self.nuisances: Nuisances | None = None
         self.correction: Array = np.zeros(self.points)
+        self._frozen = False
 
     @property
     def points(self) -> int:
@@ -121,6 +123,8 @@ class OutlineObjective:
     def linearise(self, material: Material) -> bool:
         """Take the nuisances' columns at a material; False where its beams have no equilibrium."""
         varied = list(self._varied())
+        if self._frozen:
+            return True
         scenes = [self._beam(t, material) for t in self.trials]
         scenes += [scene for _, _, group in varied for scene in group(material)]
         if self.reference is not None:
@@ -155,6 +159,47 @@ class OutlineObjective:
             if all(r.ok for r in results):
                 found[k] = self.nuisances.profile(self._whitened(results) + self.correction)
         return found
+
+    def subset(self, trials: Sequence[int]) -> OutlineObjective:
+        """The same objective for some of the trials only; nuisances and mesh corrections stay as they were
+        taken here, whatever is linearised later."""
+        assert self.nuisances is not None, "linearise an OutlineObjective before use"
+        part = copy(self)
+        rows = np.concatenate([np.full(len(p.root), p.trial in trials) for p in self.photographs])
+        part.trials = [self.trials[i] for i in trials]
+        part.photographs = [
+            replace(p, trial=list(trials).index(p.trial)) for p in self.photographs if p.trial in trials
+        ]
+        columns = self.nuisances.columns[rows]
+        used = columns.any(axis=0)
+        names = tuple(n for n, u in zip(self.nuisances.names, used, strict=True) if u)
+        part.nuisances = Nuisances(names, columns[:, used])
+        part.correction = self.correction[rows]
+        part._frozen = True
+        return part
+
+    def summary(self, material: Material) -> tuple[float, dict[str, float]]:
+        """rms distance [m] once registration and the other nuisances are taken out, and the nuisances' best
+        values [in their sd] at a material that has an answer."""
+        assert self.nuisances is not None, "linearise an OutlineObjective before use"
+        whitened = self._whitened(self.simulate([material])[0]) + self.correction
+        b = self.nuisances.estimate(whitened)
+        left = self._unwhitened(whitened - self.nuisances.columns @ b)
+        named = {n: float(x) for n, x in zip(self.nuisances.names, b, strict=True)}
+        return float(np.sqrt(np.mean(left**2))), named
+
+    def distances_rms(self, material: Material) -> tuple[float, float]:
+        """rms distance [m] as measured, and once the nuisances are taken out."""
+        whitened = self._whitened(self.simulate([material])[0]) + self.correction
+        return float(np.sqrt(np.mean(self._unwhitened(whitened) ** 2))), self.summary(material)[0]
+
+    def _unwhitened(self, whitened: Array) -> Array:
+        parts = []
+        first = 0
+        for p in self.photographs:
+            parts.append(p.root @ whitened[first : first + len(p.root)])
+            first += len(p.root)
+        return np.concatenate(parts)
 
     def simulate(self, materials: Sequence[Material]) -> list[list[Result]]:
         """Every trial with every material, as one batch of scenes."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -101,6 +101,15 @@ class Parametrisation:
     def spread(self) -> Array:
         """Plain steps in u, (n,)."""
         return np.array([c.spread for c in self.coordinates])
+
+    def holding(self, name: str) -> Parametrisation:
+        """The same, with one coordinate held at its prior's centre (to within 1 %): where the data cannot
+        see it, a law that misfits would use it to repair its curve."""
+        held = tuple(
+            replace(c, prior=(c.prior[0], 0.01), spread=0.01) if c.name == name and c.prior else c
+            for c in self.coordinates
+        )
+        return replace(self, coordinates=held)
 
     def prior(self) -> tuple[Array, Array]:
         """Centre and sd of the normal prior on u, each (n,); sd is inf where there is none."""

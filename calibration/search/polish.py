@@ -31,14 +31,16 @@ def polish(
     start: Array,
     *,
     max_steps: int = 12,
-    tolerance: float = 0.03,
+    tolerance: float = 0.1,
     difference: float = 0.1,
 ) -> Polished:
     """Minimise the problem's cost from `start`; its nuisances are taken there, and again at the end point.
 
-    tolerance [chi-square]: stop when the quadratic model promises less. difference: of the central
-    differences, in each coordinate's spread; smaller ones drown in the solver's tolerance. A coordinate at
-    its bound stays there while the cost falls beyond it. ValueError where the start has no answer.
+    tolerance [chi-square]: stop when the quadratic model promises less; where no step finds what it promises,
+    up to 5 times as much still counts as converged (half a chi-square is 0.7 sd of one parameter).
+    difference: of the central differences, in each coordinate's spread; smaller ones drown in the solver's
+    tolerance. A coordinate at its bound stays there while the cost falls beyond it. ValueError where the
+    start has no answer.
     """
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
@@ -63,7 +65,7 @@ def polish(
                 u, fresh = moves[best], False
                 continue
             message = f"no step lowers chi-square, though {promise:.2g} was promised"
-        done = promise < 10.0 * tolerance
+        done = promise < 5.0 * tolerance
         if fresh or not done or not problem.linearise(u):
             return Polished(
                 u=u,

@@ -19,7 +19,8 @@ class Objective(Protocol):
     """Measurements of one material. residuals: (batch, size), whitened, so that their squared sum is
     chi-square; NaN where a material has no answer. points: how many of them are measurements."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     @property
     def points(self) -> int: ...

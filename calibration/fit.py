@@ -1,0 +1,163 @@
+"""`python -m calibration.fit`: material parameters from an experiment, by CMA-ES and Gauss-Newton."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from calibration._command import plain_ends
+from calibration._screen import FitScreen, law_table
+from calibration.errors import InputError
+from calibration.experiment import Experiment, read
+from calibration.search import CmaOptions
+from calibration.study import Calibration, FitOptions, Task, run, stopped, usable, write_card
+from calibration.study.report import write_report
+from tisim import laws
+
+app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+
+EXAMPLES = """
+[bold]Examples[/bold]
+
+One law for every material of the experiment:
+
+  python -m calibration.fit measured/bench --model ogden
+
+All six laws, a table that compares them, report.html and cards:
+
+  python -m calibration.fit measured/bench --model all --out calibrations/bench
+
+Two laws, one material, cards where factory.build looks for them:
+
+  python -m calibration.fit measured/bench --model neo-hookean,ogden --material S1 --cards datasets/materials
+
+Stopped or killed, the same command goes on where it was; what is known so far is written when it is stopped.
+
+Exit codes: 0 fitted, 1 some fit did not converge, 2 bad input, 130 stopped by Ctrl-C.
+"""
+
+
+@app.command(epilog=EXAMPLES)
+def main(
+    experiment: Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")],
+    model: Annotated[
+        str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")
+    ] = "all",
+    material: Annotated[
+        str | None, typer.Option(help="Materials, separated by commas. Default: all of the experiment.")
+    ] = None,
+    terms: Annotated[int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)] = 1,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
+    ] = None,
+    cards: Annotated[Path | None, typer.Option(help="Folder of the cards. Default: OUT/cards.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of CMA-ES.")] = 1,
+    population: Annotated[
+        int | None, typer.Option(help="Candidates a generation. Default: 4 + 3 ln n.", min=4)
+    ] = None,
+    generations: Annotated[int, typer.Option(help="At most so many generations.", min=1)] = 60,
+    restarts: Annotated[int, typer.Option(help="Restarts with twice the population.", min=0)] = 0,
+    polish: Annotated[bool, typer.Option(help="Gauss-Newton polish and error bars.")] = True,
+    held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = True,
+    workers: Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)] = None,
+    overwrite: Annotated[bool, typer.Option(help="Start anew instead of going on.")] = False,
+) -> None:
+    """Fit constitutive laws to beams and coupons; writes fits, cards and report.html."""
+    with plain_ends():
+        data = read(experiment)
+        names = _laws(model)
+        wanted = _materials(material, data)
+        folder = out or Path("calibrations") / (experiment.resolve().name)
+        _check_folder(folder, overwrite)
+        options = FitOptions(
+            cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
+            gauss_newton=polish,
+            leave_one_out=held_out,
+        )
+        tasks = [
+            Task(
+                experiment=experiment.resolve(),
+                digest=data.digest,
+                material=m,
+                law=law,
+                terms=terms if law == "ogden" else 1,
+                options=options,
+                folder=folder / "fits",
+            )
+            for law in names
+            for m in wanted
+        ]
+        console = Console()
+        results = _fit(tasks, data, console, workers or os.cpu_count() or 1, folder, cards)
+    raise typer.Exit(0 if all(r.status == "converged" for r in results) else 1)
+
+
+def _fit(
+    tasks: list[Task], data: Experiment, console: Console, workers: int, folder: Path, cards: Path | None
+) -> list[Calibration]:
+    with plain_ends(f"Stopped. The same command goes on; the best so far is in {folder}."):
+        try:
+            with FitScreen(console) as screen:
+                results = run(tasks, workers=workers, told=screen.update)
+        except KeyboardInterrupt:
+            _write(stopped(tasks, data), data, console, folder, cards)
+            raise
+        _write(results, data, console, folder, cards)
+    return results
+
+
+def _write(
+    results: list[Calibration], data: Experiment, console: Console, folder: Path, cards: Path | None
+) -> None:
+    if not results:
+        console.print("No fit has found anything yet: no cards, no report.")
+        return
+    console.print(law_table(results))
+    for name in dict.fromkeys(r.material for r in results):
+        mine = [r for r in results if r.material == name]
+        if any(usable(r) for r in mine):
+            console.print(f"card: {write_card(cards or folder / 'cards', mine, data)}")
+        else:
+            console.print(f"{name}: no card, since no law has a finished fit")
+    console.print(f"report: {write_report(folder, results, data)}")
+
+
+def _laws(model: str) -> list[str]:
+    names = list(laws.names()) if model == "all" else [n.strip() for n in model.split(",") if n.strip()]
+    for name in names:
+        if name not in laws.names():
+            raise InputError(f"--model {name}: expected all or some of {', '.join(laws.names())}")
+    if not names:
+        raise InputError("--model: expected at least one law")
+    return list(dict.fromkeys(names))
+
+
+def _materials(wanted: str | None, data: Experiment) -> list[str]:
+    used = {t.material for t in data.trials}
+    if wanted is None:
+        return [m for m in data.materials if m in used]
+    names = [n.strip() for n in wanted.split(",") if n.strip()]
+    for name in names:
+        if name not in used:
+            raise InputError(f"--material {name}: expected some of {', '.join(sorted(used))}")
+    return names
+
+
+def _check_folder(folder: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds something else; with overwrite, remove our own fits only."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder to write to")
+    if overwrite and (folder / "fits").is_dir():
+        shutil.rmtree(folder / "fits")
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"{folder}: expected a folder that can be written to")
+
+
+if __name__ == "__main__":
+    app()

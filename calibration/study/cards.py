@@ -1,0 +1,118 @@
+"""Material cards: the form that `factory.build` reads (`datasets/materials/`), one a mixture, all laws.
+
+A law that has no usable fit is filled in from the best law's moduli, and the card's provenance says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from calibration.errors import InputError
+from calibration.experiment import Experiment
+from calibration.study.calibration import Calibration
+from tisim import laws
+
+# What a mixture is told to a surrogate by: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
+_STIFFEST, _PER_RATIO = 0.8, 0.8
+
+
+def usable(result: Calibration) -> bool:
+    """Whether a calibration's parameters may go into a card."""
+    return result.status in ("converged", "not converged") and bool(result.parameters)
+
+
+def best(results: Sequence[Calibration]) -> Calibration | None:
+    """The fit with the smallest chi-square, twice its parameters added (Akaike), among usable ones."""
+    found = [r for r in results if usable(r)]
+    return min(found, key=lambda r: r.chi2 + 2.0 * len(r.u)) if found else None
+
+
+def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, Any]:
+    """The card of one material from its calibrations; InputError where none is usable."""
+    chosen = best(results)
+    if chosen is None:
+        raise InputError(f"material {results[0].material}: expected a converged fit of at least one law")
+    belief = experiment.materials[chosen.material]
+    by_law: dict[str, Calibration] = {}
+    for r in results:
+        if usable(r) and (r.law not in by_law or r.label == r.law):
+            by_law[r.law] = r
+    parameters: dict[str, dict[str, Any]] = {}
+    filled = []
+    for name in laws.names():
+        if name in by_law:
+            parameters[name] = _plain(by_law[name].parameters)
+        else:
+            filled.append(name)
+            parameters[name] = _plain(laws.get(name).from_moduli(chosen.shear_modulus, chosen.bulk_modulus))
+    relative = chosen.shear_modulus_sd / chosen.shear_modulus
+    ratio = belief.softener_ratio
+    return {
+        "material": chosen.material,
+        "mixture": f"softener ratio {ratio:g}" if ratio is not None else chosen.material,
+        "derived": False,
+        "provenance": _provenance(results, chosen, filled, experiment),
+        "uncertainty": {
+            "shear_modulus_low": -round(1.96 * relative, 5),
+            "shear_modulus_high": round(1.96 * relative, 5),
+            "text": _certainty(chosen),
+        },
+        "density": float(belief.density if belief.density is not None else 1000.0),
+        "stiffness": float(max(0.0, _STIFFEST - _PER_RATIO * ratio)) if ratio is not None else 0.0,
+        "laws": parameters,
+    }
+
+
+def write_card(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> Path:
+    """Write MATERIAL.yaml into the folder, in one piece."""
+    content = card(results, experiment)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{content['material']}.yaml"
+    part = path.with_suffix(".yaml.part")
+    text = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
+    part.write_text(
+        "# Moduli in Pa, density in kg/m3. Calibrated: see provenance.\n" + text, encoding="utf-8"
+    )
+    part.replace(path)
+    return path
+
+
+def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any]:
+    def rounded(x: float) -> float:
+        return float(f"{x:.6g}")
+
+    return {
+        k: [rounded(x) for x in v] if isinstance(v, tuple) else rounded(float(v))
+        for k, v in parameters.items()
+    }
+
+
+def _provenance(
+    results: Sequence[Calibration], chosen: Calibration, filled: Sequence[str], experiment: Experiment
+) -> str:
+    lines = [
+        f"Calibrated on experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.fit:"
+        f" best law {chosen.label}, shear modulus {chosen.shear_modulus:.5g} Pa, reduced chi-square"
+        f" {chosen.reduced_chi2:.2f} over {chosen.points} points."
+    ]
+    worse = [f"{r.label}: {r.status}{' (' + r.message + ')' if r.message else ''}" for r in results]
+    lines.append("Fits: " + "; ".join(worse) + ".")
+    if filled:
+        lines.append(f"Not fitted, moduli taken from {chosen.label}: {', '.join(filled)}.")
+    if experiment.materials[chosen.material].density is None:
+        lines.append("Density not stated by the lab: 1000 kg/m3 assumed.")
+    return "\n".join(lines)
+
+
+def _certainty(chosen: Calibration) -> str:
+    unseen = [e.name for e in chosen.estimates if e.seen != "identified"]
+    text = f"95 % interval of the shear modulus in {chosen.label}, nuisances and other constants free."
+    if not chosen.estimates:
+        return "No Gauss-Newton polish was made: the interval is not known."
+    if unseen:
+        text += f" Not settled by this data (prior, bound or weak): {', '.join(unseen)}."
+    return text

@@ -1,0 +1,65 @@
+"""What an experiment holds of one material, as objectives of a fit: any mix of beams and coupons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from calibration.coupons import CouponObjective
+from calibration.errors import InputError
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment
+from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
+from calibration.search import Objective
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Measurements:
+    """Objectives of one material; outlines is the one among them that photographs feed, if any."""
+
+    material: str
+    density: float | None
+    objectives: tuple[Objective, ...]
+    outlines: OutlineObjective | None
+    ignored: tuple[str, ...]
+
+
+def measurements(
+    experiment: Experiment,
+    material: str,
+    *,
+    workers: int | None = None,
+    fidelity: Fidelity = COARSE,
+    reference: Fidelity | None = REFERENCE,
+) -> Measurements:
+    """All that the static fit of a material can use. ignored: trials that it cannot, each with the reason.
+
+    InputError where nothing is left.
+    """
+    belief = experiment.materials[material]
+    mine = [t for t in experiment.trials if t.material == material]
+    beams = [t for t in mine if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)]
+    objectives: list[Objective] = []
+    outlines = None
+    if beams:
+        outlines = OutlineObjective(beams, belief, fidelity=fidelity, reference=reference, workers=workers)
+        objectives.append(outlines)
+    objectives += [CouponObjective(trial=t) for t in mine if isinstance(t, CouponTrial)]
+    if not objectives:
+        raise InputError(
+            f"{experiment.folder / 'experiment.yaml'}: material {material}: expected at least one traced"
+            " outline or coupon to fit (photographs: run calibration.reconstruct first)"
+        )
+    used = {t.id for t in beams} | {t.id for t in mine if isinstance(t, CouponTrial)}
+    ignored = tuple(f"{t.id}: {_why(t)}" for t in mine if t.id not in used)
+    return Measurements(
+        material=material,
+        density=belief.density,
+        objectives=tuple(objectives),
+        outlines=outlines,
+        ignored=ignored,
+    )
+
+
+def _why(trial: object) -> str:
+    if isinstance(trial, BeamTrial):
+        return "markers through time are fitted by calibration.motion" if trial.markers else "not traced yet"
+    return "a poke is not part of the static fit"
