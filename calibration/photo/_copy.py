@@ -1,0 +1,77 @@
+"""The experiment again, its photographs replaced by traced outlines, for `calibration.fit`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from calibration.errors import InputError
+from calibration.photo._files import write_whole
+
+_FILE_KEYS = frozenset({"outline", "markers", "record", "points", "mesh"})
+
+
+def write_copy(
+    folder: Path, out: Path, figures: dict[tuple[str, int], dict[str, Any]], names: dict[tuple[str, int], str]
+) -> int:
+    """experiment.yaml into `out`, and the files it names beside it; the number of captures left out.
+
+    figures, names: of each capture by trial id and number (from 0); a photograph without figures is left out,
+    and a beam that has nothing else with it. Raises InputError where nothing would be left.
+    """
+    raw = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))
+    dropped, trials = 0, []
+    for trial in raw["trials"]:
+        captures = trial.get("captures")
+        if captures is not None:
+            entries = [
+                _entry(capture, figures.get((trial["id"], k)), names[trial["id"], k])
+                for k, capture in enumerate(captures)
+            ]
+            dropped += entries.count(None)
+            trial["captures"] = [entry for entry in entries if entry is not None]
+            if not trial["captures"]:
+                del trial["captures"]
+                if "markers" not in trial:
+                    continue
+        trials.append(trial)
+    if not trials:
+        raise InputError(f"{folder}: no photograph can be used, nothing is left to write")
+    raw["trials"] = trials
+    if any("photo" in entry for entry in figures.values()):
+        origin = f"outlines traced from the photographs of {folder.name}"
+        raw["notes"] = f"{raw['notes']}; {origin}" if raw.get("notes") else origin
+    for name in sorted(_named(raw)):
+        source, target = folder / name, out / name
+        if not target.resolve().is_relative_to(out.resolve()):
+            raise InputError(f"{folder / 'experiment.yaml'}: {name} leads out of the folder")
+        if source.exists():
+            write_whole(target, source.read_bytes())
+    text = yaml.safe_dump(raw, sort_keys=False, allow_unicode=True)
+    write_whole(out / "experiment.yaml", text.encode())
+    return dropped
+
+
+def _entry(capture: dict[str, Any], figures: dict[str, Any] | None, name: str) -> dict[str, Any] | None:
+    entry = {key: value for key, value in capture.items() if key not in ("photo", "photo_checkerboard")}
+    if "outline" in capture:
+        return entry
+    if figures is None:
+        return None
+    entry["outline"] = f"outlines/{name}.csv"
+    entry["outline_sd_mm"] = round(figures["outline_sd_mm"], 5)
+    entry["outline_correlation_mm"] = round(figures["outline_correlation_mm"], 3)
+    entry["registration_sd"] = {key: round(value, 6) for key, value in figures["registration_sd"].items()}
+    return entry
+
+
+def _named(node: Any) -> set[str]:
+    """Files named anywhere in the experiment."""
+    if isinstance(node, dict):
+        own = {value for key, value in node.items() if key in _FILE_KEYS and isinstance(value, str)}
+        return own.union(*(_named(value) for value in node.values())) if node else own
+    if isinstance(node, list):
+        return set().union(*(_named(value) for value in node)) if node else set()
+    return set()

@@ -1,0 +1,61 @@
+"""Marks on photographs, for people: corners, contours, text. BGR pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+ORANGE, BLUE, GREEN, RED = (0, 140, 255), (255, 120, 0), (60, 180, 0), (40, 40, 230)
+_SHIFT = 4  # fixed-point bits of OpenCV's drawing
+
+
+def shrink(image: NDArray[np.uint8], factor: int) -> NDArray[np.uint8]:
+    """The picture at 1/factor of its size."""
+    if factor == 1:
+        return image
+    small = cv2.resize(image, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, dtype=np.uint8)
+
+
+def coloured(image: NDArray[np.uint8]) -> Picture:
+    """A grey picture, ready for coloured marks."""
+    return np.asarray(cv2.cvtColor(image, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
+
+
+def draw_line(
+    picture: Picture, points: Array, colour: tuple[int, int, int], *, closed: bool = False
+) -> Picture:
+    """A polyline (k, 2) [px], with a width that shows at the picture's size."""
+    width = max(1, round(max(picture.shape) / 500))
+    fixed = np.rint(np.asarray(points) * (1 << _SHIFT)).astype(np.int32).reshape(1, -1, 2)
+    cv2.polylines(picture, list(fixed), closed, colour, width, cv2.LINE_AA, _SHIFT)
+    return picture
+
+
+def draw_points(picture: Picture, points: Array, colour: tuple[int, int, int]) -> Picture:
+    """Rings about points (k, 2) [px]."""
+    radius = max(3, round(max(picture.shape) / 250))
+    for x, y in np.asarray(points).reshape(-1, 2):
+        cv2.circle(
+            picture, (round(float(x)), round(float(y))), radius, colour, max(1, radius // 3), cv2.LINE_AA
+        )
+    return picture
+
+
+def draw_corners(image: NDArray[np.uint8], corners: Array) -> Picture:
+    """A grey photograph with corners (k, 2) [px] ringed."""
+    return draw_points(coloured(image), corners, ORANGE)
+
+
+def draw_mask(image: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> Picture:
+    """A grey photograph with regions tinted, one colour each."""
+    picture = coloured(image)
+    for mask, colour in zip(masks, (ORANGE, BLUE, GREEN, RED) * len(masks), strict=False):
+        picture[mask] = (0.5 * picture[mask] + 0.5 * np.array(colour)).astype(np.uint8)
+    return picture

@@ -1,0 +1,77 @@
+"""Known beams: planar axes in mm and their exact outlines."""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Array = NDArray[np.float64]
+RADIUS = 10.0
+
+
+def hanging(length: float = 100.0, turn_deg: float = 28.0) -> Array:
+    """A cantilever's axis that turns down by `turn_deg`, (k, 2)."""
+    s = np.linspace(0.0, length, 4001)
+    angle = -np.radians(turn_deg) * (1.0 - (1.0 - s / length) ** 3)
+    return _integrate(s, angle)
+
+
+def bridge(length: float = 100.0, sag: float = 5.0) -> Array:
+    """An axis held at both ends, sagging in the middle."""
+    x = np.linspace(0.0, length, 4001)
+    return np.column_stack([x, -sag * (16.0 * (x / length) ** 2 * (1.0 - x / length) ** 2)])
+
+
+def edge(axis: Array, side: int, radius: float = RADIUS) -> Array:
+    """The exact outline: side +1 upper, -1 lower."""
+    tangent = np.gradient(axis, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    return axis + side * radius * np.column_stack([-tangent[:, 1], tangent[:, 0]])
+
+
+def normal_error(points: Array, truth: Array) -> Array:
+    """Distance of each point from a dense curve, signed across it."""
+    _, nearest = cKDTree(truth).query(points)
+    nearest = np.clip(nearest, 1, len(truth) - 2)
+    tangent = truth[nearest + 1] - truth[nearest - 1]
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    offset = points - truth[nearest]
+    return tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
+
+
+def _integrate(s: Array, angle: Array) -> Array:
+    step = np.diff(s)[:, None]
+    middle = 0.5 * (angle[1:] + angle[:-1])
+    move = step * np.column_stack([np.cos(middle), np.sin(middle)])
+    return np.vstack([[0.0, 0.0], np.cumsum(move, axis=0)])
+
+
+def true_body(axis: Array, radius: float = RADIUS, sides: int = 64) -> trimesh.Trimesh:
+    """The tube about an axis as a closed mesh [m]; its polygon has the circle's area."""
+    points = axis[:: max(1, len(axis) // 400)] if (len(axis) - 1) % 400 == 0 else axis
+    tangent = np.gradient(points, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    turn = 2 * np.pi * np.arange(sides) / sides
+    full = radius * np.sqrt(2 * np.pi / (sides * np.sin(2 * np.pi / sides)))
+    up, out = full * np.cos(turn), full * np.sin(turn)
+    x = points[:, :1] - tangent[:, 1:] * up
+    z = points[:, 1:] + tangent[:, :1] * up
+    y = np.broadcast_to(out, x.shape)
+    vertices = np.concatenate(
+        [np.stack([x, y, z], -1).reshape(-1, 3), np.insert(points[[0, -1]], 1, 0.0, axis=1)]
+    )
+    faces = []
+    k, n = len(points), sides
+    for i in range(k - 1):
+        a = i * n + np.arange(n)
+        b = i * n + (np.arange(n) + 1) % n
+        faces += [np.stack([a, a + n, b], -1), np.stack([b, a + n, b + n], -1)]
+    around, on = np.arange(n), (np.arange(n) + 1) % n
+    faces.append(np.stack([np.full(n, k * n), around, on], -1))
+    faces.append(np.stack([np.full(n, k * n + 1), (k - 1) * n + on, (k - 1) * n + around], -1))
+    body = trimesh.Trimesh(vertices * 1e-3, np.concatenate(faces), process=False)
+    if body.volume < 0:
+        body.invert()
+    return body

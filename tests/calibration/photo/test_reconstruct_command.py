@@ -1,0 +1,205 @@
+"""`python -m calibration.reconstruct` on an experiment of rendered photographs."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import cv2
+import numpy as np
+import photo_cases as cases
+import pytest
+import trimesh
+import yaml
+from photo_render import Lens, Setting, Tube, View, photograph
+from typer.testing import CliRunner, Result
+
+from calibration import reconstruct
+from calibration.experiment import BeamTrial, read
+
+AXIS = cases.hanging()
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("photographs") / "lab"
+    (folder / "photos").mkdir(parents=True)
+    lens = Lens(size=(800, 600), focal=1860.0, centre=(400.0, 298.0), k1=-0.2)
+    for name, view in (("first", View(yaw=12.0)), ("second", View(yaw=3.0, pitch=-12.0))):
+        setting = Setting(tubes=(Tube(axis=AXIS, radius=10.0),), blur=0.8)
+        cv2.imwrite(str(folder / "photos" / f"{name}.png"), photograph(setting, lens, view))
+    captures = [
+        {
+            "time_s": time,
+            "photo": f"photos/{name}.png",
+            "photo_checkerboard": {"squares": [9, 6], "square_mm": 8.0},
+        }
+        for name, time in (("first", 10.0), ("second", 100.0))
+    ]
+    captures[1]["registration_sd"] = {"shift_mm": 0.3, "roll_deg": 0.4, "scale": 0.0}
+    rows = []
+    for side, sign in (("upper", 1), ("lower", -1)):
+        rows += [f"{side},{x:.4f},{z:.4f}" for x, z in cases.edge(AXIS, sign)[20:-20:40]]
+    (folder / "traced.csv").write_text("side,x_mm,z_mm\n" + "\n".join(rows) + "\n")
+    captures.append(
+        {
+            "time_s": 1000.0,
+            "outline": "traced.csv",
+            "outline_sd_mm": 0.1,
+            "outline_correlation_mm": 5.0,
+            "registration_sd": {"shift_mm": 0.1, "roll_deg": 0.1, "scale": 0.001},
+        }
+    )
+    trial = {
+        "id": "hang",
+        "kind": "beam",
+        "material": "S",
+        "section": {"circle": {"radius_mm": 10.0, "radius_sd_mm": 0.05}},
+        "free_length_mm": 100.0,
+        "grip_length_mm": 20.0,
+        "supports": "clamped-free",
+        "gravity_m_s2": [0.0, 0.0, -9.81],
+        "captures": captures,
+    }
+    raw = {"format": 1, "name": "lab", "materials": {"S": {}}, "trials": [trial]}
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(raw))
+    return folder
+
+
+def command(*words: object) -> Result:
+    return CliRunner().invoke(reconstruct.app, [str(word) for word in words])
+
+
+@pytest.fixture(scope="module")
+def done(lab: Path) -> Path:
+    out = lab.parent / "out"
+    result = command(lab, "--out", out)
+    assert result.exit_code == 0, result.output
+    return out
+
+
+def files(out: Path) -> dict[str, tuple[int, bytes]]:
+    return {
+        str(path.relative_to(out)): (path.stat().st_mtime_ns, path.read_bytes())
+        for path in sorted(out.rglob("*"))
+        if path.is_file()
+    }
+
+
+def test_what_it_writes_is_an_experiment(done: Path) -> None:
+    experiment = read(done)
+    assert experiment.notes == "outlines traced from the photographs of lab"
+    (trial,) = experiment.trials
+    assert isinstance(trial, BeamTrial)
+    assert len(trial.captures) == 3
+    for capture in trial.captures:
+        assert capture.outline is not None
+        assert capture.photo is None
+        for side, line in ((1, capture.outline.upper), (-1, capture.outline.lower)):
+            off = cases.normal_error(line * 1e3, cases.edge(AXIS, side))
+            assert np.sqrt(np.mean(off**2)) < 0.1
+    first, second, traced = (capture.outline for capture in trial.captures)
+    assert first.sd < 0.05e-3 < traced.sd
+    assert second.registration.shift > 0.3e-3 > first.registration.shift
+    assert second.registration.roll > np.radians(0.4) > first.registration.roll
+
+
+def test_bodies_lines_and_pictures(done: Path) -> None:
+    for number in (1, 2, 3):
+        body = trimesh.load(done / "meshes" / f"hang-{number}.stl")
+        assert body.is_watertight
+        assert body.volume == pytest.approx(np.pi * 10.0**2 * 100.0, rel=0.01)
+        table = np.genfromtxt(done / "centrelines" / f"hang-{number}.csv", delimiter=",", names=True)
+        line = np.column_stack([table["x_mm"], table["z_mm"]])
+        assert np.abs(cases.normal_error(line, AXIS)).max() < 0.25
+    for number in (1, 2):
+        assert cv2.imread(str(done / "pictures" / f"hang-{number}.png")).shape[1] > 1500
+
+
+def test_second_run_keeps_all(lab: Path, done: Path) -> None:
+    before = files(done)
+    result = command(lab, "--out", done)
+    assert result.exit_code == 0
+    assert result.output.count("kept") == 3
+    after = files(done)
+    assert {k: v[1] for k, v in after.items()} == {k: v[1] for k, v in before.items()}
+    traced = [
+        name for name in before if name.split("/")[0] in ("outlines", "meshes", "pictures", "centrelines")
+    ]
+    assert [after[name] for name in traced] == [before[name] for name in traced]
+
+
+def test_lost_file_is_made_again(lab: Path, done: Path) -> None:
+    before = files(done)
+    (done / "meshes" / "hang-3.stl").unlink()
+    result = command(lab, "--out", done)
+    assert result.output.count("kept") == 2
+    assert {k: v[1] for k, v in files(done).items()} == {k: v[1] for k, v in before.items()}
+
+
+def test_bad_photograph(lab: Path, tmp_path: Path) -> None:
+    folder, out = tmp_path / "lab", tmp_path / "out"
+    shutil.copytree(lab, folder)
+    bad = np.full((600, 800), 180, np.uint8)
+    cv2.imwrite(str(folder / "photos" / "first.png"), bad)
+    result = command(folder, "--out", out)
+    assert result.exit_code == 2
+    assert "hang-1 (first.png): no board of 9 x 6 squares was found" in result.output
+    assert "1 of 3 captures cannot be used" in result.output
+    assert not (out / "experiment.yaml").exists()
+    assert (out / "problems" / "hang-1.png").exists()
+    result = command(folder, "--out", out, "--skip-bad")
+    assert result.exit_code == 0
+    assert result.output.count("kept") == 2
+    (trial,) = read(out).trials
+    assert [capture.time for capture in trial.captures] == [100.0, 1000.0]
+
+
+def test_stopped_in_between(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "out"
+    run, names = reconstruct.run, []
+
+    def stop_at_second(target: Path, job: reconstruct.Job, *rest: object) -> object:
+        names.append(job.name)
+        if len(names) == 2:
+            raise KeyboardInterrupt
+        return run(target, job, *rest)
+
+    monkeypatch.setattr(reconstruct, "run", stop_at_second)
+    result = command(lab, "--out", out)
+    assert result.exit_code == 130
+    assert not (out / "experiment.yaml").exists()
+    monkeypatch.undo()
+    result = command(lab, "--out", out)
+    assert result.exit_code == 0
+    assert result.output.count("kept") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("board_corner: [1, 2]", "photographs.yaml: board_corner: Extra inputs"),
+        ("square_sd: .nan", "photographs.yaml: square_sd"),
+        ("clamp_front_mm: 3", "photographs.yaml: clamp_front_mm"),
+        ("- 1", "expected keys and values"),
+        ("calibration_photos: [none.png]", "none.png: no such photograph"),
+    ],
+)
+def test_bad_settings(lab: Path, tmp_path: Path, text: str, sentence: str) -> None:
+    folder, out = tmp_path / "lab", tmp_path / "out"
+    shutil.copytree(lab, folder)
+    (folder / "photographs.yaml").write_text(text)
+    result = command(folder, "--out", out)
+    assert result.exit_code == 2
+    assert sentence in result.output
+    assert not out.exists()
+
+
+def test_targets_it_refuses(lab: Path, tmp_path: Path) -> None:
+    assert "other than the experiment's own" in command(lab, "--out", lab).output
+    (tmp_path / "file").write_text("")
+    assert "it is a file" in command(lab, "--out", tmp_path / "file").output
+    shutil.copytree(lab, tmp_path / "other")
+    result = command(lab, "--out", tmp_path / "other")
+    assert result.exit_code == 2
+    assert "did not write" in result.output
