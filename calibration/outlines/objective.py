@@ -127,16 +127,21 @@ class OutlineObjective:
             return True
         scenes = [self._beam(t, material) for t in self.trials]
         scenes += [scene for _, _, group in varied for scene in group(material)]
-        if self.reference is not None:
-            scenes += [self._beam(t, material, self.reference) for t in self.trials]
         results = simulate(scenes, workers=self.workers)
         if not all(r.ok for r in results):
             return False
+        fine: list[Result] = []
+        if self.reference is not None:
+            # last, since a beam without equilibrium costs most where it is finest
+            beams = [self._beam(t, material, self.reference) for t in self.trials]
+            fine = simulate(beams, workers=self.workers)
+            if not all(r.ok for r in fine):
+                return False
         base, rest = results[: len(self.trials)], results[len(self.trials) :]
         columns, names = self._registrations(base)
         start = self._whitened(base)
-        if self.reference is not None:
-            self.correction = self._whitened(results[-len(self.trials) :]) - start
+        if fine:
+            self.correction = self._whitened(fine) - start
             for i, t in enumerate(self.trials):
                 columns.append(np.where(self._of_trial(i), self.correction, 0.0))
                 names.append(f"mesh of {t.id}")

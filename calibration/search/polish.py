@@ -31,13 +31,13 @@ def polish(
     start: Array,
     *,
     max_steps: int = 12,
-    tolerance: float = 0.1,
+    tolerance: float = 0.02,
     difference: float = 0.1,
 ) -> Polished:
     """Minimise the problem's cost from `start`; its nuisances are taken there, and again at the end point.
 
     tolerance [chi-square]: stop when the quadratic model promises less; where no step finds what it promises,
-    up to 5 times as much still counts as converged (half a chi-square is 0.7 sd of one parameter).
+    up to 20 times as much still counts as converged (0.4 of chi-square is 0.6 sd of one parameter).
     difference: of the central differences, in each coordinate's spread; smaller ones drown in the solver's
     tolerance. A coordinate at its bound stays there while the cost falls beyond it. ValueError where the
     start has no answer.
@@ -65,7 +65,7 @@ def polish(
                 u, fresh = moves[best], False
                 continue
             message = f"no step lowers chi-square, though {promise:.2g} was promised"
-        done = promise < 5.0 * tolerance
+        done = promise < 20.0 * tolerance
         if fresh or not done or not problem.linearise(u):
             return Polished(
                 u=u,

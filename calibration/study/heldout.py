@@ -27,7 +27,7 @@ def held_out(problem: Problem, outlines: OutlineObjective, u: Array) -> tuple[tu
         objectives = (*others, outlines.subset(rest)) if rest else others
         part = Problem(parametrisation=problem.parametrisation, objectives=objectives)
         try:
-            end = polish(part, u)
+            end = polish(part, u, tolerance=0.002)
         except ValueError as error:
             notes.append(f"{trial.id}: {error}")
             continue

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from calibration.experiment import Experiment, read
 from calibration.parameters import parametrisation
+from calibration.search import Generation
 from calibration.study._store import FitStore
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
@@ -97,8 +99,10 @@ def _run(
 ) -> None:
     if min(workers, len(waiting)) == 1:
         for task in waiting:
-            ended[task.name] = fit_task(task, workers=workers)
-            told(_progress(waiting, ended, total))
+            show = partial(_show, waiting, ended, total, told)
+            show()
+            ended[task.name] = fit_task(task, workers=workers, watch=show)
+            show()
         return
     # each fit alone on one core: BLAS threads that spin while they wait cost a factor
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -122,16 +126,28 @@ def _run(
     pool.shutdown()
 
 
-def fit_task(task: Task, *, workers: int | None) -> Calibration:
-    """One fit, going on from its history, written down when it ends."""
+def _show(
+    waiting: list[Task], ended: dict[str, Calibration], total: int, told: Callable[[Progress], None]
+) -> None:
+    told(_progress(waiting, ended, total))
+
+
+def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lambda: None) -> Calibration:
+    """One fit, going on from its history, written down when it ends; watch is called each generation."""
     store = task.store()
     experiment = read(task.experiment)
+
+    def told(generation: Generation) -> None:
+        if not generation.replayed:
+            store.append(generation)
+        watch()
+
     result = calibrate(
         parametrisation(task.law, terms=task.terms),
         measurements(experiment, task.material, workers=workers),
         options=task.options,
         history=store.history(),
-        told=lambda g: None if g.replayed else store.append(g),
+        told=told,
     )
     store.finish(result)
     return result

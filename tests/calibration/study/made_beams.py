@@ -1,0 +1,102 @@
+"""Beams photographed by this file: simulated on its own mesh, traced, disturbed, written as a lab would.
+
+It shares no code with calibration: the edges are splines through the mesh's corner nodes, the noise is drawn
+from the format's own words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from _folders import beam_entry, capture_entry, outline_columns, write_experiment
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+import tisim
+
+Array = NDArray[np.float64]
+
+
+def made(
+    folder: Path,
+    material: tisim.Material,
+    *,
+    lengths_mm: Sequence[float] = (50.0,),
+    bridges_mm: Sequence[float] = (),
+    photographs: int = 1,
+    seed: int = 0,
+    noise: float = 1.0,
+    stated_density: float | None = None,
+    layer: float = 0.0035,
+    rings: int = 3,
+    name: str = "S0",
+) -> Path:
+    """An experiment folder with cantilevers and bridges of one material; noise scales all errors."""
+    rng = np.random.default_rng(seed)
+    trials, tables = [], {}
+    for length, bridge in [(x, False) for x in lengths_mm] + [(x, True) for x in bridges_mm]:
+        supports = "clamped-clamped" if bridge else "clamped-free"
+        beam = tisim.Beam(
+            material=material,
+            length=length / 1e3,
+            supports=supports,  # type: ignore[arg-type]
+            layer=layer,
+            rings=rings,
+        )
+        (result,) = tisim.simulate([beam], workers=1)
+        assert result.ok
+        edges = [_edge(result, side, rng) for side in (1.0, -1.0)]
+        identifier = f"{name}-{'bridge' if bridge else 'cantilever'}-{length:.0f}"
+        captures = []
+        for k in range(photographs):
+            file = f"beams/{identifier}-{k}.csv"
+            upper, lower = _photograph(edges, rng, noise)
+            tables[file] = outline_columns(upper, lower)
+            captures.append(capture_entry(10.0 + k, file))
+        trials.append(
+            beam_entry(
+                identifier,
+                material=name,
+                specimen=name,
+                free_length_mm=length,
+                supports=supports,
+                captures=captures,
+            )
+        )
+    density = material.density if stated_density is None else stated_density
+    materials = {name: {"softener_ratio": 0.0, "density_kg_m3": float(density), "density_sd_kg_m3": 5.0}}
+    return write_experiment(folder, trials, tables=tables, materials=materials)
+
+
+def _edge(result: tisim.Result, side: float, rng: np.random.Generator) -> Array:
+    """Points along one edge [mm], every 1.3 mm or so, from 1 mm off the clamp."""
+    rest, now = result.mesh.nodes, result.positions[-1]
+    on = (np.abs(rest[:, 1]) < 1e-12) & (np.abs(rest[:, 2] - side * rest[:, 2].max()) < 1e-9)
+    on &= (rest[:, 0] >= -1e-12) & (rest[:, 0] <= result.scene.length + 1e-12)  # type: ignore[union-attr]
+    order = np.argsort(rest[on, 0])
+    x, line = rest[on, 0][order], now[on][order][:, [0, 2]]
+    corners = slice(None, None, 2)  # middle nodes of the 10-node elements lie between
+    curve = CubicSpline(x[corners], line[corners])
+    at = np.arange(1e-3, x[-1] - 0.5e-3, 1.3e-3)
+    return 1e3 * curve(at + rng.uniform(-3e-4, 3e-4, len(at)))
+
+
+def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) -> tuple[Array, Array]:
+    shift = 0.1 * noise * rng.standard_normal(2)
+    roll = np.radians(0.15) * noise * rng.standard_normal()
+    scale = 1.0 + 0.003 * noise * rng.standard_normal()
+    turn = np.array([[np.cos(roll), -np.sin(roll)], [np.sin(roll), np.cos(roll)]])
+    found = []
+    for edge in edges:
+        step = np.gradient(edge, axis=0)
+        along = step / np.linalg.norm(step, axis=1)[:, None]
+        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+        C = np.exp(-((s[:, None] - s[None]) ** 2) / (2.0 * 5.0**2))
+        values, vectors = np.linalg.eigh(C)
+        error = 0.1 * noise * vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.standard_normal(len(s)))
+        error += 0.002 * noise * rng.standard_normal(len(s))  # a tracer's last digit
+        traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
+        found.append(scale * traced @ turn.T + shift)
+    return found[0], found[1]
