@@ -12,7 +12,7 @@ from typing import Any
 from tisim import laws
 from tisim.mesh import Mesh
 from tisim.result import Result
-from tisim.scene import Beam, Coupon, Poke, Scene
+from tisim.scene import Beam, Coupon, Poke, Press, Scene
 
 # Beams of a run start from one another: the cut into runs is part of the answer's bytes, so it must not
 # depend on the number of workers. Eight keep many cores busy and pay for the layout and the cold start.
@@ -20,7 +20,7 @@ RUN = 8
 
 # Rough core-seconds of a scene, to decide where to solve it and to begin with the longest.
 _SECONDS_PER_BEAM_NODE = 5e-5
-_SECONDS = {"coupon": 0.05, "poke": 10.0, "dynamic": 20.0}
+_SECONDS = {"coupon": 0.05, "poke": 10.0, "press": 2.0, "dynamic": 20.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +59,7 @@ def make_chunks(scenes: Sequence[Scene]) -> list[Chunk]:
 
 
 def _mesh_key(index: int, scene: Scene, digests: dict[int, str]) -> tuple[Any, ...]:
-    mesh = None if isinstance(scene, Coupon) else scene.mesh
+    mesh = None if isinstance(scene, Coupon | Press) else scene.mesh
     if mesh is not None:
         digest = digests.setdefault(id(mesh), "") or _digest(mesh)
         digests[id(mesh)] = digest
@@ -70,6 +70,8 @@ def _mesh_key(index: int, scene: Scene, digests: dict[int, str]) -> tuple[Any, .
         return ("beam", *shape, planar)
     if isinstance(scene, Coupon):
         return ("coupon",)
+    if isinstance(scene, Press):
+        return ("press", scene.radius, scene.height, scene.element, scene.refinement, scene.platens)
     return ("alone", index)  # a poke's mesh is made for its site
 
 
@@ -87,6 +89,8 @@ def _neighbourhood(scene: Scene) -> tuple[Any, ...]:
 def _seconds(scene: Scene) -> float:
     if isinstance(scene, Coupon):
         return _SECONDS["coupon"]
+    if isinstance(scene, Press):
+        return _SECONDS["press"] * scene.refinement**4
     if scene.solver.method != "static":
         return _SECONDS["dynamic"]
     if isinstance(scene, Poke):
@@ -131,10 +135,10 @@ def _known_mesh(key: Any, mesh: Mesh) -> Mesh:
 def solve_chunk(chunk: Chunk) -> Iterator[tuple[int, Result]]:
     """(index, result) of each scene as it is solved."""
     scenes = chunk.scenes
-    own = None if isinstance(scenes[0], Coupon) else scenes[0].mesh
+    own = None if isinstance(scenes[0], Coupon | Press) else scenes[0].mesh
     if own is not None:
         known = _known_mesh(chunk.mesh_key, own)
-        scenes = tuple(replace(scene, mesh=known) for scene in scenes if not isinstance(scene, Coupon))
+        scenes = tuple(replace(s, mesh=known) for s in scenes if not isinstance(s, Coupon | Press))
     if all(_is_run(scene) for scene in scenes):
         from tisim._beam import solve_beams
 
@@ -158,6 +162,10 @@ def _solver_of(scene: Scene) -> Callable[[Any], Result]:
         from tisim._coupon import solve_coupon
 
         return solve_coupon
+    if isinstance(scene, Press):
+        from tisim._press import solve_press
+
+        return solve_press
     if scene.solver.method != "static":
         from tisim._dynamics import solve_dynamic
 

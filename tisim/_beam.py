@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Body, Layout, gravity_load
+from tisim._mass import facet_mass
 from tisim._newton import Outcome, newton
 from tisim._quadrature import facet_load
 from tisim._rod_theory import planar_rod
@@ -195,12 +196,16 @@ class BeamSystem:
 def beam_system(scene: Beam, layout: Layout) -> BeamSystem:
     """Material and loads of a beam on its layout."""
     load = gravity_load(layout, scene.material.density, scene.gravity)
-    if any(scene.tip_force):
+    mass = np.zeros(layout.mesh.n_nodes)
+    if any(scene.tip_force) or scene.tip_mass:
         if "tip" not in layout.mesh.facet_sets:
-            raise ValueError("beam: a tip force needs a free end (mesh facet set 'tip')")
-        share = facet_load(layout.mesh, layout.mesh.facet_sets["tip"])
+            raise ValueError("beam: a tip force needs a free end (mesh facet set 'tip'), as a tip mass does")
+        facets = layout.mesh.facet_sets["tip"]
+        share = facet_load(layout.mesh, facets)
         load += share[:, None] / share.sum() * np.asarray(scene.tip_force) / layout.multiplicity
-    return BeamSystem(Body(layout, scene.material, dead_load=load), tolerance=scene.solver.tolerance)
+        mass += facet_mass(layout.mesh, facets, scene.tip_mass / layout.multiplicity)
+    body = Body(layout, scene.material, dead_load=load, added_mass=mass)
+    return BeamSystem(body, tolerance=scene.solver.tolerance)
 
 
 def equilibrium(

@@ -41,7 +41,7 @@ def moving_mass(body: Body) -> Array:
     """Lumped mass of each component, shape (n, 3) [kg]; 0 where it may not move."""
     pattern = body.layout.pattern
     mass = np.zeros((body.layout.mesh.n_nodes, 3))
-    lumped = lumped_mass(body.layout.mesh, body.material.density)
+    lumped = lumped_mass(body.layout.mesh, body.material.density) + body.added_mass
     mass[pattern.free] = lumped[pattern.free, None] * ~body.layout.held
     return mass
 

@@ -69,7 +69,7 @@ class ImplicitSystem:
 
     def __init__(self, body: Body, solver: Solver, scale: float) -> None:
         self.body, self.solver, self.scale = body, solver, scale
-        self.mass = consistent_mass(body.layout.mesh, body.material.density)
+        self.mass = consistent_mass(body.layout.mesh, body.material.density, body.added_mass)
         self._mass_blocks = on_pattern(self.mass, body.layout.pattern)[:, None, None] * np.eye(3)
         self.newton_iterations = 0
         self.factorisations = 0

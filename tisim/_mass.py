@@ -8,19 +8,23 @@ from scipy import sparse
 from scipy.special import roots_jacobi
 
 from tisim._pattern import Pattern
-from tisim._quadrature import shape
+from tisim._quadrature import facet_areas, shape
 from tisim.mesh import Mesh
 
 Array = NDArray[np.float64]
 
 
-def consistent_mass(mesh: Mesh, density: float) -> sparse.csr_matrix:
-    """rho integral(N_a N_b) over the mesh, shape (n, n), the same for x, y and z [kg]."""
+def consistent_mass(mesh: Mesh, density: float, added: Array | None = None) -> sparse.csr_matrix:
+    """rho integral(N_a N_b) over the mesh, shape (n, n), the same for x, y and z [kg].
+
+    added (n,): point masses besides [kg].
+    """
     local = _element_masses(mesh, density)
     width = mesh.elements.shape[1]
     rows = np.repeat(mesh.elements, width, axis=1).ravel()
     columns = np.tile(mesh.elements, (1, width)).ravel()
-    return sparse.csr_matrix((local.ravel(), (rows, columns)), shape=(mesh.n_nodes, mesh.n_nodes))
+    mass = sparse.csr_matrix((local.ravel(), (rows, columns)), shape=(mesh.n_nodes, mesh.n_nodes))
+    return mass if added is None else sparse.csr_matrix(mass + sparse.diags_array(added))
 
 
 def lumped_mass(mesh: Mesh, density: float) -> Array:
@@ -38,6 +42,17 @@ def lumped_mass(mesh: Mesh, density: float) -> Array:
     mass = np.zeros(mesh.n_nodes)
     np.add.at(mass, mesh.elements.ravel(), share.ravel())
     return mass
+
+
+def facet_mass(mesh: Mesh, facets: NDArray[np.int32], mass: float) -> Array:
+    """A mass spread evenly over facets, lumped, shape (n,) [kg]; sums to `mass`.
+
+    As in `lumped_mass`, by the consistent diagonal: a uniform load's shares are negative at some corners.
+    """
+    n, area = facet_areas(mesh, facets)
+    share = np.zeros(mesh.n_nodes)
+    np.add.at(share, facets.ravel(), (area @ n**2).ravel())
+    return share * (mass / share.sum())
 
 
 def on_pattern(mass: sparse.csr_matrix, pattern: Pattern) -> Array:

@@ -19,6 +19,7 @@ from tisim.scene import (
     CylinderInclusion,
     Material,
     Poke,
+    Press,
     Rectangle,
     Rod,
     Scene,
@@ -48,7 +49,7 @@ def check_scene(index: int, scene: Scene) -> None:
             except _FieldError as bad:
                 raise ValueError(f"scene {index}: {kind.__name__}.{bad}") from None
             return
-    raise ValueError(f"scene {index}: expected a Beam, Poke or Coupon, got {type(scene).__name__}")
+    raise ValueError(f"scene {index}: expected a Beam, Poke, Coupon or Press, got {type(scene).__name__}")
 
 
 def _number(field: str, value: object, expected: str, good: Callable[[float], bool]) -> None:
@@ -145,6 +146,7 @@ def _beam(scene: Beam) -> None:
     _one_of("supports", scene.supports, ("clamped-free", "clamped-clamped"))
     _vector("gravity", scene.gravity)
     _vector("tip_force", scene.tip_force)
+    _not_negative("tip_mass", scene.tip_mass, "a mass of 0 kg or more")
     _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))
     _length("layer", scene.layer)
     _whole("rings", scene.rings)
@@ -152,7 +154,9 @@ def _beam(scene: Beam) -> None:
     if pulled and scene.supports == "clamped-clamped":
         raise _FieldError("tip_force", "no force on a beam that is clamped at both ends", scene.tip_force)
     held = ("clamp",) if scene.supports == "clamped-free" else ("clamp", "far_clamp")
-    _mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled else ())
+    if scene.tip_mass and scene.supports == "clamped-clamped":
+        raise _FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
+    _mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
 
 
 def _poke(scene: Poke) -> None:
@@ -219,4 +223,22 @@ def _coupon(scene: Coupon) -> None:
         raise _FieldError("solver.method", "static, the only one offered for coupons", scene.solver.method)
 
 
-_CHECKS: dict[type, Callable[[Any], None]] = {Beam: _beam, Poke: _poke, Coupon: _coupon}
+def _press(scene: Press) -> None:
+    _length("radius", scene.radius)
+    _length("height", scene.height)
+    _one_of("platens", scene.platens, ("bonded", "free"))
+    _one_of("side", scene.side, ("stick", "stop"))
+    _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))
+    _number("refinement", scene.refinement, "a number between 0.4 and 8", lambda v: 0.4 <= v <= 8.0)
+    if not isinstance(scene.stretches, tuple | list) or not len(scene.stretches):
+        raise _FieldError("stretches", "at least one stretch", scene.stretches)
+    for value in scene.stretches:
+        _positive("stretches", value, "stretches above 0")
+    steps = np.diff([1.0, *scene.stretches])
+    if not ((steps < 0.0).all() or (steps > 0.0).all()):
+        raise _FieldError("stretches", "stretches all falling from 1, or all rising from 1", scene.stretches)
+    if scene.solver.method != "static":
+        raise _FieldError("solver.method", "static, the only one offered for presses", scene.solver.method)
+
+
+_CHECKS: dict[type, Callable[[Any], None]] = {Beam: _beam, Poke: _poke, Coupon: _coupon, Press: _press}

@@ -14,7 +14,7 @@ from tisim._rod_surface import rod_surface
 from tisim.export import frame_index
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.result import Result
-from tisim.scene import Beam, Poke
+from tisim.scene import Beam, Poke, Press
 
 Array = NDArray[np.float64]
 
@@ -116,6 +116,9 @@ def describe(result: Result, frame: int = -1) -> str:
         force = float(np.linalg.norm(result.rod_force[frame]))
         depth = "" if dynamic else f" to {load * 1e3:.1f} mm"
         name = f"Poke{depth} at {angle:.0f}°, {force:.2f} N"
+    elif isinstance(scene, Press):
+        pressed = f"{result.nominal_stress[frame] * 1e-3:.3g} kPa"
+        name = f"Cylinder between {scene.platens} platens, stretch {load:.3g}, {pressed}"
     else:
         name = f"Coupon, {scene.mode}, stretch {load:.3g}, {result.nominal_stress[frame] * 1e-3:.3g} kPa"
     return f"{name}; {what}" + (f"; t = {load:.3f} s" if dynamic else "")

@@ -1,4 +1,4 @@
-"""What can be simulated: beams, pokes and coupons of one material. SI units throughout."""
+"""What can be simulated: beams, pokes, coupons and pressed cylinders of one material. SI units throughout."""
 
 from __future__ import annotations
 
@@ -71,6 +71,8 @@ class Beam:
 
     length: free length [m]; grip_length: part held in each grip [m], all of its nodes fixed.
     gravity [m/s2], tip_force: dead load on the free end face [N].
+    tip_mass: fixed to the free end face, spread evenly over it [kg]: inertia of the dynamic methods only
+        (mass damping acts on it too); its weight is to be given as a tip_force.
     element: "default" is the mixed 10-node tetrahedron; "tet4" the paper's.
     mesh: an own mesh with node sets "clamp" (and "far_clamp"), instead of the structured one;
         facet set "tip" where a tip force acts.
@@ -84,6 +86,7 @@ class Beam:
     grip_length: float = 0.020
     gravity: Vector = (0.0, 0.0, -9.81)
     tip_force: Vector = (0.0, 0.0, 0.0)
+    tip_mass: float = 0.0
     element: ElementChoice = "default"
     mesh: Mesh | None = None
     layer: float = 0.007
@@ -173,7 +176,7 @@ class Poke:
     mesh: Mesh | None = None
     refinement: float = 1.0
     gravity: Vector = (0.0, 0.0, 0.0)
-    solver: Solver = field(default_factory=lambda: Solver(tolerance=5e-4, max_iterations=20))
+    solver: Solver = field(default_factory=lambda: Solver(tolerance=5e-4, max_iterations=40))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,4 +192,30 @@ class Coupon:
     solver: Solver = field(default_factory=Solver)
 
 
-Scene = Beam | Poke | Coupon
+@dataclass(frozen=True, kw_only=True)
+class Press:
+    """An upright cylinder between two rigid platens.
+
+    radius, height: of the rest shape [m].
+    platens: "bonded" (the end faces stick to them all over: glued, or rough) or "free" (they slide without
+        friction; the cylinder stays one, down to a stretch of 0.44 or so, where its surface gets unstable).
+        Coulomb friction, between the two, is not offered.
+    stretches: height over rest height, all falling from 1 or all rising from 1, each solved in turn.
+    side: what happens where a bonded cylinder's side folds onto a platen: "stick" (it stays where it comes
+        down, and carries) or "stop" (the run ends there, with status PENETRATION).
+    element: "default" is the mixed 10-node tetrahedron.
+    refinement: elements get smaller by this factor (1 = default).
+    """
+
+    material: Material
+    radius: float
+    height: float
+    platens: Literal["bonded", "free"] = "bonded"
+    stretches: tuple[float, ...] = (0.9, 0.8, 0.7)
+    side: Literal["stick", "stop"] = "stick"
+    element: ElementChoice = "default"
+    refinement: float = 1.0
+    solver: Solver = field(default_factory=Solver)
+
+
+Scene = Beam | Poke | Coupon | Press

@@ -19,7 +19,7 @@ from tisim._batch import Chunk, make_chunks, solve_chunk
 from tisim._validate import check_scene
 from tisim.mesh import Mesh
 from tisim.result import Result
-from tisim.scene import Coupon, Scene
+from tisim.scene import Coupon, Press, Scene
 
 Progress = Callable[[int, int], None]
 
@@ -72,7 +72,7 @@ def simulate(
 
 def _same_mesh(scene: Scene, mesh: Mesh) -> Mesh:
     """The scene's own mesh, where `mesh` is a copy of it that came back from another process."""
-    own = None if isinstance(scene, Coupon) else scene.mesh
+    own = None if isinstance(scene, Coupon | Press) else scene.mesh
     return mesh if own is None or not np.array_equal(own.nodes, mesh.nodes) else own
 
 
