@@ -1,7 +1,7 @@
 """What a poke costs, where the time goes, and how good its force is; prints a table.
 
-    python benchmarks/pokes.py                       # to 10 mm at 0 and 45 degrees, 5,300 nodes: 1 to 2 min
-    python benchmarks/pokes.py --fine                # refinement 1.5, 16,000 nodes, as well
+    python benchmarks/pokes.py                       # to 10 mm at 0 and 45 degrees, 3,500 nodes: 1 to 2 min
+    python benchmarks/pokes.py --fine                # refinement 1.5, 11,300 nodes, as well
     python benchmarks/pokes.py --deep --repeats 1    # to 20 mm as well
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
@@ -43,7 +43,7 @@ PARTS = {
     "factor": ("_pardiso.py", "factorise"),
     "solves": ("_pardiso.py", "solve"),
     "Krylov": ("_krylov.py", "_gmres"),
-    "search": ("_newton.py", "_line_search"),
+    "search": ("_poke_system.py", "_forces_at"),
 }
 
 

@@ -35,6 +35,12 @@ def deformation_gradient(x: ti.template(), conn: ti.template(), grad: ti.templat
     return F
 
 
+@ti.func
+def takes_part(grad: ti.template(), e, q, a):
+    """Whether node a moves point q."""
+    return grad[e, q, a, 0] != 0.0 or grad[e, q, a, 1] != 0.0 or grad[e, q, a, 2] != 0.0
+
+
 @cache
 def force_functions(law_name: str) -> tuple[Kernel, Kernel]:
     """Taichi functions of a law for use inside kernels: (mean_theta, add_forces)."""
@@ -98,8 +104,11 @@ def force_functions(law_name: str) -> tuple[Kernel, Kernel]:
 
 
 @cache
-def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
-    """(energy, forces, stiffness, pressures) kernels of a law, compiled once for any mesh and values."""
+def element_kernels(law_name: str, *, sparse: bool = False) -> tuple[Kernel, Kernel, Kernel, Kernel]:
+    """(energy, forces, stiffness, pressures) kernels of a law, compiled once for any mesh and values.
+
+    sparse: points that some of the element's nodes do not move (tetrahedra in a hexahedron) skip these.
+    """
     ensure_runtime()
     theta, psi_only, _, tangent = make_response(laws.get(law_name))
     mean_theta, add_forces = force_functions(law_name)
@@ -191,6 +200,9 @@ def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
                                         s += T[i, k] * grad[e, q, a, k]
                                     ke[a, 9 * na + i] = ke[a, 9 * na + i] + w * s
                         for b in range(na):
+                            if ti.static(sparse):  # noqa: SIM102 - compiled away where it is false
+                                if not takes_part(grad, e, q, b):
+                                    continue
                             g = ti.Vector([grad[e, q, b, 0], grad[e, q, b, 1], grad[e, q, b, 2]])
                             n = conn[e, b]
                             for i in ti.static(range(3)):
@@ -202,7 +214,10 @@ def element_kernels(law_name: str) -> tuple[Kernel, Kernel, Kernel, Kernel]:
                                         A[r, 3 * j] * g[0] + A[r, 3 * j + 1] * g[1] + A[r, 3 * j + 2] * g[2]
                                     )
                             for a in range(b + 1):
-                                if slot[e, a, b] >= 0:
+                                takes = slot[e, a, b] >= 0
+                                if ti.static(sparse):
+                                    takes = takes and takes_part(grad, e, q, a)
+                                if takes:
                                     for i in ti.static(range(3)):
                                         for j in ti.static(range(3)):
                                             ke[a, 9 * b + 3 * i + j] = (

@@ -20,7 +20,7 @@ from tisim._pattern import Pattern
 from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
 
 Array = NDArray[np.float64]
-SMALLEST_SHIFT = 1e-3
+SMALLEST_SHIFT, LARGEST_SHIFT = 1e-3, 0.5
 
 
 @cache
@@ -60,7 +60,9 @@ def _multiply_kernel() -> Kernel:
 class FactorGMRES:
     """Solves with blocks of one pattern; renews its factor once a solve takes over `patience` iterations.
 
-    shift: what stands added to the diagonal in units of its mean, 0 while the matrix is positive.
+    shift: what the factor has on the diagonal besides, in units of its mean: 0 while the matrix is positive
+        and nobody asked for more (`stiffen`, `relax`, `reset`). As it fades, solves are with less than that,
+        and the factor is kept while it serves.
     """
 
     def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 30) -> None:
@@ -68,10 +70,28 @@ class FactorGMRES:
         self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
         self._patience, self._limit = patience, limit
         self._stale = True
-        self._added = 0.0
+        self._added = self._scale = 0.0
+        self._wanted = 0.0
         self.shift = 0.0
         self.factorisations = 0
         self.iterations = 0
+
+    @property
+    def can_stiffen(self) -> bool:
+        return self._wanted < LARGEST_SHIFT
+
+    def stiffen(self) -> None:
+        """Ask for a larger shift from the next solve on."""
+        self._wanted = max(8.0 * self._wanted, SMALLEST_SHIFT)
+        self._stale = True
+
+    def relax(self) -> None:
+        """Let the shift fade from the next solve on."""
+        self._wanted = self._wanted / 4.0 if self._wanted > SMALLEST_SHIFT else 0.0
+
+    def reset(self) -> None:
+        """Ask for no shift."""
+        self._wanted = 0.0
 
     def solve(
         self,
@@ -88,17 +108,19 @@ class FactorGMRES:
         fresh = self._stale
         if fresh:
             self._refresh(blocks)
+        self._added = self._wanted * self._scale
         x, used, good = self._gmres(blocks, rhs, tolerance, skew)
         if not good and not fresh:
             self._refresh(blocks)
+            self._added = self._wanted * self._scale
             x, used, good = self._gmres(blocks, rhs, tolerance, skew)
-        self._stale = used > self._patience or self.shift > 0.0
+        self._stale = used > self._patience
         return x
 
     def _refresh(self, blocks: Array) -> None:
         diagonal = self._pattern.indptr[:-1]
         scale = float(np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
-        self.shift = self.shift / 8.0 if self.shift > SMALLEST_SHIFT else 0.0
+        self.shift = self._wanted
         for _ in range(8):
             matrix = blocks
             if self.shift:
@@ -109,7 +131,7 @@ class FactorGMRES:
             if self._factor.negative == 0:
                 break
             self.shift = max(8.0 * self.shift, SMALLEST_SHIFT)
-        self._added = self.shift * scale
+        self._wanted, self._scale = self.shift, scale
 
     def _gmres(
         self, blocks: Array, rhs: Array, tolerance: float, skew: Callable[[Array, Array], None] | None

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Layout
-from tisim._newton import newton
+from tisim._poke_newton import contact_newton
 from tisim._poke_system import PokeSystem
 from tisim.mesh import Mesh
 from tisim.mesh.poke_block import poke_mesh
@@ -83,7 +83,7 @@ def _push(
         system.move_to(target)
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
-        outcome = newton(
+        outcome = contact_newton(
             system, guess, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations
         )
         steps += 1
@@ -128,14 +128,21 @@ def _push(
 
 
 def _predict(system: PokeSystem, x: Array, move: Array) -> Array:
-    """x carried on along the last motion, as far as no element turns over."""
-    part = 1.0
+    """x carried on along the last motion, as far as that lowers the energy and turns no element over.
+
+    The last motion may have been a snap, which is not to be carried on.
+    """
+    least = max(0.02, 0.5 * system.min_jacobian)
+    best, lowest, part = x.copy(), np.inf, 1.0
     for _ in range(4):
         trial = x + part * move
-        if system.body.energy(trial)[1] > 0.02:
-            return trial
+        energy, min_jacobian = system.potential(trial)
+        if min_jacobian > least:
+            if energy >= lowest:
+                break
+            best, lowest = trial, energy
         part *= 0.5
-    return x.copy()
+    return best
 
 
 def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: Cost) -> Result:

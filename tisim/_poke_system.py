@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Body, Layout, gravity_load
 from tisim._contact import contact_kernels, pack_rod
+from tisim._hexahedra import TetrahedralParts
 from tisim._krylov import FactorGMRES
 from tisim._quadrature import facet_areas, facet_quadrature
 from tisim.mesh import Mesh
@@ -15,9 +18,9 @@ from tisim.scene import Poke, Rod
 Array = NDArray[np.float64]
 
 # Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
-# shear moduli is a fortieth of the edge radius.
-NORMAL_STIFFNESS = 400.0
-TANGENT_STIFFNESS = 100.0
+# shear moduli is a twentieth of the edge radius. Points stick and slip less abruptly than at twice as much.
+NORMAL_STIFFNESS = 200.0
+TANGENT_STIFFNESS = 50.0
 POINTS_PER_SIDE = 4
 
 
@@ -33,10 +36,15 @@ def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -
 
 
 class PokeSystem:
-    """The block under a rod at one pose (see `tisim._newton.System`)."""
+    """The block under a rod at one pose (see `tisim._poke_newton`)."""
 
     def __init__(self, scene: Poke, layout: Layout) -> None:
         mesh, rod = layout.mesh, scene.rod
+        self._parts: TetrahedralParts | None = None
+        if mesh.kind == "hex8":  # on weights of its own: they change as the rod goes down
+            own = replace(layout.reference, weights=layout.reference.weights.copy())
+            layout = replace(layout, reference=own)
+            self._parts = TetrahedralParts(mesh, own)
         self.scene, self.layout = scene, layout
         self.body = Body(
             layout, scene.material, dead_load=gravity_load(layout, scene.material.density, scene.gravity)
@@ -60,7 +68,8 @@ class PokeSystem:
         self._measure, self._energy, self._assemble, self._multiply_skew = contact_kernels()
         self.linear = FactorGMRES(layout.pattern)
         self.linearisations = 0
-        self._known: tuple[Array, float, float] | None = None
+        self.min_jacobian = 1.0
+        self._known: tuple[Array, tuple[Array, float, float]] | None = None
         self.previous = mesh.nodes.copy()
         self.depth = self.previous_depth = 0.0
         self._pose(0.0)
@@ -101,19 +110,21 @@ class PokeSystem:
         self._part = np.where(self._gap <= 0.0, 1.0, overlap / (gap + overlap + 1e-15))
 
     def accept(self, x: Array) -> None:
-        """Take x as the converged state: friction remembers it."""
+        """Take x as the converged state: friction remembers it, and so do the elements it distorts."""
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
+        if self._parts is not None:
+            self._parts.update(x)
+            self._known = None
 
     def stiffen(self) -> None:
         """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
         self._law[0] *= 2.0
 
     def potential(self, x: Array) -> tuple[float, float]:
-        if self._known is None or self._known[0] is not x:
-            self._known = (x, *self.body.energy(x))  # an accepted trial is the next search's start
-        _, energy, min_jacobian = self._known
+        """Potential with the pressures of the friction frozen [J], and smallest det F."""
+        _, energy, min_jacobian = self._forces_at(x)
         out = np.empty(2)
         self._energy(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
@@ -121,34 +132,48 @@ class PokeSystem:
         )  # fmt: skip
         return energy + float(out[0]), min_jacobian
 
+    def _forces_at(self, x: Array) -> tuple[Array, float, float]:
+        """Internal forces (n, 3), energy and smallest det F of the body; an accepted trial is asked again."""
+        if self._known is None or self._known[0] is not x:
+            self._known = (x, self.body.forces_and_energy(x))
+        return self._known[1]
+
+    def residual(self, x: Array) -> tuple[Array, float]:
+        """Residual at the free nodes (n_free, 3) and the load it is measured by [N]; sets the report."""
+        force, _, self.min_jacobian = self._forces_at(x)
+        none = np.full_like(self._slot, -1)
+        return self._with_contact(x, force, none, np.zeros((1, 3, 3)))
+
     def linearise(self, x: Array) -> tuple[Array, float]:
-        layout = self.layout
-        blocks, force, min_jacobian = self.body.stiffness(x)
-        self.internal = force.copy()
+        """The same, and the tangent for the next steps."""
+        self._blocks, force, self.min_jacobian = self.body.stiffness(x)
+        self.linearisations += 1
+        found = self._with_contact(x, force, self._slot, self._blocks)
+        self.layout.hold(self._blocks)
+        return found
+
+    def _with_contact(
+        self, x: Array, force: Array, slot: NDArray[np.int32], blocks: Array
+    ) -> tuple[Array, float]:
+        self.internal = force
+        total = force.copy()
         self._assemble(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, self._pressure, self._slip, self._skew, self._slot, force, blocks, self.report,
+            self._part, self._pressure, self._slip, self._skew, slot, total, blocks, self.report,
         )  # fmt: skip
-        layout.hold(blocks)
-        self._blocks = blocks
-        self.min_jacobian = min_jacobian
-        self.linearisations += 1
-        residual = (force - self.body.dead_load)[layout.pattern.free]
-        residual[layout.held] = 0.0
         # before first touch there is no force to compare with: a millinewton-scale floor
         floor = 1e-4 * self.body.moduli.shear * self.edge**2
         load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
-        return residual, float(load)
+        return self._free(total), float(load)
+
+    def _free(self, force: Array) -> Array:
+        residual: Array = (force - self.body.dead_load)[self.layout.pattern.free]
+        residual[self.layout.held] = 0.0
+        return residual
 
     def step(self, residual: Array, *, forcing: float) -> Array:
         skew = self._skew_product if self.report[5] > 0.0 else None
         return self.linear.solve(self._blocks, -residual, tolerance=forcing, skew=skew)
-
-    def second_step(self, residual: Array) -> Array | None:
-        """Without the unsymmetric part of friction, which can make the whole tangent near singular."""
-        if self.report[5] == 0.0:
-            return None
-        return self.linear.solve(self._blocks, -residual, tolerance=1e-2)
 
     def _skew_product(self, v: Array, out: Array) -> None:
         self._multiply_skew(
@@ -163,29 +188,21 @@ class PokeSystem:
         )
 
     def residual_norm(self, x: Array) -> float:
-        """Size of the residual at x, with Coulomb's law without lag [N]."""
-        layout = self.layout
-        force, _ = self.body.internal_forces(x)
+        """Size of the residual at a trial x [N]; changes nothing."""
+        total = self._forces_at(x)[0].copy()
         report, pressure = np.zeros(6), np.zeros_like(self._pressure)
+        slip, skew = np.empty_like(self._slip), np.empty_like(self._skew)
         none = np.full_like(self._slot, -1)
         self._assemble(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, pressure, self._slip, self._skew, none, force, np.zeros((1, 3, 3)), report,
+            self._part, pressure, slip, skew, none, total, np.zeros((1, 3, 3)), report,
         )  # fmt: skip
-        residual = (force - self.body.dead_load)[layout.pattern.free]
-        residual[layout.held] = 0.0
-        return float(np.linalg.norm(residual))
+        return float(np.linalg.norm(self._free(total)))
 
     def advance(self, x: Array, step: Array) -> Array:
         moved = x.copy()
         moved[self.layout.pattern.free] += step
         return moved
-
-    def searches(self) -> bool:
-        return True
-
-    def largest_step(self) -> float:
-        return 2e-3
 
     def base_force(self) -> Array:
         """Force of the fixed nodes on the body, from the last linearisation [N]."""

@@ -60,14 +60,14 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
 
 
 # The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
-_HEX_CUTS = np.array(
+HEX_CUTS = np.array(
     [
         *([0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]),
         *([1, 2, 0, 5], [3, 0, 2, 7], [4, 5, 0, 7], [6, 7, 2, 5], [0, 7, 5, 2]),
     ]
 )
-# Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra`.
-TETRAHEDRAL_PART = 0.4
+# Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra` (and `tisim._hexahedra`).
+TETRAHEDRAL_PART = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ def _hexahedra(mesh: Mesh) -> Reference:
     gauss = det * weights
     volume = gauss.sum(axis=1)
     mean = np.einsum("eq,qak,eqki->eai", gauss, d, np.linalg.inv(jac)) / volume[:, None, None]
-    tets = corners[:, _HEX_CUTS]
+    tets = corners[:, HEX_CUTS]
     edges = tets[:, :, 1:] - tets[:, :, :1]
     six = np.linalg.det(edges)
     vanished = np.abs(six) < 1e-12 * volume[:, None]
@@ -132,7 +132,7 @@ def _hexahedra(mesh: Mesh) -> Reference:
     inverse = np.linalg.inv(edges)  # columns: gradients of the last three nodes' shape functions
     gradients = np.zeros((len(corners), 11, 8, 3))
     gradients[:, 0] = mean
-    for t, nodes in enumerate(_HEX_CUTS):
+    for t, nodes in enumerate(HEX_CUTS):
         for k in range(3):
             gradients[:, 1 + t, nodes[1 + k]] = inverse[:, t, :, k]
         gradients[:, 1 + t, nodes[0]] = -inverse[:, t].sum(axis=2)
@@ -142,7 +142,7 @@ def _hexahedra(mesh: Mesh) -> Reference:
     weight = np.column_stack([(1.0 - share) * volume, np.where(vanished, 0.0, 0.5 * share * six / 6.0)])
     values = np.zeros((11, 8))
     values[0] = 1.0 / 8.0
-    values[np.arange(1, 11)[:, None], _HEX_CUTS] = 0.25
+    values[np.arange(1, 11)[:, None], HEX_CUTS] = 0.25
     return Reference(values, gradients, np.ascontiguousarray(weight))
 
 

@@ -46,7 +46,7 @@ def simulate(
     A worker process that dies (killed, out of memory) is replaced and its scenes are solved again, once.
 
     Memory grows linearly in the batch: a result holds 24 bytes a node and frame (default beam of 100 mm:
-    1,015 nodes, 26 kB; poke of 5,300 nodes and 20 frames: 2.5 MB) and shares its mesh with the results of the
+    1,015 nodes, 26 kB; poke of 3,500 nodes and 20 frames: 1.7 MB) and shares its mesh with the results of the
     same beam. Each process holds besides one scene's matrices (beam: 10 MB) and the layouts of the last
     16 beam meshes (7 MB each), whatever the size of the batch.
     """

@@ -27,9 +27,9 @@ def quad_areas(mesh, facets):
 
 @pytest.mark.parametrize("site", [(0.0, 0.0), (0.030, 0.030), (-0.030, 0.012)])
 @pytest.mark.parametrize("direction", [DOWN, TILTED])
-def test_plain_block_has_its_volume_and_four_to_six_thousand_nodes(site, direction):
+def test_plain_block_has_its_volume_and_some_3500_nodes(site, direction):
     mesh = poke_mesh(block=BLOCK, site=site, direction=direction, rod=ROD)
-    assert 4000 <= mesh.n_nodes <= 6000
+    assert 3000 <= mesh.n_nodes <= 4000
     assert gauss_jacobians(mesh).min() > 0
     assert gauss_jacobians(mesh).sum() == pytest.approx(VOLUME, rel=1e-12)
     assert_matching_facets(mesh)
@@ -56,13 +56,13 @@ def test_the_fine_zone_covers_the_ellipse_in_which_a_tilted_rod_cuts_the_surface
     centre, length = top.mean(axis=1), np.linalg.norm(np.roll(top, -1, axis=1) - top, axis=-1)
     radius = np.hypot(centre[:, 0] / np.sqrt(2), centre[:, 1])
     rim = np.abs(radius - ROD.radius) < 0.6e-3
-    assert rim.sum() > 40
-    # radial spacing 0.5 mm, stretched along the tilt; around the rim 24 cells
+    assert rim.sum() == 40
+    # radial spacing 0.5 mm, stretched along the tilt; around the rim 20 cells
     assert length[rim].min(axis=1).max() < 0.75e-3
-    assert length[rim].max() < 1.15e-3
+    assert length[rim].max() < 1.38e-3
     # a ring of nodes on the ellipse itself
     x, y = (mesh.nodes[mesh.node_sets["top"], :2] - [0.01, -0.01]).T
-    assert (np.abs(np.hypot(x / np.sqrt(2), y) - ROD.radius) < 1e-9).sum() == 24
+    assert (np.abs(np.hypot(x / np.sqrt(2), y) - ROD.radius) < 1e-9).sum() == 20
 
 
 def test_layers_are_tall_at_the_top_and_grow_downwards():
@@ -71,13 +71,13 @@ def test_layers_are_tall_at_the_top_and_grow_downwards():
         steps = np.diff(np.unique(mesh.nodes[:, 2]))
         assert steps.min() >= 0.0012 - 1e-12
         assert (np.diff(steps) < 0).all()
-        assert steps.max() < 0.0045 / refinement
+        assert steps.max() < 0.0065 / refinement
 
 
 def test_refinement_scales_all_spacings():
     nodes = [poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD, refinement=r).n_nodes for r in (0.7, 1.0, 1.5)]
     assert nodes[0] < 0.5 * nodes[1]
-    assert 12_000 < nodes[2] < 18_000
+    assert 9_000 < nodes[2] < 13_000
 
 
 @pytest.mark.parametrize("inclusion", INCLUSIONS)

@@ -110,17 +110,17 @@ def test_depth_counts_from_first_touch() -> None:
 
 
 def test_a_poke_that_cannot_go_on_says_so() -> None:
-    """Through a thin block: it stops before its base, with its status, its frames and a sentence."""
-    result = solve_poke(poke(block=tisim.Block(size=(0.06, 0.06, 0.006)), depth=0.0058, frame_spacing=5e-4))
+    """Through a thin block and its base: it stops, with its status, its frames and a sentence."""
+    result = solve_poke(poke(block=tisim.Block(size=(0.06, 0.06, 0.006)), depth=0.0065, frame_spacing=5e-4))
     assert not result.ok
-    assert len(result.load) >= 2
+    assert 0.001 <= result.load[-1] < 0.0062
     assert (result.min_jacobian > 0).all()
     assert f"{result.load[-1] * 1e3:.2f} mm" in result.message
 
 
 @pytest.mark.slow
 def test_axisymmetric_reference() -> None:
-    """Force at 1, 2 and 5 mm against axisymmetric quadratic elements (FElupe): within 8 %, finer 5 %."""
+    """Force at 1, 2 and 5 mm against axisymmetric quadratic elements (FElupe): within 4 %, finer 3 %."""
     forces = {int(d): v["force"] for d, v in REFERENCE["values"]["0.6"].items() if float(d) <= 5}
     errors = {}
     for refinement in (1.0, 1.5):
@@ -128,8 +128,8 @@ def test_axisymmetric_reference() -> None:
         assert result.ok
         found = dict(zip((result.load * 1e3).round().astype(int), result.rod_force[:, 2], strict=True))
         errors[refinement] = {d: found[d] / f - 1.0 for d, f in forces.items()}
-    assert max(map(abs, errors[1.0].values())) < 0.08, errors
-    assert max(map(abs, errors[1.5].values())) < 0.05, errors
+    assert max(map(abs, errors[1.0].values())) < 0.04, errors
+    assert max(map(abs, errors[1.5].values())) < 0.03, errors
     assert abs(errors[1.5][5]) < abs(errors[1.0][5])
 
 
@@ -171,9 +171,7 @@ def test_flat_punch_at_small_depth() -> None:
 
 @pytest.mark.slow
 def test_hertz_for_the_hemisphere() -> None:
-    """F = 4/3 E* sqrt(R) d^1.5: within 8 % where the contact is 1 mm wide, two cells of the mesh."""
+    """F = 4/3 E* sqrt(R) d^1.5: within 4 %, where the contact is 0.7 and 1 mm wide, one or two cells."""
     result = _deep_block(rod=tisim.Rod(tip="hemisphere"), depth=4e-4, frame_spacing=2e-4)
     hertz = 4 / 3 * PLANE_MODULUS * np.sqrt(0.0025) * result.load**1.5
-    ratio = result.rod_force[:, 2] / hertz
-    assert ratio[-1] == pytest.approx(1.0, abs=0.08)
-    assert abs(ratio[-1] - 1) < abs(ratio[0] - 1)  # and better with more cells in contact
+    assert result.rod_force[:, 2] / hertz == pytest.approx(1.0, abs=0.04)

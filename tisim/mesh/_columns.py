@@ -15,8 +15,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-TOP_LAYER = 0.0015
-BOTTOM_LAYER = 0.0042
+TOP_LAYER = 0.0013
+BOTTOM_LAYER = 0.0060
 # layers thinner than this turn over under a rod's edge
 THINNEST_LAYER = 0.0012
 

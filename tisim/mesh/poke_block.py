@@ -53,7 +53,7 @@ def poke_mesh(
 ) -> Mesh:
     """The block meshed for a rod pushed along `direction` at `site` (x, y) [m].
 
-    refinement: spacings get smaller by this factor; at 1 some 5,300 nodes without an inclusion.
+    refinement: spacings get smaller by this factor; at 1 some 3,500 nodes without an inclusion.
     kind: "hex8", with wedges (hexahedra with repeated nodes) where an inclusion's outline cuts a cell, or
         "tet4" or "tet10", cut from these.
 
@@ -159,8 +159,8 @@ class _Grids:
         self.rings = np.linspace(self.flat, 1.4 * rod.radius, max(3, round(4 * refinement)) + 1)[1:]
         self.azimuth = float(np.arctan2(push[1], push[0]))
         self.stretch = 1.0 / float(np.cos(tilt))
-        self.n_theta = 4 * max(3, round(6 * refinement))
-        self.n_outer = max(5, round(10 * refinement))
+        self.n_theta = 4 * max(3, round(5 * refinement))
+        self.n_outer = max(5, round(9 * refinement))
 
     def make(self, focus: Focus | None, *, turn: float = 0.0, more: int = 0) -> PlaneGrid:
         """A grid, fine at the focus too; its rays turned by parts of their spacing, with some rings more."""

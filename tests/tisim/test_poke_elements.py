@@ -1,0 +1,99 @@
+"""Hexahedra under a rod: what their tetrahedra carry; and the shifted solves of their Newton steps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tisim
+from tisim._body import Layout
+from tisim._hexahedra import LARGEST_PART, TetrahedralParts
+from tisim._poke_system import PokeSystem
+from tisim._quadrature import TETRAHEDRAL_PART, Reference, reference
+from tisim.mesh import Mesh
+from tisim.mesh.poke_block import poke_mesh
+
+
+def block_mesh() -> Mesh:
+    return poke_mesh(block=tisim.Block(), site=(0.0, 0.0), rod=tisim.Rod(), refinement=0.5)
+
+
+def part(ref: Reference) -> np.ndarray:
+    """Part of each hexahedron's volume, and so of its energy, at its tetrahedra."""
+    return np.asarray(ref.weights[:, 1:].sum(axis=1) / ref.weights.sum(axis=1))
+
+
+def test_parts_rise_where_a_hexahedron_is_bent_only_and_stay() -> None:
+    mesh = block_mesh()
+    ref = reference(mesh)
+    volume = ref.weights.sum(axis=1)
+    parts = TetrahedralParts(mesh, ref)
+    assert part(ref) == pytest.approx(TETRAHEDRAL_PART)
+    squeezed = mesh.nodes @ np.array([[1.6, 0.5, 0.0], [0.0, 1.2, 0.3], [0.0, 0.0, 0.4]])
+    parts.update(squeezed)  # out of shape, yet all tetrahedra alike
+    assert part(ref) == pytest.approx(TETRAHEDRAL_PART)
+
+    element = int(np.argmax(mesh.nodes[mesh.elements][:, :, 2].mean(axis=1)))
+    bent = mesh.nodes.copy()
+    node = mesh.elements[element, 0]
+    bent[node] += 0.55 * (mesh.nodes[mesh.elements[element, 6]] - bent[node])  # towards the far corner
+    parts.update(bent)
+    touched = (mesh.elements == node).any(axis=1)
+    assert part(ref)[element] == pytest.approx(LARGEST_PART)
+    assert part(ref)[~touched] == pytest.approx(TETRAHEDRAL_PART)
+    assert ref.weights.sum(axis=1) == pytest.approx(volume, rel=1e-12)
+    before = ref.weights.copy()
+    parts.update(mesh.nodes)
+    assert np.array_equal(ref.weights, before)
+
+
+def system() -> tuple[PokeSystem, np.ndarray]:
+    scene = tisim.Poke(
+        material=tisim.material_from_moduli("ogden", shear=30e3, bulk=600e3), depth=0.001, refinement=0.5
+    )
+    mesh = block_mesh()
+    it = PokeSystem(scene, Layout.build(mesh, mesh.node_sets["base"]))
+    it.move_to(0.0003)
+    x = mesh.nodes.copy()
+    it.touch(x)
+    return it, x
+
+
+def test_the_residual_is_the_same_with_and_without_its_tangent() -> None:
+    it, x = system()
+    cheap, load = it.residual(x)
+    report = it.report.copy()
+    full, same = it.linearise(x)
+    assert load == pytest.approx(same, rel=1e-12)
+    assert it.report == pytest.approx(report, rel=1e-12)
+    assert np.abs(full - cheap).max() < 1e-9 * np.abs(full).max()
+    assert it.residual_norm(x) == pytest.approx(float(np.linalg.norm(full)), rel=1e-9)
+
+
+def test_a_shift_shortens_the_step_and_fades() -> None:
+    it, x = system()
+    residual, _ = it.linearise(x)
+    plain = np.abs(it.step(residual, forcing=1e-4)).max()
+    it.linear.stiffen()
+    it.linear.stiffen()
+    held = np.abs(it.step(residual, forcing=1e-4)).max()
+    assert held < 0.98 * plain
+    for _ in range(3):
+        it.linear.relax()
+    assert np.abs(it.step(residual, forcing=1e-4)).max() == pytest.approx(plain, rel=1e-3)
+
+
+def test_a_layout_is_left_as_it_was() -> None:
+    """Pokes that share a layout do not see each other's distortions."""
+    scene = tisim.Poke(
+        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3), depth=0.001
+    )
+    mesh = block_mesh()
+    layout = Layout.build(mesh, mesh.node_sets["base"])
+    before = layout.reference.weights.copy()
+    it = PokeSystem(scene, layout)
+    bent = mesh.nodes.copy()
+    bent[:, 2] -= 0.004 * np.exp(-1e5 * (bent[:, :2] ** 2).sum(axis=1)) * (bent[:, 2] / 0.032) ** 8
+    it.accept(bent)
+    assert (it.layout.reference.weights != before).any()
+    assert np.array_equal(layout.reference.weights, before)
