@@ -33,7 +33,7 @@ class Fidelity:
 # What the search's mesh gets wrong (0.5 % of the deflection, waves of 10 to 20 micrometres along a strongly
 # bent edge) is small and hardly depends on the material, but the likelihood of nine photographs sees it.
 COARSE = Fidelity(rings=1)
-REFERENCE = Fidelity(layer=0.0025, rings=4)
+REFERENCE = Fidelity(layer=0.0025, rings=4, solver=Solver(max_iterations=12))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +75,7 @@ class OutlineObjective:
     columns and the mesh's error are taken there, once, and hold while the material stays near.
 
     fidelity: of the beams that a search solves; reference: of those that correct them (None: no correction).
+    uncorrected: why there is no correction, where the law has no equilibrium on the reference mesh.
     What the reference still misses is a nuisance, one amplitude a trial, of the size of the correction.
     """
 
@@ -108,6 +109,7 @@ class OutlineObjective:
                     self.photographs.append(Photograph(name, i, traced, contour_root(traced)))
         self.nuisances: Nuisances | None = None
         self.correction: Array = np.zeros(self.points)
+        self.uncorrected = ""
         self._frozen = False
 
     @property
@@ -130,16 +132,11 @@ class OutlineObjective:
         results = simulate(scenes, workers=self.workers)
         if not all(r.ok for r in results):
             return False
-        fine: list[Result] = []
-        if self.reference is not None:
-            # last, since a beam without equilibrium costs most where it is finest
-            beams = [self._beam(t, material, self.reference) for t in self.trials]
-            fine = simulate(beams, workers=self.workers)
-            if not all(r.ok for r in fine):
-                return False
+        fine = self._reference_beams(material)
         base, rest = results[: len(self.trials)], results[len(self.trials) :]
         columns, names = self._registrations(base)
         start = self._whitened(base)
+        self.correction = np.zeros(self.points)
         if fine:
             self.correction = self._whitened(fine) - start
             for i, t in enumerate(self.trials):
@@ -241,6 +238,24 @@ class OutlineObjective:
             distance = np.concatenate([f.distance for f in self.distances(results, p)])
             parts.append(whiten(p.root, distance))
         return np.concatenate(parts)
+
+    def _reference_beams(self, material: Material) -> list[Result]:
+        """The trials on the reference mesh, the longest first since that one fails if any; empty where one
+        has no equilibrium there (`uncorrected` says so from then on: it is not tried again, since a beam
+        without equilibrium costs a hundred times one that has it)."""
+        if self.reference is None or self.uncorrected:
+            return []
+        order = sorted(range(len(self.trials)), key=lambda i: -self.trials[i].free_length)
+        found: dict[int, Result] = {}
+        for i in order if self.workers == 1 else [None]:
+            some = [i] if i is not None else order
+            beams = [self._beam(self.trials[k], material, self.reference) for k in some]
+            found.update(zip(some, simulate(beams, workers=self.workers), strict=True))
+            failed = [self.trials[k].id for k, r in found.items() if not r.ok]
+            if failed:
+                self.uncorrected = f"no equilibrium of {', '.join(failed)} on the finer mesh that corrects"
+                return []
+        return [found[i] for i in range(len(self.trials))]
 
     def _of_trial(self, trial: int) -> NDArray[np.bool_]:
         return np.concatenate([np.full(len(p.root), p.trial == trial) for p in self.photographs])

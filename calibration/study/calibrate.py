@@ -179,6 +179,7 @@ def _point(
         reduced_chi2=chi2 / max(1, problem.points - len(u)),
         rms=rms,
         nuisances=nuisances,
+        note=data.outlines.uncorrected if data.outlines is not None else "",
     )
 
 

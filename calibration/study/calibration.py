@@ -32,6 +32,7 @@ class Calibration:
     u: the law's search coordinates; parameters: as `tisim.Material` takes them.
     chi2: of `points` measurements under the stated noise, without the prior's share;
     reduced_chi2: over points minus coordinates. rms: of the outlines' distances, registered [m], or None.
+    note: what else the reader must know (a mesh error that could not be corrected).
     estimates, blind: see `calibration.search.identify`; empty where there was no polish.
     candidates, without_answer: that CMA-ES asked for, and how many of them had no equilibrium.
     search_seconds, polish_seconds: core time; candidate_seconds: of one candidate, all its trials.
@@ -57,6 +58,7 @@ class Calibration:
     nuisances: Mapping[str, float] = field(default_factory=dict)
     held_out: tuple[HeldOut, ...] = ()
     held_out_note: str = ""
+    note: str = ""
     candidates: int = 0
     generations: int = 0
     without_answer: int = 0
