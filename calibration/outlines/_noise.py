@@ -20,6 +20,7 @@ from calibration.outlines._edges import Feet
 Array = NDArray[np.float64]
 
 FLOOR = 0.02
+DEGREE = 9
 
 
 def contour_root(outline: TracedOutline) -> Array:
@@ -34,6 +35,19 @@ def contour_root(outline: TracedOutline) -> Array:
             kernel = np.eye(len(s))
         blocks.append(outline.sd**2 * (kernel + FLOOR**2 * np.eye(len(s))))
     return np.asarray(cholesky(block_diag(*blocks), lower=True))
+
+
+def smooth_basis(outline: TracedOutline) -> Array:
+    """Orthonormal polynomials along each edge, (k, m): away from the clamps, what a parameter changes is
+    smooth, while an element's own waves are not. The likelihood weighs waves of 2 micrometres, and without
+    this would hold a parameter fast by how its mesh ripples."""
+    blocks = []
+    for edge in (outline.upper, outline.lower):
+        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+        degree = min(DEGREE, len(s) // 3)
+        columns = np.polynomial.legendre.legvander(2.0 * s / s[-1] - 1.0, degree)
+        blocks.append(np.linalg.qr(columns)[0])
+    return np.asarray(block_diag(*blocks))
 
 
 def registration_columns(feet: Feet, registration: Registration) -> Array:

@@ -12,8 +12,15 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, MaterialBelief, TracedOutline
+from calibration.outlines._admitted import Admitted, admitted
 from calibration.outlines._edges import Feet, edges, feet
-from calibration.outlines._noise import Nuisances, contour_root, registration_columns, whiten
+from calibration.outlines._noise import (
+    Nuisances,
+    contour_root,
+    registration_columns,
+    smooth_basis,
+    whiten,
+)
 from tisim import Beam, Circle, Material, Result, Solver, simulate
 
 Array = NDArray[np.float64]
@@ -32,19 +39,24 @@ class Fidelity:
 # The beams that a search solves (14 core-ms each), and those that correct them where nuisances are taken.
 # What the search's mesh gets wrong (0.5 % of the deflection, waves of 10 to 20 micrometres along a strongly
 # bent edge) is small and hardly depends on the material, but the likelihood of nine photographs sees it.
+# Of what they correct, the reference's own error is a fifth at most (15 micrometres on the 100 mm beam).
 COARSE = Fidelity(rings=1)
 REFERENCE = Fidelity(layer=0.0025, rings=4, solver=Solver(max_iterations=12))
 
 
 @dataclass(frozen=True, eq=False)
 class Photograph:
-    """One traced photograph of a trial; root: of its contour error's covariance."""
+    """One traced photograph of a trial; root: of its contour error's covariance; smooth: orthonormal basis
+    of what a parameter can do to its distances, see `smooth_basis`."""
 
     name: str
     trial: int
     outline: TracedOutline
     root: Array
+    smooth: Array
 
+
+MESH_LEFT = 0.2
 
 # Nearer to a clamp than this part of the section's half height, the edge is left out: its shape is that of a
 # corner singularity, on which meshes that agree elsewhere to 0.02 mm differ by 0.1 mm and more.
@@ -76,7 +88,7 @@ class OutlineObjective:
 
     fidelity: of the beams that a search solves; reference: of those that correct them (None: no correction).
     uncorrected: why there is no correction, where the law has no equilibrium on the reference mesh.
-    What the reference still misses is a nuisance, one amplitude a trial, of the size of the correction.
+    What the reference still misses is a nuisance, one amplitude a trial, of MESH_LEFT times the correction.
     """
 
     def __init__(
@@ -106,9 +118,12 @@ class OutlineObjective:
                 if c.outline is not None:
                     traced = away_from_clamps(c.outline, t)
                     name = f"{t.id} at {c.time:g} s"
-                    self.photographs.append(Photograph(name, i, traced, contour_root(traced)))
+                    self.photographs.append(
+                        Photograph(name, i, traced, contour_root(traced), smooth_basis(traced))
+                    )
         self.nuisances: Nuisances | None = None
-        self.correction: Array = np.zeros(self.points)
+        # distances [m] where the nuisances were taken: by the search's mesh, and by the reference
+        self._base = self._fine = np.zeros(self.points)
         self.uncorrected = ""
         self._frozen = False
 
@@ -124,31 +139,32 @@ class OutlineObjective:
 
     def linearise(self, material: Material) -> bool:
         """Take the nuisances' columns at a material; False where its beams have no equilibrium."""
-        varied = list(self._varied())
+        varied = list(admitted(self.trials, self.belief))
         if self._frozen:
             return True
         scenes = [self._beam(t, material) for t in self.trials]
-        scenes += [scene for _, _, group in varied for scene in group(material)]
+        scenes += [scene for n in varied for scene in self._moved(n, material)]
         results = simulate(scenes, workers=self.workers)
         if not all(r.ok for r in results):
             return False
         fine = self._reference_beams(material)
         base, rest = results[: len(self.trials)], results[len(self.trials) :]
         columns, names = self._registrations(base)
-        start = self._whitened(base)
-        self.correction = np.zeros(self.points)
+        self._base = self._distances(base)
+        self._fine = self._distances(fine) if fine else self._base
         if fine:
-            self.correction = self._whitened(fine) - start
+            left = MESH_LEFT * self._smooth(self._fine - self._base)
             for i, t in enumerate(self.trials):
-                columns.append(np.where(self._of_trial(i), self.correction, 0.0))
+                columns.append(self._whiten(np.where(self._of_trial(i), left, 0.0)))
                 names.append(f"mesh of {t.id}")
-        for name, sd, group in varied:
+        for n in varied:
             moved = list(base)
-            for i in group.trials:
+            for i in n.trials:
                 moved[i] = rest.pop(0)
-            # residual = data - model: one sd more of the nuisance takes this much off
-            columns.append(-(self._whitened(moved) - start) * (sd / group.step))
-            names.append(name)
+            # distance = data - model: one sd more of the nuisance takes this much off
+            change = self._smooth(self._distances(moved) - self._base)
+            columns.append(-self._whiten(change) * (n.sd / n.step))
+            names.append(n.name)
         self.nuisances = Nuisances(tuple(names), np.column_stack(columns))
         return True
 
@@ -159,8 +175,13 @@ class OutlineObjective:
         found = np.full((len(materials), self.size()), np.nan)
         for k, results in enumerate(self.simulate(materials)):
             if all(r.ok for r in results):
-                found[k] = self.nuisances.profile(self._whitened(results) + self.correction)
+                found[k] = self.nuisances.profile(self._whiten(self.corrected(results)))
         return found
+
+    def corrected(self, results: Sequence[Result]) -> Array:
+        """Distances of all points from simulated beams [m], (points,), the mesh's error taken out: those on
+        the reference mesh where the nuisances were taken, and the smooth part of the change from there."""
+        return self._fine + self._smooth(self._distances(results) - self._base)
 
     def subset(self, trials: Sequence[int]) -> OutlineObjective:
         """The same objective for some of the trials only; nuisances and mesh corrections stay as they were
@@ -176,32 +197,30 @@ class OutlineObjective:
         used = columns.any(axis=0)
         names = tuple(n for n, u in zip(self.nuisances.names, used, strict=True) if u)
         part.nuisances = Nuisances(names, columns[:, used])
-        part.correction = self.correction[rows]
+        part._base, part._fine = self._base[rows], self._fine[rows]
         part._frozen = True
         return part
 
     def summary(self, material: Material) -> tuple[float, dict[str, float]]:
         """rms distance [m] once registration and the other nuisances are taken out, and the nuisances' best
         values [in their sd] at a material that has an answer."""
-        assert self.nuisances is not None, "linearise an OutlineObjective before use"
-        whitened = self._whitened(self.simulate([material])[0]) + self.correction
-        b = self.nuisances.estimate(whitened)
-        left = self._unwhitened(whitened - self.nuisances.columns @ b)
-        named = {n: float(x) for n, x in zip(self.nuisances.names, b, strict=True)}
+        left, named = self.registered(self.simulate([material])[0])
         return float(np.sqrt(np.mean(left**2))), named
 
     def distances_rms(self, material: Material) -> tuple[float, float]:
         """rms distance [m] as measured, and once the nuisances are taken out."""
-        whitened = self._whitened(self.simulate([material])[0]) + self.correction
-        return float(np.sqrt(np.mean(self._unwhitened(whitened) ** 2))), self.summary(material)[0]
+        results = self.simulate([material])[0]
+        raw, (left, _) = self.corrected(results), self.registered(results)
+        return float(np.sqrt(np.mean(raw**2))), float(np.sqrt(np.mean(left**2)))
 
-    def _unwhitened(self, whitened: Array) -> Array:
-        parts = []
-        first = 0
-        for p in self.photographs:
-            parts.append(p.root @ whitened[first : first + len(p.root)])
-            first += len(p.root)
-        return np.concatenate(parts)
+    def registered(self, results: Sequence[Result]) -> tuple[Array, dict[str, float]]:
+        """Distances [m], (points,), with all nuisances taken out; their best values [in their sd]."""
+        assert self.nuisances is not None, "linearise an OutlineObjective before use"
+        whitened = self._whiten(self.corrected(results))
+        b = self.nuisances.estimate(whitened)
+        rest = whitened - self.nuisances.columns @ b
+        left = np.concatenate([p.root @ part for p, part in self._by_photograph(rest)])
+        return left, {n: float(x) for n, x in zip(self.nuisances.names, b, strict=True)}
 
     def simulate(self, materials: Sequence[Material]) -> list[list[Result]]:
         """Every trial with every material, as one batch of scenes."""
@@ -232,12 +251,22 @@ class OutlineObjective:
             solver=f.solver,
         )
 
-    def _whitened(self, results: Sequence[Result]) -> Array:
-        parts = []
-        for p in self.photographs:
-            distance = np.concatenate([f.distance for f in self.distances(results, p)])
-            parts.append(whiten(p.root, distance))
-        return np.concatenate(parts)
+    def _moved(self, nuisance: Admitted, material: Material) -> list[Beam]:
+        return [nuisance.moved(self._beam(self.trials[i], material)) for i in nuisance.trials]
+
+    def _distances(self, results: Sequence[Result]) -> Array:
+        return np.concatenate([f.distance for p in self.photographs for f in self.distances(results, p)])
+
+    def _by_photograph(self, values: Array) -> list[tuple[Photograph, Array]]:
+        ends = np.cumsum([len(p.root) for p in self.photographs])[:-1]
+        return list(zip(self.photographs, np.split(values, ends), strict=True))
+
+    def _smooth(self, change: Array) -> Array:
+        """The part of a change of distances that is smooth along each edge."""
+        return np.concatenate([p.smooth @ (p.smooth.T @ part) for p, part in self._by_photograph(change)])
+
+    def _whiten(self, distances: Array) -> Array:
+        return np.concatenate([whiten(p.root, part) for p, part in self._by_photograph(distances)])
 
     def _reference_beams(self, material: Material) -> list[Result]:
         """The trials on the reference mesh, the longest first since that one fails if any; empty where one
@@ -277,52 +306,3 @@ class OutlineObjective:
                     names.append(f"{what} of {p.name}")
             first += len(p.root)
         return columns, names
-
-    def _varied(self) -> list[tuple[str, float, _Group]]:
-        """Name, sd and varied scenes of each nuisance of specimen, trial and material that the lab admits."""
-        found: list[tuple[str, float, _Group]] = []
-        specimens: dict[str, list[int]] = {}
-        for i, t in enumerate(self.trials):
-            specimens.setdefault(t.specimen or t.id, []).append(i)
-        for name, members in specimens.items():
-            first = self.trials[members[0]]
-            labels = ("radius",) if isinstance(first.section, Circle) else ("width", "height")
-            for label, sd in zip(labels, first.section_sd, strict=False):
-                if sd > 0.0:
-                    group = _Group(self, tuple(members), label, 0.005 * getattr(first.section, label))
-                    found.append((f"{label} of {name}", sd, group))
-        for i, t in enumerate(self.trials):
-            if t.free_length_sd > 0.0:
-                found.append(
-                    (
-                        f"free length of {t.id}",
-                        t.free_length_sd,
-                        _Group(self, (i,), "length", 0.005 * t.free_length),
-                    )
-                )
-        if self.belief.density_sd > 0.0:
-            everything = tuple(range(len(self.trials)))
-            group = _Group(self, everything, "density", 0.005 * self.density)
-            found.append((f"density of {self.belief.name}", self.belief.density_sd, group))
-        return found
-
-
-@dataclass(frozen=True, eq=False)
-class _Group:
-    """Trials that one nuisance moves together, by a finite-difference step."""
-
-    objective: OutlineObjective
-    trials: tuple[int, ...]
-    label: str
-    step: float
-
-    def __call__(self, material: Material) -> list[Beam]:
-        return [self._moved(self.objective._beam(self.objective.trials[i], material)) for i in self.trials]
-
-    def _moved(self, beam: Beam) -> Beam:
-        if self.label == "length":
-            return replace(beam, length=beam.length + self.step)
-        if self.label == "density":
-            return replace(beam, material=replace(beam.material, density=beam.material.density + self.step))
-        section = replace(beam.section, **{self.label: getattr(beam.section, self.label) + self.step})
-        return replace(beam, section=section)

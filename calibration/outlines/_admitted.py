@@ -1,0 +1,80 @@
+"""What the lab admits not to know of its beams: radius, free length, density, each with its sd."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from calibration.experiment.model import BeamTrial, MaterialBelief
+from tisim import Beam, Circle
+
+Quantity = Literal["radius", "width", "height", "length", "density"]
+
+STEP = 0.005  # of a finite difference, relative to the quantity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Admitted:
+    """A quantity that trials (by index) share; its sd and the step of a finite difference, in its unit."""
+
+    name: str
+    quantity: Quantity
+    trials: tuple[int, ...]
+    sd: float
+    step: float
+
+    def moved(self, beam: Beam) -> Beam:
+        """The beam with the quantity one step larger."""
+        if self.quantity == "length":
+            return replace(beam, length=beam.length + self.step)
+        if self.quantity == "density":
+            return replace(beam, material=replace(beam.material, density=beam.material.density + self.step))
+        size = getattr(beam.section, self.quantity) + self.step
+        return replace(beam, section=replace(beam.section, **{self.quantity: size}))
+
+
+def admitted(trials: Sequence[BeamTrial], belief: MaterialBelief) -> list[Admitted]:
+    """One entry for each dimension of a specimen's section, each free length, and the material's density."""
+    found: list[Admitted] = []
+    specimens: dict[str, list[int]] = {}
+    for i, t in enumerate(trials):
+        specimens.setdefault(t.specimen or t.id, []).append(i)
+    for name, members in specimens.items():
+        section, sds = trials[members[0]].section, trials[members[0]].section_sd
+        sizes: tuple[Quantity, ...] = ("radius",) if isinstance(section, Circle) else ("width", "height")
+        for quantity, sd in zip(sizes, sds, strict=False):
+            if sd > 0.0:
+                step = STEP * getattr(section, quantity)
+                found.append(
+                    Admitted(
+                        name=f"{quantity} of {name}",
+                        quantity=quantity,
+                        trials=tuple(members),
+                        sd=sd,
+                        step=step,
+                    )
+                )
+    for i, t in enumerate(trials):
+        if t.free_length_sd > 0.0:
+            step = STEP * t.free_length
+            found.append(
+                Admitted(
+                    name=f"free length of {t.id}",
+                    quantity="length",
+                    trials=(i,),
+                    sd=t.free_length_sd,
+                    step=step,
+                )
+            )
+    if belief.density_sd > 0.0 and belief.density is not None:
+        found.append(
+            Admitted(
+                name=f"density of {belief.name}",
+                quantity="density",
+                trials=tuple(range(len(trials))),
+                sd=belief.density_sd,
+                step=STEP * belief.density,
+            )
+        )
+    return found
