@@ -64,16 +64,9 @@ class FitScreen:
 def law_table(results: list[Calibration]) -> Table:
     """Materials and laws: moduli, misfit, held-out prediction and what was not settled."""
     table = Table(title="Calibration")
-    for column in (
-        "material",
-        "law",
-        "status",
-        "G / kPa",
-        "chi2/n",
-        "rms / mm",
-        "held out / mm",
-        "not settled",
-    ):
+    for column in ("material", "law"):
+        table.add_column(column, no_wrap=True)
+    for column in ("status", "G / kPa", "chi2/n", "rms / mm", "held out / mm", "not settled"):
         table.add_column(column)
     for r in results:
         if not r.parameters:

@@ -51,19 +51,19 @@ def identify(
 ) -> Identification:
     """jacobian: (m, n) of whitened residuals with the prior's rows last.
 
-    Where reduced chi-square is above 1 the covariance is multiplied by it (the model is wrong by more than
-    the noise; Birge's ratio), and never made smaller.
+    Where reduced chi-square is above 1 the data's information is divided by it (the model is wrong by more
+    than the noise; Birge's ratio); it is never made larger, and the prior's is left alone.
     """
     n = len(u)
     _, prior_sd = parametrisation.prior()
-    information = jacobian.T @ jacobian
-    data = information - np.diag(np.where(np.isfinite(prior_sd), prior_sd, np.inf) ** -2.0)
+    prior = np.diag(np.where(np.isfinite(prior_sd), prior_sd, np.inf) ** -2.0)
+    data = jacobian.T @ jacobian - prior
     bounds = parametrisation.bounds
     span = bounds[:, 1] - bounds[:, 0]
     # a flat prior over the bounds keeps directions that nobody sees finite
     floor = np.diag((span / np.sqrt(12.0)) ** -2.0)
     scale = max(1.0, reduced_chi2)
-    covariance = np.asarray(scale * np.linalg.inv(information + floor))
+    covariance = np.asarray(np.linalg.inv(data / scale + prior + floor))
     estimates = []
     for i, c in enumerate(parametrisation.coordinates):
         sd = float(np.sqrt(covariance[i, i]))

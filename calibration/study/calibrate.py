@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import psutil
 from numpy.typing import NDArray
 
 from calibration.outlines import OutlineObjective
@@ -103,8 +105,9 @@ def best_so_far(
     if data.outlines is None:
         parametrisation = parametrisation.holding("bulk_ratio")
     problem = Problem(parametrisation=parametrisation, objectives=data.objectives)
-    problem.linearise(u)
-    message = f"stopped after {len(generations)} generations, without polish or error bars"
+    if not problem.linearise(u):
+        raise ValueError("the best candidate so far has no answer any more")
+    message = f"stopped after {len(generations)} generations: no polish, mesh correction or error bars"
     return replace(
         _point(problem, data, u, status="stopped", message=message),
         candidates=sum(len(g.costs) for g in generations),
@@ -163,6 +166,8 @@ def _point(
     nuisances: dict[str, float] = {}
     if isinstance(data.outlines, OutlineObjective):
         rms, nuisances = data.outlines.summary(p.material(u))
+    if data.pokes is not None:
+        nuisances = {**nuisances, **data.pokes.summary(p.material(u))[1]}
     return Calibration(
         material=data.material,
         law=p.law,
@@ -179,8 +184,15 @@ def _point(
         reduced_chi2=chi2 / max(1, problem.points - len(u)),
         rms=rms,
         nuisances=nuisances,
-        note=data.outlines.uncorrected if data.outlines is not None else "",
+        note=_note(data),
     )
+
+
+def _note(data: Measurements) -> str:
+    """What the reader of the result must know beyond its status."""
+    notes = [data.outlines.uncorrected] if data.outlines is not None else []
+    notes += data.pokes.shortfalls if data.pokes is not None else []
+    return "; ".join(n for n in notes if n)
 
 
 def _certain(problem: Problem, fitted: Calibration, end: Polished) -> Calibration:
@@ -194,4 +206,10 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished) -> Calibratio
 
 
 def _core_seconds() -> float:
-    return time.process_time()
+    """CPU time of this process and of the workers that solve for it [s]."""
+    seconds = time.process_time()
+    for worker in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            spent = worker.cpu_times()
+            seconds += spent.user + spent.system
+    return seconds

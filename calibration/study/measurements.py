@@ -1,4 +1,4 @@
-"""What an experiment holds of one material, as objectives of a fit: any mix of beams and coupons."""
+"""What an experiment holds of one material, as objectives of a fit: any mix of beams, pokes and coupons."""
 
 from __future__ import annotations
 
@@ -6,20 +6,23 @@ from dataclasses import dataclass
 
 from calibration.coupons import CouponObjective
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, CouponTrial, Experiment
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
 from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
+from calibration.pokes import PokeObjective
 from calibration.search import Objective
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measurements:
-    """Objectives of one material; outlines is the one among them that photographs feed, if any."""
+    """Objectives of one material; outlines is the one among them that photographs feed, pokes the one that
+    rods feed, if any. ignored: trials, and parts of records, that the fit does not use."""
 
     material: str
     density: float | None
     objectives: tuple[Objective, ...]
     outlines: OutlineObjective | None
     ignored: tuple[str, ...]
+    pokes: PokeObjective | None = None
 
 
 def measurements(
@@ -43,23 +46,29 @@ def measurements(
         outlines = OutlineObjective(beams, belief, fidelity=fidelity, reference=reference, workers=workers)
         objectives.append(outlines)
     objectives += [CouponObjective(trial=t) for t in mine if isinstance(t, CouponTrial)]
+    rods = [t for t in mine if isinstance(t, PokeTrial) and t.inclusion_mesh is None]
+    pokes = PokeObjective(rods, workers=workers) if rods else None
+    if pokes is not None:
+        objectives.append(pokes)
     if not objectives:
         raise InputError(
             f"{experiment.folder / 'experiment.yaml'}: material {material}: expected at least one traced"
-            " outline or coupon to fit (photographs: run calibration.reconstruct first)"
+            " outline, poke or coupon to fit (photographs: run calibration.reconstruct first)"
         )
-    used = {t.id for t in beams} | {t.id for t in mine if isinstance(t, CouponTrial)}
+    used = {t.id for t in mine if t in beams or t in rods or isinstance(t, CouponTrial)}
     ignored = tuple(f"{t.id}: {_why(t)}" for t in mine if t.id not in used)
+    parts = () if pokes is None else pokes.left_out
     return Measurements(
         material=material,
         density=belief.density,
         objectives=tuple(objectives),
         outlines=outlines,
-        ignored=ignored,
+        ignored=(*ignored, *parts),
+        pokes=pokes,
     )
 
 
 def _why(trial: object) -> str:
     if isinstance(trial, BeamTrial):
         return "markers through time are fitted by calibration.motion" if trial.markers else "not traced yet"
-    return "a poke is not part of the static fit"
+    return "a poke beside an inclusion given as a mesh cannot be simulated yet"

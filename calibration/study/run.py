@@ -21,7 +21,8 @@ from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import measurements
 
-FORMAT = 1
+# Raised whenever the objective or the search changes: their histories would not fit together.
+FORMAT = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +56,7 @@ class Task:
             "generations": self.options.cma.max_generations,
             "restarts": self.options.cma.restarts,
             "polish": self.options.gauss_newton,
+            "held_out": self.options.leave_one_out,
         }
         return FitStore(self.folder, self.name, header)
 

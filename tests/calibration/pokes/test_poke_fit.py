@@ -1,0 +1,67 @@
+"""A poke and a coupon of one material in one fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import poke_cases as made
+import pytest
+
+import tisim
+from calibration.coupons import CouponObjective
+from calibration.experiment.model import CouponTrial
+from calibration.parameters import parametrisation
+from calibration.pokes import PokeObjective
+from calibration.study import FitOptions, calibrate
+from calibration.study.measurements import Measurements
+
+C10, C01 = 9e3, 3e3
+
+
+def uniaxial(noise: float) -> CouponTrial:
+    """Incompressible Mooney-Rivlin in closed form: 2 (C10 + C01 / s) (s - s^-2)."""
+    s = np.linspace(1.0, 1.8, 30)
+    rng = np.random.default_rng(1)
+    stress = 2 * (C10 + C01 / s) * (s - s**-2) + rng.normal(0.0, noise, s.shape)
+    return CouponTrial(id="u", material="S1", mode="uniaxial", stretch=s, stress=stress, stress_sd=noise)
+
+
+def poke() -> PokeObjective:
+    """Made by tisim on another mesh; the fit has a coarse one."""
+    truth = tisim.Material(law="mooney-rivlin", parameters={"c10": C10, "c01": C01, "bulk": 300 * 2 * 12e3})
+    scene = tisim.Poke(
+        material=truth,
+        block=tisim.Block(size=(0.06, 0.06, 0.03)),
+        depth=1e-3,
+        frame_spacing=1e-4,
+        refinement=0.8,
+    )
+    (result,) = tisim.simulate([scene], workers=1)
+    assert result.ok
+    rng = np.random.default_rng(2)
+    force = result.rod_force[:, 2] + rng.normal(0.0, 3e-3, result.load.shape)
+    trial = made.trial(np.r_[0.0, result.load], np.r_[0.0, force], force_sd=3e-3)
+    return PokeObjective([trial], refinement=0.6, workers=1)
+
+
+def test_a_poke_and_a_coupon_in_one_fit() -> None:
+    """Both sound, the modulus within its interval; curves are taken a few times, not for each candidate."""
+    pokes, coupon = poke(), CouponObjective(trial=uniaxial(300.0))
+    data = Measurements(material="S1", density=None, objectives=(coupon, pokes), outlines=None, ignored=())
+    fit = calibrate(parametrisation("mooney-rivlin"), data, options=FitOptions())
+    assert fit.status == "converged", fit.message
+    assert fit.points == 30 + 10
+    assert 0.4 < fit.reduced_chi2 < 1.8
+    assert abs(fit.shear_modulus - 24e3) < 2 * fit.shear_modulus_sd
+    assert fit.shear_modulus_sd < 0.05 * 24e3
+    assert fit.candidates > 100
+    assert pokes.simulated <= 9  # three pokes each time
+
+
+@pytest.mark.slow
+def test_the_poke_alone_knows_the_modulus_and_no_shape() -> None:
+    data = Measurements(material="S1", density=None, objectives=(poke(),), outlines=None, ignored=())
+    fit = calibrate(parametrisation("mooney-rivlin"), data, options=FitOptions())
+    assert fit.status == "converged", fit.message
+    known = {e.name: e for e in fit.estimates}
+    assert known["shear_modulus"].low < 24e3 < known["shear_modulus"].high
+    assert known["second_share"].seen in ("not identified", "at a bound")

@@ -1,0 +1,172 @@
+"""Made calibrations and experiments for the page's tests; a planar elastica as the photograph of a beam."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from _folders import (
+    beam_entry,
+    capture_entry,
+    coupon_entry,
+    outline_columns,
+    write_experiment,
+)
+from scipy.integrate import solve_bvp
+
+from calibration.search import Estimate
+from calibration.study import Calibration
+
+RADIUS, LENGTH = 0.010, 0.050
+
+
+def elastica(shear_modulus: float) -> tuple[np.ndarray, np.ndarray]:
+    """Upper and lower edge [mm], (25, 2) each, of a round bar that hangs from a clamp at rho = 1000 kg/m3:
+    inextensible, E I theta'' = w (L - s) cos theta, theta the slope downwards, E = 3 G."""
+    stiffness = 3.0 * shear_modulus * np.pi * RADIUS**4 / 4.0
+    weight = 1000.0 * 9.81 * np.pi * RADIUS**2
+    s = np.linspace(0.0, LENGTH, 201)
+
+    def slopes(at: np.ndarray, y: np.ndarray) -> np.ndarray:
+        pull = -weight * (LENGTH - at) * np.cos(y[0]) / stiffness
+        return np.vstack([y[1], pull, np.cos(y[0]), -np.sin(y[0])])
+
+    def ends(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.array([a[0], b[1], a[2], a[3]])
+
+    found = solve_bvp(slopes, ends, s, np.zeros((4, len(s))), tol=1e-8)
+    assert found.success
+    theta, _, x, z = found.sol(np.linspace(0.03, 1.0, 25) * LENGTH)
+    middle, across = np.column_stack([x, z]), np.column_stack([np.sin(theta), np.cos(theta)])
+    return 1e3 * (middle + RADIUS * across), 1e3 * (middle - RADIUS * across)
+
+
+def beam_folder(folder: Path) -> Path:
+    """One cantilever of 50 mm with one photograph, and a beam that nobody has traced."""
+    upper, lower = elastica(10e3)
+    photographs = [capture_entry(60.0, "beams/b.csv")]
+    traced = beam_entry("hanging", material="S1", captures=photographs, free_length_mm=50.0)
+    pixel = {"squares": [9, 6], "square_mm": 10.0}
+    photo = {"time_s": 60.0, "photo": "photos/x.png", "photo_checkerboard": pixel}
+    (folder / "photos").mkdir(parents=True)
+    (folder / "photos" / "x.png").write_bytes(b"not read by a fit")
+    return write_experiment(
+        folder,
+        [traced, beam_entry("untraced", material="S1", captures=[photo])],
+        tables={"beams/b.csv": outline_columns(upper, lower)},
+        name="a <made> experiment",
+    )
+
+
+def coupon_folder(folder: Path) -> Path:
+    """Two tensile curves of an incompressible Neo-Hookean material, G = 100 kPa, of two materials."""
+    stretch = np.linspace(1.0, 2.0, 15)
+    table = {"stretch": stretch, "nominal_stress_kPa": 100.0 * (stretch - stretch**-2)}
+    return write_experiment(
+        folder,
+        [coupon_entry("pull-A", "a.csv", material="A"), coupon_entry("pull-B", "a.csv", material="B")],
+        tables={"a.csv": table},
+        materials={"A": {}, "B": {}},
+    )
+
+
+def calibration(label: str = "neo-hookean", *, material: str = "A", **more: Any) -> Calibration:
+    """A converged fit of G = 100 kPa with a made chi-square of 90 over 100 points."""
+    mu, bulk = 1e5, 3e7
+    by_law: dict[str, dict[str, Any]] = {
+        "neo-hookean": {"mu": mu, "lam": bulk - 2.0 * mu / 3.0},
+        "mooney-rivlin": {"c10": 0.4 * mu, "c01": 0.1 * mu, "bulk": bulk},
+        "ogden": {"mu": (2.0 * mu / 3.0,), "alpha": (3.0,), "bulk": bulk},
+    }
+    known = {
+        "material": material,
+        "law": label,
+        "label": label,
+        "status": "converged",
+        "message": "",
+        "density": None,
+        "u": (11.5, 5.7) if label == "neo-hookean" else (11.5, 5.7, 0.2),
+        "parameters": by_law[label],
+        "shear_modulus": mu,
+        "shear_modulus_sd": 700.0,
+        "bulk_modulus": bulk,
+        "estimates": (estimate(), estimate("bulk_ratio", value=300.0, seen="not identified")),
+        "chi2": 90.0,
+        "points": 100,
+        "reduced_chi2": 90.0 / 98.0,
+        "candidates": 60,
+        "search_seconds": 3.0,
+        "polish_seconds": 1.5,
+    }
+    return Calibration(**{**known, **more})
+
+
+def failed(label: str = "neo-hookean", *, material: str = "A") -> Calibration:
+    return Calibration(
+        material=material,
+        law=label,
+        label=label,
+        status="no equilibrium",
+        message="nothing holds <there>",
+        density=None,
+    )
+
+
+def estimate(name: str = "shear_modulus", *, value: float = 1e5, seen: str = "identified") -> Estimate:
+    return Estimate(
+        name=name,
+        unit="Pa" if name.startswith("shear") else "-",
+        value=value,
+        sd=0.007,
+        low=0.98 * value,
+        high=1.02 * value,
+        relative=True,
+        seen=seen,  # type: ignore[arg-type]
+    )
+
+
+class Page(HTMLParser):
+    """What the tests look at: text, values of <data>, sources of pictures, tags, rows of tables."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.words: list[str] = []
+        self.values: list[float] = []
+        self.sources: list[str] = []
+        self.links: list[str] = []
+        self.tags: set[str] = set()
+        self.rows: list[list[str]] = []
+        self.inside = False
+        self.raw = path.read_text(encoding="utf-8")
+        self.feed(self.raw)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+    def row(self, first: str) -> list[str]:
+        """The first row of a table that begins so."""
+        return next(r for r in self.rows if r and r[0] == first)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        found = dict(attrs)
+        self.tags.add(tag)
+        if tag == "data":
+            self.values.append(float(found["value"] or "nan"))
+        if tag == "tr":
+            self.rows.append([])
+        if tag == "td":
+            self.rows[-1].append("")
+            self.inside = True
+        self.sources += [v for k, v in attrs if k == "src" and v]
+        self.links += [v for k, v in attrs if k == "href" and v]
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = self.inside and tag != "td"
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+        if self.inside:
+            self.rows[-1][-1] = (self.rows[-1][-1] + data).strip()

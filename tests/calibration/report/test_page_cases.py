@@ -1,0 +1,109 @@
+"""The page where there are no beams, no results, no error bars, and where fits went wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from report_cases import Page, beam_folder, calibration, coupon_folder, estimate, failed
+
+from calibration.experiment import read
+from calibration.outlines import OutlineObjective
+from calibration.study import HeldOut
+from calibration.study.report import write_report
+
+
+def test_coupons_alone(tmp_path: Path) -> None:
+    results = [
+        calibration(),
+        calibration("ogden", chi2=86.0, note="no <correction>"),
+        failed("mooney-rivlin"),
+    ]
+    path = write_report(tmp_path / "out", results, read(coupon_folder(tmp_path / "data")))
+    page = Page(path)
+    assert path == tmp_path / "out" / "report.html"
+    names = {p.name for p in (tmp_path / "out" / "pictures").iterdir()}
+    assert names == {"A-coupons.png", "A-parameters.png"}
+    assert len(page.sources) == 2
+    assert "1 of 3 fits did not converge" in page.text
+    assert "mooney-rivlin: no equilibrium (nothing holds <there>)" in page.text
+    assert page.row("neo-hookean")[2:4] == ["100.0 ± 0.7", "held at its prior, 300"]
+    assert page.row("neo-hookean")[6] == "2.0"  # chi-square 4 more, one constant less
+    # the curve was made by the same law, incompressible
+    error = page.row("pull-A")
+    assert error[:3] == ["pull-A", "uniaxial", "15"]
+    assert float(error[3].removesuffix(" %")) < 0.5
+    assert float(error[4].removesuffix(" %")) > 5.0
+    assert "ogden: no <correction>" in page.text
+    assert "--material A" in page.text
+    assert "Outlines" not in page.text
+
+
+def test_all_fits_failed(tmp_path: Path) -> None:
+    results = [failed(), failed("ogden"), failed(material="B")]
+    page = Page(write_report(tmp_path, results, read(coupon_folder(tmp_path / "data"))))
+    assert "A: no result, since no law has a fit (2 no equilibrium)." in page.text
+    assert "B: no result, since no law has a fit (1 no equilibrium)." in page.text
+    assert "3 fits: 3 no equilibrium" in page.text
+    assert "--material" not in page.text  # both of the experiment's materials are on the page
+
+
+def test_all_fits_of_beams_failed(tmp_path: Path) -> None:
+    results = [replace(failed(), material="S1")]
+    page = Page(write_report(tmp_path, results, read(beam_folder(tmp_path / "data"))))
+    assert "no beam could be simulated" in page.text
+    assert not page.sources
+
+
+def test_stopped_without_estimates(tmp_path: Path) -> None:
+    stopped = calibration(
+        status="stopped", message="stopped after 3 generations", estimates=(), shear_modulus_sd=float("nan")
+    )
+    page = Page(write_report(tmp_path, [stopped], read(coupon_folder(tmp_path / "data"))))
+    assert (
+        "A: shear modulus 100.0 kPa by neo-hookean; the best so far of a search that was stopped" in page.text
+    )
+    assert page.row("neo-hookean")[1:5] == ["stopped", "100.0", "300, no error bar", "none"]
+    assert {p.name for p in (tmp_path / "pictures").iterdir()} == {"A-coupons.png"}
+
+
+def test_held_out_beams(tmp_path: Path) -> None:
+    held = HeldOut(trial="hanging", shear_modulus=9.8e3, rms_raw=4e-4, rms=1.25e-4, reduced_chi2=1.21)
+    soft = {"mu": 1e4, "lam": 3e6}
+    result = calibration(material="S1", rms=1e-4, held_out=(held,), parameters=soft)
+    page = Page(write_report(tmp_path, [result], read(beam_folder(tmp_path / "data"))))
+    assert page.row("hanging") == ["hanging", "50", "neo-hookean", "9.800", "0.400", "0.125", "1.21"]
+    assert page.row("neo-hookean")[8] == "50 mm: 0.125"
+    assert page.row("neo-hookean")[3] == "not identified; prior 300"
+    names = {p.name for p in (tmp_path / "pictures").iterdir()}
+    assert names == {"S1-held-out.png", "S1-parameters.png", "S1-residuals.png", "beam-hanging.png"}
+
+
+def test_beams_without_equilibrium_at_the_parameters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # a solve that fails in earnest takes minutes
+    monkeypatch.setattr(OutlineObjective, "linearise", lambda _self, _material: False)
+    result = calibration(material="S1", rms=1e-4)
+    page = Page(write_report(tmp_path, [result], read(beam_folder(tmp_path / "data"))))
+    assert "neo-hookean has no equilibrium at these parameters: nothing to draw" in page.text
+    assert {p.name for p in (tmp_path / "pictures").iterdir()} == {"S1-parameters.png"}
+
+
+def test_shape_constants_have_no_digits_where_nobody_sees_them(tmp_path: Path) -> None:
+    unseen = (estimate(), estimate("alpha", value=7.6543, seen="not identified"))
+    seen = (estimate(), estimate("second_share", value=0.2), estimate("bulk_ratio", value=250.0))
+    results = [
+        calibration("ogden", estimates=unseen, blind=({"alpha": 1.0, "bulk_ratio": -0.5},)),
+        calibration("mooney-rivlin", estimates=seen, bulk_modulus=2.5e7),
+    ]
+    page = Page(write_report(tmp_path, results, read(coupon_folder(tmp_path / "data"))))
+    assert page.row("ogden")[4] == "alpha not identified"
+    assert "7.65" not in page.text
+    assert page.row("mooney-rivlin")[3:5] == ["250", "C01 / (C10 + C01) 0.200 [0.196, 0.204]"]
+    assert "ogden: the data do not see alpha up and K/G down by 0.50 as much of its range" in page.text
+
+
+def test_without_results(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="at least one calibration"):
+        write_report(tmp_path, [], read(coupon_folder(tmp_path / "data")))
+    assert not (tmp_path / "report.html").exists()
