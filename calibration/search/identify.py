@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.parameters import Parametrisation
+from calibration.search.polish import AT_BOUND
 
 Array = NDArray[np.float64]
 Seen = Literal["identified", "weak", "not identified", "at a bound"]
@@ -90,7 +91,7 @@ def identify(
 
 
 def _seen(sd: float, prior: float, span: float, u: float, bounds: Array, log: bool) -> Seen:
-    if min(u - bounds[0], bounds[1] - u) < 1e-6 * span:
+    if min(u - bounds[0], bounds[1] - u) < AT_BOUND * span:
         return "at a bound"
     unit = 1.0 if log else max(abs(u), 0.2 * span)
     if sd > PRIOR_SHARE * min(prior, span / np.sqrt(12.0)) or sd > UNSEEN * unit:

@@ -11,6 +11,8 @@ from calibration.search.problem import Problem
 
 Array = NDArray[np.float64]
 
+AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Polished:
@@ -51,7 +53,10 @@ def polish(
         residuals, jacobian = _linearised(problem, u, difference)
         cost = float(residuals @ residuals)
         gradient, curvature = jacobian.T @ residuals, jacobian.T @ jacobian
-        free = ~(((u <= bounds[:, 0]) & (gradient > 0)) | ((u >= bounds[:, 1]) & (gradient < 0)))
+        near = AT_BOUND * (bounds[:, 1] - bounds[:, 0])
+        free = ~(
+            ((u <= bounds[:, 0] + near) & (gradient > 0)) | ((u >= bounds[:, 1] - near) & (gradient < 0))
+        )
         promise = _promise(gradient[free], curvature[np.ix_(free, free)])
         message = ""
         if promise >= tolerance:
