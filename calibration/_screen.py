@@ -80,7 +80,7 @@ def law_table(results: list[Calibration]) -> Table:
             r.label,
             r.status,
             modulus,
-            f"{r.reduced_chi2:.2f}",
+            f"{r.reduced_chi2:.2f}" if r.mean_dice is None else f"Dice {r.mean_dice:.4f}",
             "-" if r.rms is None else f"{r.rms * 1e3:.3f}",
             held or "-",
             ", ".join(e.name for e in r.estimates if e.seen != "identified"),

@@ -15,7 +15,16 @@ from calibration._screen import FitScreen, law_table
 from calibration.errors import InputError
 from calibration.experiment import Experiment, read
 from calibration.search import CmaOptions
-from calibration.study import Calibration, FitOptions, Task, run, stopped, usable, write_card
+from calibration.study import (
+    Calibration,
+    FitOptions,
+    ObjectiveName,
+    Task,
+    run,
+    stopped,
+    usable,
+    write_card,
+)
 from calibration.study.report import write_report
 from tisim import laws
 
@@ -36,6 +45,10 @@ Two laws, one material, cards where factory.build looks for them:
 
   python -m calibration.fit measured/bench --model neo-hookean,ogden --material S1 --cards datasets/materials
 
+As the paper did it, by the overlap of bodies instead of the likelihood (no error bars):
+
+  python -m calibration.fit measured/bench --objective dice --out calibrations/bench-dice
+
 Stopped or killed, the same command goes on where it was; what is known so far is written when it is stopped.
 
 Exit codes: 0 fitted, 1 some fit did not converge, 2 bad input, 130 stopped by Ctrl-C.
@@ -52,6 +65,9 @@ def main(
         str | None, typer.Option(help="Materials, separated by commas. Default: all of the experiment.")
     ] = None,
     terms: Annotated[int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)] = 1,
+    objective: Annotated[
+        str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
+    ] = "likelihood",
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
     ] = None,
@@ -72,11 +88,12 @@ def main(
         data = read(experiment)
         names = _laws(model)
         wanted = _materials(material, data)
+        minimised = _objective(objective)
         folder = out or Path("calibrations") / (experiment.resolve().name)
         _check_folder(folder, overwrite)
         options = FitOptions(
             cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
-            gauss_newton=polish,
+            gauss_newton=polish and minimised == "likelihood",  # Dice is not smooth where it is best
             leave_one_out=held_out,
         )
         tasks = [
@@ -88,6 +105,7 @@ def main(
                 terms=terms if law == "ogden" else 1,
                 options=options,
                 folder=folder / "fits",
+                objective=minimised,
             )
             for law in names
             for m in wanted
@@ -135,6 +153,14 @@ def _laws(model: str) -> list[str]:
     if not names:
         raise InputError("--model: expected at least one law")
     return list(dict.fromkeys(names))
+
+
+def _objective(name: str) -> ObjectiveName:
+    if name == "likelihood":
+        return "likelihood"
+    if name == "dice":
+        return "dice"
+    raise InputError(f"--objective {name}: expected likelihood or dice")
 
 
 def _materials(wanted: str | None, data: Experiment) -> list[str]:

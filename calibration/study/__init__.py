@@ -3,7 +3,7 @@
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration, HeldOut
 from calibration.study.cards import best, card, usable, write_card
-from calibration.study.measurements import Measurements, measurements
+from calibration.study.measurements import Measurements, ObjectiveName, measurements
 from calibration.study.run import Progress, Task, run, stopped
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "FitOptions",
     "HeldOut",
     "Measurements",
+    "ObjectiveName",
     "Progress",
     "Task",
     "best",

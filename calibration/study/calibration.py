@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from calibration.outlines.dice import SCALE
 from calibration.search import Estimate
 
 Status = Literal["converged", "not converged", "no equilibrium", "stopped"]
@@ -34,6 +35,8 @@ class Calibration:
     reduced_chi2: over points minus coordinates. rms: of the outlines' distances, registered [m], or None.
     note: what else the reader must know (a mesh error that could not be corrected).
     estimates, blind: see `calibration.search.identify`; empty where there was no polish.
+    objective: what was minimised, "likelihood" or "dice"; with "dice" chi2 is the sum of (1 - Dice) / SCALE^2
+        over `points` photographs, and no measure of likelihood.
     candidates, without_answer: that CMA-ES asked for, and how many of them had no equilibrium.
     search_seconds, polish_seconds: core time; candidate_seconds: of one candidate, all its trials.
     """
@@ -66,6 +69,12 @@ class Calibration:
     search_seconds: float = 0.0
     polish_seconds: float = 0.0
     wall_seconds: float = 0.0
+    objective: str = "likelihood"
+
+    @property
+    def mean_dice(self) -> float | None:
+        """Mean Dice of the photographs where that was the objective."""
+        return 1.0 - self.chi2 * SCALE**2 / self.points if self.objective == "dice" and self.points else None
 
     @property
     def candidate_seconds(self) -> float:

@@ -96,8 +96,7 @@ def _provenance(
 ) -> str:
     lines = [
         f"Calibrated on experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.fit:"
-        f" best law {chosen.label}, shear modulus {chosen.shear_modulus:.5g} Pa, reduced chi-square"
-        f" {chosen.reduced_chi2:.2f} over {chosen.points} points."
+        f" best law {chosen.label}, shear modulus {chosen.shear_modulus:.5g} Pa, {_agreement(chosen)}."
     ]
     worse = [f"{r.label}: {r.status}{' (' + r.message + ')' if r.message else ''}" for r in results]
     lines.append("Fits: " + "; ".join(worse) + ".")
@@ -106,6 +105,12 @@ def _provenance(
     if experiment.materials[chosen.material].density is None:
         lines.append("Density not stated by the lab: 1000 kg/m3 assumed.")
     return "\n".join(lines)
+
+
+def _agreement(chosen: Calibration) -> str:
+    if chosen.mean_dice is not None:
+        return f"fitted to overlaps, mean Dice {chosen.mean_dice:.4f} of {chosen.points} photographs"
+    return f"reduced chi-square {chosen.reduced_chi2:.2f} over {chosen.points} points"
 
 
 def _certainty(chosen: Calibration) -> str:

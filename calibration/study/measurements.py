@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from calibration.coupons import CouponObjective
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
 from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
+from calibration.outlines.dice import DiceObjective
 from calibration.pokes import PokeObjective
 from calibration.search import Objective
+
+ObjectiveName = Literal["likelihood", "dice"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -32,6 +36,7 @@ def measurements(
     workers: int | None = None,
     fidelity: Fidelity = COARSE,
     reference: Fidelity | None = REFERENCE,
+    objective: ObjectiveName = "likelihood",
 ) -> Measurements:
     """All that the static fit of a material can use. ignored: trials that it cannot, each with the reason.
 
@@ -40,6 +45,15 @@ def measurements(
     belief = experiment.materials[material]
     mine = [t for t in experiment.trials if t.material == material]
     beams = [t for t in mine if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)]
+    if objective == "dice":
+        # no chi-square: nothing else can be added to it
+        return Measurements(
+            material=material,
+            density=belief.density,
+            objectives=(DiceObjective(beams, belief, workers=workers),),
+            outlines=None,
+            ignored=tuple(f"{t.id}: only traced beams have a Dice" for t in mine if t not in beams),
+        )
     objectives: list[Objective] = []
     outlines = None
     if beams:

@@ -6,7 +6,7 @@ import multiprocessing
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from calibration.search import Generation
 from calibration.study._store import FitStore
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
-from calibration.study.measurements import measurements
+from calibration.study.measurements import ObjectiveName, measurements
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
 FORMAT = 2
@@ -36,6 +36,7 @@ class Task:
     terms: int
     options: FitOptions
     folder: Path
+    objective: ObjectiveName = "likelihood"
 
     @property
     def label(self) -> str:
@@ -56,6 +57,7 @@ class Task:
             "generations": self.options.cma.max_generations,
             "restarts": self.options.cma.restarts,
             "polish": self.options.gauss_newton,
+            "objective": self.objective,
             "held_out": self.options.leave_one_out,
         }
         return FitStore(self.folder, self.name, header)
@@ -146,11 +148,12 @@ def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lam
 
     result = calibrate(
         parametrisation(task.law, terms=task.terms),
-        measurements(experiment, task.material, workers=workers),
+        measurements(experiment, task.material, workers=workers, objective=task.objective),
         options=task.options,
         history=store.history(),
         told=told,
     )
+    result = replace(result, objective=task.objective)
     store.finish(result)
     return result
 
@@ -165,10 +168,11 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
             history = [g for g in store.history() if np.isfinite(g.costs).any()]
             if not history:
                 continue
-            data = measurements(experiment, task.material, workers=1)
+            data = measurements(experiment, task.material, workers=1, objective=task.objective)
             if data.outlines is not None:
                 data.outlines.reference = None
             result = best_so_far(parametrisation(task.law, terms=task.terms), data, history)
+            result = replace(result, objective=task.objective)
         found.append(result)
     return found
 

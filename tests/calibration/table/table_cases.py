@@ -1,0 +1,84 @@
+"""An experiment of unloaded beams, whose figures are known whatever the material, and fits as files.
+
+An unloaded beam stays straight; a photograph that lies d too high makes it the cylinder displaced by d.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from _folders import beam_entry, capture_entry, outline_columns, write_experiment
+
+RADIUS_MM, LENGTH_MM = 10.0, 50.0
+
+
+def displaced(folder: Path, shifts_mm: dict[str, tuple[float, ...]], *, gravity: float = 0.0) -> Path:
+    """One 50 mm beam a mixture, a photograph for each shift [mm]; "S0.5" has the softener ratio 0.5."""
+    trials, tables, materials = [], {}, {}
+    x = np.linspace(0.5, LENGTH_MM, 40)
+    for mixture, shifts in shifts_mm.items():
+        captures = []
+        for k, d in enumerate(shifts):
+            path = f"beams/{mixture}-{k}.csv"
+            upper, lower = (np.column_stack([x, np.full_like(x, d + s)]) for s in (RADIUS_MM, -RADIUS_MM))
+            tables[path] = outline_columns(upper, lower)
+            captures.append(capture_entry(10.0 * (k + 1), path))
+        trials.append(
+            beam_entry(
+                f"{mixture}-short",
+                material=mixture,
+                free_length_mm=LENGTH_MM,
+                gravity_m_s2=[0.0, 0.0, gravity],
+                captures=captures,
+            )
+        )
+        materials[mixture] = {
+            "softener_ratio": float(mixture[1:]),
+            "density_kg_m3": 1000.0,
+            "density_sd_kg_m3": 5.0,
+        }
+    return write_experiment(folder, trials, tables=tables, materials=materials)
+
+
+def fit_file(
+    folder: Path, *, digest: str, material: str, law: str, parameters: dict[str, Any], **more: Any
+) -> Path:
+    """MATERIAL-LAW.json as a study leaves it; `more` replaces values of the calibration."""
+    calibration = {
+        "material": material,
+        "law": law,
+        "label": law,
+        "status": "converged",
+        "message": "",
+        "density": 1000.0,
+        "u": [10.0, 5.0],
+        "parameters": parameters,
+        "shear_modulus": 20e3,
+        "shear_modulus_sd": 100.0,
+        "bulk_modulus": 6e6,
+        "estimates": [],
+        "blind": [],
+        "chi2": 100.0,
+        "points": 100,
+        "reduced_chi2": 1.0,
+        "rms": 1e-4,
+        "nuisances": {},
+        "held_out": [],
+        "held_out_note": "",
+        "candidates": 50,
+        "generations": 10,
+        "without_answer": 0,
+        "search_reason": "converged: tolfun",
+        "search_seconds": 5.0,
+        "polish_seconds": 2.0,
+        "wall_seconds": 9.0,
+        **more,
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{material}-{law}.json"
+    header = {"format": 1, "data": digest, "material": material, "law": law}
+    path.write_text(json.dumps({"header": header, "calibration": calibration}), encoding="utf-8")
+    return path
