@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import poke_cases as made
+import made_pokes as made
 import pytest
 
 import tisim

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import poke_cases as made
+import made_pokes as made
 import pytest
 
 import tisim

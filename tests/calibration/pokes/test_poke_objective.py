@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import poke_cases as made
+import made_pokes as made
 import pytest
 
 import tisim
