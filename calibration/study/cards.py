@@ -21,7 +21,7 @@ _STIFFEST, _PER_RATIO = 0.8, 0.8
 
 
 def usable(result: Calibration) -> bool:
-    """Whether a calibration's parameters may go into a card: converged, or at least polished to error bars."""
+    """Whether a calibration's parameters may go into a card: converged, or polished to error bars."""
     return result.status == "converged" or (result.status == "not converged" and bool(result.estimates))
 
 

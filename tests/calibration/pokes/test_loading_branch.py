@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import made_pokes as made
+import numpy as np
 import pytest
 
 import tisim

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
 import made_pokes as made
+import numpy as np
 import pytest
 
 import tisim

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import made_pokes as made
+import numpy as np
 import pytest
 
 import tisim
