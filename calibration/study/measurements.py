@@ -1,4 +1,4 @@
-"""What an experiment holds of one material, as objectives of a fit: any mix of beams, pokes and coupons."""
+"""What an experiment holds of one material, as objectives of a fit: any mix of its trials."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Literal
 
 from calibration.coupons import CouponObjective
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, MaterialBelief, PokeTrial
+from calibration.motion import MarkerObjective
 from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
 from calibration.outlines.dice import DiceObjective
 from calibration.pokes import PokeObjective
@@ -64,14 +65,17 @@ def measurements(
     pokes = PokeObjective(rods, workers=workers) if rods else None
     if pokes is not None:
         objectives.append(pokes)
+    marked = [t for t in mine if isinstance(t, BeamTrial) and t.markers]
+    objectives += [settled_markers(t, belief, workers=workers) for t in marked]
     if not objectives:
         raise InputError(
             f"{experiment.folder / 'experiment.yaml'}: material {material}: expected at least one traced"
-            " outline, poke or coupon to fit (photographs: run calibration.reconstruct first)"
+            " outline, marker, poke or coupon to fit (photographs: run calibration.reconstruct first)"
         )
-    used = {t.id for t in mine if t in beams or t in rods or isinstance(t, CouponTrial)}
+    used = {t.id for t in mine if t in beams or t in rods or t in marked or isinstance(t, CouponTrial)}
     ignored = tuple(f"{t.id}: {_why(t)}" for t in mine if t.id not in used)
-    parts = () if pokes is None else pokes.left_out
+    parts = [f"{t.id}: the motion of its markers (calibration.motion fits it, with damping)" for t in marked]
+    parts += [] if pokes is None else pokes.left_out
     return Measurements(
         material=material,
         density=belief.density,
@@ -82,7 +86,17 @@ def measurements(
     )
 
 
+def settled_markers(
+    trial: BeamTrial, belief: MaterialBelief, *, workers: int | None = None
+) -> MarkerObjective:
+    """Where a beam's markers have come to rest: the mean of the last third of their record."""
+    first = min(float(m.time[0]) for m in trial.markers)
+    last = min(float(m.time[-1]) for m in trial.markers)
+    window = 2.0 / 3.0 * (last - first)
+    return MarkerObjective(trial, belief, stages=("settled",), window=window, workers=workers)
+
+
 def _why(trial: object) -> str:
     if isinstance(trial, BeamTrial):
-        return "markers through time are fitted by calibration.motion" if trial.markers else "not traced yet"
+        return "not traced yet"
     return "a poke beside an inclusion given as a mesh cannot be simulated yet"
