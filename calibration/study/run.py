@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
+from multiprocessing import connection
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +114,9 @@ def _run(
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     pool = ProcessPoolExecutor(
-        max_workers=min(workers, len(waiting)), mp_context=multiprocessing.get_context("spawn")
+        max_workers=min(workers, len(waiting)),
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_end_with_parent,
     )
     futures: dict[Future[Calibration], Task] = {pool.submit(fit_task, t, workers=1): t for t in waiting}
     try:
@@ -156,6 +160,18 @@ def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lam
     result = replace(result, objective=task.objective)
     store.finish(result)
     return result
+
+
+def _end_with_parent() -> None:
+    """Ends this worker when its parent is killed: the next run must find its files left alone."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_watch, args=(parent.sentinel,), daemon=True).start()
+
+
+def _watch(sentinel: int) -> None:
+    connection.wait([sentinel])
+    os._exit(1)
 
 
 def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:

@@ -176,3 +176,17 @@ def test_a_malformed_folder_writes_nothing(tmp_path: Path) -> None:
     assert "free_length_mm" in done.stderr
     assert "experiment.yaml" in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no SIGKILL on this system")
+def test_workers_of_a_killed_fit_write_no_more(fitted: Path, tmp_path: Path) -> None:
+    """Two fits in two processes; the parent is killed, its workers must not go on with the files."""
+    out = tmp_path / "out"
+    arguments = [str(fitted / "experiment"), "--model", "neo-hookean,mooney-rivlin", "--out", str(out)]
+    history = out / "fits" / "S0-mooney-rivlin.jsonl"
+    _interrupt([*arguments, "--workers", "2"], history, signal.SIGKILL, after=3)
+    time.sleep(5.0)
+    before = history.read_text()
+    time.sleep(5.0)
+    assert history.read_text() == before
+    assert not list((out / "fits").glob("*.json"))
