@@ -1,7 +1,7 @@
 """What a candidate and a calibration cost, by law, beside CalculiX at equal error.
 
     python -m calibration.fit EXPERIMENT --model all --out FITS
-    python benchmarks/calibration.py EXPERIMENT FITS [--no-peers]
+    python benchmarks/calibration_cost.py EXPERIMENT FITS [--no-peers]
 
 EXPERIMENT: beams of 50 and 100 mm and a 150 mm bridge, as in measured/bench/clean. Set OMP_NUM_THREADS,
 MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1; CalculiX (`ccx`) is the peer. A candidate: all beams of one
