@@ -38,8 +38,8 @@ class Fidelity:
 
 # The beams that a search solves (14 core-ms each), and those that correct them where nuisances are taken.
 # Few iterations: a beam that has an equilibrium takes 4, and one that has none costs 50 times as much anyway.
-# What the search's mesh gets wrong (1.2 % of the deflection at most, waves of 10 to 20 micrometres along a strongly
-# bent edge) is small and hardly depends on the material, but the likelihood of nine photographs sees it.
+# What the search's mesh gets wrong (1.2 % of the deflection at most, waves of 10 to 20 micrometres along a
+# strongly bent edge) is small and hardly depends on the material, but nine photographs' likelihood sees it.
 # Of what they correct, the reference's own error is a fifth at most (15 micrometres on the 100 mm beam).
 COARSE = Fidelity(rings=1, solver=Solver(max_iterations=12))
 REFERENCE = Fidelity(layer=0.0025, rings=4, solver=Solver(max_iterations=12))
