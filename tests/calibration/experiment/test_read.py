@@ -276,14 +276,14 @@ def test_any_good_experiment_comes_out_a_thousandth_in_metres(
     )
     outline = one.captures[0].outline
     assert outline is not None
-    np.testing.assert_allclose(outline.upper, sides[0] / 1000, rtol=1e-14)
-    np.testing.assert_allclose(outline.lower, sides[1] / 1000, rtol=1e-14)
+    np.testing.assert_allclose(outline.upper, sides[0] / 1000, rtol=1e-14, atol=1e-300)
+    np.testing.assert_allclose(outline.lower, sides[1] / 1000, rtol=1e-14, atol=1e-300)
     assert two.block.size == pytest.approx(tuple(v / 1000 for v in block), rel=1e-14)
-    np.testing.assert_allclose(two.record.depth, depth / 1000, rtol=1e-14)
+    np.testing.assert_allclose(two.record.depth, depth / 1000, rtol=1e-14, atol=1e-300)
     np.testing.assert_array_equal(two.record.time, times)
     assert math.hypot(*two.direction) == pytest.approx(1.0, abs=1e-12)
     np.testing.assert_allclose(np.cross(two.direction, push), 0.0, atol=1e-12)
-    np.testing.assert_allclose(three.stress, stress * 1000, rtol=1e-14)
+    np.testing.assert_allclose(three.stress, stress * 1000, rtol=1e-14, atol=1e-300)
 
 
 def test_the_shared_experiments_read() -> None:
