@@ -22,7 +22,7 @@ LAWS = (
 )
 
 Modulus = Annotated[float, Field(gt=0, lt=1e12)]
-NonNegative = Annotated[float, Field(ge=0, lt=1e12)]
+Real = Annotated[float, Field(gt=-1e12, lt=1e12)]
 
 
 class Lame(Strict):
@@ -33,16 +33,17 @@ class Lame(Strict):
 
 
 class MooneyRivlin(Strict):
-    """c10, c01, bulk [Pa]: shear modulus 2 (c10 + c01)."""
+    """c10, c01, bulk [Pa]: shear modulus 2 (c10 + c01). One of the two may be negative: calibrations on
+    moderate strains find that at times."""
 
-    c10: NonNegative
-    c01: NonNegative
+    c10: Real
+    c01: Real
     bulk: Modulus
 
     @model_validator(mode="after")
     def _stiff(self) -> Self:
         if self.c10 + self.c01 <= 0:
-            raise ValueError("c10 and c01 are both 0: expected a positive sum")
+            raise ValueError("c10 + c01: expected a positive sum")
         return self
 
 

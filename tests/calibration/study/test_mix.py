@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ from _folders import beam_entry, coupon_entry, marker_columns, measured, poke_en
 from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.parameters import parametrisation
-from calibration.study import calibrate, measurements
+from calibration.study import calibrate, measurements, write_card
+from factory.materials import load_card
 
 TIME = np.arange(0.0, 3.0, 0.02)
 
@@ -69,3 +71,15 @@ def test_the_bar_at_rest() -> None:
     assert found.status == "converged"
     # others' static fits: E of 267 to 298 kPa; ours of one trial each: 250 to 279 (docs/bar.md)
     assert 250e3 < 3.0 * found.shear_modulus < 298e3
+
+
+def test_the_factory_takes_a_card_with_a_negative_second_constant(tmp_path: Path) -> None:
+    experiment = read(mixed(tmp_path, kinds="coupon"))
+    p = parametrisation("mooney-rivlin")
+    fit = calibrate(p, measurements(experiment, "S0", workers=1))
+    u = np.array([np.log(1e4), np.log(300.0), -0.3])
+    odd = replace(fit, u=tuple(u), parameters=p.parameters(u), shear_modulus=1e4)
+    write_card(tmp_path / "cards", [odd], experiment)
+    material = load_card("S0", tmp_path / "cards").for_law("mooney-rivlin")
+    assert material.parameters["c01"] == pytest.approx(-1500.0)
+    assert material.parameters["c10"] == pytest.approx(6500.0)
