@@ -16,6 +16,7 @@ converged: the end sinks by 69 mm
 """
 
 from tisim import export, laws, mesh
+from tisim._specimen import rest_positions
 from tisim.export import surface_triangles, write
 from tisim.laws import Moduli
 from tisim.materials import material_from_moduli
@@ -27,6 +28,7 @@ from tisim.scene import (
     Block,
     BoxInclusion,
     Circle,
+    Clamps,
     Coupon,
     CylinderInclusion,
     Inclusion,
@@ -37,7 +39,9 @@ from tisim.scene import (
     Rod,
     Scene,
     Solver,
+    Specimen,
     SphereInclusion,
+    Void,
 )
 from tisim.simulate import simulate
 
@@ -46,6 +50,7 @@ __all__ = [
     "Block",
     "BoxInclusion",
     "Circle",
+    "Clamps",
     "Cost",
     "Coupon",
     "CylinderInclusion",
@@ -60,13 +65,16 @@ __all__ = [
     "Rod",
     "Scene",
     "Solver",
+    "Specimen",
     "SphereInclusion",
     "Status",
+    "Void",
     "export",
     "laws",
     "material_from_moduli",
     "mesh",
     "picture",
+    "rest_positions",
     "simulate",
     "surface_triangles",
     "write",

@@ -28,6 +28,9 @@ class Layout:
     """What depends on the mesh and its supports only: quadrature, numbering, sparsity, symbolic factor.
 
     held: boolean (n, 3), components of free nodes that may not move (mirror planes, platens).
+    stiffness, density: (m, q), factors of the material's stiffness and density at the quadrature points, None
+        where all are 1. The energy is linear in the stiffness (the element's mean volumetric strain becomes
+        the mean weighted by it), so the kernels take them as part of their weights.
     """
 
     mesh: Mesh
@@ -37,6 +40,8 @@ class Layout:
     pattern: _pattern.Pattern
     solver: DirectSolver
     _scratch: Array = field(repr=False)
+    stiffness: Array | None = None
+    density: Array | None = None
 
     @staticmethod
     def build(mesh: Mesh, fixed: NDArray[np.int32], held: NDArray[np.bool_] | None = None) -> Layout:
@@ -61,9 +66,13 @@ class Layout:
         return 2.0 ** len(self.mesh.symmetry)
 
     def nodal_volume(self) -> Array:
-        """Rest volume by node, the integral of each shape function, shape (n,); sums to the volume."""
+        """Rest volume by node, the integral of each shape function, shape (n,); sums to the volume.
+
+        Where the layout has a density, that of the volume at the material's stated density with as much mass.
+        """
         ref, mesh = self.reference, self.mesh
-        shares = ref.weights @ ref.values
+        weights = ref.weights if self.density is None else ref.weights * self.density
+        shares = weights @ ref.values
         volume = np.zeros(mesh.n_nodes)
         np.add.at(volume, mesh.elements.ravel(), shares.ravel())
         return volume
@@ -108,6 +117,8 @@ class Body:
         self._energy, self._forces, self._stiffness, self._pressures = element_kernels(
             law.name, sparse=layout.mesh.kind == "hex8"
         )
+        weights = layout.reference.weights
+        self._weights = weights if layout.stiffness is None else weights * layout.stiffness
         self._prm = np.ascontiguousarray(law.pack(material.parameters), dtype=np.float64)
         kappa = law.kappa(material.parameters)
         wanted = POINTWISE[layout.mesh.kind] * self.moduli.shear - (self.moduli.bulk - kappa)
@@ -116,14 +127,14 @@ class Body:
 
     def _common(self, x: Array) -> tuple[Any, ...]:
         ref = self.layout.reference
-        return (x, self.layout.mesh.elements, ref.gradients, ref.weights, self._prm, self._kp, self._kb)
+        return (x, self.layout.mesh.elements, ref.gradients, self._weights, self._prm, self._kp, self._kb)
 
     def pressures(self, x: Array, du: Array | None = None) -> Array:
         """Element pressures kb mean(theta) at x, advanced to first order by du (n, 3), shape (m,) [Pa]."""
         ref, out = self.layout.reference, np.zeros(self.layout.mesh.n_elements)
         if self._kb != 0.0:
             du = np.zeros_like(x) if du is None else du
-            self._pressures(x, du, self.layout.mesh.elements, ref.gradients, ref.weights, self._kb, out)
+            self._pressures(x, du, self.layout.mesh.elements, ref.gradients, self._weights, self._kb, out)
         return out
 
     def energy(self, x: Array) -> tuple[float, float]:

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from tisim import laws
+from tisim._specimen import half_sizes, is_ideal, skin_profile
 from tisim.mesh import Mesh
 from tisim.scene import (
     Beam,
     Block,
     BoxInclusion,
     Circle,
+    Clamps,
     Coupon,
     CylinderInclusion,
     Material,
@@ -24,11 +26,15 @@ from tisim.scene import (
     Rod,
     Scene,
     Solver,
+    Specimen,
     SphereInclusion,
+    Void,
 )
 
 LARGEST = 10.0  # of any length [m]: beyond it somebody wrote millimetres
 STEEPEST = 45.0  # of a push against the normal [degrees]
+MOST_LOSS = 0.95  # of stiffness or weight, anywhere in a specimen
+MOST_TILT = 0.8  # of a clamp [rad]
 
 
 class _FieldError(Exception):
@@ -96,7 +102,7 @@ def _a(field: str, value: object, kinds: tuple[type, ...]) -> None:
 
 def _material(material: Material) -> None:
     _a("material", material, (Material,))
-    _one_of("material.law", material.law, laws.names())
+    _one_of("material.law", material.law, laws.all_names())
     _positive("material.density", material.density, "a density above 0 kg/m3")
     try:
         laws.get(material.law).check(material.parameters)
@@ -157,6 +163,75 @@ def _beam(scene: Beam) -> None:
     if scene.tip_mass and scene.supports == "clamped-clamped":
         raise _FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
     _mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
+    _specimen(scene)
+    _clamps(scene)
+    if scene.solver.method != "static" and not is_ideal(scene):
+        wanted = "static, the only one offered where the specimen or the clamps are not ideal"
+        raise _FieldError("solver.method", wanted, scene.solver.method)
+
+
+def _within(field: str, value: object, limit: float, unit: str) -> None:
+    _number(field, value, f"a number between -{limit:.4g} and {limit:.4g}{unit}", lambda v: abs(v) <= limit)
+
+
+def _specimen(scene: Beam) -> None:
+    s = scene.specimen
+    _a("specimen", s, (Specimen,))
+    b, h = half_sizes(scene.section)
+    # an arc of less than half a turn whose inside is not folded; sizes and moduli that stay well above 0
+    _within("specimen.curvature", s.curvature, min(3.0 / scene.length, 0.5 / h), " /m on this beam")
+    along = MOST_LOSS / (0.5 * scene.length)
+    _within("specimen.taper", s.taper, 0.5 / (0.5 * scene.length), " /m on this beam")
+    _within("specimen.axial_gradient", s.axial_gradient, along, " /m on this beam")
+    _within("specimen.density_gradient", s.density_gradient, along, " /m on this beam")
+    _within("specimen.transverse_gradient", s.transverse_gradient, MOST_LOSS / h, " /m on this beam")
+    _number(
+        "specimen.skin_thickness",
+        s.skin_thickness,
+        f"a length above 0 and up to half the section, {min(b, h):g} m",
+        lambda v: 0.0 < v <= min(b, h),
+    )
+    _number("specimen.skin", s.skin, f"a number not below -{MOST_LOSS:g}", lambda v: v >= -MOST_LOSS)
+    c0, cy, cz = skin_profile(scene)
+    lowest = c0 + min(cy, 0.0) + min(cz, 0.0)
+    if isinstance(scene.section, Circle):
+        lowest = c0 + min(cy, cz, 0.0)
+    if lowest < 1.0 - MOST_LOSS:
+        wanted = "a skin whose stiffness a quadratic of y and z can stand for (it falls to 0 inside)"
+        raise _FieldError("specimen.skin", wanted, s.skin)
+    if s.void is None:
+        return
+    _a("specimen.void", s.void, (Void,))
+    _number(
+        "specimen.void.position",
+        s.void.position,
+        f"a place on the beam, 0 to {scene.length:g} m",
+        lambda v: 0.0 <= v <= scene.length,
+    )
+    _length("specimen.void.length", s.void.length)
+    _number(
+        "specimen.void.fraction",
+        s.void.fraction,
+        f"a part between 0 and {MOST_LOSS:g}",
+        lambda v: 0.0 <= v <= MOST_LOSS,
+    )
+
+
+def _clamps(scene: Beam) -> None:
+    c = scene.clamps
+    _a("clamps", c, (Clamps,))
+    _within("clamps.tilt", c.tilt, MOST_TILT, " rad")
+    _within("clamps.far_tilt", c.far_tilt, MOST_TILT, " rad")
+    _vector("clamps.far_shift", c.far_shift, 2)
+    if max(abs(v) for v in c.far_shift) > 0.5 * scene.length:
+        raise _FieldError(
+            "clamps.far_shift", f"less than half the length, {0.5 * scene.length:g} m", c.far_shift
+        )
+    if scene.supports == "clamped-free" and (c.far_tilt or any(c.far_shift)):
+        name, value = ("far_tilt", c.far_tilt) if c.far_tilt else ("far_shift", c.far_shift)
+        raise _FieldError(f"clamps.{name}", "0 on a beam without a far clamp", value)
+    _not_negative("clamps.compliance", c.compliance, "a compliance of 0 rad/(N m) or more")
+    _number("clamps.squeeze", c.squeeze, "a part between 0 and 0.5", lambda v: 0.0 <= v <= 0.5)
 
 
 def _poke(scene: Poke) -> None:

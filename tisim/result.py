@@ -41,7 +41,8 @@ class Cost:
 class Result:
     """The answer to one scene.
 
-    mesh: rest mesh the answer lives on.
+    mesh: rest mesh the answer lives on; of a beam with an imperfect specimen, the ideal prism's (see
+        `tisim.rest_positions`).
     load: what the frames are counted by, shape (f,): beam = part of the load (1.0 = all), poke = depth
         [m], coupon = stretch, dynamics = time [s].
     positions: node positions [m], shape (f, n, 3).

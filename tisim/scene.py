@@ -16,7 +16,7 @@ ElementChoice = Literal["default", "tet4", "tet10", "hex8"]
 class Material:
     """A constitutive law with its parameters.
 
-    law: a name in `tisim.laws.names()`.
+    law: a name in `tisim.laws.all_names()`.
     parameters: by name as the law's docstring states them (moduli in Pa); a tuple for a series (Ogden).
     density: rest density [kg/m3].
     """
@@ -66,6 +66,64 @@ class Solver:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Void:
+    """A stretch of a beam in which material is missing: bubbles, a hollow.
+
+    position: of its middle along the beam [m].
+    length: over which the whole of `fraction` would be missing [m]; the loss is a raised cosine, half of its
+        peak at position -+ length / 2, so that its integral along the beam is fraction * length.
+    fraction: peak loss of the section's stiffness, in bending and stretching, and of its weight, 0 to 0.95.
+    """
+
+    position: float
+    length: float = 0.015
+    fraction: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Specimen:
+    """How a real beam departs from the ideal prism; all zero: the ideal one. x runs along the beam at rest.
+
+    curvature: stress-free, the axis is an arc in the plane y = 0 that leaves x = 0 along x; positive is bent
+        upwards, to +z [1/m].
+    taper: relative change of the section's size per metre along x, 0 in the middle of the length [1/m].
+    axial_gradient, density_gradient: the same for the modulus and for the density [1/m].
+    transverse_gradient: relative change of the modulus per metre along z, 0 on the axis [1/m].
+    skin: relative excess of stiffness of the outer layer, which is skin_thickness deep [m]. The layer is
+        thinner than an element, so its excess is spread over the section as a quadratic of y and z that has
+        the layer's stretching stiffness and its bending stiffnesses about y and z.
+    """
+
+    curvature: float = 0.0
+    taper: float = 0.0
+    axial_gradient: float = 0.0
+    density_gradient: float = 0.0
+    transverse_gradient: float = 0.0
+    skin: float = 0.0
+    skin_thickness: float = 0.001
+    void: Void | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clamps:
+    """How grips depart from ideal ones, each of which holds the section of its end upright and in shape.
+
+    tilt: the near clamp's face, turned about (0, 0, 0) and y; positive lifts the free end, to +z [rad].
+    far_tilt: the far clamp's, about (length, 0, 0); positive is a positive slope dz/dx as well [rad].
+    far_shift: (dx, dz) of the far clamp [m].
+    compliance: each clamp turns, besides, by this times the bending moment that it carries, about the middle
+        of its face [rad/(N m)]; found to 1e-4 of the angle.
+    squeeze: the held section is lower (z) by this part, and wider (y) so that its area stays.
+    """
+
+    tilt: float = 0.0
+    far_tilt: float = 0.0
+    far_shift: tuple[float, float] = (0.0, 0.0)
+    compliance: float = 0.0
+    squeeze: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
 class Beam:
     """A prismatic beam along x, held in grips at x < 0 (and x > length), under gravity and a tip load.
 
@@ -77,6 +135,8 @@ class Beam:
     mesh: an own mesh with node sets "clamp" (and "far_clamp"), instead of the structured one;
         facet set "tip" where a tip force acts.
     layer: length of the structured elements along the beam [m]; rings: elements from axis to surface.
+    specimen, clamps: how body and grips depart from the ideal ones (static beams only). The result's mesh
+        stays the ideal prism's; `tisim.rest_positions` is where its nodes lie free of stress.
     """
 
     material: Material
@@ -91,6 +151,8 @@ class Beam:
     mesh: Mesh | None = None
     layer: float = 0.007
     rings: int = 2
+    specimen: Specimen = field(default_factory=Specimen)
+    clamps: Clamps = field(default_factory=Clamps)
     solver: Solver = field(default_factory=Solver)
 
 

@@ -42,7 +42,7 @@ def simulate(
     has no answer raises nothing: its `Result.status` says so, and its good frames are kept.
     Results are the same bytes whatever `workers` is. Beams on one mesh are solved in runs of up to
     `tisim._batch.RUN` neighbours in parameters, each started from the one before, so a beam's answer
-    depends on its batch by less than the solver's tolerance.
+    depends on its batch by less than the solver's tolerance (and 1e-4 of the angles of clamps that yield).
     A worker process that dies (killed, out of memory) is replaced and its scenes are solved again, once.
 
     Memory grows linearly in the batch: a result holds 24 bytes a node and frame (default beam of 100 mm:

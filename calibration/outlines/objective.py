@@ -21,6 +21,7 @@ from calibration.outlines._noise import (
     smooth_basis,
     whiten,
 )
+from calibration.outlines.setup import Setup
 from tisim import Beam, Circle, Material, Result, Solver, simulate
 
 Array = NDArray[np.float64]
@@ -90,6 +91,7 @@ class OutlineObjective:
     fidelity: of the beams that a search solves; reference: of those that correct them (None: no correction).
     uncorrected: why there is no correction, where the law has no equilibrium on the reference mesh.
     What the reference still misses is a nuisance, one amplitude a trial, of MESH_LEFT times the correction.
+    setup: what is known of rig and camera, applied to every scene and picture; its doubts are nuisances.
     """
 
     def __init__(
@@ -99,6 +101,7 @@ class OutlineObjective:
         *,
         fidelity: Fidelity = COARSE,
         reference: Fidelity | None = REFERENCE,
+        setup: Setup | None = None,
         workers: int | None = None,
     ) -> None:
         self.trials = [t for t in trials if any(c.outline for c in t.captures)]
@@ -112,6 +115,7 @@ class OutlineObjective:
         self.density = belief.density
         self.fidelity = fidelity
         self.reference = reference
+        self.setup = setup
         self.workers = workers
         self.photographs = []
         for i, t in enumerate(self.trials):
@@ -145,6 +149,8 @@ class OutlineObjective:
             return True
         scenes = [self._beam(t, material) for t in self.trials]
         scenes += [scene for n in varied for scene in self._moved(n, material)]
+        doubts = [] if self.setup is None else list(self.setup.doubts())
+        scenes += [self._beam(t, material, setup=off) for _, off in doubts for t in self.trials]
         results = simulate(scenes, workers=self.workers)
         if not all(r.ok for r in results):
             return False
@@ -166,6 +172,12 @@ class OutlineObjective:
             change = self._smooth(self._distances(moved) - self._base)
             columns.append(-self._whiten(change) * (n.sd / n.step))
             names.append(n.name)
+        for name, off in doubts:
+            moved = [rest.pop(0) for _ in self.trials]
+            change = self._smooth(self._distances(moved, off) - self._base)
+            if change.any():  # an effect may touch trials of one kind only
+                columns.append(-self._whiten(change))
+                names.append(name)
         self.nuisances = Nuisances(tuple(names), np.column_stack(columns))
         return True
 
@@ -231,14 +243,28 @@ class OutlineObjective:
         n = len(materials)
         return [[results[i * n + k] for i in range(len(self.trials))] for k in range(n)]
 
-    def distances(self, results: Sequence[Result], photograph: Photograph) -> list[Feet]:
-        """Feet of a photograph's points, upper and lower edge, on the simulated beam."""
+    def distances(
+        self, results: Sequence[Result], photograph: Photograph, setup: Setup | None = None
+    ) -> list[Feet]:
+        """Feet of a photograph's points, upper and lower edge, on the simulated beam as the camera shows it.
+
+        setup: instead of the objective's own."""
         upper, lower = edges(results[photograph.trial])
+        seen = setup or self.setup
+        if seen is not None:
+            trial = self.trials[photograph.trial]
+            upper, lower = seen.image(upper, trial), seen.image(lower, trial)
         return [feet(photograph.outline.upper, upper), feet(photograph.outline.lower, lower)]
 
-    def _beam(self, trial: BeamTrial, material: Material, fidelity: Fidelity | None = None) -> Beam:
+    def _beam(
+        self,
+        trial: BeamTrial,
+        material: Material,
+        fidelity: Fidelity | None = None,
+        setup: Setup | None = None,
+    ) -> Beam:
         f = fidelity or self.fidelity
-        return Beam(
+        beam = Beam(
             material=replace(material, density=self.density),
             length=trial.free_length,
             section=trial.section,
@@ -251,12 +277,15 @@ class OutlineObjective:
             rings=f.rings,
             solver=f.solver,
         )
+        held = setup or self.setup
+        return beam if held is None else held.bend(beam, trial)
 
     def _moved(self, nuisance: Admitted, material: Material) -> list[Beam]:
         return [nuisance.moved(self._beam(self.trials[i], material)) for i in nuisance.trials]
 
-    def _distances(self, results: Sequence[Result]) -> Array:
-        return np.concatenate([f.distance for p in self.photographs for f in self.distances(results, p)])
+    def _distances(self, results: Sequence[Result], setup: Setup | None = None) -> Array:
+        parts = [f.distance for p in self.photographs for f in self.distances(results, p, setup)]
+        return np.concatenate(parts)
 
     def _by_photograph(self, values: Array) -> list[tuple[Photograph, Array]]:
         ends = np.cumsum([len(p.root) for p in self.photographs])[:-1]

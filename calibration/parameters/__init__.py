@@ -22,7 +22,8 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
 
     A law without a file here is searched in its small-strain moduli. ValueError names the laws there are.
     """
-    laws.get(law)
+    if law not in laws.names():  # of others, the small-strain moduli need not be all there is to search
+        raise ValueError(f"law: expected one of {', '.join(laws.names())}, got {law!r}")
     return _OWN[law](terms) if law in _OWN else two_moduli(law)
 
 

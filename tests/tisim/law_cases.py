@@ -19,6 +19,7 @@ LAWS = (
     "mooney-rivlin",
     "ogden",
     "arruda-boyce",
+    "yeoh",
 )
 AB = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 _shear = st.floats(1e3, 1e5)
@@ -41,6 +42,8 @@ def materials(draw: st.DrawFn, law: str) -> Material:
         parameters = {"mu": tuple(mu), "alpha": tuple(alpha), "bulk": ratio * G}
     elif law == "arruda-boyce":
         parameters = {"mu": G, "locking": draw(st.floats(1.5, 6.0)), "bulk": ratio * G}
+    elif law == "yeoh":
+        parameters = {"mu": G, "stiffening": draw(st.floats(0.0, 1.5)), "bulk": ratio * G}
     else:
         parameters = {"mu": G, "lam": (ratio - 2 / 3) * G}
     return Material(law=law, parameters=parameters)
@@ -103,6 +106,9 @@ def energy(material: Material, F: np.ndarray, *, printed: bool = False) -> np.nd
             p["mu"]
             * sum(c / p["locking"] ** (2 * i) * (i1 ** (i + 1) - 3 ** (i + 1)) for i, c in enumerate(AB))
             + p["bulk"] / 2 * np.log(J) ** 2
+        ),
+        "yeoh": lambda: (
+            p["mu"] / 2 * ((i1 - 3) + p["stiffening"] * (i1 - 3) ** 2) + p["bulk"] / 2 * np.log(J) ** 2
         ),
     }
     return forms[material.law]()

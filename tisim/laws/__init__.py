@@ -9,24 +9,34 @@ from tisim.laws import (
     ogden,
     st_venant_kirchhoff,
     stable_neo_hookean,
+    yeoh,
 )
 from tisim.laws._law import Law, Moduli, Parameters
 
+_PAPER = (
+    st_venant_kirchhoff.LAW,
+    neo_hookean.LAW,
+    stable_neo_hookean.LAW,
+    mooney_rivlin.LAW,
+    ogden.LAW,
+    arruda_boyce.LAW,
+)
 _LAWS: dict[str, Law] = {
     law.name: law
     for law in (
-        st_venant_kirchhoff.LAW,
-        neo_hookean.LAW,
-        stable_neo_hookean.LAW,
-        mooney_rivlin.LAW,
-        ogden.LAW,
-        arruda_boyce.LAW,
+        *_PAPER,
+        yeoh.LAW,
     )
 }
 
 
 def names() -> tuple[str, ...]:
-    """Names of the laws, in the paper's order."""
+    """Names of the paper's laws, in its order: what is calibrated, compared and written on cards."""
+    return tuple(law.name for law in _PAPER)
+
+
+def all_names() -> tuple[str, ...]:
+    """Names of all laws that a scene may have."""
     return tuple(_LAWS)
 
 
@@ -38,4 +48,4 @@ def get(name: str) -> Law:
         raise ValueError(f"law: expected one of {', '.join(_LAWS)}, got {name!r}") from None
 
 
-__all__ = ["Law", "Moduli", "Parameters", "get", "names"]
+__all__ = ["Law", "Moduli", "Parameters", "all_names", "get", "names"]

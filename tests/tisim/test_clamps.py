@@ -1,0 +1,310 @@
+"""Imperfect clamps against turned models, statics and beam theory; and how surely they are solved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from static_cases import deflection, neo_hookean
+
+import tisim
+from tisim import _imperfect
+from tisim._batch import make_chunks
+from tisim._beam import beam_layout, solve_beam
+from tisim._imperfect import clamp_moments, imperfect_system
+from tisim.result import Status
+from tisim.scene import Beam, Circle, Clamps, Material, Solver, Specimen, Void
+
+G, DENSITY = 9.81, 1000.0
+SOFT = neo_hookean(1.5e4, 50.0)
+MU, RATIO = 2e6, 200.0
+STIFF = neo_hookean(MU, RATIO)  # sags by 0.1 to 0.2 mm: small strains
+YOUNG = 9 * RATIO / (3 * RATIO + 1) * MU
+RADIUS = 0.004
+BENDING = YOUNG * np.pi * RADIUS**4 / 4
+LINE = DENSITY * G * np.pi * RADIUS**2
+BRIDGE = {"length": 0.15, "supports": "clamped-clamped"}
+
+
+def soft(**kw):
+    return Beam(**({"material": SOFT, "length": 0.1, "rings": 1} | kw))
+
+
+def slender(**kw):
+    return Beam(
+        **(
+            {"material": STIFF, "length": 0.1, "section": Circle(radius=RADIUS), "rings": 1, "layer": 0.005}
+            | kw
+        )
+    )
+
+
+def turn(angle):
+    """Rotation from x towards z."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
+
+
+def moments(result):
+    scene = result.scene
+    layout = beam_layout(scene)
+    return clamp_moments(scene, layout, imperfect_system(scene, layout), result.positions[0])
+
+
+def near_angle(result):
+    """Of the near face, from its nodes [rad]."""
+    clamp = result.mesh.node_sets["clamp"]
+    up = result.mesh.nodes[clamp, 2]
+    return np.arctan2(-(result.positions[0][clamp, 0] @ up), result.positions[0][clamp, 2] @ up)
+
+
+@pytest.mark.parametrize("angle", [0.1, -0.3])
+def test_tilted_cantilever_is_a_cantilever_under_turned_gravity(angle):
+    result = solve_beam(soft(clamps=Clamps(tilt=angle)))
+    gravity = tuple(turn(-angle) @ [0.0, 0.0, -G])
+    same = solve_beam(soft(gravity=gravity))
+    assert result.ok
+    assert np.abs(result.positions[0] - same.positions[0] @ turn(angle).T).max() < 1e-6 * 0.1
+    assert result.support_force[0] == pytest.approx(turn(angle) @ same.support_force[0], rel=1e-5, abs=1e-6)
+    assert near_angle(result) == pytest.approx(angle, rel=1e-9)
+
+
+def test_bridge_with_both_clamps_turned_and_moved_alike_is_a_turned_bridge():
+    angle = 0.08
+    shift = (0.15 * (np.cos(angle) - 1), 0.15 * np.sin(angle))
+    result = solve_beam(soft(**BRIDGE, clamps=Clamps(tilt=angle, far_tilt=angle, far_shift=shift)))
+    same = solve_beam(soft(**BRIDGE, gravity=tuple(turn(-angle) @ [0.0, 0.0, -G])))
+    assert result.ok
+    assert np.abs(result.positions[0] - same.positions[0] @ turn(angle).T).max() < 1e-6 * 0.1
+
+
+def test_shift_of_the_far_clamp_pulls_with_the_stretching_stiffness():
+    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(far_shift=(5e-4, 0.0)))
+    result = solve_beam(scene)
+    assert result.ok
+    assert np.abs(result.support_force).max() < 1e-6  # of both clamps together
+    layout = beam_layout(scene)
+    body = imperfect_system(scene, layout).body
+    near = body.internal_forces(result.positions[0])[0][result.mesh.node_sets["clamp"]].sum(axis=0)
+    pull = YOUNG * np.pi * RADIUS**2 * 5e-4 / 0.15
+    # ends that cannot contract are stiffer, over a radius or so
+    assert layout.multiplicity * near[0] == pytest.approx(-pull, rel=0.02)
+
+
+def test_shift_across_bends_both_ends():
+    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(far_shift=(0.0, 1e-3)))
+    moment = 6 * BENDING * 1e-3 / 0.15**2
+    # the far end is lifted: the rod would lift the near clamp's side and, as much, turn the far one alike
+    assert moments(solve_beam(scene)) == pytest.approx([moment, moment], rel=0.02)
+
+
+def test_turned_clamp_carries_four_and_two_of_the_bending_stiffness():
+    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(tilt=0.01))
+    unit = BENDING / 0.15 * 0.01
+    assert moments(solve_beam(scene)) == pytest.approx([-4 * unit, -2 * unit], rel=0.03)
+
+
+def test_yielding_clamp_of_a_cantilever_turns_by_compliance_times_the_weights_moment():
+    result = solve_beam(soft(clamps=Clamps(compliance=8.0, tilt=0.05)))
+    assert result.ok
+    # statics: the weight of every node at its place; the held ones stand on x = 0 nearly
+    layout = beam_layout(result.scene)
+    weight = DENSITY * G * layout.nodal_volume() * layout.multiplicity
+    moment = weight @ result.positions[0][:, 0]
+    assert near_angle(result) - 0.05 == pytest.approx(-8.0 * moment, rel=1e-3)
+    tilted = solve_beam(soft(clamps=Clamps(tilt=near_angle(result))))
+    assert np.abs(tilted.positions - result.positions).max() < 1e-6 * 0.1
+    assert result.support_force[0] == pytest.approx([0, 0, weight.sum()], rel=1e-5, abs=1e-6)
+
+
+def test_yielding_clamps_of_a_bridge_as_beam_theory_has_them():
+    """Springs at the ends: M = q L^2/12 / (1 + 2 EI c/L), the sag (5 - 4 M/M0) of q L^4/384 EI.
+
+    Under a tenth of gravity: no tension, which a sag of the section's size makes.
+    """
+    little = BRIDGE | {"gravity": (0.0, 0.0, -G / 10)}
+    compliance = 0.15 / (2 * BENDING)
+    ideal = solve_beam(slender(**little))
+    result = solve_beam(slender(**little, clamps=Clamps(compliance=compliance)))
+    moment = LINE / 10 * 0.15**2 / 24
+    assert moments(result) == pytest.approx([-moment, moment], rel=0.02)
+    assert near_angle(result) == pytest.approx(-compliance * moment, rel=0.02)
+    assert deflection(result)[2] / deflection(ideal)[2] == pytest.approx(3.0, rel=0.03)
+
+
+@pytest.mark.parametrize("compliance", [1.0, 10.0, 300.0])
+def test_both_clamps_angles_are_what_their_moments_make_them(compliance):
+    clamps = Clamps(compliance=compliance, tilt=0.03, far_tilt=-0.05, far_shift=(0.001, 0.002))
+    result = solve_beam(soft(**BRIDGE, clamps=clamps))
+    assert result.ok
+    near, far = moments(result)
+    assert near_angle(result) - 0.03 == pytest.approx(compliance * near, rel=2e-4)
+    at = result.mesh.node_sets["far_clamp"]
+    middle = np.array([0.151, 0.0, 0.002])
+    held = (result.positions[0][at] - middle) @ turn(-0.05 + compliance * far)
+    assert np.abs(held - (result.mesh.nodes[at] - [0.15, 0, 0])).max() < 1e-6
+
+
+def test_squeezed_sections_keep_their_area():
+    result = solve_beam(soft(**BRIDGE, clamps=Clamps(squeeze=0.1)))
+    rest, found = result.mesh.nodes, result.positions[0]
+    for name in ("clamp", "far_clamp"):
+        at = result.mesh.node_sets[name]
+        assert found[at, 2] == pytest.approx(0.9 * rest[at, 2], abs=1e-15)
+        assert found[at, 1] == pytest.approx(rest[at, 1] / 0.9, abs=1e-15)
+    middle = np.abs(rest[:, 0] - 0.075) < 0.012
+    size = np.ptp(found[middle, 1]) / np.ptp(rest[middle, 1])
+    assert size == pytest.approx(1.0, abs=0.02)  # it does not reach far
+    ideal = solve_beam(soft(**BRIDGE))
+    assert result.support_force == pytest.approx(ideal.support_force, rel=1e-5, abs=1e-6)
+    assert deflection(result)[2] < deflection(ideal)[2]  # its ends are lower, thus easier to bend
+
+
+def test_clamps_hold_the_tapered_section():
+    result = solve_beam(soft(specimen=Specimen(taper=1.0), clamps=Clamps(tilt=0.1)))
+    at = result.mesh.node_sets["clamp"]
+    assert result.positions[0][at] == pytest.approx(0.95 * result.mesh.nodes[at] @ turn(0.1).T, abs=1e-15)
+
+
+WORST = Specimen(
+    curvature=2.0,
+    taper=0.5,
+    axial_gradient=3.0,
+    density_gradient=1.0,
+    transverse_gradient=40.0,
+    skin=0.5,
+    void=Void(position=0.03, fraction=0.6),
+)
+
+
+def corners(n):
+    """Beams with imperfections of the largest size, of either sign, and yields that any specimen may have."""
+    rng = np.random.default_rng(7)
+    for i in range(n):
+        length, supports = [(0.05, "clamped-free"), (0.1, "clamped-free"), (0.15, "clamped-clamped")][i % 3]
+        sign = rng.choice([-1.0, 1.0], 9)
+        far = i % 3 == 2
+        yield soft(
+            material=Material(
+                law="yeoh",
+                parameters={
+                    "mu": (8e3, 4e4)[i // 3 % 2],
+                    "stiffening": (0.0, 1.5)[i // 6 % 2],
+                    "bulk": (20, 1000)[i % 2] * 2e4,
+                },
+            ),
+            length=length,
+            supports=supports,
+            specimen=replace(
+                WORST,
+                curvature=2.0 * sign[0],
+                taper=0.5 * sign[1],
+                axial_gradient=3.0 * sign[2],
+                transverse_gradient=40.0 * sign[3],
+            ),
+            clamps=Clamps(
+                tilt=0.07 * sign[4],
+                far_tilt=0.07 * sign[5] * far,
+                far_shift=(0.002 * sign[6] * far, 0.002 * sign[7] * far),
+                compliance=10.0,
+                squeeze=0.1,
+            ),
+        )
+
+
+def test_strong_imperfections_converge_at_once():
+    scenes = list(corners(24))
+    alone = [solve_beam(scene) for scene in scenes]
+    assert [r.status for r in alone] == [Status.CONVERGED] * 24
+    assert [r.cost.steps for r in alone] == [1] * 24
+    assert max(r.cost.newton_iterations for r in alone) <= 15
+    assert all(r.residual[0] <= 1e-6 and r.min_jacobian[0] > 0.0 for r in alone)
+    # in a batch they start from one another, among ideal ones; each answer is its own
+    ideal = [replace(scene, specimen=Specimen(), clamps=Clamps()) for scene in scenes[:6]]
+    together = tisim.simulate([*scenes, *ideal], workers=1)
+    for one, found in zip([*alone, *map(solve_beam, ideal)], together, strict=True):
+        assert found.ok
+        assert found.cost.steps == 1
+        # angles of clamps are told from one another down to 1e-4 of themselves
+        assert np.abs(found.positions - one.positions).max() < 2e-6
+
+
+def test_growing_imperfections_give_the_same_answer(monkeypatch):
+    """Without a rod to start from, from the ideal beam's answer."""
+    scenes = list(corners(3))
+    quick = [solve_beam(scene) for scene in scenes]
+    monkeypatch.setattr(_imperfect, "solve_rod", lambda *_: None)
+    for scene, known in zip(scenes, quick, strict=True):
+        slow = solve_beam(scene)
+        assert slow.ok
+        assert slow.cost.steps > 1
+        assert slow.cost.newton_iterations > known.cost.newton_iterations
+        assert np.abs(slow.positions - known.positions).max() < 2e-6
+
+
+def test_start_that_fails_does_not_spoil_the_next(monkeypatch):
+    """The angles that a neighbour's start has been brought to are not those of the rod's."""
+    # so little yield that angles which are wrong by the rod's error would pass for right
+    first, second = soft(clamps=Clamps(compliance=0.2)), soft(clamps=Clamps(compliance=0.05, tilt=0.02))
+    alone = solve_beam(second)
+    layout = beam_layout(first)
+    neighbour = _imperfect.imperfect_equilibrium(first, layout).neighbour
+    assert neighbour is not None
+    newton, calls = _imperfect._mixed_newton, []
+
+    def failing(*arguments):
+        calls.append(1)
+        outcome = newton(*arguments)
+        return replace(outcome, status=Status.NOT_CONVERGED) if len(calls) == 2 else outcome
+
+    monkeypatch.setattr(_imperfect, "_mixed_newton", failing)
+    found = _imperfect.imperfect_equilibrium(second, layout, neighbour)
+    assert found.outcome.status is Status.CONVERGED
+    assert found.counts["steps"] == 1
+    assert len(calls) > 3
+    assert np.abs(found.outcome.x - alone.positions[0]).max() < 1e-8
+
+
+def test_imperfect_beams_share_the_ideal_ones_mesh():
+    scenes = [soft(), soft(clamps=Clamps(tilt=0.1)), soft(specimen=Specimen(taper=0.5))]
+    assert [chunk.indices for chunk in make_chunks(scenes)] == [(0, 1, 2)]
+    ideal, *others = tisim.simulate(scenes, workers=1)
+    assert all(other.mesh is ideal.mesh for other in others)
+
+
+def test_no_answer_is_said():
+    """A bridge a third shorter than its beam, squeezed to half, in few iterations."""
+    clamps = Clamps(far_shift=(-0.07, 0.0), squeeze=0.5, far_tilt=-0.8, tilt=-0.8)
+    result = solve_beam(soft(**BRIDGE, clamps=clamps, solver=Solver(max_iterations=3)))
+    assert result.status is not Status.CONVERGED
+    assert result.positions.shape[0] == 0
+    assert "of the imperfections" in result.message
+
+
+def test_load_across_the_mirror_plane():
+    """Gravity along y: the tilt turns the ideal beam about the direction of its load."""
+    scene = soft(gravity=(0.0, -G, 0.0))
+    ideal = solve_beam(scene)
+    tilted = solve_beam(replace(scene, clamps=Clamps(tilt=0.2)))
+    assert tilted.ok
+    assert tilted.cost.steps == 1
+    assert np.abs(tilted.positions[0] - ideal.positions[0] @ turn(0.2).T).max() < 1e-6 * 0.1
+
+
+@pytest.mark.parametrize(
+    ("clamps", "message"),
+    [
+        (Clamps(tilt=1.0), "clamps.tilt: expected a number between -0.8 and 0.8 rad"),
+        (Clamps(tilt=np.inf), "clamps.tilt: expected a number"),
+        (Clamps(far_tilt=0.1), "clamps.far_tilt: expected 0 on a beam without a far clamp"),
+        (Clamps(far_shift=(0.0, 0.1)), "clamps.far_shift: expected less than half the length"),
+        (Clamps(far_shift=(0.0, 0.01)), "clamps.far_shift: expected 0 on a beam without"),
+        (Clamps(far_shift=(0.0, 0.0, 0.0)), "clamps.far_shift: expected 2 finite numbers"),
+        (Clamps(compliance=-1.0), r"clamps.compliance: expected a compliance of 0 rad/\(N m\) or more"),
+        (Clamps(squeeze=0.6), "clamps.squeeze: expected a part between 0 and 0.5"),
+        (None, "clamps: expected Clamps"),
+    ],
+)
+def test_clamps_that_cannot_be_are_refused_in_one_sentence(clamps, message):
+    with pytest.raises(ValueError, match=f"scene 0: Beam.{message}") as caught:
+        tisim.simulate([soft(clamps=clamps)], workers=1)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,61 @@
+"""Yeoh's law of second order, isochoric plus volumetric: Neo-Hookean that stiffens with stretch.
+
+    Psi = mu/2 [(I1bar - 3) + stiffening (I1bar - 3)^2] + K/2 (ln J)^2
+
+with I1bar = J^(-2/3) I1 (Yeoh, Rubber Chem. Technol. 63, 1990). mu, bulk = K [Pa]; stiffening [-] is not
+negative, which keeps the energy convex in I1bar. Small strain: G = mu, K, whatever the stiffening.
+Stress-free at rest. Not among the paper's laws.
+"""
+
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
+import numpy as np
+
+from tisim._ti import ti
+from tisim.laws._law import Law, Moduli, Parameters, scalar
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
+    mu = prm[0]
+    stiffening = prm[1]
+    a = ti.exp(-2.0 / 3.0 * ti.log(J))
+    i1 = a * I1
+    excess = i1 - 3.0
+    slope = 0.5 * mu * (1.0 + 2.0 * stiffening * excess)
+    second = mu * stiffening
+    return ti.Vector(
+        [
+            0.5 * mu * excess * (1.0 + stiffening * excess),
+            slope * a,
+            0.0,
+            -2.0 / 3.0 * slope * i1 / J,
+            second * a * a,
+            0.0,
+            (4.0 / 9.0 * second * i1 * i1 + 10.0 / 9.0 * slope * i1) / (J * J),
+            0.0,
+            -2.0 / 3.0 * a * (second * i1 + slope) / J,
+            0.0,
+        ]
+    )
+
+
+def _fault(parameters: Parameters) -> str:
+    value = scalar(parameters, "stiffening")
+    return "" if value >= 0.0 else f"stiffening must not be negative, got {value:g}"
+
+
+LAW = Law(
+    name="yeoh",
+    title="Yeoh",
+    parameters={"mu": ("Pa", "scalar"), "stiffening": ("-", "scalar"), "bulk": ("Pa", "scalar")},
+    family="invariant",
+    theta="log",
+    energy=energy,
+    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "stiffening")]),
+    kappa=lambda p: scalar(p, "bulk"),
+    moduli=lambda p: Moduli(shear=scalar(p, "mu"), bulk=scalar(p, "bulk")),
+    from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "bulk": bulk},
+    fault=_fault,
+)
