@@ -1,0 +1,97 @@
+"""rig.yaml: what a diagnosis found in rig, camera or simulator, as it stands in the file."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from calibration.diagnosis.beams.effects import EFFECTS
+from calibration.experiment._fields import Strict, say
+
+FORMAT = 1
+USE = (
+    "Corrects later calibrations of beams on this rig (calibration.fit --rig rig.yaml). It belongs to no"
+    " material: it must not enter a dataset, and factory.build refuses it."
+)
+
+Text = Annotated[str, Field(min_length=1, max_length=300)]
+Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+
+
+class Amplitude(Strict):
+    """A parameter in the unit that its name ends with, and its standard deviation."""
+
+    value: float
+    sd: Annotated[float, Field(ge=0)]
+
+
+class RigEffect(Strict):
+    """scope: "all", or the material, specimen or trial that it was found in. rivals: what the data could not
+    tell it from. valid_range: of what was measured."""
+
+    effect: Text
+    belongs_to: Literal["rig", "camera", "simulator"]
+    scope: Text
+    parameters: dict[str, Amplitude]
+    valid_range: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    rivals: tuple[Text, ...] = ()
+
+    @model_validator(mode="after")
+    def _in_the_catalogue(self) -> Self:
+        there = [n for n, e in EFFECTS.items() if e.belongs_to != "specimen" and not e.timed]
+        if self.effect not in there:
+            raise say(
+                "effect",
+                f"expected one that beams can be corrected by, {', '.join(there)}, got {self.effect}",
+            )
+        effect = EFFECTS[self.effect]
+        if effect.belongs_to != self.belongs_to:
+            raise say("belongs_to", f"expected {effect.belongs_to} of {self.effect}, got {self.belongs_to}")
+        if set(self.parameters) != {effect.parameter}:
+            raise say("parameters", f"expected {effect.parameter} of {self.effect}, and no other")
+        low, high = (effect.in_file(b) for b in effect.bounds)
+        value = self.parameters[effect.parameter].value
+        if not low <= value <= high:
+            raise say(
+                f"parameters.{effect.parameter}.value", f"expected {low:.4g} to {high:.4g}, got {value:.4g}"
+            )
+        return self
+
+
+class Covariance(Strict):
+    """Of the effects' parameters, in their order and units; names: for readers."""
+
+    names: tuple[Text, ...]
+    matrix: tuple[tuple[float, ...], ...]
+
+
+class RigFile(Strict):
+    """gain: on data that the fit had not seen."""
+
+    format: Literal[1]
+    experiment: str
+    experiment_sha256: Hash
+    base_law: Text
+    use: Text
+    effects: Annotated[tuple[RigEffect, ...], Field(min_length=1)]
+    covariance: Covariance
+    gain: dict[str, float | str | None] | None = None
+
+    @model_validator(mode="after")
+    def _covariance_of_the_effects(self) -> Self:
+        n = len(self.effects)
+        rows = self.covariance.matrix
+        if len(rows) != n or any(len(row) != n for row in rows):
+            raise say("covariance.matrix", f"expected {n} rows of {n} numbers, as there are effects")
+        c = np.array(rows)
+        sds = np.array([a.sd for e in self.effects for a in e.parameters.values()])
+        if not np.allclose(c, c.T, rtol=1e-3) or not np.allclose(np.diag(c), sds**2, rtol=1e-2):
+            raise say(
+                "covariance.matrix", "expected it symmetric, with the squares of the sd on its diagonal"
+            )
+        scale = np.where(sds > 0.0, sds, 1.0)
+        if np.linalg.eigvalsh(c / np.outer(scale, scale))[0] < -1e-4:
+            raise say("covariance.matrix", "expected a covariance, which has no negative eigenvalue")
+        return self

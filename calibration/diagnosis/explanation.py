@@ -1,0 +1,89 @@
+"""A set of causes, fitted in the simulator and judged: how well it explains, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.fitting import Fit, fit
+from calibration.diagnosis.nested import Nested
+from calibration.diagnosis.null import Departure, Null
+
+Array = NDArray[np.float64]
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Explanation:
+    """A set of causes with its fit. cost: what the number of amplitudes and the choice of their places are
+    worth in chi-square (Bayes' information criterion, and twice the logarithm of the number of places)."""
+
+    fit: Fit
+    cost: float
+    departure: Departure
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        return self.fit.candidates
+
+    @property
+    def names(self) -> Names:
+        return tuple(sorted({c.effect for c in self.candidates}))
+
+    @property
+    def score(self) -> float:
+        return self.fit.chi2 + self.cost
+
+
+def explain(
+    model: Nested, start: Fit, candidates: Sequence[Candidate], amplitudes: Sequence[float], null: Null
+) -> Explanation | None:
+    """Fit a set of causes, from another fit and first guesses of the amplitudes [SI]; None where the
+    simulator has no answer with them."""
+    known = dict(start.state.amplitudes)
+    for c, a in zip(candidates, amplitudes, strict=True):
+        low, high = model.effects[c.effect].bounds
+        known.setdefault(c, float(np.clip(a, 0.6 * low, 0.6 * high)))
+    for part in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
+        inside = {c: part * known[c] for c in candidates}
+        try:
+            found = fit(model, replace(start.state, amplitudes=inside), candidates)
+        except ValueError:
+            continue
+        cost = sum(np.log(len(found.z)) + 2.0 * np.log(c.rivals) for c in found.candidates)
+        departure = null.departure(found.z, found.jacobian)
+        return Explanation(fit=found, cost=float(cost), departure=departure)
+    return None
+
+
+def rivals(explanations: Sequence[Explanation], within: float) -> tuple[Names, ...]:
+    """Distinct sets of effects whose score is within this of the best, best first. A set that only adds to a
+    better one explains nothing of its own."""
+    ordered = sorted(explanations, key=lambda e: e.score)
+    found: list[Names] = []
+    for e in ordered:
+        if e.score > ordered[0].score + within or e.names in found:
+            continue
+        if not any(set(better) < set(e.names) for better in found):
+            found.append(e.names)
+    return tuple(found)
+
+
+def confidence(explanations: Sequence[Explanation], null: Null) -> float:
+    """How often the best set of effects would be ranked first again, were it true, with other noise: each
+    explanation is refitted to first order to what the best one predicts plus drawn noise."""
+    ordered = sorted(explanations, key=lambda e: e.score)
+    draws = null.noise[:1000]
+    scores = np.empty((len(ordered), len(draws)))
+    for row, e in zip(scores, ordered, strict=True):
+        data = e.fit.z - ordered[0].fit.z + draws
+        size = np.linalg.norm(e.fit.jacobian, axis=0)
+        q, _ = np.linalg.qr(e.fit.jacobian[:, size > 0] / size[size > 0])
+        row[:] = (data**2).sum(axis=1) - ((data @ q) ** 2).sum(axis=1) + e.cost
+    same = np.array([e.names == ordered[0].names for e in ordered])
+    return float(np.mean(same[scores.argmin(axis=0)]))

@@ -1,0 +1,129 @@
+"""A diagnosis from beginning to end: search, refine what was found, measure the gain, advise."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from calibration.diagnosis.explanation import Explanation, explain
+from calibration.diagnosis.fitting import Fit, fit
+from calibration.diagnosis.heldout import Foldable, Gain, held_out_gain
+from calibration.diagnosis.nested import State
+from calibration.diagnosis.null import Null
+from calibration.diagnosis.search import Finding, Rules, Tell, search
+from calibration.diagnosis.verdict import Diagnosis, Numbers, invisible, reduced
+
+
+class Diagnosable(Foldable, Protocol):
+    """A domain's model (beams, coupons, pokes) with what a verdict needs besides the search.
+
+    unit: of `distance_rms` in files, and how many of them one SI unit is.
+    """
+
+    @property
+    def unit(self) -> tuple[str, float]: ...
+
+    def shear_moduli(self, u: np.typing.NDArray[np.float64]) -> dict[str, float]: ...
+
+    def advice(self, rivals: list[Explanation]) -> str:
+        """The experiment that would part explanations that the data cannot; "" where none is known."""
+
+    def remarks(self) -> list[str]:
+        """What a reader of the verdict should know of the model."""
+
+
+def diagnose(
+    model: Diagnosable, *, rules: Rules | None = None, gain: bool = True, tell: Tell = lambda _: None
+) -> Diagnosis:
+    """Search for what the baseline lacks, and say what is known. gain: measure it on held-out data too.
+
+    ValueError where the baseline has no answer anywhere.
+    """
+    begun = time.monotonic()
+    finding = search(model, rules=rules, tell=tell)
+    baseline = finding.baseline
+    before = _numbers(model, baseline, finding.departure.p)
+    after: Numbers | None = None
+    held_out: Gain | None = None
+    if finding.chosen is not None:
+        tell("refining what was found")
+        advice = _advice(model, finding, tell)
+        finding, baseline = _refined(model, finding)
+        assert finding.chosen is not None
+        after = _numbers(model, finding.chosen.fit, finding.chosen.departure.p)
+        if gain:
+            tell("predicting what the fit has not seen")
+            held_out = held_out_gain(model, baseline, finding.chosen.fit)
+    else:
+        advice = _no_cause(model, finding)
+    return Diagnosis(
+        finding=finding,
+        effects=dict(model.effects),
+        baseline=before,
+        extended=after,
+        gain=held_out,
+        unit=model.unit,
+        next_experiment=advice,
+        invisible=invisible(model, finding),
+        notes=tuple(_notes(model, finding)),
+        seconds=time.monotonic() - begun,
+    )
+
+
+def _refined(model: Diagnosable, finding: Finding) -> tuple[Finding, Fit]:
+    """Nuisances and discretisation errors taken where the chosen explanation is, and both fits anew there."""
+    chosen = finding.chosen
+    assert chosen is not None
+    model.retake(chosen.fit.state)
+    null = Null(len(chosen.fit.z), model.patterns())
+    again = explain(model, chosen.fit, chosen.candidates, list(chosen.fit.state.amplitudes.values()), null)
+    if again is None:
+        return finding, finding.baseline
+    baseline = fit(model, State(u=finding.baseline.state.u))
+    return replace(finding, explanations=(again, *finding.explanations[1:])), baseline
+
+
+def _numbers(model: Diagnosable, found: Fit, p: float) -> Numbers:
+    return Numbers(
+        reduced_chi2=reduced(found, model.points),
+        p_value=p,
+        rms=model.distance_rms(found.state) * model.unit[1],
+        shear_modulus_Pa=model.shear_moduli(found.state.u),
+    )
+
+
+def _advice(model: Diagnosable, finding: Finding, tell: Tell) -> str:
+    chosen = finding.chosen
+    assert chosen is not None
+    if finding.verdict == "found":
+        return "; ".join(f"to confirm: {model.effects[name].remedy}" for name in chosen.names)
+    tell("looking for the experiment that would tell the rivals apart")
+    one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.rivals]
+    return model.advice(one_each)
+
+
+def _no_cause(model: Diagnosable, finding: Finding) -> str:
+    if finding.verdict == "unexplained":
+        return "look at the residuals; repeat the measurements that depart most, in another pose"
+    never = [e for name, e in model.effects.items() if _never(finding, name)]
+    return "; ".join(dict.fromkeys(f"{e.remedy} ({e.name} cannot be seen)" for e in never))
+
+
+def _never(finding: Finding, name: str) -> bool:
+    sizes = [
+        s
+        for c, s in zip(finding.screened.candidates, finding.screened.sizes, strict=True)
+        if c.effect == name
+    ]
+    return bool(sizes) and max(sizes) == 0.0
+
+
+def _notes(model: Diagnosable, finding: Finding) -> list[str]:
+    found = model.remarks()
+    for e in (finding.baseline, *(x.fit for x in finding.explanations)):
+        if not e.converged:
+            found.append(f"fit of {e.reports()}: {e.message}")
+    return found

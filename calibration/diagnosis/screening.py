@@ -1,0 +1,65 @@
+"""What each candidate would explain, to first order: its column with all that is free projected out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.nested import Linear
+
+Array = NDArray[np.float64]
+
+# Part of a column's length that must be left after projection. Less is what finite differences of two exact
+# aliases (weight and stiffness) leave: an effect seen by so little would need hundreds of sigmas anyway.
+UNSEEN = 5e-3
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Screen:
+    """Candidates' columns with u (and the effects already there) projected out.
+
+    directions (m, c): of unit length, zero where the data cannot see the candidate; sizes (c,): length of the
+    projected column, so that an amplitude of 1/size is one standard deviation.
+    """
+
+    candidates: tuple[Candidate, ...]
+    directions: Array
+    sizes: Array
+    free: Array  # (m, n): orthonormal, what was projected out
+
+    def gains(self, z: Array) -> Array:
+        """Improvement of chi-square by each candidate, to first order: (c,) for z (m,), (batch, c) for
+        (batch, m)."""
+        return np.asarray((z @ self.directions) ** 2)
+
+    def amplitudes(self, z: Array) -> Array:
+        """Best amplitude of each candidate alone [SI], to first order."""
+        sizes = np.where(self.sizes > 0, self.sizes, np.inf)
+        return np.asarray(-(z @ self.directions) / sizes)
+
+
+def screen(linear: Linear, held: Array | None = None) -> Screen:
+    """Project u, and the columns `held` (m, k) of effects that are there already, out of all candidates."""
+    fixed = linear.by_u if held is None else np.column_stack([linear.by_u, held])
+    free = basis_of(fixed)
+    raw = linear.columns
+    left = raw - free @ (free.T @ raw)
+    left -= free @ (free.T @ left)  # once more: the first pass leaves rounding of what was large
+    sizes, whole = np.linalg.norm(left, axis=0), np.linalg.norm(raw, axis=0)
+    seen = sizes > UNSEEN * np.where(whole > 0, whole, 1.0)
+    sizes = np.where(seen, sizes, 0.0)
+    directions = np.where(seen, left / np.where(seen, sizes, 1.0), 0.0)
+    return Screen(candidates=linear.candidates, directions=directions, sizes=sizes, free=free)
+
+
+def basis_of(columns: Array) -> Array:
+    """Orthonormal basis of the columns' span, (m, rank)."""
+    size = np.linalg.norm(columns, axis=0)
+    used = columns[:, size > 0] / size[size > 0]
+    if not used.size:
+        return np.zeros((len(columns), 0))
+    u, s, _ = np.linalg.svd(used, full_matrices=False)
+    return np.asarray(u[:, s > 1e-7 * s[0]])

@@ -1,0 +1,192 @@
+"""The search for causes: calibrate the baseline, screen, confirm in the simulator, and say what is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.explanation import Explanation, Names, confidence, explain, rivals
+from calibration.diagnosis.fitting import Fit, fit
+from calibration.diagnosis.nested import Nested, State
+from calibration.diagnosis.null import Departure, Null
+from calibration.diagnosis.pairs import best_pairs
+from calibration.diagnosis.screening import Screen, screen
+
+Array = NDArray[np.float64]
+PERHAPS = 0.1  # chance of a second cause by the baseline's columns, below which it is looked for properly
+HOPELESS = 0.35  # of the best promise: a candidate that promises less is not fitted
+FAR = 0.05  # of ln G: what was taken so far from the fit's end is taken anew
+Verdict = Literal["none", "found", "ambiguous", "unexplained"]
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rules:
+    """alarm: chance of naming a cause where there is none; second: of one cause too many.
+    unlike: chance below which what a fit leaves of the residuals counts as unexplained.
+    within: of chi-square: what explains the data nearly as well as the best is a rival.
+    shortlist: effects that are confirmed in the simulator; pairs: pairs of them.
+    seed: of the bootstrap.
+    """
+
+    alarm: float = 0.01
+    second: float = 0.003
+    unlike: float = 0.005
+    within: float = 6.0
+    shortlist: int = 7
+    pairs: int = 5
+    seed: int = 0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Finding:
+    """What is known after a search.
+
+    baseline: its fit; departure: of its residuals from noise; chance: that noise alone gives the best
+    candidate its improvement. screened: all candidates at the baseline.
+    explanations: all that were confirmed in the simulator, best first. rivals: the sets of effects that the
+    data cannot tell apart, the chosen one first; confidence: how often it would be ranked first again.
+    """
+
+    verdict: Verdict
+    baseline: Fit
+    departure: Departure
+    chance: float
+    screened: Screen
+    null: Null
+    explanations: tuple[Explanation, ...] = ()
+    rivals: tuple[Names, ...] = field(default=())
+    confidence: float = 0.0
+
+    @property
+    def chosen(self) -> Explanation | None:
+        """What the verdict names first; None where it names nothing."""
+        return self.explanations[0] if self.verdict in ("found", "ambiguous") else None
+
+
+def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: None) -> Finding:
+    """Look for what a model lacks. ValueError where the baseline has no answer anywhere."""
+    rules = rules or Rules()
+    tell("calibrating the baseline")
+    baseline = calibrated(model)
+    tell(f"screening {len(model.candidates)} candidates")
+    linear = model.linearise(baseline.state, model.candidates)
+    screened = screen(linear)
+    null = Null(len(linear.z), model.patterns(), seed=rules.seed)
+    departure = null.departure(linear.z, linear.by_u)
+    gains = null.gains(screened)
+    singles: list[Explanation] = []
+    likely = _shortlist(screened, linear.z, rules.shortlist, at_least=0.5 * gains.threshold(0.05))
+    for n, k in enumerate(likely):
+        c = screened.candidates[k]
+        tell(f"confirming {n + 1} of {len(likely)}: {c.label}")
+        found = explain(model, baseline, (c,), [float(screened.amplitudes(linear.z)[k])], null)
+        if found is not None:
+            singles.append(found)
+    singles.sort(key=lambda e: e.score)
+    gain = max((baseline.chi2 - e.fit.chi2 for e in singles), default=0.0)
+    chance = gains.chance(gain)
+
+    def finding(verdict: Verdict, explanations: Sequence[Explanation], named: bool) -> Finding:
+        return Finding(
+            verdict=verdict,
+            baseline=baseline,
+            departure=departure,
+            chance=chance,
+            screened=screened,
+            null=null,
+            explanations=tuple(explanations),
+            rivals=rivals(explanations, rules.within) if named else (),
+            confidence=confidence(explanations, null) if named else 0.0,
+        )
+
+    if chance > rules.alarm:
+        odd = departure.p < rules.unlike
+        return finding("unexplained" if odd else "none", singles, False)
+    tell(f"looking for a second cause beside {singles[0].fit.reports()}")
+    seen = [k for k, size in enumerate(screened.sizes) if size > 0.0]
+    visible = tuple(screened.candidates[k] for k in seen)
+    seconds = _with_second(model, singles[0], visible, linear.columns[:, seen], null, rules, tell)
+    both = sorted(singles + seconds, key=lambda e: e.score)
+    if both[0].departure.p < rules.unlike:
+        return finding("unexplained", both, False)
+    sets = rivals(both, rules.within)
+    return finding("found" if len(sets) == 1 else "ambiguous", both, True)
+
+
+def calibrated(model: Nested) -> Fit:
+    """The baseline's fit, with nuisances taken where it ends."""
+    start = State(u=model.start())
+    model.retake(start, rough=True)
+    found = fit(model, start)
+    for _ in range(3):
+        model.retake(found.state)
+        again = fit(model, found.state)
+        moved = np.abs(again.state.u - found.state.u).max(initial=0.0)
+        found = again
+        if moved < FAR:
+            break
+    return found
+
+
+def _shortlist(screened: Screen, z: Array, count: int, *, at_least: float) -> list[int]:
+    """Candidates worth a fit, best first: of each effect the best one, and one more that comes near it; none
+    that promises far less than the best, more than what is not linear could mend."""
+    gains = screened.gains(z) - np.array([2.0 * np.log(c.rivals) for c in screened.candidates])
+    at_least = max(at_least, min(HOPELESS * gains.max(initial=0.0), gains.max(initial=0.0) - 40.0))
+    found: list[int] = []
+    for k in np.argsort(-gains):
+        name = screened.candidates[k].effect
+        same = [j for j in found if screened.candidates[j].effect == name]
+        near = len(same) < 2 and gains[k] > gains[same[0]] - 8.0 if same else True
+        if gains[k] >= at_least and near and len(found) < count:
+            found.append(int(k))
+    return found
+
+
+def _with_second(
+    model: Nested,
+    best: Explanation,
+    candidates: tuple[Candidate, ...],
+    columns: Array,
+    null: Null,
+    rules: Rules,
+    tell: Tell,
+) -> list[Explanation]:
+    """Pairs of causes, where one more than the best one gains what noise alone would not.
+
+    candidates: those that the baseline can see, with their columns there; where even these promise nothing,
+    none is linearised anew.
+    """
+    held = best.fit.linear
+    roughly = screen(replace(held, columns=columns, candidates=candidates), held=held.columns)
+    if null.gains(roughly).chance(float(roughly.gains(held.z).max(initial=0.0))) > PERHAPS:
+        return []
+    linear = model.linearise(best.fit.state, candidates)
+    beside = screen(linear, held=best.fit.linear.columns)
+    gained = beside.gains(linear.z)
+    if null.gains(beside).chance(float(gained.max(initial=0.0))) > rules.second:
+        return []
+    # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
+    plain = screen(linear)
+    target = linear.z - best.fit.linear.columns @ np.array(list(best.fit.state.amplitudes.values()))
+    found = []
+    pairs = best_pairs(plain, target, count=rules.pairs)
+    for n, (a, b) in enumerate(pairs):
+        both = (plain.candidates[a], plain.candidates[b])
+        tell(f"confirming pair {n + 1} of {len(pairs)}: {both[0].label} + {both[1].label}")
+        guess = _pair_amplitudes(linear.columns[:, [a, b]], plain.free, target)
+        pair = explain(model, best.fit, both, guess, null)
+        if pair is not None:
+            found.append(pair)
+    return found
+
+
+def _pair_amplitudes(columns: Array, free: Array, target: Array) -> list[float]:
+    left = columns - free @ (free.T @ columns)
+    return [float(a) for a in -np.linalg.lstsq(left, target, rcond=None)[0]]

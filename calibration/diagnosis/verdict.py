@@ -1,0 +1,175 @@
+"""A diagnosis as a file tells it (`diagnosis.json`), and as one sentence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from calibration.diagnosis.explanation import Explanation
+from calibration.diagnosis.fitting import Fit
+from calibration.diagnosis.heldout import Gain
+from calibration.diagnosis.nested import Nested
+from calibration.diagnosis.search import Finding
+
+FORMAT = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Invisible:
+    """An effect that this design cannot see: what 5 standard deviations of its amplitude would be, in the
+    file's unit (inf: no amplitude is seen), and what to do about it."""
+
+    effect: str
+    parameter: str
+    threshold: float
+    remedy: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numbers:
+    """A fit in numbers: chi-square over its degrees of freedom, the chance that noise alone departs as much,
+    rms of the residuals in the unit of the diagnosis, moduli [Pa] by material."""
+
+    reduced_chi2: float
+    p_value: float
+    rms: float
+    shear_modulus_Pa: dict[str, float]
+
+    def to_json(self, unit: str) -> dict[str, Any]:
+        return {
+            "reduced_chi2": self.reduced_chi2,
+            "p_value": self.p_value,
+            f"rms_{unit}": self.rms,
+            "shear_modulus_Pa": self.shear_modulus_Pa,
+        }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Diagnosis:
+    """All that is known of an experiment. extended is None where no cause is named; gain likewise.
+    unit: of rms residuals in files ("mm", "kPa", "N"), and how many of them one SI unit is."""
+
+    finding: Finding
+    effects: dict[str, Any]
+    baseline: Numbers
+    extended: Numbers | None
+    gain: Gain | None
+    unit: tuple[str, float]
+    next_experiment: str
+    invisible: tuple[Invisible, ...]
+    notes: tuple[str, ...]
+    seconds: float
+
+    def causes(self) -> list[dict[str, Any]]:
+        """One entry for each effect of the chosen explanation."""
+        chosen = self.finding.chosen
+        return [] if chosen is None else _causes(chosen, self.effects, self.finding.confidence)
+
+    def to_json(self) -> dict[str, Any]:
+        found: dict[str, Any] = {
+            "format": FORMAT,
+            "verdict": self.finding.verdict,
+            "causes": self.causes(),
+            "alternatives": [list(names) for names in self.finding.rivals],
+            "baseline": self.baseline.to_json(self.unit[0]),
+            "extended": self.extended.to_json(self.unit[0]) if self.extended else None,
+            "gain": None,
+            "next_experiment": self.next_experiment,
+            "not_visible": [
+                {
+                    "effect": i.effect,
+                    i.parameter: i.threshold if math.isfinite(i.threshold) else None,
+                    "instead": i.remedy,
+                }
+                for i in self.invisible
+            ],
+            "notes": list(self.notes),
+            "seconds": round(self.seconds, 1),
+        }
+        if self.gain is not None:
+            g, (unit, per_si) = self.gain, self.unit
+            found["gain"] = {
+                "held_out": g.held_out or "none",
+                f"rms_{unit}_before": per_si * g.rms_before if g.held_out else None,
+                f"rms_{unit}_after": per_si * g.rms_after if g.held_out else None,
+                f"rms_{unit}_noise": per_si * g.rms_noise if g.held_out else None,
+                "log_likelihood": g.log_likelihood if g.held_out else None,
+                "information_kept": g.kept,
+                "note": g.note,
+            }
+        return found
+
+    def sentence(self) -> str:
+        """The verdict for people."""
+        verdict = self.finding.verdict
+        if verdict == "none":
+            return "The simulation agrees with the measurements to within their noise: no cause to name."
+        if verdict == "unexplained":
+            return (
+                "The measurements depart from the simulation, and no effect in the library explains how:"
+                " look at the residuals."
+            )
+        chosen = self.finding.chosen
+        assert chosen is not None
+        said = " and ".join(
+            f"{self.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
+            for c in chosen.candidates
+        )
+        if verdict == "found":
+            return f"Found: {said} ({' + '.join(chosen.names)})."
+        others = "; or ".join(" + ".join(names) for names in self.finding.rivals[1:])
+        return (
+            f"Something is wrong, but these data cannot say which: most likely {said}"
+            f" ({' + '.join(chosen.names)}); or {others}."
+        )
+
+
+def _causes(chosen: Explanation, effects: dict[str, Any], confidence: float) -> list[dict[str, Any]]:
+    found = []
+    for c in chosen.candidates:
+        effect = effects[c.effect]
+        value, sd = chosen.fit.amplitude(c)
+        parameters = {effect.parameter: {"value": effect.in_file(value), "sd": abs(effect.in_file(sd))}}
+        if c.place is not None:
+            parameters["position"] = {"value": c.place, "sd": 0.1}
+        found.append(
+            {"effect": c.effect, "parameters": parameters, "scope": c.at, "confidence": round(confidence, 4)}
+        )
+    return found
+
+
+def invisible(model: Nested, finding: Finding) -> tuple[Invisible, ...]:
+    """Effects of which all measurements together would need more than is plausible to show 5 sigma."""
+    found = []
+    for name, effect in model.effects.items():
+        sizes = [
+            s
+            for c, s in zip(finding.screened.candidates, finding.screened.sizes, strict=True)
+            if c.effect == name and (c.at == "all" or not any(o.at == "all" for o in _of(finding, name)))
+        ]
+        if not sizes:
+            continue  # no measurement that it could touch
+        threshold = 5.0 / max(sizes) if max(sizes) > 0.0 else math.inf
+        if threshold > effect.plausible:
+            found.append(
+                Invisible(
+                    effect=name,
+                    parameter=effect.parameter,
+                    threshold=abs(effect.in_file(threshold)),
+                    remedy=effect.remedy,
+                )
+            )
+    return tuple(found)
+
+
+def _of(finding: Finding, name: str) -> list[Any]:
+    return [c for c in finding.screened.candidates if c.effect == name]
+
+
+def reduced(fit: Fit, rows: int) -> float:
+    """Chi-square over degrees of freedom, of a fit whose residuals have this many rows of measurements."""
+    free = int(np.count_nonzero(np.linalg.norm(fit.jacobian, axis=0)))
+    return fit.chi2 / (rows - free)
