@@ -12,13 +12,15 @@ from rich.console import Console
 
 from calibration._command import plain_ends
 from calibration._screen import FitScreen, law_table
+from calibration.diagnosis.rig import Rig, read_rig
 from calibration.errors import InputError
-from calibration.experiment import Experiment, read
+from calibration.experiment import BeamTrial, Experiment, read
 from calibration.search import CmaOptions
 from calibration.study import (
     Calibration,
     FitOptions,
     ObjectiveName,
+    OnSetup,
     Task,
     run,
     stopped,
@@ -45,6 +47,10 @@ Two laws, one material, cards where factory.build looks for them:
 
   python -m calibration.fit measured/bench --model neo-hookean,ogden --material S1 --cards datasets/materials
 
+Corrected for what a diagnosis found in rig and camera:
+
+  python -m calibration.fit measured/bench --rig diagnoses/bench/cards/rig.yaml --out calibrations/bench-rig
+
 As the paper did it, by the overlap of bodies instead of the likelihood (no error bars):
 
   python -m calibration.fit measured/bench --objective dice --out calibrations/bench-dice
@@ -68,6 +74,9 @@ def main(
     objective: Annotated[
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
     ] = "likelihood",
+    rig: Annotated[
+        Path | None, typer.Option(help="rig.yaml of a diagnosis: faults of rig and camera to correct for.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
     ] = None,
@@ -89,6 +98,7 @@ def main(
         names = _laws(model)
         wanted = _materials(material, data)
         minimised = _objective(objective)
+        setup = _rig(rig, data, minimised, wanted)
         folder = out or Path("calibrations") / (experiment.resolve().name)
         _check_folder(folder, overwrite)
         options = FitOptions(
@@ -106,12 +116,15 @@ def main(
                 options=options,
                 folder=folder / "fits",
                 objective=minimised,
+                setup=setup,
             )
             for law in names
             for m in wanted
         ]
         console = Console()
-        results = _fit(tasks, data, console, workers or os.cpu_count() or 1, folder, cards)
+        if setup is not None:
+            console.print(setup.sentence, markup=False, highlight=False)
+        results = _fit(tasks, OnSetup.of(data, setup), console, workers or os.cpu_count() or 1, folder, cards)
     raise typer.Exit(0 if all(r.status == "converged" for r in results) else 1)
 
 
@@ -161,6 +174,20 @@ def _objective(name: str) -> ObjectiveName:
     if name == "dice":
         return "dice"
     raise InputError(f"--objective {name}: expected likelihood or dice")
+
+
+def _rig(path: Path | None, data: Experiment, minimised: ObjectiveName, materials: list[str]) -> Rig | None:
+    """What is known of the rig; InputError where these fits cannot be corrected by it."""
+    if path is None:
+        return None
+    if minimised != "likelihood":
+        raise InputError(f"--rig {path}: expected --objective likelihood, overlaps of bodies know no rig")
+    marked = [t.id for t in data.trials if isinstance(t, BeamTrial) and t.material in materials and t.markers]
+    if marked:
+        raise InputError(
+            f"--rig {path}: corrects outlines, not markers: expected none, but trial {marked[0]} has some"
+        )
+    return read_rig(path).on(data)
 
 
 def _materials(wanted: str | None, data: Experiment) -> list[str]:

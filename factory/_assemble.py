@@ -28,7 +28,7 @@ from factory._profile import LEVELS, level_depths, profiles
 from factory._record import COUNTERS
 from factory._store import PROVENANCE
 from factory.errors import InputError
-from factory.materials import LAWS
+from factory.materials import STORED_LAWS
 from factory.plan import FORMAT, Plan
 from tisim.scene import BoxInclusion, Inclusion, SphereInclusion
 
@@ -163,11 +163,11 @@ def _unit(direction: Iterable[float]) -> NDArray[np.float64]:
 def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
     recipe = plan.recipe
     return {
-        "title": f"Simulated pokes: recipe {recipe.name}, {plan.model}",
+        "title": f"Simulated pokes: recipe {recipe.name}, {plan.law}",
         "format": FORMAT,
         "uuid": plan.uuid,
         "fingerprint": plan.fingerprint,
-        "model": plan.model,
+        "model": plan.law,
         "seed": recipe.seed,
         "pokes": len(plan.pokes),
         "pokes_done": len(done),
@@ -207,7 +207,7 @@ def _poke_arrays(plan: Plan, parts: Parts, done: set[int], errors: dict[int, str
         arrays["poke_shape"][i] = poke.shape
         arrays["poke_softness"][i] = poke.softness
         arrays["poke_geometry"][i] = poke.geometry
-        arrays["law"][i] = LAWS.index(plan.model)
+        arrays["law"][i] = STORED_LAWS.index(plan.law)
         arrays["parameter"][i] = _parameters(plan, poke.softness)
         arrays["site_shared"][i] = poke.shared
         arrays["site_number"][i] = poke.site

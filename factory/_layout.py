@@ -12,7 +12,7 @@ from typing import Any, Literal
 from factory._grid import SIZE
 from factory._profile import LEVELS
 from factory._record import COUNTERS, STATUSES
-from factory.materials import LAWS
+from factory.materials import STORED_LAWS
 
 # what the first dimension counts; "value" = surface nodes of all frames of all pokes
 Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"]
@@ -83,7 +83,7 @@ SPECS: dict[str, Spec] = {
     "poke_shape": Spec(rows="poke", dtype="i4", text="index into attribute shapes"),
     "poke_softness": Spec(rows="poke", dtype="i4", text="index into attribute softness"),
     "poke_geometry": Spec(rows="poke", dtype="i4", text="row of profile and inclusion_*"),
-    "law": Spec(rows="poke", dtype="u1", text="constitutive law", attributes=_flags(LAWS)),
+    "law": Spec(rows="poke", dtype="u1", text="constitutive law", attributes=_flags(STORED_LAWS)),
     "parameter": Spec(
         rows="poke", dtype="f8", dims=("parameter_name",),
         text="material parameters in the order of attribute parameter_names (moduli in Pa)",

@@ -22,6 +22,7 @@ from factory._parts import Parts
 from factory._preview import Trace, draw_preview, preview_path
 from factory._record import Outcome
 from factory.errors import InputError
+from factory.extension import TAKEN
 from factory.plan import Plan
 
 _LINE_SECONDS = 20.0  # between lines where the output is no terminal
@@ -80,8 +81,22 @@ def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Ta
     table.add_row("expected size", f"about {size_text(expected.size)}, twice that while it is built")
     for name, material in zip(plan.recipe.softness, plan.materials, strict=True):
         values = ", ".join(f"{key} = {_show(value)}" for key, value in material.parameters.items())
-        table.add_row(f"material {name}", values)
+        law = "" if material.law == plan.model else f"{material.law}: "
+        table.add_row(f"material {name}", law + values)
+    for name, text in effect_lines(plan):
+        table.add_row(f"effect in {name}", text)
     return table
+
+
+def effect_lines(plan: Plan) -> list[tuple[str, str]]:
+    """Each effect of the cards: its mixture, and what becomes of it."""
+    lines = []
+    for card in plan.cards:
+        for effect in card.effects:
+            left = effect.left_out(card.material)
+            word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"
+            lines.append((card.material, f"{effect.says()}: {word}"))
+    return lines
 
 
 def _show(value: float | tuple[float, ...]) -> str:

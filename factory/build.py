@@ -15,7 +15,7 @@ from rich.console import Console
 from factory._build import Built, build, check_target
 from factory._estimate import estimate
 from factory._parts import building_folder
-from factory._screen import Screen, fail, make_console, plan_table
+from factory._screen import Screen, effect_lines, fail, make_console, plan_table
 from factory.errors import InputError, describe_os_error
 from factory.materials import LAWS
 from factory.plan import make_plan
@@ -87,6 +87,8 @@ def main(
             check_target(target)
             console.print(plan_table(plan, target, expected, count))
             return
+        for name, text in effect_lines(plan):
+            console.print(f"effect in {name}: {text}", markup=False)
         with _terminable(), Screen(plan, target, console, expected) as screen:
             built = build(
                 plan, target, overwrite=not resume, workers=count, cluster=cluster, watch=screen.update

@@ -1,4 +1,4 @@
-"""Material cards: one YAML file a mixture, with parameters for all six laws."""
+"""Material cards: one YAML file a mixture, with parameters for all six laws and what a diagnosis found."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from factory._extended import BASE, extended
 from factory._yaml import Strict, read_yaml
 from factory.errors import InputError
+from factory.extension import CardEffect
 from factory.recipe import ROOT
 from tisim.scene import Material
 
@@ -20,6 +22,7 @@ LAWS = (
     "ogden",
     "arruda-boyce",
 )
+STORED_LAWS = (*LAWS, "yeoh")  # that a dataset may be of: an extension of neo-Hookean is one of yeoh
 
 Modulus = Annotated[float, Field(gt=0, lt=1e12)]
 Real = Annotated[float, Field(gt=-1e12, lt=1e12)]
@@ -95,6 +98,7 @@ class Card(Strict):
 
     mixture: what was mixed. derived: the numbers were inferred, not measured. density [kg/m3].
     stiffness: code in the stiffness profiles, from 0 (softest) to below 1 (1 = rigid).
+    effects: what a diagnosis found in the specimen beside neo-Hookean (see `material_of`).
     """
 
     material: str
@@ -105,22 +109,47 @@ class Card(Strict):
     density: Modulus
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
+    effects: tuple[CardEffect, ...] = ()
 
     def for_law(self, law: str) -> Material:
-        """The material of this card under one of `LAWS`."""
+        """The material of this card under one of `LAWS`, without its effects."""
         parameters = getattr(self.laws, law.replace("-", "_")).model_dump()
         return Material(law=law, parameters=parameters, density=self.density)
 
 
+def material_of(card: Card, law: str = BASE) -> Material:
+    """The material of a card with the effects that go with it into any body, for any scene of tisim.
+
+    Strain stiffening makes it one of the law "yeoh"; of a creeping one the modulus is that 1 s after loading.
+    InputError where effects were found on another law than `law`, or make no material.
+    """
+    mine = [e.effect for e in card.effects if not e.left_out(card.material)]
+    if mine and law != BASE:
+        raise InputError(
+            f"--model {law}: the card of {card.material} extends {BASE} by {', '.join(mine)}, which was found"
+            f" on that law alone: give --model {BASE}, or delete key effects of the card to do without"
+        )
+    return extended(card.for_law(law), card.effects, card.material) if mine else card.for_law(law)
+
+
 def load_card(name: str, folder: Path | None = None) -> Card:
     """The card of one mixture: FOLDER/NAME.yaml, by default from datasets/materials/."""
-    path = (folder or ROOT / "materials") / f"{name}.yaml"
+    path = card_path(name, folder)
     if not path.is_file():
         raise InputError(f"{path}: no material card for softness {name}")
     card = read_yaml(path, Card)
     if card.material != name:
         raise InputError(f"{path}: key material: expected {name}, as the file is called, got {card.material}")
+    try:
+        material_of(card)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     return card
+
+
+def card_path(name: str, folder: Path | None = None) -> Path:
+    """Where the card of a mixture is looked for."""
+    return (folder or ROOT / "materials") / f"{name}.yaml"
 
 
 def check_law(model: str) -> str:

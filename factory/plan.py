@@ -7,14 +7,16 @@ import importlib.metadata
 import json
 import math
 import uuid
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from factory.materials import Card, check_law, load_card
+from factory._extended import in_one_law
+from factory.errors import InputError
+from factory.materials import Card, card_path, check_law, load_card, material_of
 from factory.recipe import Cube, Cylinder, Recipe, Sphere
 from tisim.scene import (
     Block,
@@ -52,7 +54,10 @@ class PlannedPoke:
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """A whole dataset before it is simulated; `identity` is what its bytes depend on."""
+    """A whole dataset before it is simulated; `identity` is what its bytes depend on.
+
+    model: the law that was asked for.
+    """
 
     recipe: Recipe
     model: str
@@ -74,6 +79,11 @@ class Plan:
         return str(uuid.uuid5(_NAMESPACE, self.fingerprint))
 
     @property
+    def law(self) -> str:
+        """The law of all materials: the model, but for what effects make of it."""
+        return self.materials[0].law
+
+    @property
     def block(self) -> tuple[float, float, float]:
         """Size of the block [m]."""
         return self.pokes[0].scene.block.size
@@ -83,7 +93,7 @@ def make_plan(recipe: Recipe, model: str, materials: Path | None = None) -> Plan
     """All pokes of a recipe under one law, in the order they are stored: shape, softness, shared, own."""
     check_law(model)
     cards = tuple(load_card(name, materials) for name in recipe.softness)
-    laws = tuple(card.for_law(model) for card in cards)
+    laws = _materials(cards, model, materials)
     inclusions = tuple(_place(recipe, number) for number in range(len(recipe.shapes)))
     pokes: list[PlannedPoke] = []
     for shape, inclusion in enumerate(inclusions):
@@ -109,7 +119,7 @@ def make_plan(recipe: Recipe, model: str, materials: Path | None = None) -> Plan
         "model": model,
         "recipe": recipe.model_dump(mode="json"),
         "materials": {
-            name: {**asdict(material), "stiffness": card.stiffness}
+            name: {**asdict(material), "stiffness": card.stiffness, **_taken(card)}
             for name, material, card in zip(recipe.softness, laws, cards, strict=True)
         },
         "versions": versions(),
@@ -123,6 +133,23 @@ def make_plan(recipe: Recipe, model: str, materials: Path | None = None) -> Plan
         pokes=tuple(pokes),
         identity=json.loads(json.dumps(identity)),  # as it will be read back: lists for tuples
     )
+
+
+def _materials(cards: Sequence[Card], model: str, folder: Path | None) -> tuple[Material, ...]:
+    """The materials of the cards, all in one law, with what their effects make of them."""
+    found: dict[str, Material] = {}
+    for card in cards:
+        try:
+            found[card.material] = material_of(card, model)
+        except InputError as error:
+            raise InputError(f"{card_path(card.material, folder)}: {error}") from None
+    return tuple(in_one_law(found).values())
+
+
+def _taken(card: Card) -> dict[str, Any]:
+    """The effects that a dataset takes over from a card; no key where there are none."""
+    taken = [e.model_dump(mode="json") for e in card.effects if not e.left_out(card.material)]
+    return {"effects": taken} if taken else {}
 
 
 def versions() -> dict[str, str]:

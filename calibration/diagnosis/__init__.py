@@ -8,6 +8,7 @@
 'Found: the material creeps: it sinks further with time (creep).'
 """
 
+from calibration.diagnosis.beams.simulators import SIMULATORS
 from calibration.diagnosis.domains import KINDS, model_of
 from calibration.diagnosis.effect import Candidate, Effect
 from calibration.diagnosis.run import Diagnosable, diagnose
@@ -16,6 +17,7 @@ from calibration.diagnosis.verdict import Diagnosis
 
 __all__ = [
     "KINDS",
+    "SIMULATORS",
     "Candidate",
     "Diagnosable",
     "Diagnosis",

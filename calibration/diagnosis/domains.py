@@ -3,20 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
+from calibration.diagnosis.beams.effects import EFFECTS
 from calibration.diagnosis.beams.model import BeamModel
+from calibration.diagnosis.beams.simulators import OURS, SIMULATORS
+from calibration.diagnosis.coupons import EFFECTS as COUPON_EFFECTS
+from calibration.diagnosis.coupons import CouponModel
 from calibration.diagnosis.run import Diagnosable
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, Experiment
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment
 
 
-def _beams(experiment: Experiment, without: Sequence[str], workers: int | None) -> Diagnosable:
-    return BeamModel(experiment, without=without, workers=workers)
+def _beams(experiment: Experiment, options: Options) -> Diagnosable:
+    return BeamModel(
+        experiment,
+        simulator=SIMULATORS[options.simulator],
+        without=options.without,
+        workers=options.workers,
+    )
+
+
+@dataclass(frozen=True)
+class Options:
+    """without: effects taken out of the catalogue. simulator: of beams, a name of `SIMULATORS`. workers:
+    processes (None: all cores)."""
+
+    without: tuple[str, ...] = ()
+    simulator: str = OURS.name
+    workers: int | None = None
+
+
+@dataclass(frozen=True)
+class Kind:
+    """The type of its trials, its model, and its catalogue."""
+
+    trial: type
+    model: Callable[[Experiment, Options], Diagnosable]
+    effects: tuple[str, ...]
+
+
+def _coupons(experiment: Experiment, options: Options) -> Diagnosable:
+    return CouponModel(experiment, without=options.without)
 
 
 # A new kind is its trial's type and its model, here.
-KINDS: dict[str, tuple[type, Callable[[Experiment, Sequence[str], int | None], Diagnosable]]] = {
-    "beams": (BeamTrial, _beams),
+KINDS: dict[str, Kind] = {
+    "beams": Kind(BeamTrial, _beams, tuple(EFFECTS)),
+    "coupons": Kind(CouponTrial, _coupons, tuple(COUPON_EFFECTS)),
 }
 
 
@@ -25,13 +59,15 @@ def model_of(
     *,
     kind: str | None = None,
     without: Sequence[str] = (),
+    simulator: str = OURS.name,
     workers: int | None = None,
 ) -> Diagnosable:
     """The model of an experiment's beams, pokes or coupons; kind may be left out where there is one only.
 
-    without: effects taken out of the catalogue. InputError where the kind is not there, or not said.
+    without: effects taken out of the catalogue. simulator: see `calibration.diagnosis.beams.simulators`.
+    InputError where the kind is not there, or not said, or where a name is not known.
     """
-    there = [n for n, (trial, _) in KINDS.items() if any(isinstance(t, trial) for t in experiment.trials)]
+    there = [n for n, k in KINDS.items() if any(isinstance(t, k.trial) for t in experiment.trials)]
     if kind is not None and kind not in KINDS:
         raise InputError(f"--kind {kind}: expected one of {', '.join(KINDS)}")
     if kind is not None and kind not in there:
@@ -40,14 +76,12 @@ def model_of(
         raise InputError(f"experiment.yaml: trials: expected some of {', '.join(KINDS)}")
     if kind is None and len(there) > 1:
         raise InputError(f"the experiment has {' and '.join(there)}: say which with --kind")
-    model = KINDS[kind or there[0]][1](experiment, tuple(without), workers)
-    unknown = [n for n in without if n not in model.effects and not _known(n)]
-    if unknown:
-        raise InputError(f"--without {unknown[0]}: no effect of that name")
-    return model
-
-
-def _known(name: str) -> bool:
-    from calibration.diagnosis.beams.effects import EFFECTS
-
-    return name in EFFECTS
+    chosen = KINDS[kind or there[0]]
+    for name in without:
+        if name not in chosen.effects:
+            raise InputError(f"--without {name}: expected some of {', '.join(chosen.effects)}")
+    if simulator not in SIMULATORS:
+        raise InputError(f"--simulator {simulator}: expected one of {', '.join(SIMULATORS)}")
+    if simulator != OURS.name and chosen.trial is not BeamTrial:
+        raise InputError(f"--simulator {simulator}: only beams are simulated in several ways")
+    return chosen.model(experiment, Options(tuple(without), simulator, workers))

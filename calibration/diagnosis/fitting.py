@@ -48,7 +48,10 @@ class Fit:
 
     def covariance(self) -> Array:
         """Of u and the amplitudes, (n + c, n + c)."""
-        return np.asarray(np.linalg.pinv(self.jacobian.T @ self.jacobian, hermitian=True))
+        size = np.linalg.norm(self.jacobian, axis=0)
+        size[size == 0.0] = 1.0  # columns differ by orders of magnitude: one scale before the rank is judged
+        scaled = self.jacobian / size
+        return np.asarray(np.linalg.pinv(scaled.T @ scaled, hermitian=True) / np.outer(size, size))
 
     def amplitude(self, candidate: Candidate) -> tuple[float, float]:
         """Value and standard deviation [SI]."""

@@ -63,21 +63,15 @@ def held_out_gain(model: Foldable, baseline: Fit, chosen: Fit) -> Gain:
     usable = {name: k for name, k in kept.items() if k >= LEFT}
     name = next(iter(usable), None) or max(kept, key=lambda n: kept[n], default=None)
     if name is None or kept[name] < FALLBACK:
-        return Gain(
-            held_out="",
-            kept=max(kept.values(), default=0.0),
-            rms_before=float("nan"),
-            rms_after=float("nan"),
-            rms_noise=float("nan"),
-            log_likelihood=0.0,
-            folds=0,
-            note="no fold leaves enough of the effect in training",
-        )
+        return _nothing(max(kept.values(), default=0.0), "no fold leaves enough of the effect in training")
     groups = model.families()[name]
     squares, gained, count = np.zeros(3), 0.0, 0
-    for _, group in groups:
-        before = _predicted(model, group, baseline, ())
-        after = _predicted(model, group, chosen, chosen.candidates)
+    for left_out, group in groups:
+        try:
+            before = _predicted(model, group, baseline, ())
+            after = _predicted(model, group, chosen, chosen.candidates)
+        except ValueError as problem:
+            return _nothing(kept[name], f"{name}: {left_out} cannot be predicted: {problem}")
         noise = model.part(group, others=False).noise_rms()
         squares += np.array([before[1], after[1], noise]) ** 2 * before[2]
         count += before[2]
@@ -91,6 +85,20 @@ def held_out_gain(model: Foldable, baseline: Fit, chosen: Fit) -> Gain:
         rms_noise=float(rms[2]),
         log_likelihood=gained,
         folds=len(groups),
+    )
+
+
+def _nothing(kept: float, note: str) -> Gain:
+    nan = float("nan")
+    return Gain(
+        held_out="",
+        kept=kept,
+        rms_before=nan,
+        rms_after=nan,
+        rms_noise=nan,
+        log_likelihood=0.0,
+        folds=0,
+        note=note,
     )
 
 

@@ -82,7 +82,7 @@ class Gains:
         if counted > 20.0 / len(self.drawn):
             return float(counted)
         tries = 0.01 / chi2.sf(self.threshold(0.01), 1)
-        return float(min(counted, tries * chi2.sf(gain, 1)))
+        return float(min(20.0 / len(self.drawn), tries * chi2.sf(gain, 1)))
 
     def threshold(self, chance: float) -> float:
         """Improvement that noise alone exceeds with this chance."""

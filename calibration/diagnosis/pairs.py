@@ -23,7 +23,11 @@ def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int
     sound &= names[a] != names[b]
     a, b = a[sound], b[sound]
     c = cosine[a, b]
+    first = (score[a] - c * score[b]) / (1.0 - c**2)  # minus the amplitudes, in directions of unit length
+    second = (score[b] - c * score[a]) / (1.0 - c**2)
+    forbidden = (screened.upwards[a] & (first > 0.0)) | (screened.upwards[b] & (second > 0.0))
     gain = (score[a] ** 2 + score[b] ** 2 - 2.0 * c * score[a] * score[b]) / (1.0 - c**2)
+    gain = np.where(forbidden, 0.0, gain)
     rivals = np.array([2.0 * np.log(k.rivals) for k in screened.candidates])
     found: list[tuple[int, int]] = []
     seen: set[frozenset[str]] = set()

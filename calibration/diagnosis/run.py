@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -48,19 +47,20 @@ def diagnose(
     before = _numbers(model, baseline, finding.departure.p)
     after: Numbers | None = None
     held_out: Gain | None = None
+    refined: Explanation | None = None
     if finding.chosen is not None:
         tell("refining what was found")
         advice = _advice(model, finding, tell)
-        finding, baseline = _refined(model, finding)
-        assert finding.chosen is not None
-        after = _numbers(model, finding.chosen.fit, finding.chosen.departure.p)
+        refined, baseline = _refined(model, finding, rules or Rules())
+        after = _numbers(model, refined.fit, refined.departure.p)
         if gain:
             tell("predicting what the fit has not seen")
-            held_out = held_out_gain(model, baseline, finding.chosen.fit)
+            held_out = held_out_gain(model, baseline, refined.fit)
     else:
         advice = _no_cause(model, finding)
     return Diagnosis(
         finding=finding,
+        chosen=refined,
         effects=dict(model.effects),
         baseline=before,
         extended=after,
@@ -73,22 +73,21 @@ def diagnose(
     )
 
 
-def _refined(model: Diagnosable, finding: Finding) -> tuple[Finding, Fit]:
-    """Nuisances and discretisation errors taken where the chosen explanation is, and both fits anew there."""
+def _refined(model: Diagnosable, finding: Finding, rules: Rules) -> tuple[Explanation, Fit]:
+    """The chosen explanation and the baseline, fitted with nuisances and discretisation errors taken where
+    the explanation is; they compare with each other only, not with what the search found."""
     chosen = finding.chosen
     assert chosen is not None
     model.retake(chosen.fit.state)
-    null = Null(len(chosen.fit.z), model.patterns())
+    null = Null(len(chosen.fit.z), model.patterns(), seed=rules.seed)
     again = explain(model, chosen.fit, chosen.candidates, list(chosen.fit.state.amplitudes.values()), null)
-    if again is None:
-        return finding, finding.baseline
-    baseline = fit(model, State(u=finding.baseline.state.u))
-    return replace(finding, explanations=(again, *finding.explanations[1:])), baseline
+    assert again is not None, "there was an answer when it was found"
+    return again, fit(model, State(u=finding.baseline.state.u))
 
 
 def _numbers(model: Diagnosable, found: Fit, p: float) -> Numbers:
     return Numbers(
-        reduced_chi2=reduced(found, model.points),
+        reduced_chi2=reduced(found),
         p_value=p,
         rms=model.distance_rms(found.state) * model.unit[1],
         shear_modulus_Pa=model.shear_moduli(found.state.u),

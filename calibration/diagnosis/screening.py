@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.effect import Candidate, Effect
+from calibration.diagnosis.fitting import Fit
 from calibration.diagnosis.nested import Linear
 
 Array = NDArray[np.float64]
@@ -28,12 +30,14 @@ class Screen:
     candidates: tuple[Candidate, ...]
     directions: Array
     sizes: Array
+    upwards: NDArray[np.bool_]  # (c,): amplitudes may only be positive
     free: Array  # (m, n): orthonormal, what was projected out
 
     def gains(self, z: Array) -> Array:
         """Improvement of chi-square by each candidate, to first order: (c,) for z (m,), (batch, c) for
         (batch, m)."""
-        return np.asarray((z @ self.directions) ** 2)
+        along = z @ self.directions  # an amplitude is minus this over the size
+        return np.asarray(np.where(self.upwards & (along > 0.0), 0.0, along) ** 2)
 
     def amplitudes(self, z: Array) -> Array:
         """Best amplitude of each candidate alone [SI], to first order."""
@@ -41,9 +45,14 @@ class Screen:
         return np.asarray(-(z @ self.directions) / sizes)
 
 
-def screen(linear: Linear, held: Array | None = None) -> Screen:
-    """Project u, and the columns `held` (m, k) of effects that are there already, out of all candidates."""
-    fixed = linear.by_u if held is None else np.column_stack([linear.by_u, held])
+def screen(linear: Linear, effects: Mapping[str, Effect], *, held: Fit | None = None) -> Screen:
+    """Project u, and the columns of the effects that a fit holds already, out of all candidates. What such a
+    fit has is there to be taken away as well: its effects may go either way."""
+    fixed = linear.by_u if held is None else np.column_stack([linear.by_u, held.linear.columns])
+    there = set() if held is None else {c.effect for c in held.candidates}
+    upwards = np.array(
+        [effects[c.effect].bounds[0] >= 0.0 and c.effect not in there for c in linear.candidates]
+    )
     free = basis_of(fixed)
     raw = linear.columns
     left = raw - free @ (free.T @ raw)
@@ -52,7 +61,13 @@ def screen(linear: Linear, held: Array | None = None) -> Screen:
     seen = sizes > UNSEEN * np.where(whole > 0, whole, 1.0)
     sizes = np.where(seen, sizes, 0.0)
     directions = np.where(seen, left / np.where(seen, sizes, 1.0), 0.0)
-    return Screen(candidates=linear.candidates, directions=directions, sizes=sizes, free=free)
+    return Screen(
+        candidates=linear.candidates,
+        directions=directions,
+        sizes=sizes,
+        upwards=upwards.astype(bool),
+        free=free,
+    )
 
 
 def basis_of(columns: Array) -> Array:

@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
-from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation, Names, confidence, explain, rivals
 from calibration.diagnosis.fitting import Fit, fit
-from calibration.diagnosis.nested import Nested, State
+from calibration.diagnosis.nested import Linear, Nested, State
 from calibration.diagnosis.null import Departure, Null
 from calibration.diagnosis.pairs import best_pairs
 from calibration.diagnosis.screening import Screen, screen
@@ -76,7 +76,7 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
     baseline = calibrated(model)
     tell(f"screening {len(model.candidates)} candidates")
     linear = model.linearise(baseline.state, model.candidates)
-    screened = screen(linear)
+    screened = screen(linear, model.effects)
     null = Null(len(linear.z), model.patterns(), seed=rules.seed)
     departure = null.departure(linear.z, linear.by_u)
     gains = null.gains(screened)
@@ -105,15 +105,16 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
             confidence=confidence(explanations, null) if named else 0.0,
         )
 
-    if chance > rules.alarm:
-        odd = departure.p < rules.unlike
-        return finding("unexplained" if odd else "none", singles, False)
-    tell(f"looking for a second cause beside {singles[0].fit.reports()}")
-    seen = [k for k, size in enumerate(screened.sizes) if size > 0.0]
-    visible = tuple(screened.candidates[k] for k in seen)
-    seconds = _with_second(model, singles[0], visible, linear.columns[:, seen], null, rules, tell)
-    both = sorted(singles + seconds, key=lambda e: e.score)
-    if both[0].departure.p < rules.unlike:
+    if chance > rules.alarm and departure.p >= rules.unlike:
+        return finding("none", singles, False)
+    if chance <= rules.alarm:
+        tell(f"looking for a second cause beside {singles[0].fit.reports()}")
+        pairs = _with_second(model, singles[0], screened, linear.columns, null, rules, tell)
+    else:
+        tell("looking for two causes that hide each other")
+        pairs = _hidden(model, baseline, screened, linear, null, rules, tell)
+    both = sorted(singles + pairs, key=lambda e: e.score)
+    if (chance > rules.alarm and not pairs) or both[0].departure.p < rules.unlike:
         return finding("unexplained", both, False)
     sets = rivals(both, rules.within)
     return finding("found" if len(sets) == 1 else "ambiguous", both, True)
@@ -152,7 +153,7 @@ def _shortlist(screened: Screen, z: Array, count: int, *, at_least: float) -> li
 def _with_second(
     model: Nested,
     best: Explanation,
-    candidates: tuple[Candidate, ...],
+    screened: Screen,
     columns: Array,
     null: Null,
     rules: Rules,
@@ -160,33 +161,69 @@ def _with_second(
 ) -> list[Explanation]:
     """Pairs of causes, where one more than the best one gains what noise alone would not.
 
-    candidates: those that the baseline can see, with their columns there; where even these promise nothing,
-    none is linearised anew.
+    columns: the candidates' at the baseline; where even these promise nothing, none is linearised anew.
     """
+    # another place of an effect that has one cannot be added to it: the scene holds one
+    placed = {c.effect for c in best.candidates if c.place is not None}
+    seen = [
+        k
+        for k, c in enumerate(screened.candidates)
+        if screened.sizes[k] > 0.0 and (c.effect not in placed or c in best.candidates)
+    ]
+    candidates = tuple(screened.candidates[k] for k in seen)
     held = best.fit.linear
-    roughly = screen(replace(held, columns=columns, candidates=candidates), held=held.columns)
+    roughly = screen(
+        replace(held, columns=columns[:, seen], candidates=candidates), model.effects, held=best.fit
+    )
     if null.gains(roughly).chance(float(roughly.gains(held.z).max(initial=0.0))) > PERHAPS:
         return []
     linear = model.linearise(best.fit.state, candidates)
-    beside = screen(linear, held=best.fit.linear.columns)
+    beside = screen(linear, model.effects, held=best.fit)
     gained = beside.gains(linear.z)
     if null.gains(beside).chance(float(gained.max(initial=0.0))) > rules.second:
         return []
     # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
-    plain = screen(linear)
-    target = linear.z - best.fit.linear.columns @ np.array(list(best.fit.state.amplitudes.values()))
+    target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
+    return _pairs(model, best.fit, screen(linear, model.effects), linear.columns, target, null, rules, tell)
+
+
+def _hidden(
+    model: Nested,
+    baseline: Fit,
+    screened: Screen,
+    linear: Linear,
+    null: Null,
+    rules: Rules,
+    tell: Tell,
+) -> list[Explanation]:
+    """Pairs of causes of which neither alone gains what noise would not, but both do."""
+    found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, tell)
+    tries = 0.5 * np.count_nonzero(screened.sizes) ** 2
+    return [e for e in found if tries * chi2.sf(baseline.chi2 - e.fit.chi2, 2) < rules.alarm]
+
+
+def _pairs(
+    model: Nested,
+    start: Fit,
+    screened: Screen,
+    columns: Array,
+    target: Array,
+    null: Null,
+    rules: Rules,
+    tell: Tell,
+) -> list[Explanation]:
+    """The pairs that promise most for the residuals `target`, confirmed; none of which one amplitude ended at
+    a bound, since that is no pair."""
     found = []
-    pairs = best_pairs(plain, target, count=rules.pairs)
+    pairs = best_pairs(screened, target, count=rules.pairs)
     for n, (a, b) in enumerate(pairs):
-        both = (plain.candidates[a], plain.candidates[b])
+        both = (screened.candidates[a], screened.candidates[b])
         tell(f"confirming pair {n + 1} of {len(pairs)}: {both[0].label} + {both[1].label}")
-        guess = _pair_amplitudes(linear.columns[:, [a, b]], plain.free, target)
-        pair = explain(model, best.fit, both, guess, null)
-        if pair is not None:
+        left = columns[:, [a, b]] - screened.free @ (screened.free.T @ columns[:, [a, b]])
+        guess = [float(x) for x in -np.linalg.lstsq(left, target, rcond=None)[0]]
+        pair = explain(model, start, both, guess, null)
+        if pair is not None and not any(
+            x in model.effects[c.effect].bounds for c, x in pair.fit.state.amplitudes.items()
+        ):
             found.append(pair)
     return found
-
-
-def _pair_amplitudes(columns: Array, free: Array, target: Array) -> list[float]:
-    left = columns - free @ (free.T @ columns)
-    return [float(a) for a in -np.linalg.lstsq(left, target, rcond=None)[0]]

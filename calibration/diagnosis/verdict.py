@@ -49,10 +49,12 @@ class Numbers:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Diagnosis:
-    """All that is known of an experiment. extended is None where no cause is named; gain likewise.
+    """All that is known of an experiment. chosen: the explanation that is named, refined; it, extended and
+    gain are None where no cause is named.
     unit: of rms residuals in files ("mm", "kPa", "N"), and how many of them one SI unit is."""
 
     finding: Finding
+    chosen: Explanation | None
     effects: dict[str, Any]
     baseline: Numbers
     extended: Numbers | None
@@ -65,8 +67,7 @@ class Diagnosis:
 
     def causes(self) -> list[dict[str, Any]]:
         """One entry for each effect of the chosen explanation."""
-        chosen = self.finding.chosen
-        return [] if chosen is None else _causes(chosen, self.effects, self.finding.confidence)
+        return [] if self.chosen is None else _causes(self.chosen, self.effects, self.finding.confidence)
 
     def to_json(self) -> dict[str, Any]:
         found: dict[str, Any] = {
@@ -112,7 +113,7 @@ class Diagnosis:
                 "The measurements depart from the simulation, and no effect in the library explains how:"
                 " look at the residuals."
             )
-        chosen = self.finding.chosen
+        chosen = self.chosen
         assert chosen is not None
         said = " and ".join(
             f"{self.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
@@ -158,7 +159,7 @@ def invisible(model: Nested, finding: Finding) -> tuple[Invisible, ...]:
                 Invisible(
                     effect=name,
                     parameter=effect.parameter,
-                    threshold=abs(effect.in_file(threshold)),
+                    threshold=float(abs(effect.in_file(threshold))),
                     remedy=effect.remedy,
                 )
             )
@@ -169,7 +170,9 @@ def _of(finding: Finding, name: str) -> list[Any]:
     return [c for c in finding.screened.candidates if c.effect == name]
 
 
-def reduced(fit: Fit, rows: int) -> float:
-    """Chi-square over degrees of freedom, of a fit whose residuals have this many rows of measurements."""
-    free = int(np.count_nonzero(np.linalg.norm(fit.jacobian, axis=0)))
-    return fit.chi2 / (rows - free)
+def reduced(fit: Fit) -> float:
+    """Chi-square over its degrees of freedom: rows of residuals less the rank of the Jacobian."""
+    size = np.linalg.norm(fit.jacobian, axis=0)
+    used = fit.jacobian[:, size > 0.0] / size[size > 0.0]
+    rank = int(np.linalg.matrix_rank(used)) if used.size else 0
+    return fit.chi2 / (len(fit.z) - rank)

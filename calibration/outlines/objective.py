@@ -65,21 +65,22 @@ MESH_LEFT = 0.2
 CLAMP_ZONE = 0.5
 
 
-def away_from_clamps(outline: TracedOutline, trial: BeamTrial) -> TracedOutline:
-    """The outline without the points next to a clamp; InputError where fewer than 3 an edge are left."""
+def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = CLAMP_ZONE) -> TracedOutline:
+    """The outline without the points nearer to a clamp than `zone` half heights of the section; InputError
+    where fewer than 3 an edge are left."""
     section = trial.section
     half = section.radius if isinstance(section, Circle) else section.height / 2.0
     end = trial.free_length if trial.supports == "clamped-clamped" else np.inf
 
     def kept(edge: Array) -> Array:
         # where the far end is held, x of the free part at rest and bent agree there
-        return edge[(edge[:, 0] > CLAMP_ZONE * half) & (edge[:, 0] < end - CLAMP_ZONE * half)]
+        return edge[(edge[:, 0] > zone * half) & (edge[:, 0] < end - zone * half)]
 
     upper, lower = kept(outline.upper), kept(outline.lower)
     if min(len(upper), len(lower)) < 3:
         raise InputError(
             f"trial {trial.id}: outline: expected at least 3 points an edge that lie further than"
-            f" {CLAMP_ZONE * half * 1e3:.1f} mm from the clamps"
+            f" {zone * half * 1e3:.1f} mm from the clamps"
         )
     return replace(outline, upper=upper, lower=lower)
 

@@ -3,7 +3,7 @@
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration, HeldOut
 from calibration.study.cards import best, card, usable, write_card
-from calibration.study.measurements import Measurements, ObjectiveName, measurements
+from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
 from calibration.study.run import Progress, Task, run, stopped
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "HeldOut",
     "Measurements",
     "ObjectiveName",
+    "OnSetup",
     "Progress",
     "Task",
     "best",

@@ -70,13 +70,16 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
 def write_card(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> Path:
     """Write MATERIAL.yaml into the folder, in one piece."""
     content = card(results, experiment)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{content['material']}.yaml"
+    heading = "Moduli in Pa, density in kg/m3. Calibrated: see provenance."
+    return save(folder / f"{content['material']}.yaml", content, heading)
+
+
+def save(path: Path, content: Mapping[str, Any], heading: str) -> Path:
+    """Write a YAML file under a line of comment, in one piece; its folder is made."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".yaml.part")
-    text = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
-    part.write_text(
-        "# Moduli in Pa, density in kg/m3. Calibrated: see provenance.\n" + text, encoding="utf-8"
-    )
+    text = yaml.safe_dump(dict(content), sort_keys=False, allow_unicode=True, width=110)
+    part.write_text(f"# {heading}\n{text}", encoding="utf-8")
     part.replace(path)
     return path
 
@@ -100,6 +103,8 @@ def _provenance(
     ]
     worse = [f"{r.label}: {r.status}{' (' + r.message + ')' if r.message else ''}" for r in results]
     lines.append("Fits: " + "; ".join(worse) + ".")
+    if chosen.note:
+        lines.append(f"Note: {chosen.note}.")
     if filled:
         lines.append(f"Not fitted, moduli taken from {chosen.label}: {', '.join(filled)}.")
     if experiment.materials[chosen.material].density is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 from calibration.coupons import CouponObjective
@@ -11,10 +11,25 @@ from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, Mat
 from calibration.motion import MarkerObjective
 from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
 from calibration.outlines.dice import DiceObjective
+from calibration.outlines.setup import Setup
 from calibration.pokes import PokeObjective
 from calibration.search import Objective
 
 ObjectiveName = Literal["likelihood", "dice"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OnSetup(Experiment):
+    """An experiment of which it is known what its rig and camera do to beams: what is fitted is corrected."""
+
+    setup: Setup
+
+    @staticmethod
+    def of(experiment: Experiment, setup: Setup | None) -> Experiment:
+        """The experiment on a setup; itself where none is known."""
+        if setup is None:
+            return experiment
+        return OnSetup(**{f.name: getattr(experiment, f.name) for f in fields(Experiment)}, setup=setup)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,12 +56,15 @@ def measurements(
 ) -> Measurements:
     """All that the static fit of a material can use. ignored: trials that it cannot, each with the reason.
 
-    InputError where nothing is left.
+    InputError where nothing is left, or where the experiment's setup (`OnSetup`) cannot be applied.
     """
+    setup = experiment.setup if isinstance(experiment, OnSetup) else None
     belief = experiment.materials[material]
     mine = [t for t in experiment.trials if t.material == material]
     beams = [t for t in mine if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)]
     if objective == "dice":
+        if setup is not None:
+            raise InputError("a known rig corrects outlines: expected the objective likelihood, not dice")
         # no chi-square: nothing else can be added to it
         return Measurements(
             material=material,
@@ -58,7 +76,9 @@ def measurements(
     objectives: list[Objective] = []
     outlines = None
     if beams:
-        outlines = OutlineObjective(beams, belief, fidelity=fidelity, reference=reference, workers=workers)
+        outlines = OutlineObjective(
+            beams, belief, fidelity=fidelity, reference=reference, setup=setup, workers=workers
+        )
         objectives.append(outlines)
     objectives += [CouponObjective(trial=t) for t in mine if isinstance(t, CouponTrial)]
     rods = [t for t in mine if isinstance(t, PokeTrial) and t.inclusion_mesh is None]
@@ -66,6 +86,10 @@ def measurements(
     if pokes is not None:
         objectives.append(pokes)
     marked = [t for t in mine if isinstance(t, BeamTrial) and t.markers]
+    if setup is not None and marked:
+        raise InputError(
+            f"trial {marked[0].id}: markers: a known rig corrects outlines, not markers: fit them apart"
+        )
     objectives += [settled_markers(t, belief, workers=workers) for t in marked]
     if not objectives:
         raise InputError(

@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 
 from calibration.experiment import Experiment, read
+from calibration.outlines.setup import Setup
 from calibration.parameters import parametrisation
 from calibration.search import Generation
 from calibration.study._store import FitStore
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
-from calibration.study.measurements import ObjectiveName, measurements
+from calibration.study.measurements import ObjectiveName, OnSetup, measurements
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
 FORMAT = 2
@@ -29,7 +30,7 @@ FORMAT = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """One fit of a study."""
+    """One fit of a study. setup: what is known of rig and camera."""
 
     experiment: Path
     digest: str
@@ -39,6 +40,7 @@ class Task:
     options: FitOptions
     folder: Path
     objective: ObjectiveName = "likelihood"
+    setup: Setup | None = None
 
     @property
     def label(self) -> str:
@@ -61,6 +63,7 @@ class Task:
             "polish": self.options.gauss_newton,
             "objective": self.objective,
             "held_out": self.options.leave_one_out,
+            "rig": None if self.setup is None else self.setup.digest,
         }
         return FitStore(self.folder, self.name, header)
 
@@ -143,7 +146,7 @@ def _show(
 def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lambda: None) -> Calibration:
     """One fit, going on from its history, written down when it ends; watch is called each generation."""
     store = task.store()
-    experiment = read(task.experiment)
+    experiment = OnSetup.of(read(task.experiment), task.setup)
 
     def told(generation: Generation) -> None:
         if not generation.replayed:
@@ -157,9 +160,17 @@ def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lam
         history=store.history(),
         told=told,
     )
-    result = replace(result, objective=task.objective)
+    result = _as_asked(result, task)
     store.finish(result)
     return result
+
+
+def _as_asked(result: Calibration, task: Task) -> Calibration:
+    """The result with what was asked for on it."""
+    if task.setup is not None:
+        note = "; ".join(n for n in (task.setup.sentence, result.note) if n)
+        result = replace(result, note=note)
+    return replace(result, objective=task.objective)
 
 
 def _end_with_parent() -> None:
@@ -184,11 +195,13 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
             history = [g for g in store.history() if np.isfinite(g.costs).any()]
             if not history:
                 continue
-            data = measurements(experiment, task.material, workers=1, objective=task.objective)
+            data = measurements(
+                OnSetup.of(experiment, task.setup), task.material, workers=1, objective=task.objective
+            )
             if data.outlines is not None:
                 data.outlines.reference = None
             result = best_so_far(parametrisation(task.law, terms=task.terms), data, history)
-            result = replace(result, objective=task.objective)
+            result = _as_asked(result, task)
         found.append(result)
     return found
 

@@ -11,12 +11,14 @@ from calibration.experiment.model import BeamTrial
 
 def candidates_of(trials: Sequence[BeamTrial], effects: Mapping[str, BeamEffect]) -> tuple[Candidate, ...]:
     """Each effect in all trials, in those of one material, and in one specimen, where these differ; effects
-    that sit in one trial alone only there. A rig's and a camera's faults are in all, or in the trials of one
-    kind of support that `touches` picks."""
+    that sit in one trial alone only there. A camera's and a simulator's faults are in all."""
     found: list[Candidate] = []
     for effect in effects.values():
         touched = [t for t in trials if effect.touches(t)]
         if not touched:
+            continue
+        if effect.belongs_to == "simulator":
+            found.append(Candidate(effect=effect.name))  # one simulator made them all
             continue
         for place in effect.places:
             if effect.reach == "trial":
@@ -26,6 +28,9 @@ def candidates_of(trials: Sequence[BeamTrial], effects: Mapping[str, BeamEffect]
                             effect=effect.name, at=t.id, place=place, rivals=len(touched) * len(effect.places)
                         )
                     )
+                continue
+            if effect.belongs_to == "camera":
+                found.append(Candidate(effect=effect.name, place=place))
                 continue
             groups: list[tuple[str, ...]] = [tuple(t.id for t in touched)]
             found.append(Candidate(effect=effect.name, place=place))

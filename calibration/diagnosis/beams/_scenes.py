@@ -20,7 +20,9 @@ from tisim import Beam, Material, material_from_moduli
 Array = NDArray[np.float64]
 Kind = tuple[str, float | None]  # an effect and its place
 
-LAW = "neo-hookean"
+# Without stiffening it is the neo-Hookean law of isochoric strain; the baseline and its extension must not
+# differ in how they take volume.
+LAW = "yeoh"
 BULK = 300.0  # over the shear modulus, as calibrations expect it
 
 

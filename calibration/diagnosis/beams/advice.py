@@ -74,9 +74,7 @@ def _photographed(
         return 0.0
     new = BeamModel(
         made,
-        fidelity=model.fidelity,
-        reference=None,
-        without=[],
+        simulator=replace(model.simulator, reference=None),
         workers=model.workers,
         pose=design.pose,
         names=model.names,
@@ -109,7 +107,7 @@ def _predicted(
     """The experiment as the state predicts it; None where it has no equilibrium."""
     scenes = replace(model.scenes, trials=[trials.get(t.id, t) for t in model.trials], pose=design.pose)
     index = [i for i, t in enumerate(model.trials) if t.id in trials]
-    beams = [scenes.beam(i, state, time=design.time, fidelity=model.fidelity) for i in index]
+    beams = [scenes.beam(i, state, time=design.time, fidelity=model.simulator.fidelity) for i in index]
     results = simulate(beams, workers=model.workers)
     if not all(r.ok for r in results):
         return None

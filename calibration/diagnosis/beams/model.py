@@ -11,31 +11,28 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
-from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
+from calibration.diagnosis.beams._bank import Bank
 from calibration.diagnosis.beams._candidates import candidates_of, reaches
-from calibration.diagnosis.beams._nuisances import beliefs, registrations
+from calibration.diagnosis.beams._nuisances import beliefs, corners, registrations
 from calibration.diagnosis.beams._patterns import patterns_of
-from calibration.diagnosis.beams._pictures import coefficients, distances, feet_of, pictures_of
+from calibration.diagnosis.beams._pictures import distances, feet_of, pictures_of
 from calibration.diagnosis.beams._scenes import Kind, Nudge, Scenes
 from calibration.diagnosis.beams.effects import EFFECTS, BeamEffect
+from calibration.diagnosis.beams.simulators import OURS, Simulator
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment
-from calibration.outlines import COARSE, REFERENCE, Fidelity
-from tisim import Beam, Result, simulate
+from tisim import Beam, Result
 
 Array = NDArray[np.float64]
 
-# The beams that correct those of the search: 0.7 of chi in all from ones five times as dear, where the
-# correction of a bench of nine beams is 12.
-CORRECTING = Fidelity(layer=0.005, rings=3, solver=REFERENCE.solver)
 SCATTER = 0.15  # of ln G from one specimen of a material to the next
 MESH_LEFT = 0.2  # of the mesh's correction, as in calibration.outlines
 STEP = 0.003  # of ln G, in a finite difference
@@ -47,8 +44,7 @@ class BeamModel:
     share one a material). See `calibration.diagnosis.nested.Nested`.
 
     names: of the specimens; coordinates are u = ln(G / 1 Pa) of each.
-    fidelity, reference: of the beams that a search solves, and of those that correct them, as in
-    `calibration.outlines`; uncorrected: why there is no correction.
+    simulator: whose faults are looked for too; uncorrected: why there is no correction of its mesh's error.
     without: effects taken out of the catalogue. pose: see `Scenes`. names: specimens, where the coordinates
     of another model of the same ones are to be understood.
     InputError where no beam was traced, or where a density is missing.
@@ -58,8 +54,7 @@ class BeamModel:
         self,
         experiment: Experiment,
         *,
-        fidelity: Fidelity = COARSE,
-        reference: Fidelity | None = CORRECTING,
+        simulator: Simulator = OURS,
         without: Sequence[str] = (),
         workers: int | None = None,
         pose: Callable[[Beam, BeamTrial], Beam] | None = None,
@@ -77,8 +72,10 @@ class BeamModel:
                     " only the ratio of weight to stiffness"
                 )
         self.experiment = experiment
-        self.fidelity, self.reference, self.workers = fidelity, reference, workers
-        self.effects: Mapping[str, BeamEffect] = {n: e for n, e in EFFECTS.items() if n not in without}
+        self.simulator, self.workers = simulator, workers
+        self.effects: Mapping[str, BeamEffect] = {
+            n: e for n, e in EFFECTS.items() if n not in without and e.faulty(simulator)
+        }
         self.pictures = pictures_of(self.trials)
         self.points = self.pictures[-1].rows.stop
         of_trial = [t.specimen or t.material for t in self.trials]
@@ -90,7 +87,8 @@ class BeamModel:
         self.scenes = Scenes(
             experiment=experiment, trials=self.trials, specimen=self.specimen, effects=self.effects, pose=pose
         )
-        self.uncorrected = "" if reference else "no correction of the mesh's error was asked for"
+        self.bank = Bank(scenes=self.scenes, pictures=self.pictures, simulator=simulator, workers=workers)
+        self.uncorrected = "" if simulator.reference else f"simulated as they are: {simulator.sentence}"
         self._prior = _scatter(self.materials)
         self._correction = np.zeros(self.points)
         self._known = np.zeros((self.points, 0))  # nuisances' columns
@@ -106,7 +104,7 @@ class BeamModel:
         for shear in SCAN:
             state = State(u=np.full(len(self.names), np.log(shear)))
             cost = np.zeros(len(self.names))
-            for p, r in zip(self.pictures, self._solve([(state, None)])[0], strict=True):
+            for p, r in zip(self.pictures, self.bank.solve([(state, None)])[0], strict=True):
                 cost[self.specimen[p.trial]] += np.inf if r is None else np.sum(distances(feet_of(p, r)) ** 2)
             better = cost < best
             best, u = np.where(better, cost, best), np.where(better, state.u, u)
@@ -122,16 +120,17 @@ class BeamModel:
         # effects that differ in time are left out: what is taken here hardly depends on the modulus
         lasting = {c: a for c, a in state.amplitudes.items() if not self.effects[c.effect].timed}
         calm = replace(state, amplitudes=lasting)
-        results = self._answer(calm)
-        base = self._coefficients(results, calm)
-        fine = [] if rough else self._fine(calm)
-        self._correction = self._coefficients(fine, calm) - base if fine else np.zeros(self.points)
-        columns = registrations(self.pictures, results, self.scenes, calm)
+        results = self.bank.answer(calm)
+        base = self.bank.values_of(results, calm)
+        self._correction = np.zeros(self.points)
+        if self.simulator.reference is not None and not rough:
+            fine, self.uncorrected = self.bank.fine(calm, self.simulator.reference)
+            if fine:
+                self._correction = self.bank.values_of(fine, calm) - base
+        columns = registrations(self.pictures, results, self.scenes, calm) + corners(self.pictures)
         for i, _ in enumerate(self.trials):
             columns.append(np.where(self._of_trial() == i, MESH_LEFT * self._correction, 0.0))
-        columns += beliefs(
-            self.pictures, base, self.scenes, calm, fidelity=self.fidelity, workers=self.workers
-        )
+        columns += beliefs(self.bank, base, results, calm)
         self._known = np.column_stack(columns)
         self._whitened()
 
@@ -141,31 +140,28 @@ class BeamModel:
 
     def residuals(self, states: Sequence[State]) -> Array:
         found = np.full((len(states), self.points + len(self._prior)), np.nan)
-        for row, state, results in zip(found, states, self._solve([(s, None) for s in states]), strict=True):
-            if _all(results):
-                row[:] = self._whole(self._coefficients(results, state), state.u)
+        values = self.bank.values([(s, None) for s in states])
+        for row, state, at in zip(found, states, values, strict=True):
+            if np.isfinite(at).all():
+                row[:] = self._whole(at, state.u)
         return found
 
     def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linear:
         kinds = list(dict.fromkeys((c.effect, c.place) for c in candidates))
         nudges = [Nudge(kind=k, step=self._step(k, state)) for k in kinds]
         stiffer = replace(state, u=state.u + STEP)
-        base, by_modulus, *moved = self._solve(
+        at, by_modulus, *moved = self.bank.values(
             [(state, None), (stiffer, None), *((state, nudge) for nudge in nudges)]
         )
-        if not _all(base) or not _all(by_modulus):
+        if not (np.isfinite(at).all() and np.isfinite(by_modulus).all()):
             raise ValueError("no equilibrium at this state")
-        at = self._coefficients(base, state)
-        slope = (self._coefficients(by_modulus, stiffer) - at) / STEP
+        slope = (by_modulus - at) / STEP
         of_trial, of_specimen = self._of_trial(), np.array(self.specimen)[self._of_trial()]
         by_u = np.zeros((self.points + len(self._prior), len(self.names)))
         for k in range(len(self.names)):
             by_u[: self.points, k] = self._whiten(np.where(of_specimen == k, slope, 0.0))
         by_u[self.points :] = self._prior
-        change = {
-            nudge.kind: (self._coefficients(results, state, nudge) - at) / nudge.step
-            for nudge, results in zip(nudges, moved, strict=True)
-        }
+        change = {n.kind: (there - at) / n.step for n, there in zip(nudges, moved, strict=True)}
         columns = np.zeros((len(by_u), len(candidates)))
         for k, c in enumerate(candidates):
             hit = np.array([reaches(c, t, self.effects[c.effect]) for t in self.trials])
@@ -222,6 +218,7 @@ class BeamModel:
             some.pictures.append(replace(self.pictures[k], rows=slice(first, first + size)))
             first += size
         some.points = first
+        some.bank = replace(self.bank, pictures=some.pictures)
         some._correction, some._known = self._correction[rows], self._known[rows]
         some._whitened()
         return some
@@ -233,8 +230,10 @@ class BeamModel:
 
     def distance_rms(self, state: State) -> float:
         """Of the smooth part of the distances [m], nuisances at their most likely values taken out."""
-        results = self.results(state)
-        left = self._taken_out() @ (self._coefficients(results, state) + self._correction)
+        (values,) = self.bank.values([(state, None)])
+        if not np.isfinite(values).all():
+            raise ValueError("no equilibrium at this state")
+        left = self._taken_out() @ (values + self._correction)
         return float(np.sqrt(left @ left / self._traced))
 
     def noise_rms(self) -> float:
@@ -279,7 +278,7 @@ class BeamModel:
         """Distances of each photograph's points [m], the nuisances at their most likely values taken out.
         ValueError where a beam has no equilibrium."""
         results = self.results(state)
-        smooth = self._coefficients(results, state) + self._correction
+        smooth = self.bank.values_of(results, state) + self._correction
         known = smooth - self._taken_out() @ smooth
         found = []
         for p, r in zip(self.pictures, results, strict=True):
@@ -289,7 +288,7 @@ class BeamModel:
 
     def results(self, state: State) -> Sequence[Result]:
         """One result a photograph. ValueError where a beam has no equilibrium."""
-        return self._answer(state)
+        return self.bank.answer(state)
 
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
@@ -298,66 +297,13 @@ class BeamModel:
             found.setdefault(m, []).append(float(value))
         return {m: float(np.exp(np.mean(v))) for m, v in found.items()}
 
-    # -- the FEM --
-
-    def _answer(self, state: State) -> Sequence[Result]:
-        found = self._solve([(state, None)])[0]
-        if not _all(found):
-            raise ValueError("no equilibrium at this state")
-        return found
-
-    def _solve(self, wanted: Sequence[tuple[State, Nudge | None]]) -> list[list[Result | None]]:
-        """One result a photograph for each state, None where it has no equilibrium; a scene that several
-        share is solved once."""
-        beams: list[Beam] = []
-        known: dict[tuple[object, ...], int] = {}
-        rows: list[list[int]] = [[] for _ in wanted]
-        for p in self.pictures:  # photograph by photograph, so that neighbours in the batch share a mesh
-            for row, (state, nudge) in zip(rows, wanted, strict=True):
-                key = self.scenes.key(p.trial, state, time=p.time, nudge=nudge)
-                if key not in known:
-                    known[key] = len(beams)
-                    beams.append(
-                        self.scenes.beam(p.trial, state, time=p.time, fidelity=self.fidelity, nudge=nudge)
-                    )
-                row.append(known[key])
-        results = _simulated(beams, self.workers)
-        return [[results[k] for k in row] for row in rows]
-
-    def _fine(self, state: State) -> list[Result | None]:
-        """One result a photograph on the reference mesh; empty where there is none."""
-        if self.reference is None:
-            return []
-        beams = [
-            self.scenes.beam(i, state, time=1.0, fidelity=self.reference) for i in range(len(self.trials))
-        ]
-        results = _simulated(beams, self.workers)
-        failed = [t.id for t, r in zip(self.trials, results, strict=True) if r is None]
-        self.uncorrected = (
-            f"no equilibrium of {', '.join(failed)} on the finer mesh that corrects" if failed else ""
-        )
-        return [] if failed else [results[p.trial] for p in self.pictures]
+    # -- algebra --
 
     def _step(self, kind: Kind, state: State) -> float:
         """Of a finite difference, away from the bound that the effect is at."""
         effect = self.effects[kind[0]]
         now = [a for c, a in state.amplitudes.items() if (c.effect, c.place) == kind]
         return effect.step if max(now, default=0.0) + effect.step <= effect.bounds[1] else -effect.step
-
-    # -- algebra --
-
-    def _coefficients(
-        self, results: Sequence[Result | None], state: State, nudge: Nudge | None = None
-    ) -> Array:
-        """Of the distances of all photographs [m], (points,), uncorrected; NaN where there is no result."""
-        return np.concatenate(
-            [
-                np.full(p.basis.shape[1], np.nan)
-                if r is None
-                else coefficients(p, r, self.scenes.images(p.trial, state, time=p.time, nudge=nudge))
-                for p, r in zip(self.pictures, results, strict=True)
-            ]
-        )
 
     def _whole(self, values: Array, u: Array) -> Array:
         return np.concatenate([self._whiten(values + self._correction), self._prior @ u])
@@ -371,27 +317,6 @@ class BeamModel:
 
     def _of_trial(self) -> NDArray[np.int64]:
         return np.concatenate([np.full(p.basis.shape[1], p.trial) for p in self.pictures])
-
-
-def _all(results: Sequence[Result | None]) -> TypeGuard[Sequence[Result]]:
-    return all(r is not None for r in results)
-
-
-def _simulated(beams: Sequence[Beam], workers: int | None) -> list[Result | None]:
-    """Results, None for a beam that has no equilibrium or that cannot be: a search tries odd ones too."""
-    try:
-        results: list[Result] = simulate(beams, workers=workers)
-    except ValueError:
-        return [r for b in beams for r in _alone(b)]
-    return [r if r.ok else None for r in results]
-
-
-def _alone(beam: Beam) -> list[Result | None]:
-    try:
-        found = simulate([beam], workers=1)[0]
-    except ValueError:
-        return [None]
-    return [found if found.ok else None]
 
 
 def _scatter(materials: Sequence[str]) -> Array:

@@ -6,6 +6,7 @@ from calibration.diagnosis.beams.effects import (
     clamp_compliance,
     clamp_gap,
     clamp_tilt,
+    coarse_mesh,
     compressibility,
     creep,
     density,
@@ -15,6 +16,8 @@ from calibration.diagnosis.beams.effects import (
     grip_squeeze,
     image_scale,
     lens_distortion,
+    locking,
+    not_at_equilibrium,
     radius,
     residual_curvature,
     skin,
@@ -49,6 +52,9 @@ _ALL = (
     lens_distortion,
     skin,
     added_mass,
+    locking,
+    coarse_mesh,
+    not_at_equilibrium,
 )
 
 EFFECTS: dict[str, BeamEffect] = {module.EFFECT.name: module.EFFECT for module in _ALL}

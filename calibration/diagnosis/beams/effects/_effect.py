@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.beams.simulators import Simulator
 from calibration.diagnosis.effect import Effect
 from calibration.experiment.model import BeamTrial
 from tisim import Beam, Material, laws
@@ -38,6 +39,11 @@ def every(trial: BeamTrial) -> bool:
     return True
 
 
+def any_simulator(simulator: Simulator) -> bool:
+    del simulator
+    return True
+
+
 @dataclass(frozen=True, kw_only=True)
 class BeamEffect(Effect):
     """An effect on beams.
@@ -46,6 +52,8 @@ class BeamEffect(Effect):
     touches: whether a trial can have it. timed: whether photographs of one trial differ by it.
     reach: "group" where all trials or all of a material may share it, "trial" where it sits in one trial.
     places: where in the specimen it may sit (parts of the free length).
+    instead: for a fault of the simulator, the scene without it: the amplitude is the part of the way there.
+    faulty: which simulators may have it.
     """
 
     bend: Callable[[Beam, float, Situation], Beam] = untouched
@@ -54,6 +62,8 @@ class BeamEffect(Effect):
     timed: bool = False
     reach: Reach = "group"
     places: tuple[float | None, ...] = (None,)
+    instead: Callable[[Beam], Beam] | None = None
+    faulty: Callable[[Simulator], bool] = any_simulator
 
     @property
     def bends(self) -> bool:

@@ -1,0 +1,90 @@
+"""The simulators whose faults can be looked for: ours, and three that are wrong in a way of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from calibration.outlines import COARSE, REFERENCE, Fidelity
+from tisim import Beam, Result, Solver, Status, simulate
+from tisim.paper_stop import paper_stop
+
+# The beams that correct those of the search: 0.7 of chi in all from ones five times as dear, where the
+# correction of a bench of nine beams is 12.
+CORRECTING = Fidelity(layer=0.005, rings=3, solver=REFERENCE.solver)
+
+
+class Run(Protocol):
+    def __call__(self, scenes: Sequence[Beam], *, workers: int | None) -> list[Result]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulator:
+    """fidelity: of the beams that a search solves; reference: of those that correct their mesh's error (None:
+    they are taken as they are). run: as `tisim.simulate`."""
+
+    name: str
+    sentence: str
+    fidelity: Fidelity
+    reference: Fidelity | None = None
+    run: Run = simulate
+
+
+def _stopped(scenes: Sequence[Beam], *, workers: int | None) -> list[Result]:
+    """Beams released from the straight shape, as they are where the paper's rule stops them."""
+    found: list[Result] = [
+        replace(r, status=Status.UNFINISHED) for r in simulate([_static(b) for b in scenes], workers=workers)
+    ]
+    waiting = list(range(len(scenes)))
+    duration = 0.5
+    while waiting and duration <= _LONGEST:
+        some = [replace(scenes[k], solver=replace(scenes[k].solver, duration=duration)) for k in waiting]
+        for k, run in zip(list(waiting), simulate(some, workers=workers), strict=True):
+            stop = paper_stop(run, run.mesh.nodes) if len(run.load) else None
+            if stop is not None:
+                at = int(np.argmin(np.abs(run.load - stop.time)))
+                found[k] = replace(run, status=Status.CONVERGED, positions=run.positions[at][None])
+                waiting.remove(k)
+        duration *= 2.0
+    return found
+
+
+def _static(beam: Beam) -> Beam:
+    return replace(beam, solver=COARSE.solver)
+
+
+_LONGEST = 4.0  # [s] that a run may take to be stopped
+_DYNAMIC = Solver(method="implicit", tolerance=1e-4, time_step=5e-3, mass_damping=0.1, stiffness_damping=0.01)
+
+OURS = Simulator(
+    name="ours",
+    sentence="mixed quadratic tetrahedra in equilibrium",
+    fidelity=COARSE,
+    reference=CORRECTING,
+)
+
+SIMULATORS = {
+    s.name: s
+    for s in (
+        OURS,
+        Simulator(
+            name="linear-tetrahedra",
+            sentence="plain 4-node tetrahedra in equilibrium, as the paper's elements",
+            fidelity=Fidelity(element="tet4", layer=0.0035, rings=3, solver=COARSE.solver),
+        ),
+        Simulator(
+            name="early-stop",
+            sentence="released beams, stopped by the paper's rule",
+            fidelity=Fidelity(rings=1, solver=_DYNAMIC),
+            run=_stopped,
+        ),
+        Simulator(
+            name="coarse-mesh",
+            sentence="mixed quadratic tetrahedra on a mesh twice too coarse",
+            fidelity=Fidelity(layer=0.02, rings=1, solver=COARSE.solver),
+        ),
+    )
+}

@@ -1,0 +1,40 @@
+"""Invariants of incompressible homogeneous tests, and the nominal stress that an energy in them makes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.experiment.model import CouponMode
+
+Array = NDArray[np.float64]
+
+# Functions of the driven stretch s, by mode; in simple shear s = 1 + gamma.
+
+
+def first_excess(mode: CouponMode, s: Array) -> Array:
+    """I1 - 3, shape of s."""
+    if mode == "uniaxial":
+        return np.asarray(s**2 + 2.0 / s - 3.0)
+    if mode == "equibiaxial":
+        return np.asarray(2.0 * s**2 + s**-4 - 3.0)
+    if mode == "planar":
+        return np.asarray(s**2 + s**-2 - 2.0)
+    return np.asarray((s - 1.0) ** 2)
+
+
+def slopes(mode: CouponMode, s: Array) -> tuple[Array, Array]:
+    """dI1/ds and dI2/ds, each divided by the number of axes that are driven, so that the nominal stress of an
+    energy W(I1, I2) is W_1 and W_2 times these."""
+    if mode == "uniaxial":
+        return 2.0 * (s - s**-2), 2.0 * (1.0 - s**-3)
+    if mode == "equibiaxial":
+        return 2.0 * (s - s**-5), 2.0 * (s**3 - s**-3)
+    both = 2.0 * (s - s**-3) if mode == "planar" else 2.0 * (s - 1.0)
+    return both, both
+
+
+def stress_of(mode: CouponMode, s: Array, by_first: Array | float, by_second: Array | float = 0.0) -> Array:
+    """Nominal stress of an energy with dW/dI1 and dW/dI2 at these points, in their unit."""
+    one, two = slopes(mode, s)
+    return np.asarray(one * by_first + two * by_second)

@@ -1,0 +1,62 @@
+"""Errors before and after, in pairs of bars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib.figure
+import numpy as np
+
+from calibration.diagnosis.report._labels import label
+from calibration.report._figure import COLOURS, INK, paper, plain
+from calibration.report._numbers import significant
+
+BEFORE, AFTER = COLOURS[0], COLOURS[1]
+
+
+def paired_bars(
+    names: Sequence[str],
+    before: Sequence[float],
+    after: Sequence[float] | None,
+    *,
+    quantity: str,
+    noise: float | None = None,
+    held_out: tuple[str, float, float] | None = None,
+) -> matplotlib.figure.Figure:
+    """A pair of bars a name; quantity: what they measure, with its unit. after: None where there is no
+    extension. noise: what the measurement's own error makes. held_out: (what was held out, before, after),
+    set apart below the others."""
+    rows = np.arange(len(names), dtype=float)
+    shown = [label(n) for n in names]
+    lower, upper = list(before), list(after) if after is not None else None
+    if held_out is not None and upper is not None:
+        rows = np.append(rows, len(names) + 0.5)
+        shown.append(f"held out,\n{label(held_out[0])}")
+        lower.append(held_out[1])
+        upper.append(held_out[2])
+    figure = paper(8.5, 1.3 + 0.42 * len(rows))
+    axes = plain(figure.subplots(1, 1))
+    height = 0.36 if upper is not None else 0.6
+    shift = 0.5 * height if upper is not None else 0.0
+    axes.barh(rows - shift, lower, height=height, color=BEFORE, label="baseline")
+    _written(axes, rows - shift, lower)
+    if upper is not None:
+        axes.barh(rows + shift, upper, height=height, color=AFTER, label="extended")
+        _written(axes, rows + shift, upper)
+    if noise is not None:
+        axes.axvline(noise, color=INK, lw=1.1, ls="--", zorder=2.5, label="the measurement's own noise")
+    axes.set_yticks(rows, shown)
+    axes.set_ylim(rows[-1] + 0.7, -0.7)
+    axes.set_xlim(0.0, 1.15 * max(*lower, *(upper or ()), noise or 0.0))
+    axes.set_xlabel(quantity, fontsize=9)
+    figure.legend(loc="outside upper left", ncols=3, fontsize=8, frameon=False)
+    return figure
+
+
+_CLEAR = {"fc": "white", "ec": "none", "pad": 0.4, "alpha": 0.85}
+
+
+def _written(axes: Any, rows: np.ndarray, values: Sequence[float]) -> None:
+    for y, v in zip(rows, values, strict=True):
+        axes.text(v, y, f" {significant(v)}", va="center", ha="left", fontsize=7, color=INK, bbox=_CLEAR)

@@ -1,0 +1,161 @@
+"""Evidence, cause by cause: what each explains against what noise would, and how far it trails."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from calibration.diagnosis.explanation import Explanation
+from calibration.diagnosis.report._labels import label
+from calibration.diagnosis.report._words import HEADLINE
+from calibration.diagnosis.search import Finding
+from calibration.report._figure import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
+from calibration.report._numbers import significant
+
+CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
+ALARM, RARE = 0.05, 0.01  # chances of noise alone, drawn as lines
+RIVAL = 6.0  # of chi-square: what comes as near to the best is not told from it
+_MOST = 40  # bars
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bar:
+    """A cause, or several at once, at the place where it explains most.
+
+    gain: improvement of chi-square over the baseline. behind: how much worse than the best its chi-square is,
+    amplitudes and choices of places counted; None where it was only screened. named: in the verdict.
+    """
+
+    name: str
+    gain: float
+    behind: float | None
+    named: bool
+    converged: bool = True
+
+
+def bars(finding: Finding) -> list[Bar]:
+    """One bar an effect and one a pair that was confirmed, the strongest first: those confirmed in the
+    simulator with what they gain there, the others with what they gain to first order."""
+    found: dict[tuple[str, ...], Bar] = {}
+    best = finding.explanations[0].score if finding.explanations else 0.0
+    for e in sorted(finding.explanations, key=lambda e: e.score):
+        if e.names not in found:
+            found[e.names] = _confirmed(e, finding, best)
+    gains = finding.screened.gains(finding.baseline.z)
+    dear = np.array([2.0 * np.log(c.rivals) for c in finding.screened.candidates])
+    for k in np.argsort(-(gains - dear)):
+        c = finding.screened.candidates[k]
+        if (c.effect,) not in found:
+            found[(c.effect,)] = Bar(name=c.label, gain=float(gains[k]), behind=None, named=False)
+    return sorted(found.values(), key=lambda b: -b.gain)
+
+
+def _confirmed(e: Explanation, finding: Finding, best: float) -> Bar:
+    return Bar(
+        name=e.fit.reports(),
+        gain=max(0.0, finding.baseline.chi2 - e.fit.chi2),
+        behind=e.score - best,
+        named=e.names in finding.rivals,
+        converged=e.fit.converged,
+    )
+
+
+def draw_evidence(finding: Finding) -> Picture:
+    """Left, whether there is anything to name; right, whether one cause alone stands out."""
+    everything = bars(finding)
+    shown = everything[:_MOST]
+    confirmed = [b for b in shown if b.behind is not None]
+    figure = paper(11.0, 1.5 + 0.27 * len(shown))
+    if finding.rivals and confirmed:
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
+        _behind(right, shown)
+    else:
+        left = figure.subplots(1, 1)
+    _gains(left, shown, finding)
+    figure.legend(loc="outside upper left", ncols=3, fontsize=8, frameon=False)
+    left_out = len(everything) - len(shown)
+    caption = (
+        f"{HEADLINE[finding.verdict]}. How much of the departure each cause explains: bars in standard"
+        " deviations (root of the improvement of chi-square, which is written at their ends), each effect at"
+        " the place where it explains most. Grey bars were screened to first order, coloured ones fitted in"
+        " the simulator. Left of the lines is what noise alone gives the best of all causes tried."
+        + (" Right: what the best explains and this cause does not." if finding.rivals else "")
+        + (f" {left_out} weaker ones are not drawn." if left_out else "")
+    )
+    return picture(figure, "evidence", caption)
+
+
+def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
+    plain(axes)
+    rows = np.arange(len(shown))
+    drawn = np.sqrt([b.gain for b in shown])
+    kinds = (
+        ("named by the verdict", NAMED, [b.named for b in shown]),
+        ("fitted in the simulator", CONFIRMED, [b.behind is not None and not b.named for b in shown]),
+        ("screened to first order", SCREENED, [b.behind is None for b in shown]),
+    )
+    for text, colour, wanted in kinds:
+        here = np.array(wanted, dtype=bool)
+        if here.any():
+            axes.barh(rows[here], drawn[here], height=0.7, color=colour, label=text, zorder=2)
+    noise = finding.null.gains(finding.screened)
+    for chance, line in ((ALARM, ":"), (RARE, "--")):
+        axes.axvline(
+            np.sqrt(noise.threshold(chance)),
+            color=INK,
+            lw=1.1,
+            ls=line,
+            zorder=3,
+            label=f"noise alone goes beyond in {chance:.0%} of experiments",
+        )
+    for y, b in zip(rows, shown, strict=True):
+        axes.text(
+            np.sqrt(b.gain), y, f" {significant(b.gain, 3) if b.gain >= 10 else f'{b.gain:.1f}'}", **_TEXT
+        )
+    axes.set_yticks(rows, [_named(b) for b in shown])
+    for tick, b in zip(axes.get_yticklabels(), shown, strict=True):
+        tick.set_fontweight("bold" if b.named else "normal")
+        tick.set_color(NAMED if b.named else INK)
+    axes.set_ylim(len(shown) - 0.4, -0.6)
+    axes.set_xlim(0.0, 1.12 * max(float(drawn.max(initial=0.0)), float(np.sqrt(noise.threshold(RARE)))))
+    axes.set_title("Is anything there?", fontsize=10, loc="left", fontweight="bold")
+    axes.set_xlabel("explained / standard deviations", fontsize=9)
+
+
+def _behind(axes: Any, shown: Sequence[Bar]) -> None:
+    plain(axes).tick_params(labelleft=False, left=False)
+    axes.axvspan(0.0, RIVAL, color=BAND, lw=0, zorder=0, label=f"within {RIVAL:g}: cannot be told apart")
+    axes.axvline(RIVAL, color=INK, lw=1.1, ls="--", zorder=3)
+    reach = 30.0
+    for y, b in enumerate(shown):
+        if b.behind is None:
+            continue
+        colour = NAMED if b.named else CONFIRMED
+        far = b.behind > reach
+        x = float(np.clip(b.behind, 0.0, reach))
+        axes.plot([0.0, x], [y, y], color=colour, lw=1.5, zorder=2)
+        axes.plot(x, y, ">" if far else "o", ms=6, color=colour, zorder=4, clip_on=False)
+        text = "best" if b.behind == 0.0 else f"{b.behind:.0f}" if far else f"{b.behind:.1f}"
+        axes.text(x + 0.6, y, text, **_TEXT)
+    axes.set_xlim(0.0, reach + 4.0)
+    axes.set_title("Which one?", fontsize=10, loc="left", fontweight="bold")
+    axes.set_xlabel("χ² behind the best", fontsize=9)
+    axes.axvline(0.0, color=FAINT, lw=0.6)
+
+
+def _named(b: Bar) -> str:
+    return label(b.name) + ("" if b.converged else " (not converged)")
+
+
+CLEAR = {"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85}
+_TEXT: dict[str, Any] = {
+    "va": "center",
+    "ha": "left",
+    "fontsize": 7.5,
+    "color": INK,
+    "zorder": 5,
+    "bbox": CLEAR,
+}

@@ -1,0 +1,90 @@
+"""How the numbers of a diagnosis were made, and what went wrong on the way, in sentences."""
+
+from __future__ import annotations
+
+from calibration.diagnosis.nested import Nested
+from calibration.diagnosis.null import Departure
+from calibration.diagnosis.report._evidence import ALARM, RARE
+from calibration.diagnosis.report._words import SUSPECT, chance, pattern, tiny
+from calibration.diagnosis.verdict import Diagnosis
+from calibration.report._numbers import significant
+from calibration.report._words import listed
+
+
+def alarm(diagnosis: Diagnosis) -> str:
+    """What chance alone has to do with the best cause."""
+    finding = diagnosis.finding
+    noise = finding.null.gains(finding.screened)
+    limits = (
+        f"In this design noise alone gives the best of all {len(finding.screened.candidates)} candidates more"
+        f" than {significant(noise.threshold(ALARM))} in {ALARM:.0%} and more than"
+        f" {significant(noise.threshold(RARE))} in {RARE:.0%} of experiments."
+    )
+    single = [e for e in finding.explanations if len(e.candidates) == 1]
+    if not single:
+        return f"{limits} No cause explained enough to be fitted in the simulator."
+    gain = max(finding.baseline.chi2 - e.fit.chi2 for e in single)
+    return (
+        f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}: the chance that noise"
+        f" alone does so is {tiny(finding.chance)}."
+    )
+
+
+def departure(diagnosis: Diagnosis) -> str:
+    """Which test of the residuals fails worst, at the baseline and with the best of the library taken out."""
+    finding = diagnosis.finding
+    draws = len(finding.null.noise)
+    base = finding.departure
+    text = f"Against the baseline {_failing(base)} (all tests together: p {chance(base.p, draws)})."
+    if not finding.explanations or finding.chance > RARE:
+        return f"{text} No effect of the library improves χ² by more than noise alone would."
+    best = finding.explanations[0]
+    return (
+        f"{text} The best that the library offers ({best.fit.reports()}) improves χ² by"
+        f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"
+        f" {_failing(best.departure)} (all tests together: p {chance(best.departure.p, draws)}). So it is not"
+        " named as the cause."
+    )
+
+
+def _failing(found: Departure) -> str:
+    """The tests of residuals that fail; the one nearest to it where none does alone."""
+    worst = [n for n, p in found.each.items() if p < SUSPECT] or [found.worst]
+    return f"more than noise is found in the {listed([pattern(n) for n in worst])}"
+
+
+def troubles(diagnosis: Diagnosis) -> list[str]:
+    """Fits that did not converge, counted."""
+    finding = diagnosis.finding
+    found = []
+    if not finding.baseline.converged:
+        found.append(f"The baseline's fit did not converge: {finding.baseline.message}.")
+    stopped = [e.fit for e in finding.explanations if not e.fit.converged]
+    if stopped:
+        named = "; ".join(f"{f.reports()} ({f.message})" for f in stopped)
+        found.append(
+            f"{len(stopped)} of {len(finding.explanations)} fits of causes did not converge: {named}."
+        )
+    return found
+
+
+def method(diagnosis: Diagnosis, model: Nested, noise: str) -> list[str]:
+    """Noise model, bootstrap, screening, confirmation, time."""
+    finding = diagnosis.finding
+    draws = len(finding.null.noise)
+    candidates = finding.screened.candidates
+    effects = {c.effect for c in candidates}
+    return [
+        f"Noise: {model.points} measured coefficients, whitened by their covariance, nuisances included."
+        f" {noise}".strip(),
+        f"Null distribution: {draws} draws of that noise, fitted to first order with the baseline's free"
+        f" coordinates ({len(model.names)}), in place of textbook values of χ². A chance below"
+        f" {significant(1.0 / (draws + 1), 2)} cannot be counted so: it is given as a bound, and for the best"
+        " cause extrapolated from the draws' tail.",
+        f"Screening: {len(effects)} effects at {len(candidates)} places, each an amplitude in the simulator,"
+        f" to first order; {len(finding.explanations)} sets of causes were then fitted in the simulator"
+        " itself. How many were tried is accounted for in the chance above.",
+        f"Confidence: {min(1000, draws)} replicates of what the best explanation predicts with new noise, all"
+        " explanations fitted anew to first order: how often the same set of effects comes first.",
+        f"This diagnosis took {significant(diagnosis.seconds)} s.",
+    ]

@@ -1,0 +1,135 @@
+"""The page's HTML, for jinja2. A module, so that an installed package has it without package data."""
+
+TEMPLATE = """\
+<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Diagnosis: {{ title }}</title>
+<style>
+body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto;
+  padding: 0 1rem; overflow-wrap: anywhere; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.3rem; border-bottom: 2px solid #0072B2; margin-top: 3rem; }
+h3 { font-size: 1.05rem; margin: 1.8rem 0 .4rem; }
+.verdict { border-left: 8px solid; padding: .8rem 1.2rem; margin: .4rem 0 1rem; font-size: 1.15rem; }
+.verdict strong { display: block; font-size: .85rem; letter-spacing: .06em; text-transform: uppercase; }
+.none { background: #E8F5EF; border-color: #009E73; } .none strong { color: #00694B; }
+.found { background: #FDF1E6; border-color: #D55E00; } .found strong { color: #B34700; }
+.ambiguous { background: #FDF7E3; border-color: #E69F00; } .ambiguous strong { color: #8A5A00; }
+.unexplained { background: #F7EAF2; border-color: #A3286F; } .unexplained strong { color: #8A1F5C; }
+.next { background: #EEF4FA; border-left: 4px solid #0072B2; padding: .5rem 1rem; margin: .8rem 0; }
+.trouble { background: #FDF1E6; border-left: 4px solid #D55E00; padding: .5rem 1rem; margin: .4rem 0; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .3rem .6rem; text-align: left; border-bottom: 1px solid #DDE2E8; vertical-align: top;
+  overflow-wrap: normal; max-width: 26rem; }
+th { background: #F4F6F8; font-weight: 600; }
+.chosen { font-weight: 700; } .bad { color: #B34700; font-weight: 600; }
+.note { color: #5B6570; font-size: .88rem; max-width: 60rem; }
+figure { margin: .8rem 0; } figure img { max-width: 100%; height: auto; }
+figcaption { font-size: .85rem; color: #5B6570; max-width: 60rem; }
+</style>
+</head>
+<body>
+{% macro cell(c) %}
+<td{% if c.mark %} class="{{ c.mark }}"{% endif %}>
+{%- if c.value is not none %}<data value="{{ c.value }}">{{ c.text }}</data>{% else %}{{ c.text }}{% endif -%}
+</td>
+{% endmacro %}
+{% macro table(headings, rows) %}
+<div class="wide"><table>
+<thead><tr>{% for h in headings %}<th>{{ h }}</th>{% endfor %}</tr></thead>
+<tbody>
+{% for row in rows %}
+<tr>
+{% for c in row %}{{ cell(c) }}{% endfor %}
+</tr>
+{% endfor %}
+</tbody>
+</table></div>
+{% endmacro %}
+{% macro figure(p) %}
+<figure><img src="{{ p.source }}" alt="{{ p.name }}"><figcaption>{{ p.caption }}</figcaption></figure>
+{% endmacro %}
+<h1>Diagnosis: {{ title }}</h1>
+<p class="verdict {{ verdict }}"><strong>{{ headline }}</strong>
+{{ sentence }}</p>
+{% if causes %}
+{{ table(cause_headings, causes) }}
+{% endif %}
+{% if alternatives | length > 1 %}
+<h3>These data cannot tell apart</h3>
+{{ table(alternative_headings, alternatives) }}
+{% endif %}
+{% if next_experiment %}
+<p class="next"><strong>Measure next:</strong> {{ next_experiment }}</p>
+{% endif %}
+{% for t in troubles %}
+<p class="trouble">{{ t }}</p>
+{% endfor %}
+<section id="shapes">
+<h2>Measured against simulated</h2>
+{% for p in shapes %}
+{{ figure(p) }}
+{% else %}
+<p class="note">No pictures of shapes.</p>
+{% endfor %}
+</section>
+{% if verdict == "unexplained" %}
+<section id="departure">
+<h2>What nothing in the library explains</h2>
+<p>{{ departure }}</p>
+{{ table(test_headings, tests) }}
+{% for p in residuals %}
+{{ figure(p) }}
+{% endfor %}
+</section>
+{% endif %}
+<section id="evidence">
+<h2>Evidence, cause by cause</h2>
+{{ figure(evidence) }}
+<p class="note">{{ alarm }}</p>
+</section>
+<section id="gain">
+<h2>{{ "Before and after" if extended else "How well the baseline does" }}</h2>
+{{ table(fit_headings, fits) }}
+{% if extended %}
+<p class="note">What a modulus changes by is what the baseline's calibration had absorbed of the cause.
+{{ gain }}</p>
+{% endif %}
+{% if verdict != "unexplained" %}
+{% for p in residuals %}
+{{ figure(p) }}
+{% endfor %}
+{% endif %}
+</section>
+<section id="invisible">
+<h2>What this design cannot see</h2>
+{% if invisible %}
+<p>These would go unnoticed here, or be taken for something else: what is plausible of them is less than what
+these measurements would need to show it at 5 standard deviations.</p>
+{{ table(invisible_headings, invisible) }}
+{% else %}
+<p>Nothing of the library: each effect would show at 5 standard deviations where it is as large as is
+plausible.</p>
+{% endif %}
+</section>
+{% if notes %}
+<section id="notes">
+<h2>Notes</h2>
+<ul>{% for n in notes %}<li>{{ n }}</li>{% endfor %}</ul>
+</section>
+{% endif %}
+<section id="method">
+<h2>How the numbers were made</h2>
+{% for m in method %}
+<p class="note">{{ m }}</p>
+{% endfor %}
+{% if verdict != "unexplained" %}
+{{ table(test_headings, tests) }}
+{% endif %}
+</section>
+</body>
+</html>
+"""

@@ -1,0 +1,53 @@
+"""What a diagnosis says, in words for people."""
+
+from __future__ import annotations
+
+from calibration.diagnosis.effect import Scope
+from calibration.diagnosis.null import EVERYTHING
+from calibration.report._numbers import significant
+
+SUSPECT = 0.005  # a chance below is no accident
+
+MEANING: dict[Scope, str] = {
+    "specimen": "a property of the specimen: it may enter a simulated dataset",
+    "rig": "a fault of the rig: it corrects the calibration, and must not enter a simulated dataset",
+    "camera": "a fault of the camera: it corrects the calibration, and must not enter a simulated dataset",
+    "simulator": "a fault of the simulator: cure it there; it must not enter a simulated dataset",
+}
+
+HEADLINE = {
+    "none": "No cause to name",
+    "found": "Cause found",
+    "ambiguous": "Several causes would explain this",
+    "unexplained": "Departure without a known cause",
+}
+
+_PATTERNS = {
+    EVERYTHING: "size of all residuals together",
+    "trial edges": "bends of single edges that all photographs of a trial share",
+    "trial bends": "bends of the whole beam that all photographs of a trial share",
+    "support bends": "bends that beams of one length and support share",
+    "drifts": "bends that grow with the logarithm of time",
+}
+
+
+def pattern(name: str) -> str:
+    """A set of patterns for people; what a domain calls it where it is not known here."""
+    return _PATTERNS.get(name, name)
+
+
+def scope(at: str) -> str:
+    return "all measurements" if at == "all" else at
+
+
+def chance(p: float, draws: int) -> str:
+    """A chance to two digits; what the bootstrap cannot resolve, as a bound."""
+    finest = 1.0 / (draws + 1)
+    if p <= 1.001 * finest:
+        return f"≤ {significant(finest, 2)}"
+    return significant(p, 2)
+
+
+def tiny(p: float) -> str:
+    """A chance that may be extrapolated far below what was drawn."""
+    return significant(p, 2) if p >= 1e-4 else (f"{p:.0e}" if p > 0.0 else "below 1e-300")

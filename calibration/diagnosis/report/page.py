@@ -1,0 +1,108 @@
+"""report.html: one page that needs nothing beside it, and its pictures once more as files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from calibration.diagnosis.nested import Nested
+from calibration.diagnosis.report import _tables as tables
+from calibration.diagnosis.report._domain import Figure, noise_of, pictures_of
+from calibration.diagnosis.report._evidence import draw_evidence
+from calibration.diagnosis.report._method import alarm, departure, method, troubles
+from calibration.diagnosis.report._template import TEMPLATE
+from calibration.diagnosis.report._words import HEADLINE
+from calibration.diagnosis.verdict import Diagnosis
+from calibration.report._figure import Picture, file_name, picture
+
+LONGEST = 60  # letters of a picture's file name
+
+
+def write_report(diagnosis: Diagnosis, model: Nested, folder: Path, *, title: str) -> list[Path]:
+    """Write `folder/report.html` and its pictures (`folder/*.png`); their paths, the page first.
+
+    model: the one that was diagnosed, its nuisances taken at the baseline; what type it has decides whose
+    pictures are shown (see `pictures_of`). title: of the page, any text.
+    """
+    evidence = draw_evidence(diagnosis.finding)
+    extra: list[str] = []
+    try:
+        figures = pictures_of(model, diagnosis)
+    except ValueError as problem:  # a simulation that has no answer: the rest of the page still stands
+        figures, extra = [], [f"The pictures of shapes and residuals are missing: {problem}."]
+    pictures = _pictures(figures, taken={evidence.name})
+    text = render(diagnosis, model, evidence, pictures, title=title, extra=extra)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = [_write(folder / "report.html", text.encode("utf-8"))]
+    for p in (evidence, *(p for _, p in pictures)):
+        written.append(_write(folder / p.name, p.png))
+    return written
+
+
+def render(
+    diagnosis: Diagnosis,
+    model: Nested,
+    evidence: Picture,
+    pictures: list[tuple[Figure, Picture]],
+    *,
+    title: str,
+    extra: list[str],
+) -> str:
+    """The page as HTML. extra: what went wrong with the pictures."""
+    told = diagnosis.to_json()
+    finding = diagnosis.finding
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.from_string(TEMPLATE).render(
+        title=title,
+        verdict=finding.verdict,
+        headline=HEADLINE[finding.verdict],
+        sentence=diagnosis.sentence(),
+        cause_headings=tables.CAUSES,
+        causes=tables.cause_rows(diagnosis, told),
+        alternative_headings=tables.ALTERNATIVES,
+        alternatives=tables.alternative_rows(diagnosis),
+        next_experiment=diagnosis.next_experiment,
+        troubles=[*troubles(diagnosis), *extra],
+        shapes=[p for f, p in pictures if f.section == "shapes"],
+        residuals=[p for f, p in pictures if f.section == "residuals"],
+        departure=departure(diagnosis),
+        test_headings=tables.TESTS,
+        tests=tables.test_rows(diagnosis),
+        evidence=evidence,
+        alarm=alarm(diagnosis),
+        extended=diagnosis.extended is not None,
+        fit_headings=tables.FITS if diagnosis.extended else tables.FITS[:2],
+        fits=tables.fit_rows(told, len(finding.null.noise)),
+        gain=tables.gain_sentence(told),
+        invisible_headings=tables.INVISIBLE,
+        invisible=tables.invisible_rows(diagnosis),
+        notes=diagnosis.notes,
+        method=method(diagnosis, model, noise_of(model)),
+    )
+
+
+def _pictures(figures: list[Figure], taken: set[str]) -> list[tuple[Figure, Picture]]:
+    """As PNG, each under a file name of its own."""
+    found = []
+    for f in figures:
+        name = f.name[:LONGEST]
+        made = picture(f.figure, name, f.caption)
+        for nth in count(2):
+            if made.name.lower() not in taken:
+                break
+            made = replace(made, name=f"{file_name(name)}-{nth}.png")
+        taken.add(made.name.lower())
+        found.append((f, made))
+    return found
+
+
+def _write(path: Path, content: bytes) -> Path:
+    part = path.with_name(f"{path.name}.part")
+    part.write_bytes(content)
+    part.replace(path)
+    return path

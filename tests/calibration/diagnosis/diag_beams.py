@@ -1,0 +1,116 @@
+"""Tiny beams for the plumbing of the beams' model: two cantilevers and a bridge, photographed by this file.
+
+They are simulated by tisim itself, on the mesh that the model uses: what is tested is how effects, noise and
+nuisances run through the model, not whether tisim is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from _folders import beam_entry, capture_entry, outline_columns, write_experiment
+from numpy.typing import NDArray
+
+import tisim
+from calibration.experiment import read
+from calibration.experiment.model import Experiment
+from calibration.outlines import COARSE
+from tisim.mesh import outline
+
+Array = NDArray[np.float64]
+
+SHEAR = 25e3
+Change = Callable[[tisim.Beam, float], tisim.Beam]
+
+
+def tiny(
+    folder: Path,
+    *,
+    lengths_mm: Sequence[float] = (50.0, 100.0),
+    bridges_mm: Sequence[float] = (),
+    times: Sequence[float] = (10.0,),
+    shears: Sequence[float] = (SHEAR,),
+    change: Change = lambda beam, _: beam,
+    noise: float = 0.0,
+    seed: int = 0,
+    sure: bool = True,
+) -> Experiment:
+    """An experiment with one material a shear modulus (S0, S1, ...); noise scales all errors.
+
+    change: what is wrong with a beam at a time [s]. sure: radius, length and density are known exactly.
+    """
+    rng = np.random.default_rng([3, seed])
+    trials, tables = [], {}
+    materials = {}
+    for k, shear in enumerate(shears):
+        name = f"S{k}"
+        belief = {"density_kg_m3": 1000.0} | ({} if sure else {"density_sd_kg_m3": 5.0})
+        materials[name] = belief
+        for length, bridge in [(x, False) for x in lengths_mm] + [(x, True) for x in bridges_mm]:
+            identifier = f"{name}-{'bridge' if bridge else 'cantilever'}-{length:.0f}"
+            supports = "clamped-clamped" if bridge else "clamped-free"
+            beam = tisim.Beam(
+                material=tisim.material_from_moduli("yeoh", shear=shear, bulk=300.0 * shear),
+                length=length / 1e3,
+                supports=supports,  # type: ignore[arg-type]
+                element=COARSE.element,  # type: ignore[arg-type]
+                layer=COARSE.layer,
+                rings=COARSE.rings,
+                solver=COARSE.solver,
+            )
+            captures = []
+            for time in times:
+                (result,) = tisim.simulate([change(beam, time)], workers=1)
+                assert result.ok
+                file = f"beams/{identifier}-{time:.0f}.csv"
+                tables[file] = outline_columns(*_photograph(_edges(result), rng, noise))
+                captures.append(capture_entry(time, file))
+            entry = beam_entry(
+                identifier,
+                material=name,
+                specimen=name,
+                free_length_mm=length,
+                supports=supports,
+                captures=captures,
+            )
+            if sure:
+                entry["section"] = {"circle": {"radius_mm": 10.0}}
+                del entry["free_length_sd_mm"]
+            trials.append(entry)
+    return read(write_experiment(folder, trials, tables=tables, materials=materials))
+
+
+def _edges(result: tisim.Result) -> list[Array]:
+    """Upper and lower edge [mm] at points 1.3 mm or so apart, from 1 mm off the clamp."""
+    assert isinstance(result.scene, tisim.Beam)
+    seen = outline(result.mesh, result.positions[-1])
+    free = (seen.x >= -1e-9) & (seen.x <= result.scene.length + 1e-9)
+    found = []
+    for line in (seen.upper[free], seen.lower[free]):
+        t = np.arange(len(line)) / 2.0  # middle nodes lie at odd places: quadratics through each three
+        at = np.linspace(0.0, t[-1], int(1e3 * result.scene.length / 1.3))[1:-1]
+        k = 2 * np.minimum(at.astype(int), len(line) // 2 - 1)
+        s = (at - k / 2.0)[:, None]
+        a, b, c = line[k], line[k + 1], line[k + 2]
+        found.append(1e3 * (a * (1 - s) * (1 - 2 * s) + 4 * b * s * (1 - s) + c * s * (2 * s - 1)))
+    return found
+
+
+def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) -> tuple[Array, Array]:
+    """Contour errors of 0.1 mm over 5 mm, and one draw of shift, roll and scale, as the entries say."""
+    shift = 0.1 * noise * rng.standard_normal(2)
+    roll = np.radians(0.15) * noise * rng.standard_normal()
+    scale = 1.0 + 0.003 * noise * rng.standard_normal()
+    turn = np.array([[np.cos(roll), -np.sin(roll)], [np.sin(roll), np.cos(roll)]])
+    found = []
+    for edge in edges:
+        step = np.gradient(edge, axis=0)
+        along = step / np.linalg.norm(step, axis=1)[:, None]
+        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+        C = np.exp(-((s[:, None] - s[None]) ** 2) / (2.0 * 5.0**2)) + 4e-4 * np.eye(len(s))
+        error = 0.1 * noise * np.linalg.cholesky(C) @ rng.standard_normal(len(s))
+        traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
+        found.append(scale * traced @ turn.T + shift)
+    return found[0], found[1]

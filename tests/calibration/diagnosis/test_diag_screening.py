@@ -1,0 +1,156 @@
+"""What screening and pairs say to first order, against plain least squares."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from fake_nested import FakeNested, by_modulus, effect, library, noise, sigmas
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.fitting import fit
+from calibration.diagnosis.nested import Linear, State
+from calibration.diagnosis.pairs import best_pairs
+from calibration.diagnosis.screening import Screen, basis_of, screen
+
+
+def linear(model: FakeNested) -> Linear:
+    return model.linearise(State(u=model.truth), model.candidates)
+
+
+def chi2(columns: np.ndarray, z: np.ndarray) -> float:
+    left = z - columns @ np.linalg.lstsq(columns, z, rcond=None)[0]
+    return float(left @ left)
+
+
+def test_directions_are_what_the_moduli_cannot_do() -> None:
+    model = FakeNested(scoped=("bend", "slope"), noise=noise(1))
+    at = linear(model)
+    seen = screen(at, model.effects)
+    assert seen.candidates == at.candidates
+    assert np.abs(at.by_u.T @ seen.directions).max() < 1e-9
+    assert np.linalg.norm(seen.directions, axis=0) == pytest.approx(1.0)
+    assert seen.free.T @ seen.free == pytest.approx(np.eye(2), abs=1e-12)
+
+
+def test_sizes_gains_and_amplitudes_are_those_of_least_squares() -> None:
+    model = FakeNested(hidden=5.0 * library()["ripple"], noise=noise(2))
+    at = linear(model)
+    seen = screen(at, model.effects)
+    for k, c in enumerate(at.candidates):
+        whole = np.column_stack([at.by_u, at.columns[:, k]])
+        best = np.linalg.lstsq(whole, -at.z, rcond=None)[0]
+        assert seen.gains(at.z)[k] == pytest.approx(chi2(at.by_u, at.z) - chi2(whole, at.z))
+        assert seen.amplitudes(at.z)[k] == pytest.approx(best[-1])
+        assert seen.sizes[k] == pytest.approx(sigmas(model.column(c), model))
+    together = seen.gains(np.stack([at.z, 2.0 * at.z]))
+    assert together == pytest.approx(np.stack([seen.gains(at.z), 4.0 * seen.gains(at.z)]))
+
+
+def test_what_moduli_can_do_alone_is_not_seen() -> None:
+    shapes = library() | {
+        "density": 3.0 * by_modulus("S0") + 2.0 * by_modulus("S1"),
+        "nothing": np.zeros(72),
+    }
+    model = FakeNested(shapes=shapes, noise=noise(3))
+    at = linear(model)
+    seen = screen(at, model.effects)
+    blind = [c.effect in ("density", "nothing") for c in at.candidates]
+    assert (seen.sizes[blind] == 0.0).all()
+    assert (seen.directions[:, blind] == 0.0).all()
+    assert (seen.gains(at.z)[blind] == 0.0).all()
+    assert (seen.amplitudes(at.z)[blind] == 0.0).all()
+    assert (seen.sizes[np.invert(blind)] > 0.1).all()
+
+
+def test_what_is_left_of_a_column_decides_whether_it_is_seen() -> None:
+    across = library()["bend"]
+    for left, seen in ((1e-4, False), (3e-2, True)):
+        shapes = {"nearly": by_modulus("S0") + left * np.linalg.norm(by_modulus("S0")) * across}
+        model = FakeNested(shapes=shapes)
+        assert (screen(linear(model), model.effects).sizes[0] > 0) == seen
+
+
+def test_effects_that_are_there_are_projected_out_too() -> None:
+    model = FakeNested(noise=noise(4))
+    at = linear(model)
+    held = fit(model, State(u=model.truth), (Candidate(effect="bend"),))
+    seen = screen(at, model.effects, held=held)
+    assert np.abs(library()["bend"] @ seen.directions).max() < 1e-9
+    assert seen.sizes[[c.effect == "bend" for c in at.candidates]] == pytest.approx(0.0)
+
+
+def test_what_can_only_be_positive_gains_nothing_where_it_would_be_negative() -> None:
+    only = {"bend": effect("bend", bounds=(0.0, 100.0))}
+    for sign in (1.0, -1.0):
+        model = FakeNested(effects=only, hidden=sign * 6.0 * library()["bend"])
+        at = linear(model)
+        seen = screen(at, model.effects)
+        bend = [c.effect == "bend" for c in at.candidates]
+        assert seen.upwards.tolist() == bend
+        expected = 36.0 * sigmas(library()["bend"], model) ** 2 if sign > 0 else 0.0
+        assert seen.gains(at.z)[bend] == pytest.approx(expected)
+        assert seen.gains(at.z[None])[0, bend] == pytest.approx(expected)
+    # what a fit has there already may become less
+    held = fit(model, State(u=model.truth), (Candidate(effect="bend"),))
+    assert not screen(at, model.effects, held=held).upwards.any()
+
+
+def test_a_basis_leaves_out_what_is_there_twice() -> None:
+    a, b = library()["bend"], library()["slope"]
+    basis = basis_of(np.column_stack([a, 1e6 * b, a + b, np.zeros(72)]))
+    assert basis.shape == (72, 2)
+    assert basis.T @ basis == pytest.approx(np.eye(2), abs=1e-12)
+    assert basis @ (basis.T @ (a - 3.0 * b)) == pytest.approx(a - 3.0 * b)
+    assert basis_of(np.zeros((72, 3))).shape == (72, 0)
+
+
+def brute_pairs(at: Linear) -> list[tuple[float, frozenset[str]]]:
+    """Gain of the best pair of each two names, less what the choice of scopes costs; best first."""
+    base = chi2(at.by_u, at.z)
+    best: dict[frozenset[str], float] = {}
+    for i, j in combinations(range(len(at.candidates)), 2):
+        a, b = at.candidates[i], at.candidates[j]
+        if a.effect == b.effect:
+            continue
+        gain = base - chi2(np.column_stack([at.by_u, at.columns[:, [i, j]]]), at.z)
+        gain -= 2.0 * np.log(a.rivals) + 2.0 * np.log(b.rivals)
+        names = frozenset((a.effect, b.effect))
+        best[names] = max(best.get(names, -np.inf), gain)
+    return sorted(((g, n) for n, g in best.items()), key=lambda p: -p[0])
+
+
+def test_pairs_are_those_of_a_search_through_all() -> None:
+    shapes = library()
+    data = 4.0 * shapes["bend"] - 6.0 * shapes["slack"]
+    model = FakeNested(scoped=tuple(shapes), hidden=data, noise=noise(5))
+    at = linear(model)
+    found = best_pairs(screen(at, model.effects), at.z, count=4)
+    names = [frozenset(at.candidates[k].effect for k in pair) for pair in found]
+    assert names == [n for _, n in brute_pairs(at)[:4]]
+    assert names[0] == {"bend", "slack"}
+    assert len(set(names)) == 4
+
+
+def test_pairs_of_causes_that_are_one_and_of_unseen_ones_are_left_out() -> None:
+    shapes = library() | {"density": by_modulus("S0")}
+    shapes["twin"] = shapes["bend"] + 0.01 * shapes["ripple"]
+    model = FakeNested(shapes=shapes, hidden=9.0 * shapes["bend"], noise=noise(6))
+    at = linear(model)
+    found = best_pairs(screen(at, model.effects), at.z, count=100)
+    names = [{at.candidates[k].effect for k in pair} for pair in found]
+    assert {"bend", "twin"} not in names
+    assert not any("density" in n for n in names)
+    assert len(names) == 15 - 1  # six effects that are seen, in twos
+
+
+def test_no_pairs_of_one_candidate() -> None:
+    one = Screen(
+        candidates=(Candidate(effect="bend"),),
+        directions=library()["bend"][:, None],
+        sizes=np.ones(1),
+        upwards=np.zeros(1, dtype=bool),
+        free=np.zeros((72, 0)),
+    )
+    assert best_pairs(one, noise(7), count=3) == []

@@ -1,0 +1,173 @@
+"""A diagnosis as its file tells it: the keys and units that readers rely on."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from fake_nested import FakeNested, by_modulus, effect, library, noise, of_length, of_material, sigmas
+
+from calibration.diagnosis.run import diagnose
+from calibration.diagnosis.verdict import Diagnosis
+
+KEYS = {
+    "format",
+    "verdict",
+    "causes",
+    "alternatives",
+    "baseline",
+    "extended",
+    "gain",
+    "next_experiment",
+    "seconds",
+}
+NUMBERS = {"reduced_chi2", "p_value", "rms_mm", "shear_modulus_Pa"}
+
+
+def hidden(name: str, size: float) -> np.ndarray:
+    return np.asarray(library()[name] * (size / sigmas(library()[name], FakeNested())))
+
+
+def written(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Through the file's text and back; NaN and infinity are no JSON."""
+    data = json.loads(json.dumps(diagnosis.to_json(), allow_nan=False))
+    assert isinstance(data, dict)
+    return data
+
+
+def check_schema(data: dict[str, Any]) -> None:
+    assert set(data) >= KEYS
+    assert data["format"] == 1
+    assert data["verdict"] in ("none", "found", "ambiguous", "unexplained")
+    named = data["verdict"] in ("found", "ambiguous")
+    assert bool(data["causes"]) == bool(data["alternatives"]) == bool(data["extended"]) == named
+    assert len(data["alternatives"]) == 1 or data["verdict"] != "found"
+    assert len(data["alternatives"]) >= 2 or data["verdict"] != "ambiguous"
+    for cause in data["causes"]:
+        assert set(cause) == {"effect", "parameters", "scope", "confidence"}
+        assert isinstance(cause["effect"], str)
+        assert isinstance(cause["scope"], str)
+        assert 0.0 <= cause["confidence"] <= 1.0
+        for parameter in cause["parameters"].values():
+            assert set(parameter) == {"value", "sd"}
+            assert parameter["sd"] > 0.0
+            assert isinstance(parameter["value"], float)
+    assert sorted(c["effect"] for c in data["causes"]) == (data["alternatives"] or [[]])[0]
+    for numbers in (data["baseline"], data["extended"]):
+        if numbers is not None:
+            assert set(numbers) == NUMBERS
+            assert 0.0 < numbers["p_value"] <= 1.0
+            assert all(g > 0.0 for g in numbers["shear_modulus_Pa"].values())
+    if data["gain"] is not None:
+        assert set(data["gain"]) >= {"held_out", "rms_mm_before", "rms_mm_after", "log_likelihood"}
+        assert isinstance(data["gain"]["held_out"], str)
+    assert isinstance(data["next_experiment"], str)
+    assert data["seconds"] >= 0.0
+
+
+def test_found() -> None:
+    model = FakeNested(hidden=hidden("bend", 12.0), noise=noise(1))
+    diagnosis = diagnose(model)
+    data = written(diagnosis)
+    check_schema(data)
+    assert data["verdict"] == "found"
+    (cause,) = data["causes"]
+    assert cause["effect"] == "bend"
+    assert cause["scope"] == "all"
+    truth = 12.0 / sigmas(library()["bend"], model)
+    size = cause["parameters"]["size_mm"]  # the amplitude in the file's unit
+    assert size["sd"] == pytest.approx(1e3 * truth / 12.0, rel=1e-3)
+    assert abs(size["value"] - 1e3 * truth) < 4.0 * size["sd"]
+    assert cause["confidence"] > 0.95
+    assert data["alternatives"] == [["bend"]]
+    assert data["baseline"]["p_value"] < 0.005 < data["extended"]["p_value"]
+    assert data["baseline"]["reduced_chi2"] > 2.0
+    assert 0.5 < data["extended"]["reduced_chi2"] < 1.6
+    assert data["extended"]["rms_mm"] < data["baseline"]["rms_mm"]
+    assert data["extended"]["shear_modulus_Pa"] == pytest.approx(
+        {"S0": np.exp(1.0), "S1": np.exp(-0.5)}, rel=0.2
+    )
+    assert data["gain"]["held_out"] == "leave-one-length-out"
+    assert data["gain"]["rms_mm_after"] < data["gain"]["rms_mm_before"]
+    assert data["next_experiment"] == "to confirm: measure bend"
+    assert diagnosis.sentence() == "Found: there is bend (bend)."
+
+
+def test_reduced_chi_square_is_over_the_degrees_of_freedom() -> None:
+    model = FakeNested(hidden=hidden("bend", 12.0), noise=noise(2))
+    data = written(diagnose(model, gain=False))
+    fits = []
+    for columns in (model.by_u, np.column_stack([model.by_u, library()["bend"]])):
+        left = model.data - columns @ np.linalg.lstsq(columns, model.data, rcond=None)[0]
+        fits.append(left @ left / (72 - columns.shape[1]))
+    assert data["baseline"]["reduced_chi2"] == pytest.approx(fits[0], rel=1e-6)
+    assert data["extended"]["reduced_chi2"] == pytest.approx(fits[1], rel=1e-6)
+    assert data["gain"] is None
+
+
+def test_ambiguous() -> None:
+    shapes = library()
+    shapes["twin"] = shapes["bend"] + 0.03 * shapes["ripple"]
+    diagnosis = diagnose(FakeNested(shapes=shapes, hidden=hidden("bend", 9.0), noise=noise(3)))
+    data = written(diagnosis)
+    check_schema(data)
+    assert data["verdict"] == "ambiguous"
+    assert {tuple(a) for a in data["alternatives"]} == {("bend",), ("twin",)}
+    assert [c["effect"] for c in data["causes"]] == data["alternatives"][0]
+    first, second = data["alternatives"]
+    assert data["next_experiment"] == f"part {first[0]} and {second[0]}"
+    assert diagnosis.sentence().endswith(f"({first[0]}); or {second[0]}.")
+
+
+def test_unexplained() -> None:
+    shapes = library()
+    shapes.pop("ripple")
+    diagnosis = diagnose(FakeNested(shapes=shapes, hidden=hidden("ripple", 12.0), noise=noise(4)))
+    data = written(diagnosis)
+    check_schema(data)
+    assert data["verdict"] == "unexplained"
+    assert data["causes"] == []
+    assert data["alternatives"] == []
+    assert data["extended"] is None
+    assert data["gain"] is None
+    assert "no effect in the library" in diagnosis.sentence()
+
+
+def test_none_says_what_cannot_be_seen() -> None:
+    shapes = library() | {"density": by_modulus("S0"), "faint": 1e-3 * library()["bend"]}
+    effects = {"faint": effect("faint", plausible=1.0), "bend": effect("bend", plausible=1e9)}
+    diagnosis = diagnose(FakeNested(shapes=shapes, effects=effects, noise=noise(5)))
+    data = written(diagnosis)
+    check_schema(data)
+    assert data["verdict"] == "none"
+    assert data["next_experiment"] == "measure density (density cannot be seen)"
+    unseen = {entry["effect"]: entry for entry in data["not_visible"]}
+    assert unseen["density"] == {"effect": "density", "size_mm": None, "instead": "measure density"}
+    threshold = 5.0 / (1e-3 * sigmas(library()["bend"], FakeNested()))
+    assert unseen["faint"]["size_mm"] == pytest.approx(1e3 * threshold, rel=1e-6)
+    assert "bend" not in unseen
+    assert "agrees with the measurements" in diagnosis.sentence()
+
+
+def test_an_effect_that_only_one_beam_has_says_so_in_scope_and_gain() -> None:
+    only = np.where(of_length(3.0) & of_material("S0"), library()["bend"], 0.0)
+    model = FakeNested(shapes=library() | {"bend": only}, scoped=("bend",))
+    model.data = model.data + 15.0 / sigmas(only, model) * only + noise(6)
+    data = written(diagnose(model))
+    check_schema(data)
+    assert data["verdict"] == "found"
+    assert data["gain"]["held_out"] == "none"
+    assert data["gain"]["rms_mm_before"] is None
+    assert data["gain"]["log_likelihood"] is None
+    assert data["gain"]["note"] == "no fold leaves enough of the effect in training"
+
+
+def test_fits_that_did_not_converge_are_noted() -> None:
+    class Slow(FakeNested):
+        def start(self) -> np.ndarray:
+            return np.array([40.0, -40.0])
+
+    data = written(diagnose(Slow(noise=noise(7)), gain=False))
+    assert any(n.startswith("fit of baseline: not converged") for n in data["notes"])

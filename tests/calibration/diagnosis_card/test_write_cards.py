@@ -1,0 +1,159 @@
+"""What a diagnosis found, as cards that the factory and a later calibration read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from card_cases import MODULI, bench, diagnosis
+
+import tisim
+from calibration.diagnosis import Candidate, Diagnosis
+from calibration.diagnosis.beams.effects import EFFECTS, Situation
+from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.rig import read_rig
+from calibration.errors import InputError
+from calibration.experiment import read
+from calibration.experiment.model import BeamTrial
+from factory.materials import LAWS, load_card, material_of
+
+STIFFENING = Candidate(effect="strain-stiffening", at="S1", rivals=2)
+CURVATURE = Candidate(effect="residual-curvature", at="S1-b", rivals=3)
+TILT = Candidate(effect="clamp-tilt")
+SCALE = Candidate(effect="image-scale")
+
+
+def content(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.safe_load(path.read_text(encoding="utf-8"))
+    return found
+
+
+def test_the_factory_takes_the_cards_of_a_found_effect(tmp_path: Path) -> None:
+    experiment = bench(tmp_path / "bench")
+    found = diagnosis({STIFFENING: 0.5}, rivals=[("strain-stiffening",), ("taper", "skin")])
+    written = write_cards(tmp_path / "cards", found, experiment)
+    assert [p.name for p in written] == ["S0.yaml", "S1.yaml"]
+    card = load_card("S1", tmp_path / "cards")
+    for law in LAWS:
+        moduli = tisim.laws.get(law).moduli(card.for_law(law).parameters)
+        assert moduli.shear == pytest.approx(MODULI["S1"], rel=1e-4)
+        assert moduli.bulk == pytest.approx(300.0 * MODULI["S1"], rel=1e-4)
+    (effect,) = card.effects
+    assert (effect.effect, effect.applies_to, effect.scope) == ("strain-stiffening", "material", "S1")
+    assert effect.parameters["c2_over_c1"].value == 0.5
+    assert effect.parameters["c2_over_c1"].sd == pytest.approx(
+        found.causes()[0]["parameters"]["c2_over_c1"]["sd"], rel=1e-4
+    )
+    assert effect.valid_range == {"free_length_mm": (50.0, 100.0), "time_s": (60.0, 110.0)}
+    assert effect.rivals == ("taper + skin",)
+    assert effect.gain is not None
+    assert effect.gain["rms_mm_before"] == pytest.approx(0.4)
+    assert effect.experiment_sha256 == experiment.digest
+    assert material_of(card).law == "yeoh"
+    assert load_card("S0", tmp_path / "cards").effects == ()
+    assert "by calibration.diagnose, baseline law neo-hookean, other laws filled in" in card.provenance
+    assert "Verdict: found" in card.provenance
+
+
+def test_uncertainty_and_correlation_are_the_fits(tmp_path: Path) -> None:
+    """Against the same numbers by the inverse of the normal matrix, in the test's own words."""
+    found = diagnosis({STIFFENING: 0.5})
+    write_cards(tmp_path / "cards", found, bench(tmp_path / "bench"))
+    fit = found.finding.explanations[0].fit
+    jacobian = np.column_stack([fit.linear.by_u, fit.linear.columns])
+    c = np.linalg.inv(jacobian.T @ jacobian)
+    modulus = np.array([0.0, 0.5, 0.5, 0.0])  # ln G of S1 is the mean over its two specimens
+    sd = np.sqrt(modulus @ c @ modulus)
+    card = load_card("S1", tmp_path / "cards")
+    assert card.uncertainty.shear_modulus_high == pytest.approx(1.96 * sd, abs=1e-5)
+    expected = c[3] @ modulus / np.sqrt(c[3, 3]) / sd
+    assert card.effects[0].correlations["shear_modulus"] == pytest.approx(expected, rel=1e-4)
+    assert abs(expected) > 0.1
+
+
+def test_each_effect_goes_where_it_belongs(tmp_path: Path) -> None:
+    experiment = bench(tmp_path / "bench")
+    causes = {TILT: 0.02, STIFFENING: 0.5, CURVATURE: 0.7, SCALE: 0.004}
+    write_cards(tmp_path / "cards", diagnosis(causes), experiment)
+    effects = load_card("S1", tmp_path / "cards").effects
+    assert [(e.effect, e.applies_to) for e in effects] == [
+        ("strain-stiffening", "material"),
+        ("residual-curvature", "shape"),
+    ]
+    assert effects[1].scope == "S1-b"
+    assert effects[1].valid_range["free_length_mm"] == (100.0, 100.0)
+    rig = content(tmp_path / "cards" / "rig.yaml")
+    assert [(e["effect"], e["belongs_to"]) for e in rig["effects"]] == [
+        ("clamp-tilt", "rig"),
+        ("image-scale", "camera"),
+    ]
+    assert rig["effects"][0]["parameters"]["angle_deg"]["value"] == pytest.approx(np.degrees(0.02), rel=1e-5)
+    assert rig["experiment_sha256"] == experiment.digest
+    assert "must not enter a dataset" in rig["use"]
+    known = read_rig(tmp_path / "cards" / "rig.yaml")
+    assert known.amplitudes == pytest.approx((0.02, 0.004), rel=1e-5)
+    covariance = diagnosis(causes).finding.explanations[0].fit.covariance()[3:, 3:]
+    np.testing.assert_allclose(known.covariance, covariance[np.ix_([0, 3], [0, 3])], rtol=1e-4)
+    assert abs(known.covariance[0][1]) > 0.1 * known.covariance[0][0]
+
+
+@pytest.mark.parametrize("verdict", ["none", "unexplained"])
+def test_without_a_cause_cards_are_the_baselines(verdict: str, tmp_path: Path) -> None:
+    experiment = bench(tmp_path / "bench")
+    cards = tmp_path / "cards"
+    write_cards(cards, diagnosis({TILT: 0.02}), experiment)
+    assert (cards / "rig.yaml").exists()
+    write_cards(cards, diagnosis({}, verdict=verdict), experiment)
+    card = load_card("S0", cards)
+    assert card.effects == ()
+    shear = card.for_law("neo-hookean").parameters["mu"]
+    assert shear == pytest.approx(MODULI["S0"] * np.exp(0.1), rel=1e-5)
+    assert f"Verdict: {verdict}" in card.provenance
+    assert ("the measurements depart from it" in card.provenance) == (verdict == "unexplained")
+    assert not (cards / "rig.yaml").exists()  # the earlier diagnosis' rig is not this one's
+
+
+def test_a_material_called_rig_is_refused(tmp_path: Path) -> None:
+    text = (
+        (bench(tmp_path / "bench").folder / "experiment.yaml")
+        .read_text()
+        .replace("material: S0", "material: rig")
+    )
+    (tmp_path / "bench" / "experiment.yaml").write_text(text.replace("  S0:", "  rig:"))
+    found = diagnosis({TILT: 0.02})
+    object.__setattr__(found.extended, "shear_modulus_Pa", {"rig": 30e3, "S1": 10e3})
+    with pytest.raises(InputError, match="material rig: expected another name"):
+        write_cards(tmp_path / "cards", found, read(tmp_path / "bench"))
+    assert not (tmp_path / "cards").exists()
+
+
+def test_moduli_that_are_not_the_fits_are_an_error(tmp_path: Path) -> None:
+    found: Diagnosis = diagnosis({STIFFENING: 0.5})
+    object.__setattr__(found.extended, "shear_modulus_Pa", {"S0": 30e3, "S1": 10.1e3})
+    with pytest.raises(ValueError, match="material S1: its modulus is not that"):
+        write_cards(tmp_path / "cards", found, bench(tmp_path / "bench"))
+
+
+@pytest.mark.parametrize(
+    ("name", "amplitude"),
+    [("strain-stiffening", 0.5), ("compressibility", 0.1), ("density", 0.04), ("creep", 0.05)],
+)
+def test_a_dataset_gets_the_material_that_the_diagnosis_had(
+    name: str, amplitude: float, tmp_path: Path
+) -> None:
+    """The factory's against the one in the scene that explained the measurements, 1 s after release."""
+    experiment = bench(tmp_path / "bench")
+    write_cards(tmp_path / "cards", diagnosis({Candidate(effect=name): amplitude}), experiment)
+    trial = experiment.trials[0]
+    assert isinstance(trial, BeamTrial)
+    # what stiffens is simulated as yeoh throughout; the rest of a dataset as neo-Hookean
+    base = "yeoh" if name == "strain-stiffening" else "neo-hookean"
+    plain = tisim.material_from_moduli(base, shear=30e3, bulk=9e6, density=1000.0)
+    situation = Situation(trial=trial, time=1.0)
+    scene = EFFECTS[name].bend(tisim.Beam(material=plain, length=0.05), amplitude, situation)
+    made = material_of(load_card("S0", tmp_path / "cards"))
+    assert (made.law, made.density) == (scene.material.law, pytest.approx(scene.material.density))
+    assert dict(made.parameters) == pytest.approx(dict(scene.material.parameters), rel=1e-4)

@@ -1,0 +1,105 @@
+"""Whole diagnoses of made coupons: names, advice, pictures. The blind cases stand in tests/blind."""
+
+from __future__ import annotations
+
+import io
+from functools import cache
+
+import numpy as np
+import pytest
+from diagnosis_coupon_cases import Array, G, experiment, neo_hookean, ramps, trial
+from matplotlib.image import imread
+
+import calibration.diagnosis.coupons.pictures  # noqa: F401 - registers them
+from calibration.diagnosis.coupons import CouponModel
+from calibration.diagnosis.coupons.advice import advise
+from calibration.diagnosis.report import noise_of, pictures_of
+from calibration.diagnosis.run import diagnose
+from calibration.diagnosis.search import search
+from calibration.diagnosis.verdict import Diagnosis
+
+
+def softened(mode: str, s: Array) -> Array:
+    """A rig that gives way by 1e-6 per Pa, pulled to strains `s` of its own travel."""
+    grid = np.linspace(0.5, 3.0, 20001)
+    p = neo_hookean(mode, grid)
+    return np.interp(s, grid + 1e-6 * p, p)
+
+
+@cache
+def diagnosed() -> tuple[CouponModel, Diagnosis]:
+    trials = [
+        trial("pull", "uniaxial", ramps(2.0, 2), softened, seed=1),
+        trial("sheet", "equibiaxial", ramps(1.5, 2), softened, seed=2),
+    ]
+    model = CouponModel(experiment(*trials))
+    return model, diagnose(model)
+
+
+def test_a_soft_rig_is_found_and_its_gain_measured() -> None:
+    _, found = diagnosed()
+    assert found.finding.verdict == "found"
+    (cause,) = found.causes()
+    assert cause["effect"] == "machine-compliance"
+    assert cause["scope"] == "all"
+    estimate = cause["parameters"]["strain_per_MPa"]
+    assert abs(estimate["value"] - 1.0) < 3.0 * estimate["sd"]
+    assert found.extended is not None
+    assert found.extended.shear_modulus_Pa["A"] == pytest.approx(G, rel=0.02)
+    told = found.to_json()
+    assert told["gain"]["rms_kPa_after"] < 0.7 * told["gain"]["rms_kPa_before"]
+    assert told["gain"]["rms_kPa_after"] == pytest.approx(told["gain"]["rms_kPa_noise"], rel=0.2)
+
+
+def test_without_the_cause_its_name_is_not_used() -> None:
+    model, _ = diagnosed()
+    less = CouponModel(model.experiment, without=["machine-compliance"])
+    finding = search(less)
+    named = {name for names in finding.rivals for name in names}
+    assert "machine-compliance" not in named
+    assert finding.verdict != "none"
+
+
+def test_stiffening_and_locking_part_further_out() -> None:
+    def stiff(mode: str, s: Array) -> Array:
+        excess = {"uniaxial": s**2 + 2 / s - 3, "planar": s**2 + s**-2 - 2}[mode]
+        return neo_hookean(mode, s) * (1.0 + 0.1 * excess)
+
+    trials = [
+        trial("pull", "uniaxial", ramps(1.8, 1), stiff, seed=1, sd=400.0),
+        trial("strip", "planar", ramps(1.7, 1), stiff, seed=2, sd=400.0),
+    ]
+    model = CouponModel(experiment(*trials))
+    found = diagnose(model, gain=False)
+    assert found.finding.verdict == "ambiguous"
+    assert {"strain-stiffening"} in [set(names) for names in found.finding.rivals]
+    assert {"limited-extensibility"} in [set(names) for names in found.finding.rivals]
+    one_each = [next(e for e in found.finding.explanations if e.names == n) for n in found.finding.rivals]
+    best = advise(model, one_each)[0]
+    assert best.name in ("further", "twice", "to-the-end")
+    assert best.sentence in found.next_experiment
+    assert {i.effect for i in found.invisible} >= {"rate-dependence", "hysteresis", "mullins"}
+
+
+def test_pictures_show_something() -> None:
+    model, found = diagnosed()
+    pictures = pictures_of(model, found)
+    assert [p.name for p in pictures] == ["curves", "residuals", "rms"]
+    for p in pictures:
+        file = io.BytesIO()
+        p.figure.savefig(file, format="png")
+        file.seek(0)
+        pixels = imread(file)
+        assert pixels.std() > 0.02
+        assert p.caption
+    labels = [t.get_text() for t in pictures[0].figure.legends[0].get_texts()]
+    assert labels == ["measured", "baseline", "extended (machine-compliance)"]
+    assert "2 records, 158 points" in noise_of(model)
+
+
+def test_pictures_without_a_cause() -> None:
+    model = CouponModel(experiment(trial("$odd_name$ <b>", "planar", ramps(1.6, 1))))
+    found = diagnose(model)
+    assert found.finding.verdict == "none"
+    for p in pictures_of(model, found):
+        p.figure.savefig(io.BytesIO(), format="png")

@@ -1,0 +1,71 @@
+"""Units read from parameters' names, bars of the evidence, names drawn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from diagnosis_cases import diagnosis
+
+from calibration.diagnosis.report._evidence import bars
+from calibration.diagnosis.report._labels import label
+from calibration.diagnosis.report._units import quantity_and_unit
+
+
+@pytest.mark.parametrize(
+    ("parameter", "name", "unit"),
+    [
+        ("curvature_per_m", "curvature", "1/m"),
+        ("gap_mm", "gap", "mm"),
+        ("angle_deg", "angle", "°"),
+        ("rad_per_Nm", "", "rad/(N m)"),
+        ("per_decade", "", "per decade"),
+        ("per_100mm", "", "per 100 mm"),
+        ("per_m2", "", "1/m²"),
+        ("c2_over_c1", "c2 over c1", ""),
+        ("lost_EI", "lost EI", ""),
+        ("excess", "excess", ""),
+        ("shear_modulus_Pa", "shear modulus", "Pa"),
+        ("rms_mm", "rms", "mm"),
+    ],
+)
+def test_units_are_read_from_names(parameter: str, name: str, unit: str) -> None:
+    assert quantity_and_unit(parameter) == (name, unit)
+
+
+def test_bars_are_one_an_effect_the_strongest_first() -> None:
+    made, model = diagnosis("found")
+    found = bars(made.finding)
+    assert [b.gain for b in found] == sorted((b.gain for b in found), reverse=True)
+    single = [b for b in found if "+" not in b.name]
+    assert sorted(b.name.split(" of ")[0] for b in single) == sorted(model.effects)
+    assert [b.name for b in found if b.named] == ["bend"]
+    assert [b.name for b in found if b.behind == 0.0] == ["bend"]
+    best = made.finding.explanations[0]
+    assert found[0].gain == pytest.approx(made.finding.baseline.chi2 - best.fit.chi2)
+
+
+def test_rivals_are_marked_too() -> None:
+    made, _ = diagnosis("ambiguous")
+    named = [b for b in bars(made.finding) if b.named]
+    assert {b.name for b in named} == {"bend", "twin"}
+    assert all(b.behind is not None and b.behind <= 6.0 for b in named)
+
+
+def test_what_was_only_screened_has_its_gain_to_first_order() -> None:
+    made, _ = diagnosis("unexplained")
+    screened = replace(made.finding, explanations=())
+    linear = {b.name: b.gain for b in bars(screened)}
+    assert all(b.behind is None for b in bars(screened))
+    # the model is linear, so that a fit in it gains what was screened
+    for e in made.finding.explanations:
+        gain = made.finding.baseline.chi2 - e.fit.chi2
+        assert linear[e.fit.reports()] == pytest.approx(gain, abs=1e-6)
+
+
+def test_labels_are_short_and_no_mathematics() -> None:
+    assert label("S0-cantilever-050") == "S0-cantilever-050"
+    assert label("a$b") == r"a\$b"
+    assert len(label("x" * 500)) == 44
+    assert label("材") == "\N{WHITE SQUARE}"
+    assert label("two\nlines\x00") == "two lines\N{WHITE SQUARE}"
