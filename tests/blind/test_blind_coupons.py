@@ -1,0 +1,85 @@
+"""Made coupons with a hidden cause, found or not named: a few in each run, forty in the slow one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _blind_coupon_draw import make_coupon
+from _blind_coupon_law import Solid
+from _blind_coupon_maker import write
+from _blind_coupon_score import Pair, named, named_set, part, sigma, true_names
+from _blind_coupon_verdict import verdict_on
+from run_coupons import run
+
+CASES = [
+    (11, "one", "machine-compliance"),
+    (13, "one", "rate-dependence"),
+    (14, "one", "strain-offset"),
+    (12, "one", "hysteresis"),
+]
+
+
+def told(tmp_path: Path, seed: int, kind: str, name: str = "") -> Pair:
+    case = make_coupon(seed, kind, name, target=15.0)
+    write(case, tmp_path / "experiment")
+    return case.truth(), verdict_on(tmp_path / "experiment")
+
+
+@pytest.mark.parametrize(("seed", "kind", "name"), CASES)
+def test_the_hidden_cause_is_found(tmp_path: Path, seed: int, kind: str, name: str) -> None:
+    truth, verdict = told(tmp_path, seed, kind, name)
+    assert true_names(truth) in named_set(verdict)
+    assert named(verdict) == (name,)
+
+
+def test_clean_coupons_have_none(tmp_path: Path) -> None:
+    _, verdict = told(tmp_path, 21, "clean")
+    assert verdict["verdict"] == "none"
+
+
+def test_what_is_outside_the_library_has_no_name(tmp_path: Path) -> None:
+    _, verdict = told(tmp_path, 31, "outside", "wavy-gauge")
+    assert verdict["verdict"] == "unexplained"
+
+
+def test_no_truth_in_the_folder(tmp_path: Path) -> None:
+    case = make_coupon(11, "one", "machine-compliance", target=15.0)
+    write(case, tmp_path / "experiment")
+    files = sorted(p.relative_to(tmp_path) for p in tmp_path.rglob("*") if p.is_file())
+    assert {p.suffix for p in files} == {".yaml", ".csv"}
+    text = (tmp_path / "experiment" / "experiment.yaml").read_text()
+    assert "machine" not in text
+
+
+def test_made_stresses_are_those_of_the_textbook() -> None:
+    s = np.linspace(0.6, 2.0, 15)
+    plain = Solid(G=3.0)
+    assert plain.stress("uniaxial", s) == pytest.approx(3.0 * (s - s**-2))
+    assert plain.stress("equibiaxial", s) == pytest.approx(3.0 * (s - s**-5))
+    assert plain.stress("planar", s) == pytest.approx(3.0 * (s - s**-3))
+    assert plain.stress("simple-shear", s) == pytest.approx(3.0 * (s - 1.0), abs=1e-12)
+    mooney = Solid(G=3.0, second=0.4)
+    assert mooney.stress("uniaxial", s) == pytest.approx(3.0 * (s - s**-2) * (0.6 + 0.4 / s))
+    near = np.array([1.0 + 1e-6])
+    for solid in (Solid(G=3.0, locking=0.2), Solid(G=3.0, stiffening=0.3, second=0.2)):
+        assert solid.stress("planar", near) == pytest.approx(12e-6, rel=1e-4)
+        assert solid.stress("planar", np.array([1.8]))[0] != pytest.approx(
+            plain.stress("planar", np.array([1.8]))[0], rel=0.02
+        )
+
+
+@pytest.mark.slow
+def test_forty_coupons() -> None:
+    """The floor under the figures that tests/blind/run_coupons.py prints."""
+    pairs = run(40, 1, tell=False)
+    single = [p for p in pairs if p[0]["kind"] == "one" and sigma(p[0]) >= 5.0]
+    held = [true_names(t) in named_set(v) for t, v in single]
+    assert sum(held) >= 0.97 * len(held), part(held)
+    wrong = [v["verdict"] == "found" and named(v) != true_names(t) for t, v in pairs if t["kind"] == "one"]
+    assert sum(wrong) == 0
+    alarms = [v["verdict"] != "none" for t, v in pairs if t["kind"] == "clean"]
+    assert sum(alarms) <= 0.05 * len(alarms), part(alarms)
+    outside = [v["verdict"] for t, v in pairs if t["kind"] == "outside" and sigma(t) >= 10.0]
+    assert "found" not in outside
