@@ -74,7 +74,8 @@ def main(
         write_cards(folder / "cards", found, data)
         # last, and in one piece: a folder with a diagnosis.json is complete
         part = folder / "diagnosis.json.part"
-        part.write_text(json.dumps(found.to_json(), indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+        text = json.dumps(found.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
+        part.write_text(text + "\n", encoding="utf-8")
         part.replace(folder / "diagnosis.json")
         _show(found, folder, console)
     raise typer.Exit(0 if found.finding.baseline.converged else 1)

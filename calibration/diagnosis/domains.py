@@ -10,9 +10,11 @@ from calibration.diagnosis.beams.model import BeamModel
 from calibration.diagnosis.beams.simulators import OURS, SIMULATORS
 from calibration.diagnosis.coupons import EFFECTS as COUPON_EFFECTS
 from calibration.diagnosis.coupons import CouponModel
+from calibration.diagnosis.pokes import EFFECTS as POKE_EFFECTS
+from calibration.diagnosis.pokes import PokeModel
 from calibration.diagnosis.run import Diagnosable
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, CouponTrial, Experiment
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
 
 
 def _beams(experiment: Experiment, options: Options) -> Diagnosable:
@@ -47,9 +49,14 @@ def _coupons(experiment: Experiment, options: Options) -> Diagnosable:
     return CouponModel(experiment, without=options.without)
 
 
+def _pokes(experiment: Experiment, options: Options) -> Diagnosable:
+    return PokeModel(experiment, without=options.without, workers=options.workers)
+
+
 # A new kind is its trial's type and its model, here.
 KINDS: dict[str, Kind] = {
     "beams": Kind(BeamTrial, _beams, tuple(EFFECTS)),
+    "pokes": Kind(PokeTrial, _pokes, tuple(POKE_EFFECTS)),
     "coupons": Kind(CouponTrial, _coupons, tuple(COUPON_EFFECTS)),
 }
 

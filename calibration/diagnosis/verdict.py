@@ -136,9 +136,14 @@ def _causes(chosen: Explanation, effects: dict[str, Any], confidence: float) -> 
         parameters = {effect.parameter: {"value": effect.in_file(value), "sd": abs(effect.in_file(sd))}}
         if c.place is not None:
             parameters["position"] = {"value": c.place, "sd": 0.1}
-        found.append(
-            {"effect": c.effect, "parameters": parameters, "scope": c.at, "confidence": round(confidence, 4)}
-        )
+        entry = {
+            "effect": c.effect,
+            "parameters": parameters,
+            "scope": c.at,
+            "confidence": round(confidence, 4),
+        }
+        said = getattr(c, "said", "")  # which of an effect's forms, where its domain has several
+        found.append({**entry, "kind": said} if said else entry)
     return found
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from calibration.outlines import OutlineObjective
 from calibration.study.calibration import Calibration
-from tisim import Material, Result
+from tisim import Beam, Material, Result
 from tisim.mesh import outline
 
 Array = NDArray[np.float64]
@@ -114,6 +114,11 @@ def _simulated(outlines: OutlineObjective, results: Sequence[Result]) -> dict[st
     found = {}
     for trial, result in zip(outlines.trials, results, strict=True):
         seen = outline(result.mesh, result.positions[-1])
-        free = (seen.x >= -1e-9) & (seen.x <= trial.free_length + 1e-9)
-        found[trial.id] = (seen.upper[free], seen.lower[free])
+        scene = result.scene
+        assert isinstance(scene, Beam)
+        free = (seen.x >= -1e-9) & (seen.x <= scene.length + 1e-9)
+        upper, lower = seen.upper[free], seen.lower[free]
+        if outlines.setup is not None:  # drawn as the rig's camera shows it
+            upper, lower = outlines.setup.image(upper, trial), outlines.setup.image(lower, trial)
+        found[trial.id] = (upper, lower)
     return found

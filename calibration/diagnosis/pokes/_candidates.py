@@ -1,0 +1,78 @@
+"""Which effects may sit where in an experiment's pokes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.pokes._record import Record
+from calibration.diagnosis.pokes.effects import PokeEffect
+
+
+@dataclass(frozen=True, kw_only=True)
+class PokeCandidate(Candidate):
+    """kind: which variant of the effect (see `PokeEffect.kinds`), said: in words."""
+
+    kind: float | None = None
+    said: str = ""
+
+    @property
+    def label(self) -> str:
+        where = "" if self.at == "all" else f" of {self.at}"
+        return self.effect + where + (f" ({self.said})" if self.said else "")
+
+
+def candidates_of(records: Sequence[Record], effects: Mapping[str, PokeEffect]) -> tuple[PokeCandidate, ...]:
+    """Each effect, in each of its kinds, in all records that it touches; what belongs to a material also in
+    one material or one specimen, what belongs to a rig also in one rod's or one record, where these
+    differ."""
+    found: list[PokeCandidate] = []
+    for effect in effects.values():
+        touched = [r for r in records if effect.touches(r)]
+        if not touched:
+            continue
+        kinds = effect.kinds(touched)
+        for at, rivals in _scopes(touched, effect):
+            for kind in kinds:
+                found.append(
+                    PokeCandidate(
+                        effect=effect.name,
+                        at=at,
+                        rivals=rivals * len(kinds),
+                        kind=kind,
+                        said="" if kind is None else effect.kind_label(kind),
+                    )
+                )
+    return tuple(found)
+
+
+def _scopes(touched: Sequence[Record], effect: PokeEffect) -> list[tuple[str, int]]:
+    found, groups = [("all", 1)], [tuple(r.name for r in touched)]
+    labels = (
+        ([r.material for r in touched], [r.specimen for r in touched])
+        if effect.reach == "material"
+        else ([r.rod for r in touched], [r.name for r in touched])
+    )
+    for names in labels:
+        distinct = list(dict.fromkeys(names))
+        for name in distinct:
+            members = tuple(r.name for r, n in zip(touched, names, strict=True) if n == name)
+            if members not in groups:
+                groups.append(members)
+                found.append((name, len(distinct)))
+    return found
+
+
+def kind_of(candidate: Candidate) -> float | None:
+    return candidate.kind if isinstance(candidate, PokeCandidate) else None
+
+
+def reaches(candidate: Candidate, record: Record, effect: PokeEffect) -> bool:
+    """Whether a candidate is in a record."""
+    places = (
+        ("all", record.material, record.specimen)
+        if effect.reach == "material"
+        else ("all", record.rod, record.name)
+    )
+    return candidate.at in places and effect.touches(record)

@@ -1,0 +1,60 @@
+"""An effect on pokes: how its amplitude enters the simulated poke, the depth or the record's force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.effect import Effect
+from calibration.diagnosis.pokes._record import Record
+from tisim import Mesh, Poke
+
+Array = NDArray[np.float64]
+
+Reach = Literal["material", "rig"]
+Scene = Callable[[Poke, Mesh | None, float, float | None], Poke]
+Force = Callable[[Array, float, Record, float | None], Array]
+
+
+def always(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    del reached, everything
+    return True
+
+
+def one_kind(records: Sequence[Record]) -> tuple[float | None, ...]:
+    del records
+    return (None,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PokeEffect(Effect):
+    """One of these three, with the amplitude and the kind (below):
+
+    scene: the simulated poke with the effect in it; `nodes`: amplitudes at which it is simulated, 0 among
+    them, straight lines between; chord: the node towards which the first column is taken. fits: whether a
+    poke can be so simulated. shift: of the depth [m]. force: what becomes of the force [N] (k,) of a record,
+    in the order of `stage`.
+
+    kinds: variants of the effect (a time constant, a direction); what it is called: see `kind_label`.
+    touches: whether a record can have it. shows: whether the records that a candidate reaches, among all, let
+    its amplitude be seen at all: a candidate that no protocol shows has no column. reach: where it may sit:
+    "material": in all trials, one material or one specimen; "rig": in all trials, those of one rod or one of
+    them.
+    """
+
+    scene: Scene | None = None
+    nodes: tuple[float, ...] = ()
+    chord: float = 0.0
+    fits: Callable[[Poke], bool] = lambda _: True
+    shift: Callable[[float, Record], float] | None = None
+    force: Force | None = None
+    stage: int = 0
+    kinds: Callable[[Sequence[Record]], tuple[float | None, ...]] = one_kind
+    kind_label: Callable[[float], str] = lambda kind: f"{kind:g}"
+    touches: Callable[[Record], bool] = lambda _: True
+    shows: Callable[[Sequence[Record], Sequence[Record]], bool] = always
+    reach: Reach = "rig"

@@ -1,0 +1,155 @@
+"""What a lab can do next with pokes: other protocols at the same places, other rods, and direct
+measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.pokes._record import Record
+from calibration.experiment.model import PokeRecord, PokeTrial
+
+Array = NDArray[np.float64]
+
+POINTS = 40  # of a stroke
+SPEED = 1e-3  # [m/s], where a record has none
+HOLD = 60.0  # [s]
+OTHER_ROD = 1.6  # as wide
+SHALLOWER = 0.8  # of the depth, with another rod: what its simulation still reaches
+
+
+@dataclass(frozen=True, kw_only=True)
+class Test:
+    """Another poke of each specimen: the new trials, of its records; none where it cannot be done."""
+
+    name: str
+    sentence: str
+    trials: Callable[[Sequence[Record]], Sequence[PokeTrial]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gauge:
+    """A direct measurement: standard deviation [SI] with which it tells an effect's amplitude, by effect."""
+
+    name: str
+    sentence: str
+    sds: Mapping[str, float] = field(default_factory=dict)
+
+
+def made(
+    r: Record,
+    name: str,
+    strokes: Sequence[float],
+    *,
+    faster: float = 1.0,
+    hold: float = 0.0,
+    rod: float = 1.0,
+) -> PokeTrial:
+    """A poke where a record's was, from the surface to each depth of `strokes` [m] in turn, the first one
+    held for `hold` [s]; its error is the record's. Its force is still to be predicted."""
+    speed = faster * _speed(r)
+    times, depths, now, at = [np.zeros(1)], [np.zeros(1)], 0.0, 0.0
+    for n, to in enumerate(strokes):
+        part = np.arange(1, POINTS + 1) / POINTS
+        times.append(now + part * abs(to - at) / speed)
+        depths.append(at + part * (to - at))
+        now, at = float(times[-1][-1]), to
+        if hold > 0.0 and n == 0:
+            times.append(now + hold * part**2)
+            depths.append(np.full(POINTS, at))
+            now += hold
+    time, depth = np.concatenate(times), np.concatenate(depths)
+    g = r.geometry
+    return PokeTrial(
+        id=f"{r.name} {name}",
+        material=r.material,
+        specimen=r.specimen,
+        block=g.block,
+        rod_radius=rod * g.rod.radius,
+        rod_tip=g.rod.tip,
+        start=(g.site[0], g.site[1], g.block.size[2]),
+        direction=g.direction,
+        record=PokeRecord(time=time, depth=depth, force=np.zeros(time.size)),
+        force_sd=float(np.median(r.own_sd * np.sqrt(r.count))),
+        depth_sd=r.depth_sd,
+    )
+
+
+def _speed(r: Record) -> float:
+    moving = r.kind != 0
+    travel = float(np.abs(np.diff(r.depth))[moving[1:]].sum())
+    lasts = float(np.diff(r.time)[moving[1:]].sum())
+    return travel / lasts if travel > 0.0 and lasts > 0.0 else SPEED
+
+
+def _again(
+    name: str,
+    strokes: Callable[[float, float], Sequence[float]],
+    *,
+    faster: float = 1.0,
+    hold: float = 0.0,
+    rod: float = 1.0,
+) -> Callable[[Sequence[Record]], Sequence[PokeTrial]]:
+    """strokes: of the deepest depth and the rod's radius [m]."""
+
+    def trials(records: Sequence[Record]) -> Sequence[PokeTrial]:
+        return [
+            made(
+                r,
+                name,
+                strokes(float(r.depth.max()), r.geometry.rod.radius),
+                faster=faster,
+                hold=hold,
+                rod=rod,
+            )
+            for r in records
+        ]
+
+    return trials
+
+
+EXPERIMENTS: tuple[Test | Gauge, ...] = (
+    Gauge(name="known-weight", sentence="hang a known weight on the load cell", sds={"force-gain": 0.003}),
+    Gauge(
+        name="free-rod",
+        sentence="record the free rod for a minute before and after",
+        sds={"force-offset": 1e-3, "force-drift": 5e-5},
+    ),
+    Gauge(name="square", sentence="put a square against the rod", sds={"rod-angle": float(np.radians(0.3))}),
+    Gauge(name="callipers", sentence="measure the block with callipers", sds={"thickness": 0.003}),
+    Gauge(name="touch", sentence="find the first touch by a slow approach", sds={"depth-offset": 0.01e-3}),
+    Test(
+        name="back",
+        sentence="record the way back until the rod is free",
+        trials=_again("back", lambda top, radius: (top, -0.3 * radius)),
+    ),
+    Test(
+        name="twice",
+        sentence="poke each place twice to the same depth",
+        trials=_again("twice", lambda top, radius: (top, -0.3 * radius, top)),
+    ),
+    Test(
+        name="hold",
+        sentence="hold the rod at the deepest depth for a minute",
+        trials=_again("hold", lambda top, _: (top,), hold=HOLD),
+    ),
+    Test(
+        name="faster",
+        sentence="repeat the pokes ten times as fast",
+        trials=_again("faster", lambda top, _: (top,), faster=10.0),
+    ),
+    Test(
+        name="other-rod",
+        sentence="poke the same places with a rod 1.6 times as wide",
+        trials=_again("other rod", lambda top, _: (SHALLOWER * top,), rod=OTHER_ROD),
+    ),
+    Gauge(name="powder", sentence="powder the rod and poke the same place again", sds={"friction": 0.1}),
+    Gauge(
+        name="ultrasound",
+        sentence="look at the inclusion by ultrasound",
+        sds={"inclusion-misplaced": 0.5e-3, "inclusion-debonded": 0.1},
+    ),
+)

@@ -1,0 +1,97 @@
+"""Which pokes train, which choose the epoch, which test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learn.data.store import Store
+from learn.errors import InputError
+
+SplitBy = Literal["shape", "site"]
+FOLDS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """Frames (rows of the store) of each part, in the store's order; groups: what was split, by name."""
+
+    train: NDArray[np.int64]
+    validation: NDArray[np.int64]
+    test: NDArray[np.int64]
+    groups: dict[str, list[str]]
+
+
+def split_pokes(
+    store: Store,
+    *,
+    fold: int = 0,
+    by: SplitBy = "shape",
+    train_softness: list[str] | None = None,
+    train_depth: float | None = None,
+    seed: int = 0,
+) -> Split:
+    """Parts in the ratio 7 : 2 : 2 of the groups, turned on by the fold's number (0 to 4).
+
+    by "shape": the groups are the inclusion shapes in the store's order, as in the paper (arXiv
+    2509.10125 and its successor): no tested shape was trained on. by "site": groups are sites (in random
+    order), for stores of few shapes; pokes of one site under several softness levels stay together, since
+    they move alike. train_softness, train_depth [m]: training and validation see only these; the test
+    part keeps everything. InputError where a part would be empty.
+    """
+    if not 0 <= fold < FOLDS:
+        raise InputError(f"fold {fold}: expected 0 to {FOLDS - 1}")
+    group, names = _groups(store, by, seed)
+    count = len(names)
+    held = max(1, round(count * 2 / 11))
+    if count < 2 * held + 1:
+        hint = "; split by site instead" if by == "shape" else ""
+        raise InputError(
+            f"{store.location}: {count} {by}s cannot be split into training, validation and test{hint}"
+        )
+    order = (np.arange(count) + fold * held) % count
+    parts = {"train": order[2 * held :], "validation": order[held : 2 * held], "test": order[:held]}
+    seen = _seen(store, train_softness, train_depth)
+    of_frame = group[store.frame_poke]
+    rows = {}
+    for part, members in parts.items():
+        keep = np.isin(of_frame, members) & (seen if part != "test" else True)
+        rows[part] = np.flatnonzero(keep)
+        if not len(rows[part]):
+            raise InputError(f"{store.location}: the {part} part of fold {fold} is empty")
+    return Split(
+        train=rows["train"],
+        validation=rows["validation"],
+        test=rows["test"],
+        groups={part: [names[i] for i in sorted(members)] for part, members in parts.items()},
+    )
+
+
+def _groups(store: Store, by: SplitBy, seed: int) -> tuple[NDArray[np.int64], list[str]]:
+    """The group of each poke, -1 where it has no frames, and the groups' names."""
+    used = store.done & (store.frame_count > 0)
+    group = np.full(store.pokes, -1, dtype=np.int64)
+    if by == "shape":
+        shapes, group[used] = np.unique(store.shape[used], return_inverse=True)
+        return group, [store.shapes[i] for i in shapes]
+    keys = np.column_stack([store.shape, store.path_start, store.direction])[used]
+    sites, place = np.unique(keys, axis=0, return_inverse=True)
+    group[used] = np.random.default_rng(seed).permutation(len(sites))[place.reshape(-1)]
+    return group, [f"site {i}" for i in range(len(sites))]
+
+
+def _seen(store: Store, softness: list[str] | None, depth: float | None) -> NDArray[np.bool_]:
+    seen = np.ones(store.frames, dtype=bool)
+    if softness is not None:
+        unknown = [name for name in softness if name not in store.softness_names]
+        if unknown:
+            known = ", ".join(store.softness_names)
+            raise InputError(f"{store.location}: no softness {unknown[0]} there (it has {known})")
+        wanted = np.array([name in softness for name in store.softness_names])
+        seen &= wanted[store.softness[store.frame_poke]]
+    if depth is not None:
+        seen &= store.depth <= depth
+    return seen

@@ -1,0 +1,62 @@
+"""Sizes of displacement and force, from the training part alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import torch
+
+from learn.data.batch import Batch
+from learn.errors import InputError
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """frames: how many. displacement: root mean square over all points [m]. depth_mean, depth_max [m].
+
+    log_force_mean, log_force_sd: of ln(force / (shear modulus x rod radius x depth)), which has no units.
+    force_rms [N]. log_modulus_mean: of ln(modulus / Pa).
+    """
+
+    frames: int
+    displacement: float
+    depth_mean: float
+    depth_max: float
+    log_force_mean: float
+    log_force_sd: float
+    force_rms: float
+    log_modulus_mean: float
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
+    """One pass over the training part. rod_radius [m]. InputError for a force of zero or less."""
+    squares = 0.0
+    points = 0
+    depth, force, modulus = [], [], []
+    for batch in batches:
+        squares += float(batch.displacement.double().square().sum())
+        points += batch.displacement.shape[0] * batch.displacement.shape[1]
+        depth.append(batch.depth)
+        force.append(batch.force.double())
+        modulus.append(batch.modulus)
+    if not depth:
+        raise InputError("the training part is empty")
+    d, f, g = torch.cat(depth), torch.cat(force), torch.cat(modulus)
+    if not bool((f > 0).all()):
+        raise InputError("a training frame has a rod force of zero")
+    scaled = torch.log(f / (g * rod_radius * d))
+    return Statistics(
+        frames=len(d),
+        displacement=(squares / points) ** 0.5,
+        depth_mean=float(d.mean()),
+        depth_max=float(d.max()),
+        log_force_mean=float(scaled.mean()),
+        log_force_sd=float(scaled.std(unbiased=False)),
+        force_rms=float(f.square().mean().sqrt()),
+        log_modulus_mean=float(torch.log(g).mean()),
+    )

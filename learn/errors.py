@@ -1,0 +1,7 @@
+"""Errors that people can act on: one sentence, no traceback."""
+
+from __future__ import annotations
+
+
+class InputError(Exception):
+    """Bad input or an unusable target; its text is one sentence for people (exit code 2)."""

@@ -1,0 +1,145 @@
+"""Everything a report says of one or more runs, as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from learn.baselines import BASELINES
+from learn.data import MemoryDataset, Split, Store, split_pokes
+from learn.evaluation.cases import cases_of
+from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
+from learn.evaluation.intervals import Intervals, coverage, fit_intervals, rank_correlation
+from learn.evaluation.summary import Value, by_softness, over_folds, summarise
+from learn.evaluation.symmetry import TurnError, turn_error
+from learn.metrics import Cases
+from learn.models import pokes_of, scene_of
+from learn.training import Recipe, Run
+
+CLOUD_SIZES = (512, 1024, 4096)
+_CLOUD_POKES = 6
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Covered:
+    """Intervals of a run and how they did on its test part. radius_mm: mean over points."""
+
+    intervals: Intervals
+    points: float
+    force: float
+    rank: float
+    radius_mm: float
+
+
+@dataclass(eq=False, kw_only=True)
+class Evaluation:
+    """What was found. tables: by name of a model, over folds, by softness. deeper: beyond the trained depth.
+
+    clouds: by size of the cloud. floor_mm: what interpolation of the surface meshes alone is off. cases: of
+    the first run, for pictures.
+    """
+
+    runs: list[Run]
+    store: Store
+    folds: dict[str, list[dict[str, dict[str, Value]]]] = field(default_factory=dict)
+    turned: dict[str, TurnError] = field(default_factory=dict)
+    turned_flat: dict[str, TurnError] = field(default_factory=dict)
+    covered: dict[str, Covered] = field(default_factory=dict)
+    clouds: dict[str, dict[str, Value]] = field(default_factory=dict)
+    floor_mm: float = float("nan")
+    deeper: dict[str, dict[str, Value]] = field(default_factory=dict)
+    cases: Cases | None = None
+
+    @property
+    def tables(self) -> dict[str, dict[str, dict[str, Value]]]:
+        """Mean over folds, and sd over folds where there is more than one."""
+        joined = {}
+        for name, folds in self.folds.items():
+            levels = [level for level in folds[0] if all(level in fold for fold in folds)]
+            joined[name] = {level: over_folds([fold[level] for fold in folds]) for level in levels}
+        return joined
+
+
+def split_of(store: Store, recipe: Recipe) -> Split:
+    """The parts that a recipe trains and tests on."""
+    depth = recipe.train_depth_mm * 1e-3 if recipe.train_depth_mm else None
+    return split_pokes(
+        store, fold=recipe.fold, by=recipe.split, train_softness=recipe.train_softness, train_depth=depth
+    )
+
+
+def evaluate(
+    runs: list[Run],
+    store: Store,
+    *,
+    baselines: bool = True,
+    clouds: bool = True,
+    say: Say = lambda _text: None,
+) -> Evaluation:
+    """Answers of every run to its own test part; baselines fitted to each distinct training part."""
+    found = Evaluation(runs=runs, store=store)
+    scene = scene_of(store)
+    fitted: set[str] = set()
+    for run in runs:
+        split = split_of(store, run.recipe)
+        test = MemoryDataset(store, split.test)
+        say(f"{run.folder}: {len(test)} test frames")
+        cases = cases_of(run.model, scene, test)
+        name = run.recipe.model
+        found.folds.setdefault(name, []).append(by_softness(cases))
+        if found.cases is None:
+            found.cases = cases
+        _look_closer(found, run, split, cases, clouds=clouds and run is runs[0])
+        key = repr((run.recipe.fold, run.recipe.split, run.recipe.train_softness, run.recipe.train_depth_mm))
+        if not baselines or key in fitted:
+            continue
+        fitted.add(key)
+        train = MemoryDataset(store, split.train)
+        for title, kind in BASELINES.items():
+            say(f"fitting: {title}")
+            baseline = kind()
+            baseline.fit(train, scene)
+            found.folds.setdefault(title, []).append(by_softness(cases_of(baseline, scene, test)))
+    return found
+
+
+def _look_closer(found: Evaluation, run: Run, split: Split, cases: Cases, *, clouds: bool) -> None:
+    """Symmetry, intervals, depth and clouds of one run."""
+    store, scene, model = found.store, scene_of(found.store), run.model
+    name = f"{run.recipe.model}, fold {run.recipe.fold}"
+    validation = MemoryDataset(store, split.validation)
+    few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
+    part = scene.only(few.geometry.numpy())
+    found.turned[name] = turn_error(model, part, few)
+    found.turned_flat[name] = turn_error(model, part, few, about_normal=True)
+    held = cases_of(model, scene, validation)
+    if len(np.unique(held.poke)) >= 2:
+        intervals = fit_intervals(held)
+        points, force = coverage(intervals, cases)
+        found.covered[name] = Covered(
+            intervals=intervals,
+            points=points,
+            force=force,
+            rank=rank_correlation(intervals, cases),
+            radius_mm=float(intervals.radius_mm(cases).mean()),
+        )
+    if run.recipe.train_depth_mm is not None:
+        limit = run.recipe.train_depth_mm * 1e-3
+        found.deeper[f"{name}, to {run.recipe.train_depth_mm:g} mm"] = summarise(
+            cases.where(cases.depth <= limit)
+        )
+        if bool((cases.depth > limit).any()):
+            found.deeper[f"{name}, deeper"] = summarise(cases.where(cases.depth > limit))
+    if clouds:
+        pokes = np.unique(store.frame_poke[split.test])
+        pokes = pokes[np.linspace(0, len(pokes) - 1, min(_CLOUD_POKES, len(pokes))).astype(int)]
+        rows = split.test[np.isin(store.frame_poke[split.test], pokes)]
+        found.clouds["1024, the grid"] = summarise(cases_on(model, store, rows, store.points))
+        for size in CLOUD_SIZES:
+            found.clouds[f"{size}, scattered"] = summarise(
+                cases_on(model, store, rows, scattered(store, size))
+            )
+        found.floor_mm = grid_floor_mm(store, rows)

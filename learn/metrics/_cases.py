@@ -1,0 +1,69 @@
+"""What a metric sees: predictions beside the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Cases:
+    """f frames, n points. SI units.
+
+    truth, predicted: displacement (f, n, 3) [m]. force, force_predicted (f,) [N]. away: distance of each
+    point's rest position from the rod's tip at first touch (f, n) [m]. depth (f,) [m]. poke: (f,) which
+    poke each frame is of. softness: (f,) name.
+    """
+
+    truth: NDArray[np.float32]
+    predicted: NDArray[np.float32]
+    force: Floats
+    force_predicted: Floats
+    away: Floats
+    depth: Floats
+    poke: NDArray[np.int64]
+    softness: NDArray[np.str_]
+
+    @property
+    def distance_mm(self) -> Floats:
+        """Euclidean distance of predicted and true positions [mm], (f, n)."""
+        wrong = self.predicted.astype(np.float64) - self.truth
+        return np.asarray(np.sqrt((wrong**2).sum(axis=2)) * 1e3)
+
+    def where(self, keep: NDArray[np.bool_]) -> Cases:
+        """Some of the frames."""
+        return Cases(**{name: getattr(self, name)[keep] for name in self.__dataclass_fields__})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Metric:
+    """values: one number a frame (or a poke), NaN where it says nothing; percent: printed as such."""
+
+    name: str
+    units: str
+    text: str
+    values: Callable[[Cases], Floats]
+    percent: bool = False
+    digits: int = 3
+
+
+METRICS: dict[str, Metric] = {}
+
+
+def metric(
+    name: str, *, units: str, text: str, percent: bool = False, digits: int = 3
+) -> Callable[[Callable[[Cases], Floats]], Callable[[Cases], Floats]]:
+    """Registers a function of cases as a metric."""
+
+    def register(function: Callable[[Cases], Floats]) -> Callable[[Cases], Floats]:
+        METRICS[name] = Metric(
+            name=name, units=units, text=text, values=function, percent=percent, digits=digits
+        )
+        return function
+
+    return register

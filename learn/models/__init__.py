@@ -1,0 +1,36 @@
+"""Models that answer pokes; each has `encode(scene)` (once a geometry) and `decode(encoded, pokes)`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from learn.data.statistics import Statistics
+from learn.errors import InputError
+from learn.models._model import Model
+from learn.models.cegnn import Cegnn
+from learn.models.ours import Surrogate
+from learn.models.scene import Pokes, Prediction, Scene, make_scene, pokes_of, scene_of
+
+MODELS: dict[str, Callable[[Statistics], Model]] = {"ours": Surrogate, "cegnn": Cegnn}
+
+
+def make_model(name: str, statistics: Statistics) -> Model:
+    """A fresh model by name; its weights come from torch's random state."""
+    if name not in MODELS:
+        raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
+    return MODELS[name](statistics)
+
+
+__all__ = [
+    "MODELS",
+    "Cegnn",
+    "Model",
+    "Pokes",
+    "Prediction",
+    "Scene",
+    "Surrogate",
+    "make_model",
+    "make_scene",
+    "pokes_of",
+    "scene_of",
+]

@@ -1,0 +1,126 @@
+"""The paper's conditional equivariant graph network, as far as its public description goes: the baseline.
+
+After arXiv 2509.10125 and its successor: k = 5 nearest neighbours counting the point itself, found again at
+each of 4 layers that share one set of weights; width 64, SiLU; h of 128 stiffness values and 128 heights.
+Not public, and chosen here: coordinates in units of 10 mm in the block's own frame; heights in the same
+units; C_h is the columns (values, then heights) under the points nearest to start and end of the rod's path;
+outputs in units of the training part's root mean square. It is not equivariant: phi_s, phi_t and the heads
+act on coordinates, as published. Each edge's first linear map is applied to its two points before it is
+gathered, which changes speed and nothing else.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+from torch.nn.functional import silu
+
+from learn.data.statistics import Statistics
+from learn.models._model import Model
+from learn.models.scene import Pokes, Prediction, Scene
+
+UNIT = 1e-2  # m
+NEIGHBOURS = 5  # the point itself is one
+LAYERS = 4
+HIDDEN = 64
+_KNN_SAMPLES = 16  # distances of so many samples at a time: memory
+
+
+@dataclass(frozen=True, eq=False)
+class CegnnEncoded:
+    """points (n, 3) in units of 10 mm; columns (g, n, 2 levels): stiffness values, then heights."""
+
+    scene: Scene
+    points: Tensor
+    columns: Tensor
+
+
+class Cegnn(Model):
+    """The paper's model."""
+
+    def __init__(self, statistics: Statistics, *, levels: int = 128, dropout: float = 0.2) -> None:
+        super().__init__()
+        self.displacement_unit, self.force_unit = statistics.displacement, statistics.force_rms
+        wide = 2 * levels
+        self.edge_i = nn.Linear(wide, HIDDEN)
+        self.edge_j = nn.Linear(wide, HIDDEN, bias=False)
+        self.edge_distance = nn.Linear(1, HIDDEN, bias=False)
+        self.edge_out = nn.Linear(HIDDEN, HIDDEN)
+        self.phi_x = _mlp(HIDDEN, HIDDEN, 1)
+        self.phi_h = _mlp(wide + HIDDEN, HIDDEN, wide)
+        self.phi_s = _mlp(3, 64, 3)
+        self.phi_t = _mlp(3, 64, 3)
+        self.head = _mlp(3 * LAYERS + 6 + 2 * wide, 512, 256, 128, 3)
+        self.force_point = nn.Sequential(_mlp(3 + wide, 128, 128), nn.SiLU())
+        self.force_head = nn.Sequential(
+            nn.Linear(256, 512), nn.SiLU(), nn.Dropout(dropout), nn.Linear(512, 256), nn.SiLU(),
+            nn.Dropout(dropout), nn.Linear(256, 128), nn.SiLU(), nn.Linear(128, 1),
+        )  # fmt: skip
+
+    def encode(self, scene: Scene, prepared: object = None) -> CegnnEncoded:  # noqa: ARG002
+        """Columns and coordinates; nothing is learned here."""
+        points = (scene.points / UNIT).float()
+        heights = ((scene.points[:, 2:] - scene.level_depth) / UNIT).float()
+        columns = torch.cat([scene.profile, heights[None].expand_as(scene.profile)], dim=2)
+        return CegnnEncoded(scene, points, columns)
+
+    def decode(self, encoded: CegnnEncoded, pokes: Pokes) -> Prediction:
+        """The answer to b pokes."""
+        b, n = len(pokes.depth), len(encoded.points)
+        start = (pokes.start / UNIT).float()
+        end = ((pokes.start + pokes.depth[:, None] * pokes.direction) / UNIT).float()
+        x = encoded.points[None].expand(b, n, 3)
+        h = encoded.columns[pokes.geometry]
+        at_start, at_end = (h[torch.arange(b), _nearest(encoded.points, c)] for c in (start, end))
+        columns, layers = h, []
+        for _ in range(LAYERS):
+            index = _neighbours(x)
+            offset = x[:, :, None] - _gather(x, index)
+            first = (
+                self.edge_i(h)[:, :, None]
+                + _gather(self.edge_j(h), index)
+                + self.edge_distance(offset.square().sum(dim=3, keepdim=True))
+            )
+            message = silu(self.edge_out(silu(first)))
+            step = (offset * self.phi_x(message)).sum(dim=2) / (NEIGHBOURS - 1)
+            x = x + step + self.phi_s(x - start[:, None]) + self.phi_t(x - end[:, None])
+            h = h + self.phi_h(torch.cat([h, message.sum(dim=2)], dim=2))
+            layers.append(x)
+        path = torch.cat([start, end, at_start, at_end], dim=1)[:, None].expand(b, n, -1)
+        u = self.head(torch.cat([*layers, path], dim=2)) * self.displacement_unit
+        moved = encoded.points + u / UNIT - end[:, None]
+        around = columns - at_start[:, None]
+        points = self.force_point(torch.cat([moved, around], dim=2))
+        pooled = torch.cat([points.amax(dim=1), points.mean(dim=1)], dim=1)
+        return Prediction(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
+
+
+def _mlp(*widths: int) -> nn.Sequential:
+    layers: list[nn.Module] = []
+    for a, b in itertools.pairwise(widths):
+        layers += [nn.Linear(a, b), nn.SiLU()]
+    return nn.Sequential(*layers[:-1])
+
+
+def _nearest(points: Tensor, places: Tensor) -> Tensor:
+    return torch.cdist(places, points).argmin(dim=1)
+
+
+def _neighbours(x: Tensor) -> Tensor:
+    """Indices (b, n, k) of the k nearest points, the point itself among them."""
+    with torch.no_grad():
+        found = [
+            torch.cdist(part, part).topk(NEIGHBOURS, dim=2, largest=False).indices
+            for part in x.detach().split(_KNN_SAMPLES)
+        ]
+    return torch.cat(found)
+
+
+def _gather(values: Tensor, index: Tensor) -> Tensor:
+    """Values (b, n, c) at neighbours (b, n, k): (b, n, k, c)."""
+    b, n, k = index.shape
+    flat = index.reshape(b, n * k, 1).expand(-1, -1, values.shape[2])
+    return values.gather(1, flat).reshape(b, n, k, -1)

@@ -1,0 +1,159 @@
+"""Our surrogate: invariants at each point give the coefficients of vectors that turn with the scene.
+
+Nothing but distances, angles and depths enters the networks, and the displacement is a sum of vectors that
+turn with the scene (surface normal, direction from the contact, direction of the push, slopes of codes and
+of messages). So a turned, mirrored or moved scene gives the turned, mirrored or moved answer, and the same
+force, to rounding. Interior and neighbourhoods are encoded once a geometry (`encode`), a poke costs
+`decode` alone. The displacement is predicted in units of the depth, the force in units of shear modulus
+times rod radius times depth: without gravity the force of one elastic law is proportional to its moduli.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import torch
+from torch import Tensor, nn
+from torch.nn.functional import silu, softplus
+
+from learn.data.batch import Batch
+from learn.data.statistics import Statistics
+from learn.models import _contact
+from learn.models._contact import Contact
+from learn.models._geometry import Encoded, GeometryEncoder, means, slopes, stencils_of
+from learn.models._model import Model
+from learn.models._prior import Prior
+from learn.models._stencil import Stencil
+from learn.models.scene import Pokes, Prediction, Scene, pokes_of
+
+SEEN = 6  # channels of the code that the contact looks at
+SCALES = ((0, 1), (0,))  # of the encoder's radii, those of each round of messages
+
+
+class Surrogate(Model):
+    """hidden: width of the trunk; messages, directions: channels of the messages' means and slopes."""
+
+    def __init__(
+        self,
+        statistics: Statistics,
+        *,
+        hidden: int = 64,
+        messages: int = 16,
+        directions: int = 8,
+    ) -> None:
+        super().__init__()
+        self.log_modulus = statistics.log_modulus_mean
+        self.force_unit = math.exp(statistics.log_force_mean)
+        self.encoder = GeometryEncoder()
+        self.prior = Prior()
+        code, vectors = self.encoder.n_code, self.encoder.n_vectors
+        self.look = nn.Linear(code, SEEN, bias=False)
+        seen = 3 * SEEN
+        self.from_code = nn.Linear(code, hidden)
+        self.from_poke = nn.Linear(_contact.N_POKE + 3 * seen, hidden, bias=False)
+        self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * vectors, hidden, bias=False)
+        self.enter = nn.Linear(hidden, hidden)
+        self.rounds = nn.ModuleList([_Messages(hidden, messages, directions, scales) for scales in SCALES])
+        self.leave = nn.Sequential(nn.Linear(hidden, hidden), nn.SiLU())
+        self.coefficients = nn.Linear(hidden, 3 + vectors + len(SCALES[-1]) * directions)
+        self.force_head = nn.Sequential(
+            nn.Linear(2 * hidden + _contact.N_POKE + 3 * seen, hidden), nn.SiLU(), nn.Linear(hidden, 1)
+        )
+        with torch.no_grad():
+            self.coefficients.weight.mul_(0.1)
+            last = self.force_head[2]
+            assert isinstance(last, nn.Linear)
+            last.weight.mul_(0.1)
+            last.bias.fill_(math.log(math.e - 1))  # softplus of it is 1
+
+    def prepare(self, scene: Scene) -> tuple[Stencil, ...]:
+        """The cloud's neighbourhoods."""
+        return stencils_of(scene)
+
+    def encode(self, scene: Scene, prepared: tuple[Stencil, ...] | None = None) -> Encoded:
+        """What does not depend on the poke; keep it as long as geometry and weights stay."""
+        encoded: Encoded = self.encoder(scene, prepared if prepared is not None else stencils_of(scene))
+        return encoded
+
+    @torch.no_grad()
+    def warm_start(self, batches: Iterable[Batch], scene: Scene) -> None:
+        """Fits the closed form that the network corrects."""
+        encoded = self.encode(scene)
+        samples = (
+            (contact, _soft(encoded, contact, scene.rigid_index[batch.geometry]), batch)
+            for batch in batches
+            for contact in [self._contact(scene, pokes_of(batch))]
+        )
+        self.prior.fit(samples)
+
+    def decode(self, encoded: Encoded, pokes: Pokes) -> Prediction:
+        """The answer to b pokes."""
+        scene = encoded.scene
+        inclusion = scene.rigid_index[pokes.geometry]
+        contact = self._contact(scene, pokes)
+        vectors = encoded.vectors.index_select(2, inclusion)
+        scalars, toward = contact.seen(self.look(encoded.code).index_select(1, inclusion))
+        about = torch.cat([contact.poke, scalars], dim=1)
+        unit = contact.unit.permute(2, 0, 1)[..., None]
+        push = contact.push.T[:, None, :, None]
+        toward = torch.einsum("nbk,kbc->nbc", contact.unit, toward)
+        seen = [contact.point, toward, (vectors * unit).sum(dim=0), (vectors * push).sum(dim=0)]
+        code = self.from_code(encoded.code).index_select(1, inclusion)
+        h = silu(self.from_point(torch.cat(seen, dim=2)) + self.from_poke(about) + code)
+        h = silu(self.enter(h))
+        slope = vectors[..., :0]
+        for round_ in self.rounds:
+            h, slope = round_(h, encoded.stencils, unit, push, contact.near[2])
+        out = self.leave(h)
+
+        amounts, others = self.coefficients(out).split([3, vectors.shape[3] + slope.shape[3]], dim=2)
+        own = (torch.cat([vectors, slope], dim=3) * others).sum(dim=3).permute(1, 2, 0)
+        for amount, vector in zip(amounts.unbind(2), contact.vectors(), strict=True):
+            own = own + amount[..., None] * vector
+        u = own * contact.far[..., None] + self.prior(contact, _soft(encoded, contact, inclusion))
+
+        pooled = [torch.einsum("nb,nbc->bc", contact.near[k], out) for k in (0, 1)]
+        kappa = self.force_head(torch.cat([*pooled, about], dim=1))[:, 0]
+        unit_force = (pokes.modulus * pokes.depth).float() * (scene.rod_radius * self.force_unit)
+        return Prediction(
+            displacement=(u * pokes.depth.float()[None, :, None]).permute(1, 0, 2),
+            force=unit_force * softplus(kappa),
+        )
+
+    def _contact(self, scene: Scene, pokes: Pokes) -> Contact:
+        modulus = torch.log(pokes.modulus) - self.log_modulus
+        rod = (pokes.start, pokes.direction, pokes.depth, modulus)
+        return Contact(scene.points, scene.normals, rod, scene.rod_radius)
+
+
+def _soft(encoded: Encoded, contact: Contact, inclusion: Tensor) -> Tensor:
+    """How much of the column below the contact is soft, (b,)."""
+    return (contact.near[0] * encoded.clear.index_select(1, inclusion)).sum(dim=0)
+
+
+class _Messages(nn.Module):
+    """One round: means and slopes of a thin copy of h at some scales, seen along the scene's vectors."""
+
+    def __init__(self, hidden: int, messages: int, directions: int, scales: tuple[int, ...]) -> None:
+        super().__init__()
+        self.directions, self.scales = directions, scales
+        self.thin = nn.Linear(hidden, messages + directions)
+        wide = hidden + len(scales) * (messages + 2 * directions)
+        self.mix = nn.Linear(wide, hidden)
+        self.whole = nn.Linear(hidden, hidden, bias=False)
+        self.back = nn.Linear(hidden, hidden)
+
+    def forward(
+        self, h: Tensor, stencils: tuple[Stencil, ...], unit: Tensor, push: Tensor, near: Tensor
+    ) -> tuple[Tensor, Tensor]:
+        thin = self.thin(h)
+        scalar, vector = thin[..., : -self.directions], thin[..., -self.directions :]
+        parts, vectors = [h], []
+        for s in (stencils[k] for k in self.scales):
+            slope = slopes(s, vector.contiguous())
+            parts += [means(s, scalar.contiguous()), (slope * unit).sum(dim=0), (slope * push).sum(dim=0)]
+            vectors.append(slope)
+        whole = self.whole(torch.einsum("nb,nbc->bc", near, h))
+        new = h + self.back(silu(self.mix(torch.cat(parts, dim=2)) + whole))
+        return new, torch.cat(vectors, dim=3)

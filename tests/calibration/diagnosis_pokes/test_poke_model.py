@@ -1,0 +1,216 @@
+"""Pokes as a nested model: the records' phases, derivatives, what no protocol shows, what is found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from poke_records import experiment, path, trial
+
+from calibration.diagnosis.nested import State
+from calibration.diagnosis.pokes import PokeModel
+from calibration.diagnosis.pokes._curves import Curve, Curves, Wanted
+from calibration.diagnosis.pokes._phases import phases_of
+from calibration.diagnosis.pokes.effects.relaxation import _faded
+from calibration.diagnosis.screening import screen
+from calibration.diagnosis.search import calibrated, search
+from calibration.errors import InputError
+
+SHEAR = 2e4
+K = 1e-2  # of the made curves: force over G and depth [m]
+
+
+@pytest.fixture(autouse=True)
+def made_curves(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Curves in place of simulations: straight but for a bend, wider rods stiffer, a change by the name's
+    size."""
+    asked: list[str] = []
+
+    def fetch(_: Curves, wanted: Sequence[Wanted]) -> list[Curve]:
+        found = []
+        for w in wanted:
+            asked.append(w.name)
+            change = 0.3 * float(w.name.split()[-1]) if w.name else 0.0
+            depth = np.linspace(0.1e-3, 4e-3, 40)
+            force = K * (w.geometry.rod.radius / 2.5e-3) * depth * (1.0 + (100.0 + 400.0 * change) * depth)
+            found.append(
+                Curve(
+                    depth=depth,
+                    along=force,
+                    across=np.zeros((40, 2)),
+                    reached=4e-3,
+                    round_tip=False,
+                    status="converged",
+                    core_seconds=0.0,
+                )
+            )
+        return found
+
+    monkeypatch.setattr(Curves, "fetch", fetch)
+    return asked
+
+
+def curve(depth: np.ndarray, radius: float = 2.5e-3) -> np.ndarray:
+    d = np.maximum(depth, 0.0)
+    return np.asarray(SHEAR * K * (radius / 2.5e-3) * d * (1.0 + 100.0 * d))
+
+
+def noisy(force: np.ndarray, seed: int = 0) -> np.ndarray:
+    return np.asarray(force + 1e-3 * np.random.default_rng(seed).standard_normal(force.size))
+
+
+def relaxed(time: np.ndarray, force: np.ndarray, tau: float) -> np.ndarray:
+    """A tenth of the force in a Maxwell branch, stepped in time."""
+    q = np.zeros_like(force)
+    for k in range(1, force.size):
+        fade = np.exp(-(time[k] - time[k - 1]) / tau)
+        q[k] = fade * q[k - 1] + np.sqrt(fade) * (force[k] - force[k - 1])
+    return np.asarray(0.9 * force + 0.1 * q)
+
+
+def test_phases_are_cut_where_the_rod_turns_and_rests() -> None:
+    time, depth = path(hold=4.0, cycles=2)
+    noise = 1e-5 * np.random.default_rng(1).standard_normal(depth.size)
+    found = phases_of(trial("p", time, depth + noise, curve(depth), depth_sd=1e-5))
+    assert [p.label for p in found] == [
+        *("loading 1", "hold 1", "unloading 1"),
+        *("loading 2", "hold 2", "unloading 2"),
+    ]
+    assert found[0].points.start == 0
+    assert found[-1].points.stop == depth.size
+    assert all(a.points.stop == b.points.start for a, b in pairwise(found))
+
+
+def test_columns_are_the_residuals_derivatives() -> None:
+    time, depth = path(hold=5.0, cycles=2)
+    model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)), depth_sd=1e-5)))
+    base = calibrated(model).state
+    wanted = [c for c in model.candidates if c.at == "all" and c.effect != "relaxation"]
+    amounts = {c: 0.3 * model.effects[c.effect].plausible for c in wanted}
+    linear = model.linearise(base, wanted)
+    for k, c in enumerate(wanted):
+        if model.effects[c.effect].scene is not None:
+            continue  # at none these are chords to a simulated amplitude
+        h = 1e-3 * amounts[c]
+        z = model.residuals([State(u=base.u, amplitudes={c: h}), base])
+        np.testing.assert_allclose((z[0] - z[1]) / h, linear.columns[:, k], rtol=2e-2, atol=1e-2 / h)
+    z = model.residuals([State(u=base.u + 1e-3), base])
+    np.testing.assert_allclose((z[0] - z[1]) / 1e-3, linear.by_u[:, 0], rtol=1e-2, atol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("protocol", "hidden"),
+    [
+        ({"back": False}, {"mullins", "adhesion", "relaxation", "force-gain"}),
+        ({"back": True}, {"mullins", "force-gain"}),
+        ({"back": True, "cycles": 2}, {"force-gain"}),
+    ],
+)
+def test_what_a_protocol_does_not_show(protocol: dict[str, bool], hidden: set[str]) -> None:
+    """Loading alone shows nothing of history; one rod in one material never the load cell's gain."""
+    time, depth = path(**protocol)
+    model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)))))
+    state = State(u=model.start())
+    model.retake(state)
+    sizes = screen(model.linearise(state, model.candidates), model.effects).sizes
+    seen = {c.effect for c, size in zip(model.candidates, sizes, strict=True) if size > 0.0}
+    of_interest = {"mullins", "adhesion", "relaxation", "force-gain", "force-offset", "depth-offset"}
+    assert of_interest - seen == hidden
+
+
+def test_a_gain_shows_where_a_second_rod_pokes_the_material() -> None:
+    time, depth = path()
+    a = trial("a", time, depth, 1.3 * noisy(curve(depth)))
+    b = trial("b", time, depth, noisy(curve(depth, 4e-3), 1), radius=4e-3)
+    model = PokeModel(experiment(a, b))
+    state = State(u=model.start())
+    model.retake(state)
+    screened = screen(model.linearise(state, model.candidates), model.effects)
+    size = {c.label: s for c, s in zip(model.candidates, screened.sizes, strict=True)}
+    assert size["force-gain"] == 0.0
+    assert size["force-gain of rod 2.5 mm flat"] > 5.0 / 0.3
+
+
+def test_relaxation_is_the_solid_of_one_time() -> None:
+    """Against a Maxwell branch beside a spring, in closed form: a ramp, then a hold."""
+    tau, part = 3.0, 0.4
+    time, depth = path(back=False, hold=20.0)
+    model = PokeModel(experiment(trial("p", time, depth, curve(depth))))
+    r = model.records[0]
+    elastic = r.depth / r.depth.max()
+    end = 2.0  # of the ramp [s], at 0.5 a second
+    ramp = part * 0.5 * (r.time - tau * -np.expm1(-r.time / tau))
+    held = part * (1.0 - 0.5 * tau * (np.exp(-(r.time - end) / tau) - np.exp(-r.time / tau)))
+    lost = part * (_faded(r, tau) @ np.diff(elastic, prepend=0.0))
+    np.testing.assert_allclose(lost, np.where(r.time <= end, ramp, held), atol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("force-offset", lambda _t, _d, f: f + 0.03),
+        ("force-drift", lambda t, _d, f: f + 0.01 * t),
+        ("relaxation", lambda t, _d, f: relaxed(t, f, 2.0)),
+        ("mullins", lambda t, d, f: f * np.where(t > 6.0, 1.0 - 0.3 * (1.0 - d / d.max()), 1.0)),
+    ],
+)
+def test_what_is_put_in_is_the_most_promising(name: str, change: object) -> None:
+    time, depth = path(hold=4.0, cycles=2)
+    force = change(time, depth, curve(depth))  # type: ignore[operator]
+    model = PokeModel(experiment(trial("p", time, depth, noisy(force))))
+    fit = calibrated(model)
+    screened = screen(model.linearise(fit.state, model.candidates), model.effects)
+    assert model.candidates[int(np.argmax(screened.gains(fit.z)))].effect == name
+
+
+def test_a_clean_record_has_no_cause_and_an_offset_is_measured() -> None:
+    time, depth = path(cycles=2)
+    clean = search(PokeModel(experiment(trial("p", time, depth, noisy(curve(depth))))))
+    assert clean.verdict == "none"
+    found = search(PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)) + 0.03))))
+    assert found.chosen is not None
+    assert ("force-offset",) in found.rivals
+    value, sd = next(
+        e.fit.amplitude(e.candidates[0]) for e in found.explanations if e.names == ("force-offset",)
+    )
+    assert abs(value - 0.03) < 3.0 * sd
+
+
+def test_noise_of_the_depth_is_not_found_again() -> None:
+    """The simulation at noisy depths would be noisy itself, and depart."""
+    time, depth = path(cycles=2)
+    smallest = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        shown = depth + 2e-5 * rng.standard_normal(depth.size)
+        model = PokeModel(experiment(trial("p", time, shown, noisy(curve(depth), seed + 9), depth_sd=2e-5)))
+        smallest.append(search(model).departure.p)
+    assert min(smallest) > 0.005
+
+
+def test_held_out_parts_add_up() -> None:
+    time, depth = path(cycles=2)
+    model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)))))
+    model.retake(State(u=model.start()))
+    for groups in model.families().values():
+        rows = sum(model.rows(group).astype(int) for _, group in groups)
+        assert (np.asarray(rows) == 1).all()
+        _, group = groups[0]
+        assert model.part(group, others=False).points + model.part(group, others=True).points == model.points
+
+
+def test_specimens_of_one_material_have_moduli_of_their_own() -> None:
+    time, depth = path()
+    a = trial("a", time, depth, noisy(curve(depth)), specimen="one")
+    b = trial("b", time, depth, noisy(1.2 * curve(depth), 1), specimen="two")
+    model = PokeModel(experiment(a, b))
+    assert model.names == ("one", "two")
+    fit = calibrated(model)
+    assert np.exp(fit.state.u[1] - fit.state.u[0]) == pytest.approx(1.2, rel=0.02)
+
+
+def test_without_pokes_is_refused() -> None:
+    with pytest.raises(InputError, match="expected a poke"):
+        PokeModel(experiment())

@@ -1,0 +1,197 @@
+"""From a trained run to a report, a prediction and ONNX files, by the commands that people type."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from small_store import write_store
+from typer.testing import CliRunner, Result
+
+import learn.baselines.modes
+import learn.evaluate
+import learn.export
+import learn.predict
+import learn.train
+from learn.data import open_store
+from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
+from learn.evaluation.summary import summarise
+from learn.metrics import METRICS
+from learn.models import Model, Prediction, scene_of
+from learn.models.scene import Pokes, Scene
+from learn.scene_file import load_poke, scene_and_poke
+
+POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_store(tmp_path_factory.mktemp("evaluation") / "s.zarr", sites=2, frames=3)
+
+
+@pytest.fixture(scope="module")
+def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run") / "run"
+    recipe = folder.parent / "r.yaml"
+    recipe.write_text("name: small\nepochs: 3\nbatch: 8\naverage: 0.9\ntrain_depth_mm: 2.5\n")
+    done = _call(learn.train.app, store, "--recipe", recipe, "--out", folder, "--threads", 1)
+    assert done.exit_code == 0, done.output
+    return folder
+
+
+def _call(app: object, *arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])  # type: ignore[arg-type]
+
+
+def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(learn.baselines.modes, "_STEPS", 50)
+    done = _call(learn.evaluate.app, run, "--threads", 1, "--no-clouds")
+    assert done.exit_code == 0, done.output
+    html = (run / "evaluation" / "report.html").read_text()
+    assert html.count("data:image/png;base64") == 4
+    for words in ("analytic kernel", "zero displacement", "Symmetry", "Intervals", "Deeper"):
+        assert words in html
+    tables = json.loads((run / "evaluation" / "tables.json").read_text())
+    ours, zero = (tables["tables"][name]["all"] for name in ("ours", "zero displacement"))
+    assert set(ours) == set(METRICS)
+    assert ours["mean"]["mean"] < 0.5 * zero["mean"]["mean"]
+    assert tables["turned"]["ours, fold 0"]["displacement_mm"] < 1e-5
+    assert set(tables["tables"]["ours"]) == {"S0", "S1", "all"}
+    assert (run / "intervals.json").is_file()
+
+
+def test_a_run_of_another_dataset_is_refused(run: Path, tmp_path: Path) -> None:
+    other = write_store(tmp_path / "o.zarr", seed=4, sites=3, frames=2)
+    refused = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out")
+    assert refused.exit_code == 2
+    assert "trained on dataset" in refused.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_damaged_run_is_refused(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "best.pt").write_bytes((run / "best.pt").read_bytes()[:500])
+    refused = _call(learn.evaluate.app, tmp_path)
+    assert refused.exit_code == 2
+    assert refused.stderr.count("\n") == 1
+    assert "not a readable checkpoint" in refused.stderr
+    assert not (tmp_path / "evaluation").exists()
+
+
+def test_prediction_of_one_poke(run: Path, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE)
+    done = _call(learn.predict.app, run, scene, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
+    assert answer["force_N"] > 0
+    table = np.loadtxt(tmp_path / "out" / "displacement.csv", delimiter=",", skiprows=1)
+    assert len(table) == 1024
+    deepest = table[np.linalg.norm(table[:, 3:6], axis=1).argmax()]
+    assert np.linalg.norm(deepest[:2] - [5, -10]) < 5  # mm from the site
+    scene.write_text(POKE.replace("softness: S1", "shear_modulus_kPa: 18"))
+    double = _call(learn.predict.app, run, scene, "--out", tmp_path / "double")
+    assert double.exit_code == 0, double.output
+    stiffer = json.loads((tmp_path / "double" / "prediction.json").read_text())
+    assert stiffer["force_N"] > 1.3 * answer["force_N"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("depth_mm: 2", "depth_mm: -2", "key depth_mm"),
+        ("depth_mm: 2", "depth: 2", "key depth"),
+        ("site_mm: [5, -10]", "site_mm: [500, 0]", "key site_mm: expected x and y within"),
+        ("shape: shape-1", "shape: cat", "key shape: expected one of shape-0"),
+        ("softness: S1", "softness: S9", "key softness: expected one of S0, S1"),
+        ("softness: S1\n", "", "either softness or shear_modulus_kPa"),
+    ],
+)
+def test_bad_scene_files_are_refused(run: Path, tmp_path: Path, old: str, new: str, words: str) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE.replace(old, new))
+    done = _call(learn.predict.app, run, scene, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert words in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    body = "inclusion: {kind: sphere, radius_mm: 8, centre_mm: [0, 0, 8]}"
+    scene.write_text(POKE.replace("shape: shape-1", body))
+    about, pokes = scene_and_poke(load_poke(scene), open_store(store), scene)
+    column = about.rigid[0, 16 * 32 + 16].numpy()  # nearest to the middle
+    height = 32 - (np.arange(128) + 0.5) / 4  # mm above the base
+    assert np.abs(height[column > 0].max() - 16) < 0.5
+    assert column[height < 0.3].all() == (np.hypot(1.5625, 1.5625) < np.sqrt(64 - 7.8**2))
+    assert float(pokes.direction.norm()) == pytest.approx(1)
+
+
+class _Truth(Model):
+    """Answers with a smooth field known everywhere."""
+
+    def encode(self, scene: Scene, prepared: object = None) -> Scene:  # noqa: ARG002
+        return scene
+
+    def decode(self, encoded: Scene, pokes: Pokes) -> Prediction:
+        r = encoded.points[None] - pokes.start[:, None]
+        rho = (r.square().sum(dim=2) + 2.5e-3**2).sqrt()
+        fall = (2.5e-3 / rho * torch.exp(-rho / 0.02))[..., None] * pokes.depth[:, None, None]
+        lean = pokes.direction[:, None] + 0.3 * (1 + 20 * pokes.depth[:, None, None]) * r / rho[..., None]
+        return Prediction(displacement=(fall * lean).float(), force=pokes.depth.float())
+
+
+def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
+    """The exact field, asked at scattered points, is found right but for the interpolation of the mesh."""
+    store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
+    rows = np.arange(store.frames)
+    points = scattered(store, 300)
+    assert points.shape == (300, 3)
+    gaps = np.sort(np.linalg.norm(points[:, None] - points[None], axis=2), axis=1)[:, 1]
+    assert gaps.min() > 1e-3
+    soft = ~(scene_of(store).rigid.sum(dim=(0, 2)) > 0).numpy()
+    on_grid = summarise(cases_on(_Truth(), store, rows, store.points[soft]))
+    assert on_grid["max"].mean < 1e-4
+    off_grid = summarise(cases_on(_Truth(), store, rows, points))
+    assert 0 < off_grid["rel L2"].mean < 0.5
+    assert grid_floor_mm(store, rows) < 1e-6
+
+
+@pytest.mark.slow
+def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
+    other = write_store(tmp_path / "o.zarr", seed=4, sites=3, frames=2)
+    flags = ("--transfer", "--no-baselines", "--no-clouds", "--threads", 1)
+    allowed = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out", *flags)
+    assert allowed.exit_code == 0, allowed.output
+
+
+@pytest.mark.slow
+def test_report_of_other_clouds(run: Path, tmp_path: Path) -> None:
+    done = _call(learn.evaluate.app, run, "--threads", 1, "--no-baselines", "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "tables.json").read_text())
+    assert list(tables["clouds"]) == [
+        "1024, the grid",
+        "512, scattered",
+        "1024, scattered",
+        "4096, scattered",
+    ]
+    assert tables["cloud_floor_mm"] < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("onnx", "onnxscript", "onnxruntime")),
+    reason="the onnx packages are not installed",
+)
+def test_onnx_gives_what_torch_gives(run: Path, tmp_path: Path) -> None:
+    done = _call(learn.export.app, run, "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    about = json.loads((tmp_path / "model.json").read_text())
+    assert about["difference_from_torch"] < 1e-5
+    assert (tmp_path / "poke.onnx").is_file()
