@@ -3,14 +3,8 @@
 from calibration.outlines._admitted import Admitted, admitted
 from calibration.outlines._edges import Feet, edges, feet
 from calibration.outlines._noise import contour_root, registration_columns, smooth_basis
-from calibration.outlines.objective import (
-    COARSE,
-    REFERENCE,
-    Fidelity,
-    OutlineObjective,
-    Photograph,
-    away_from_clamps,
-)
+from calibration.outlines.fidelity import COARSE, REFERENCE, Fidelity, beam_scene
+from calibration.outlines.objective import OutlineObjective, Photograph, away_from_clamps
 
 __all__ = [
     "COARSE",
@@ -22,6 +16,7 @@ __all__ = [
     "Photograph",
     "admitted",
     "away_from_clamps",
+    "beam_scene",
     "contour_root",
     "edges",
     "feet",

@@ -7,7 +7,7 @@ cost of it cannot be added to a chi-square. It is here to compare with what was 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import trimesh
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calibration import metrics
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, MaterialBelief
-from calibration.outlines.objective import Fidelity
+from calibration.outlines.fidelity import Fidelity, beam_scene
 from calibration.shape import body_mesh, centreline, sweep
 from tisim import Beam, Material, Result, simulate
 
@@ -127,20 +127,3 @@ def measured_bodies(trial: BeamTrial, *, index: int = 0) -> list[MeasuredBody]:
         except InputError as error:
             raise InputError(f"trial {name}: {error}") from error
     return found
-
-
-def beam_scene(trial: BeamTrial, material: Material, *, density: float, fidelity: Fidelity) -> Beam:
-    """A trial as the lab states it, in a material; density [kg/m3] replaces the material's."""
-    return Beam(
-        material=replace(material, density=density),
-        length=trial.free_length,
-        section=trial.section,
-        supports=trial.supports,
-        grip_length=trial.grip_length,
-        gravity=trial.gravity,
-        tip_force=trial.tip_force,
-        element=fidelity.element,  # type: ignore[arg-type]
-        layer=fidelity.layer,
-        rings=fidelity.rings,
-        solver=fidelity.solver,
-    )

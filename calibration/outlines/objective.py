@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,29 +21,11 @@ from calibration.outlines._noise import (
     smooth_basis,
     whiten,
 )
+from calibration.outlines.fidelity import COARSE, REFERENCE, Fidelity, beam_scene
 from calibration.outlines.setup import Setup
-from tisim import Beam, Circle, Material, Result, Solver, simulate
+from tisim import Beam, Circle, Material, Result, simulate
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Fidelity:
-    """How beams are simulated in a search: `tisim.Beam`'s element, layer [m], rings and solver."""
-
-    element: str = "default"
-    layer: float = 0.007
-    rings: int = 2
-    solver: Solver = field(default_factory=lambda: Solver(tolerance=1e-6))
-
-
-# The beams that a search solves (14 core-ms each), and those that correct them where nuisances are taken.
-# Few iterations: a beam that has an equilibrium takes 4, and one that has none costs 50 times as much anyway.
-# What the search's mesh gets wrong (1.2 % of the deflection at most, waves of 10 to 20 micrometres along a
-# strongly bent edge) is small and hardly depends on the material, but nine photographs' likelihood sees it.
-# Of what they correct, the reference's own error is a fifth at most (15 micrometres on the 100 mm beam).
-COARSE = Fidelity(rings=1, solver=Solver(max_iterations=12))
-REFERENCE = Fidelity(layer=0.0025, rings=4, solver=Solver(max_iterations=12))
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,20 +246,7 @@ class OutlineObjective:
         fidelity: Fidelity | None = None,
         setup: Setup | None = None,
     ) -> Beam:
-        f = fidelity or self.fidelity
-        beam = Beam(
-            material=replace(material, density=self.density),
-            length=trial.free_length,
-            section=trial.section,
-            supports=trial.supports,
-            grip_length=trial.grip_length,
-            gravity=trial.gravity,
-            tip_force=trial.tip_force,
-            element=f.element,  # type: ignore[arg-type]
-            layer=f.layer,
-            rings=f.rings,
-            solver=f.solver,
-        )
+        beam = beam_scene(trial, material, density=self.density, fidelity=fidelity or self.fidelity)
         held = setup or self.setup
         return beam if held is None else held.bend(beam, trial)
 

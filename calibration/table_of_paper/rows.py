@@ -10,8 +10,8 @@ import numpy as np
 from calibration import metrics
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Experiment
-from calibration.outlines import REFERENCE
-from calibration.outlines.dice import MeasuredBody, beam_scene, measured_bodies
+from calibration.outlines import REFERENCE, beam_scene
+from calibration.outlines.dice import MeasuredBody, measured_bodies
 from calibration.shape import body_mesh
 from calibration.study import Calibration, usable
 from calibration.table_of_paper.paper import Printed, printed

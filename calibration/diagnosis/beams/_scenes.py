@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -14,7 +14,7 @@ from calibration.diagnosis.beams._pictures import Image
 from calibration.diagnosis.beams.effects import BeamEffect, Situation
 from calibration.diagnosis.nested import State
 from calibration.experiment.model import BeamTrial, Experiment
-from calibration.outlines import Fidelity
+from calibration.outlines import Fidelity, beam_scene
 from tisim import Beam, Material, material_from_moduli
 
 Array = NDArray[np.float64]
@@ -92,19 +92,7 @@ class Scenes:
         shear = float(np.exp(log_shear))
         density = self.experiment.materials[trial.material].density
         assert density is not None, "checked when the model is made"
-        return Beam(
-            material=replace(self.material(shear), density=density),
-            length=trial.free_length,
-            section=trial.section,
-            supports=trial.supports,
-            grip_length=trial.grip_length,
-            gravity=trial.gravity,
-            tip_force=trial.tip_force,
-            element=fidelity.element,  # type: ignore[arg-type]
-            layer=fidelity.layer,
-            rings=fidelity.rings,
-            solver=fidelity.solver,
-        )
+        return beam_scene(trial, self.material(shear), density=density, fidelity=fidelity)
 
     @staticmethod
     def material(shear: float) -> Material:
