@@ -271,7 +271,7 @@ def test_a_grip_that_holds_deeper_frees_both_ends_of_a_bridge(model: BeamModel) 
     for i, t in enumerate(model.trials):
         beam = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE, nudge=nudge("grip-length"))
         ends = 2 if t.supports == "clamped-clamped" else 1
-        assert beam.length == pytest.approx(t.free_length + ends * 5e-4)
+        assert beam.length == pytest.approx(t.free_length + ends * EFFECTS["grip-length"].step)
 
 
 def test_photographs_share_what_they_can(tmp_path: Path) -> None:
