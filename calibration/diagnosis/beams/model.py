@@ -29,6 +29,7 @@ from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment
+from calibration.outlines import Fidelity
 from tisim import Beam, Result
 
 Array = NDArray[np.float64]
@@ -124,15 +125,25 @@ class BeamModel:
         base = self.bank.values_of(results, calm)
         self._correction = np.zeros(self.points)
         if self.simulator.reference is not None and not rough:
-            fine, self.uncorrected = self.bank.fine(calm, self.simulator.reference)
-            if fine:
-                self._correction = self.bank.values_of(fine, calm) - base
+            self._correction, self.uncorrected = self._corrected(calm, base, *self.simulator.reference)
         columns = registrations(self.pictures, results, self.scenes, calm) + corners(self.pictures)
         for i, _ in enumerate(self.trials):
             columns.append(np.where(self._of_trial() == i, MESH_LEFT * self._correction, 0.0))
         columns += beliefs(self.bank, base, results, calm)
         self._known = np.column_stack(columns)
         self._whitened()
+
+    def _corrected(self, state: State, base: Array, coarser: Fidelity, finer: Fidelity) -> tuple[Array, str]:
+        """What the mesh of the search misses [m], (points,), by Richardson's extrapolation of second order in
+        the number of rings; zero, and why, where a reference has no equilibrium."""
+        values = []
+        for reference in (coarser, finer):
+            fine, problem = self.bank.fine(state, reference)
+            if problem:
+                return np.zeros(self.points), problem
+            values.append(self.bank.values_of(fine, state))
+        n, more = coarser.rings**2, finer.rings**2
+        return values[1] + n / (more - n) * (values[1] - values[0]) - base, ""
 
     def _whitened(self) -> None:
         noise = block_diag(*[p.covariance for p in self.pictures])
