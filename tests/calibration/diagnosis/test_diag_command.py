@@ -10,7 +10,6 @@ from _folders import beam_entry, capture_entry, coupon_entry, outline_columns, w
 from typer.testing import CliRunner, Result
 
 from calibration.diagnose import app
-from calibration.diagnosis import KINDS
 
 
 def diagnose(*arguments: object) -> Result:
@@ -78,7 +77,6 @@ def test_a_kind_that_is_none_or_not_there(beam: Path, tmp_path: Path, kind: str)
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.skipif("coupons" not in KINDS, reason="coupons are no kind of calibration.diagnosis yet")
 def test_two_kinds_and_none_said(tmp_path: Path) -> None:
     stretch = np.linspace(1.0, 1.5, 20)
     x = np.linspace(1.0, 49.0, 40)
