@@ -12,6 +12,7 @@ from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.fitting import Fit, fit
 from calibration.diagnosis.nested import Nested
 from calibration.diagnosis.null import Departure, Null
+from calibration.diagnosis.screening import worth
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,11 @@ class Explanation:
         return tuple(sorted({c.effect for c in self.candidates}))
 
     @property
+    def choice(self) -> float:
+        """What the choice of the causes' places is worth in chi-square."""
+        return sum(worth(c) for c in self.candidates)
+
+    @property
     def score(self) -> float:
         return self.fit.chi2 + self.cost
 
@@ -55,7 +61,7 @@ def explain(
             found = fit(model, replace(start.state, amplitudes=inside), candidates)
         except ValueError:
             continue
-        cost = sum(np.log(len(found.z)) + 2.0 * np.log(c.rivals) for c in found.candidates)
+        cost = sum(np.log(len(found.z)) + worth(c) for c in found.candidates)
         departure = null.departure(found.z, found.jacobian)
         return Explanation(fit=found, cost=float(cost), departure=departure)
     return None

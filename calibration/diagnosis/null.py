@@ -62,16 +62,17 @@ class Null:
         return Departure(p=float(min(1.0, p)), each=each, worst=worst)
 
     def gains(self, screened: Screen) -> Gains:
-        """The null distribution of the best candidate's improvement of chi-square."""
+        """The null distribution of the best candidate's promise (`Screen.promises`)."""
         best = np.zeros(DRAWS)
         for part in np.array_split(np.arange(DRAWS), 8):  # in parts: it is draws times candidates
-            best[part] = screened.gains(self.noise[part]).max(axis=1, initial=0.0)
+            best[part] = screened.promises(self.noise[part]).max(axis=1, initial=0.0)
         return Gains(drawn=np.sort(best))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Gains:
-    """Sorted draws of the best candidate's improvement of chi-square by noise alone."""
+    """Sorted draws of the best candidate's improvement of chi-square by noise alone, less what the choice of
+    its place is worth."""
 
     drawn: Array
 

@@ -15,6 +15,10 @@ from calibration.diagnosis.null import Null
 from calibration.diagnosis.search import Finding, Rules, Tell, search
 from calibration.diagnosis.verdict import Diagnosis, Numbers, invisible, reduced
 
+# Nuisances and the mesh's error are taken where an explanation is, as often as it moves by more than this
+# part of its standard deviation: effects next to a clamp act a third too strongly on the mesh of the search.
+RETAKES, SETTLED = 4, 0.25
+
 
 class Diagnosable(Foldable, Protocol):
     """A domain's model (beams, coupons, pokes) with what a verdict needs besides the search.
@@ -78,10 +82,17 @@ def _refined(model: Diagnosable, finding: Finding, rules: Rules) -> tuple[Explan
     the explanation is; they compare with each other only, not with what the search found."""
     chosen = finding.chosen
     assert chosen is not None
-    model.retake(chosen.fit.state)
-    null = Null(len(chosen.fit.z), model.patterns(), seed=rules.seed)
-    again = explain(model, chosen.fit, chosen.candidates, list(chosen.fit.state.amplitudes.values()), null)
-    assert again is not None, "there was an answer when it was found"
+    again = chosen
+    for _ in range(RETAKES):
+        model.retake(again.fit.state)
+        null = Null(len(again.fit.z), model.patterns(), seed=rules.seed)
+        before = again.fit.state.amplitudes
+        taken = explain(model, again.fit, again.candidates, list(before.values()), null)
+        assert taken is not None, "there was an answer when it was found"
+        again = taken
+        found = [(c, *again.fit.amplitude(c)) for c in again.candidates]
+        if all(abs(value - before[c]) < SETTLED * sd for c, value, sd in found):
+            break
     return again, fit(model, State(u=finding.baseline.state.u))
 
 

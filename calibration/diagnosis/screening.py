@@ -39,10 +39,20 @@ class Screen:
         along = z @ self.directions  # an amplitude is minus this over the size
         return np.asarray(np.where(self.upwards & (along > 0.0), 0.0, along) ** 2)
 
+    def promises(self, z: Array) -> Array:
+        """These improvements, less what the choice of a place among several is worth: of two candidates that
+        explain alike, the one that leaves less to choose. Shapes as `gains`."""
+        return np.asarray(self.gains(z) - np.array([worth(c) for c in self.candidates]))
+
     def amplitudes(self, z: Array) -> Array:
         """Best amplitude of each candidate alone [SI], to first order."""
         sizes = np.where(self.sizes > 0, self.sizes, np.inf)
         return np.asarray(-(z @ self.directions) / sizes)
+
+
+def worth(candidate: Candidate) -> float:
+    """What the choice of its place, one of several, is worth in chi-square."""
+    return float(2.0 * np.log(candidate.rivals))
 
 
 def screen(linear: Linear, effects: Mapping[str, Effect], *, held: Fit | None = None) -> Screen:

@@ -34,7 +34,7 @@ class Rules:
     seed: of the bootstrap.
     """
 
-    alarm: float = 0.01
+    alarm: float = 0.02
     second: float = 0.003
     unlike: float = 0.005
     within: float = 6.0
@@ -89,7 +89,7 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
         if found is not None:
             singles.append(found)
     singles.sort(key=lambda e: e.score)
-    gain = max((baseline.chi2 - e.fit.chi2 for e in singles), default=0.0)
+    gain = max((baseline.chi2 - e.fit.chi2 - e.choice for e in singles), default=0.0)
     chance = gains.chance(gain)
 
     def finding(verdict: Verdict, explanations: Sequence[Explanation], named: bool) -> Finding:
@@ -138,7 +138,7 @@ def calibrated(model: Nested) -> Fit:
 def _shortlist(screened: Screen, z: Array, count: int, *, at_least: float) -> list[int]:
     """Candidates worth a fit, best first: of each effect the best one, and one more that comes near it; none
     that promises far less than the best, more than what is not linear could mend."""
-    gains = screened.gains(z) - np.array([2.0 * np.log(c.rivals) for c in screened.candidates])
+    gains = screened.promises(z)
     at_least = max(at_least, min(HOPELESS * gains.max(initial=0.0), gains.max(initial=0.0) - 40.0))
     found: list[int] = []
     for k in np.argsort(-gains):
@@ -175,11 +175,11 @@ def _with_second(
     roughly = screen(
         replace(held, columns=columns[:, seen], candidates=candidates), model.effects, held=best.fit
     )
-    if null.gains(roughly).chance(float(roughly.gains(held.z).max(initial=0.0))) > PERHAPS:
+    if null.gains(roughly).chance(float(roughly.promises(held.z).max(initial=0.0))) > PERHAPS:
         return []
     linear = model.linearise(best.fit.state, candidates)
     beside = screen(linear, model.effects, held=best.fit)
-    gained = beside.gains(linear.z)
+    gained = beside.promises(linear.z)
     if null.gains(beside).chance(float(gained.max(initial=0.0))) > rules.second:
         return []
     # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads

@@ -130,7 +130,7 @@ def test_alike_candidates_count_once(null: Null) -> None:
 def test_chance_is_counted_among_the_draws(null: Null) -> None:
     model = FakeNested(scoped=tuple(library()))
     screened = screen(model.linearise(State(u=model.truth), model.candidates), model.effects)
-    best = np.array([screened.gains(row).max() for row in null.noise])
+    best = np.array([screened.promises(row).max() for row in null.noise])
     gains = null.gains(screened)
     for gain in (1.0, 5.0, 9.0):
         assert gains.chance(gain) == pytest.approx((np.sum(best >= gain) + 1) / (DRAWS + 1))

@@ -48,6 +48,17 @@ def test_sizes_gains_and_amplitudes_are_those_of_least_squares() -> None:
     assert together == pytest.approx(np.stack([seen.gains(at.z), 4.0 * seen.gains(at.z)]))
 
 
+def test_a_choice_of_places_has_its_price() -> None:
+    model = FakeNested(scoped=("bend", "slope"), noise=noise(3))
+    at = linear(model)
+    seen = screen(at, model.effects)
+    choices = np.array([2.0 * np.log(c.rivals) for c in model.candidates])
+    assert choices.min() == 0.0
+    assert choices.max() > 1.0
+    assert seen.promises(at.z) == pytest.approx(seen.gains(at.z) - choices)
+    assert seen.promises(at.z[None])[0] == pytest.approx(seen.promises(at.z))
+
+
 def test_what_moduli_can_do_alone_is_not_seen() -> None:
     shapes = library() | {
         "density": 3.0 * by_modulus("S0") + 2.0 * by_modulus("S1"),
