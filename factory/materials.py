@@ -86,10 +86,10 @@ class Laws(Strict):
 
 
 class Uncertainty(Strict):
-    """Relative bounds of the shear modulus (-0.3 = 30 % lower) and where they come from."""
+    """Relative bounds of the shear modulus (-0.3 = 30 % lower; null: not known) and where they come from."""
 
-    shear_modulus_low: Annotated[float, Field(gt=-1, le=0)]
-    shear_modulus_high: Annotated[float, Field(ge=0)]
+    shear_modulus_low: Annotated[float, Field(gt=-1, le=0)] | None
+    shear_modulus_high: Annotated[float, Field(ge=0)] | None
     text: str
 
 

@@ -5,6 +5,7 @@ A law that has no usable fit is filled in from the best law's moduli, and the ca
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,8 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         else:
             filled.append(name)
             parameters[name] = _plain(laws.get(name).from_moduli(chosen.shear_modulus, chosen.bulk_modulus))
-    relative = chosen.shear_modulus_sd / chosen.shear_modulus
+    relative = chosen.shear_modulus_sd / chosen.shear_modulus  # NaN without a polish
+    bound = round(1.96 * relative, 5) if math.isfinite(relative) else None
     ratio = belief.softener_ratio
     return {
         "material": chosen.material,
@@ -57,8 +59,8 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "derived": False,
         "provenance": _provenance(results, chosen, filled, experiment),
         "uncertainty": {
-            "shear_modulus_low": -round(1.96 * relative, 5),
-            "shear_modulus_high": round(1.96 * relative, 5),
+            "shear_modulus_low": -bound if bound is not None else None,
+            "shear_modulus_high": bound,
             "text": _certainty(chosen),
         },
         "density": float(belief.density if belief.density is not None else 1000.0),

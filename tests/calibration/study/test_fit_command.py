@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,9 @@ from _folders import coupon_entry, write_experiment
 from made_beams import made
 
 import tisim
+from calibration.experiment import read
+from calibration.study.calibration import Calibration
+from calibration.study.cards import write_card
 from factory.materials import load_card
 
 TRUTH = tisim.material_from_moduli("neo-hookean", shear=12e3, bulk=6e6, density=1000.0)
@@ -74,6 +78,17 @@ def test_the_factory_takes_the_card(fitted: Path) -> None:
         1.96 * c["shear_modulus_sd"] / c["shear_modulus"],  # type: ignore[operator]
         abs=1e-5,
     )
+
+
+def test_a_card_without_error_bars_says_so_and_is_taken(fitted: Path, tmp_path: Path) -> None:
+    found = Calibration.from_json(result(fitted))
+    bare = replace(found, estimates=(), shear_modulus_sd=float("nan"))
+    write_card(tmp_path, [bare], read(fitted / "experiment"))
+    card = load_card("S0", tmp_path)
+    assert card.uncertainty.shear_modulus_low is None
+    assert card.uncertainty.shear_modulus_high is None
+    assert "not known" in card.uncertainty.text
+    assert card.for_law("neo-hookean").parameters["mu"] == pytest.approx(found.shear_modulus, rel=1e-5)
 
 
 def test_a_finished_fit_is_read_not_made_again(fitted: Path) -> None:

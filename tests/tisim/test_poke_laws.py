@@ -1,0 +1,56 @@
+"""Every law pokes: balance of forces, and the same force where strains are small."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tisim
+from tisim import laws
+from tisim._poke import solve_poke
+
+SHEAR, BULK = 20e3, 600e3
+
+
+def poked(law: str) -> tuple[tisim.Result, tisim.Result]:
+    """0.04 and 2 mm deep at 20 degrees on a coarse mesh."""
+    angle = np.radians(20.0)
+    shallow, deep = (
+        solve_poke(
+            tisim.Poke(
+                material=tisim.material_from_moduli(law, shear=SHEAR, bulk=BULK),
+                direction=(float(np.sin(angle)), 0.0, -float(np.cos(angle))),
+                depth=depth,
+                frame_spacing=depth / 2,
+                refinement=0.6,
+            )
+        )
+        for depth in (0.00004, 0.002)
+    )
+    return shallow, deep
+
+
+def size(result: tisim.Result) -> float:
+    """Of the rod's force at the end [N]."""
+    return float(np.linalg.norm(result.rod_force[-1]))
+
+
+@pytest.fixture(scope="module")
+def neo_hookean() -> tuple[float, float]:
+    shallow, deep = poked("neo-hookean")
+    return size(shallow), size(deep)
+
+
+@pytest.mark.parametrize("law", [name for name in laws.names() if name != "neo-hookean"])
+def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
+    shallow, deep = poked(law)
+    for found, depth in ((shallow, 0.00004), (deep, 0.002)):
+        assert found.ok
+        assert found.load[-1] == pytest.approx(depth)
+        assert np.linalg.norm(found.rod_force - found.support_force, axis=1).max() < 0.01 * size(found)
+        assert (found.min_jacobian > 0).all()
+    assert size(shallow) == pytest.approx(neo_hookean[0], rel=0.03)  # the moduli decide
+    assert size(deep) != pytest.approx(neo_hookean[1], rel=1e-4)  # the law does
+    # St Venant-Kirchhoff gives way where it is squeezed
+    low, high = (0.5, 0.7) if law == "st-venant-kirchhoff" else (0.9, 1.2)
+    assert low < size(deep) / neo_hookean[1] < high
