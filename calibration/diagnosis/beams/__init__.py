@@ -1,0 +1,7 @@
+"""Diagnosis of photographed beams: the catalogue's effects nested in their FEM."""
+
+from calibration.diagnosis.beams.effects import EFFECTS, BeamEffect
+from calibration.diagnosis.beams.model import BeamModel
+from calibration.diagnosis.beams.simulators import OURS, SIMULATORS, Simulator
+
+__all__ = ["EFFECTS", "OURS", "SIMULATORS", "BeamEffect", "BeamModel", "Simulator"]
