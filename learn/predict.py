@@ -21,6 +21,7 @@ from learn.data import Store, open_store
 from learn.errors import InputError
 from learn.evaluation import Intervals
 from learn.metrics import Cases
+from learn.models import Surrogate
 from learn.scene_file import load_poke, scene_and_poke
 from learn.training import Run, load_run
 
@@ -61,7 +62,7 @@ def main(
         if loaded.uuid != store.uuid:
             raise InputError(f"{run}: trained on dataset {loaded.uuid}, but {store.location} is {store.uuid}")
         file = load_poke(scene)
-        if loaded.recipe.model != "ours" and (
+        if not isinstance(loaded.model, Surrogate) and (
             file.inclusion is not None or file.shear_modulus_kPa is not None
         ):
             raise InputError(

@@ -106,11 +106,12 @@ def scene_and_poke(file: PokeFile, store: Store, path: Path) -> tuple[Scene, Pok
         profile=_profile(file, store, path)[None],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
     lean, heading = math.radians(file.angle_deg), math.radians(file.heading_deg)
     sine, cosine = math.sin(lean), math.cos(lean)
     direction = np.array([sine * math.cos(heading), sine * math.sin(heading), -cosine])
-    start = np.array([*site, points[0, 2]]) - direction * _set_back(store, path, sine, cosine) / cosine
+    start = np.array([*site, points[0, 2]]) - direction * _set_back(store, sine, cosine) / cosine
 
     def tensor(*values: float) -> torch.Tensor:
         return torch.tensor(values, dtype=torch.float64)
@@ -125,15 +126,9 @@ def scene_and_poke(file: PokeFile, store: Store, path: Path) -> tuple[Scene, Pok
     return scene, pokes
 
 
-def _set_back(store: Store, path: Path, sine: float, cosine: float) -> float:
+def _set_back(store: Store, sine: float, cosine: float) -> float:
     """How high above the surface the middle of the inclined tip is at first touch [m]."""
-    try:
-        rod = store.attributes["identity"]["recipe"]["rod"]
-        flat = rod["tip"] == "flat"
-        round_part = float(rod["edge_radius_mm"] if flat else rod["radius_mm"]) * _MM
-    except (KeyError, TypeError, ValueError):
-        raise InputError(f"{path}: {store.location} does not say what tip its rod has") from None
-    return round_part * (1 - cosine) + (store.rod_radius - round_part) * sine
+    return store.rod_edge * (1 - cosine) + (store.rod_radius - store.rod_edge) * sine
 
 
 def _modulus(file: PokeFile, store: Store, path: Path) -> float:

@@ -29,7 +29,8 @@ class Store:
     """p pokes, f frames, n = 1024 grid points, g geometries (shape x softness). SI units.
 
     points: rest positions (n, 3); normals: outward unit normals (n, 3). profile: stiffness under each
-    point as stored, (g, n, levels) uint8, top level first; level_depth (levels,). rod_radius [m].
+    point as stored, (g, n, levels) uint8, top level first; level_depth (levels,). rod_radius; rod_edge:
+    radius of the tip's rounded edge, that of the rod for a hemisphere [m].
     By poke: done, shape, softness, geometry (indices), modulus (small-strain shear modulus, Pa), direction
     (unit), path_start (rod tip at first touch), frame_start, frame_count.
     By frame: poke, depth [m], rod_force (f, 3) [N].
@@ -42,6 +43,7 @@ class Store:
     profile: NDArray[np.uint8]
     level_depth: Floats
     rod_radius: float
+    rod_edge: float
     done: NDArray[np.bool_]
     shape: Ints
     softness: Ints
@@ -164,6 +166,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
             raise InputError(f"{location}: {name} has a value that is not finite")
     _check_rows(source.location, table)
     done = table["done"].astype(bool)
+    radius, edge = _rod(source.location, attributes)
     points = table["grid_rest"].reshape(-1, 3).astype(np.float64)
     return Store(
         location=source.location,
@@ -172,7 +175,8 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
         normals=grid_normals(table["grid_rest"].astype(np.float64)),
         profile=table["profile"].reshape(-1, GRID * GRID, LEVELS),
         level_depth=table["level_depth"].astype(np.float64),
-        rod_radius=_rod_radius(source.location, attributes),
+        rod_radius=radius,
+        rod_edge=edge,
         done=done,
         shape=table["poke_shape"].astype(np.int64),
         softness=table["poke_softness"].astype(np.int64),
@@ -245,11 +249,21 @@ def _check_rows(location: str, table: dict[str, NDArray[Any]]) -> None:
         raise InputError(f"{location}: direction is not of unit length")
 
 
-def _rod_radius(location: str, attributes: dict[str, Any]) -> float:
+def _rod(location: str, attributes: dict[str, Any]) -> tuple[float, float]:
+    """Radius of the rod and of its tip's edge [m]."""
+    key = "radius_mm"
     try:
-        return float(attributes["identity"]["recipe"]["rod"]["radius_mm"]) * 1e-3
+        rod = attributes["identity"]["recipe"]["rod"]
+        radius = float(rod[key])
+        key = "tip"
+        flat = rod[key] == "flat"
+        key = "edge_radius_mm"
+        edge = float(rod[key]) if flat else radius
     except (KeyError, TypeError, ValueError):
-        raise InputError(f"{location}: attribute identity.recipe.rod.radius_mm is missing") from None
+        raise InputError(f"{location}: attribute identity.recipe.rod.{key} is missing") from None
+    if not 0 <= edge <= radius:
+        raise InputError(f"{location}: attribute identity.recipe.rod.{key}: expected 0 to the rod's radius")
+    return radius * 1e-3, edge * 1e-3
 
 
 def _moduli(attributes: dict[str, Any], parameter: NDArray[Any], done: NDArray[np.bool_]) -> Floats:

@@ -51,6 +51,7 @@ def scene_on(store: Store, points: Floats) -> Scene:
         profile=store.profile[:, index],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
 
 

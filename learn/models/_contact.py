@@ -7,9 +7,11 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
+from learn.models._rod import Place, under_end
+
 RINGS = torch.linspace(0, 1, 10)  # centres of bumps in log(1 + distance / 2 mm), from 0 to 40 mm
 WIDTHS = (5e-3, 12e-3, 25e-3)  # m; neighbourhoods of the contact
-N_POINT = 10 + len(RINGS) + 6
+N_POINT = 10 + len(RINGS) + 12
 N_POKE = 5
 
 
@@ -30,7 +32,9 @@ class Contact:
     near: one weight a point for each of WIDTHS, summing to 1 over the points, (w, n, b).
     """
 
-    def __init__(self, points: Tensor, normals: Tensor, pokes: tuple[Tensor, ...], radius: float) -> None:
+    def __init__(
+        self, points: Tensor, normals: Tensor, pokes: tuple[Tensor, ...], radius: float, edge: float
+    ) -> None:
         start, direction, depth, modulus = pokes
         # differences in float64: a scene far from the origin loses nothing
         self.exact = Exact(
@@ -43,9 +47,12 @@ class Contact:
         distance = torch.sqrt(square + 1e-6)
         millimetres = radius * 1e3
         self.near = torch.stack([torch.softmax(-0.5 * square * (radius / w) ** 2, dim=0) for w in WIDTHS])
-        along = (self.r * self.push).sum(dim=2)
-        aside = (self.r - along[..., None] * self.push).square().sum(dim=2)
-        aside = torch.sqrt(aside + 1e-6)
+        self.edge = edge / radius
+        self.along = along = (self.r * self.push).sum(dim=2)
+        off = self.r - along[..., None] * self.push
+        self.aside = aside = torch.sqrt(off.square().sum(dim=2) + 1e-6)
+        over = (off * self.normal).sum(dim=2)
+        under = under_end(along, aside, self.depth)
         lift = (self.unit * self.normal).sum(dim=2)
         lean = (self.push * self.normal).sum(dim=2).expand_as(lift)
         turn = (self.unit * self.push).sum(dim=2)
@@ -60,6 +67,9 @@ class Contact:
                 torch.tanh(along - deep),
                 torch.tanh((along - deep) / 4),
                 torch.exp(-0.5 * (aside / (1 + 0.5 * deep)).square()),
+                *under,
+                torch.tanh(over),
+                torch.tanh(over / aside * 3) * under[0],
             ],
             dim=2,
         )
@@ -86,6 +96,11 @@ class Contact:
             [self.depth / 4, torch.log(self.depth), facing, facing * self.depth / 4, modulus.float()], dim=1
         )
         self.here = here
+
+    @property
+    def place(self) -> Place:
+        """What the rod's surface wants to know."""
+        return Place(self.r, self.push, self.depth, self.along, self.aside, self.edge)
 
     def vectors(self) -> tuple[Tensor, Tensor, Tensor]:
         """Normal, unit direction and push at each point, each (n, b, 3)."""

@@ -19,7 +19,7 @@ from torch.nn.functional import silu, softplus
 
 from learn.data.batch import Batch
 from learn.data.statistics import Statistics
-from learn.models import _contact
+from learn.models import _contact, _rod
 from learn.models._contact import Contact
 from learn.models._geometry import Encoded, GeometryEncoder, means, slopes, stencils_of
 from learn.models._model import Model
@@ -56,7 +56,7 @@ class Surrogate(Model):
         self.enter = nn.Linear(hidden, hidden)
         self.rounds = nn.ModuleList([_Messages(hidden, messages, directions, scales) for scales in SCALES])
         self.leave = nn.Sequential(nn.Linear(hidden, hidden), nn.SiLU())
-        self.coefficients = nn.Linear(hidden, 3 + vectors + len(SCALES[-1]) * directions)
+        self.coefficients = nn.Linear(hidden, 3 + vectors + len(SCALES[-1]) * directions + _rod.N_GATES)
         self.force_head = nn.Sequential(
             nn.Linear(2 * hidden + _contact.N_POKE + 3 * seen, hidden), nn.SiLU(), nn.Linear(hidden, 1)
         )
@@ -107,11 +107,13 @@ class Surrogate(Model):
             h, slope = round_(h, encoded.stencils, unit, push, contact.near[2])
         out = self.leave(h)
 
-        amounts, others = self.coefficients(out).split([3, vectors.shape[3] + slope.shape[3]], dim=2)
+        sizes = [3, vectors.shape[3] + slope.shape[3], _rod.N_GATES]
+        amounts, others, gates = self.coefficients(out).split(sizes, dim=2)
         own = (torch.cat([vectors, slope], dim=3) * others).sum(dim=3).permute(1, 2, 0)
         for amount, vector in zip(amounts.unbind(2), contact.vectors(), strict=True):
             own = own + amount[..., None] * vector
-        u = own * contact.far[..., None] + self.prior(contact, _soft(encoded, contact, inclusion))
+        smooth = self.prior(contact, _soft(encoded, contact, inclusion))
+        u = _rod.held(contact.place, smooth, own * contact.far[..., None], torch.sigmoid(gates))
 
         pooled = [torch.einsum("nb,nbc->bc", contact.near[k], out) for k in (0, 1)]
         kappa = self.force_head(torch.cat([*pooled, about], dim=1))[:, 0]
@@ -124,7 +126,7 @@ class Surrogate(Model):
     def _contact(self, scene: Scene, pokes: Pokes) -> Contact:
         modulus = torch.log(pokes.modulus) - self.log_modulus
         rod = (pokes.start, pokes.direction, pokes.depth, modulus)
-        return Contact(scene.points, scene.normals, rod, scene.rod_radius)
+        return Contact(scene.points, scene.normals, rod, scene.rod_radius, scene.rod_edge)
 
 
 def _soft(encoded: Encoded, contact: Contact, inclusion: Tensor) -> Tensor:

@@ -20,7 +20,7 @@ class Scene:
     points (n, 3) float64: rest positions; normals (n, 3) float64: outward, unit. profile: stiffness codes
     under each point, 0 to 1 with 1 rigid, (g, n, levels) float32, top level first. rigid: 1 where a level is
     rigid, once a distinct inclusion, (k, n, levels) float32; rigid_index (g,): the inclusion of each
-    interior. level_depth (levels,) float64 [m]. rod_radius [m].
+    interior. level_depth (levels,) float64 [m]. rod_radius, rod_edge [m]: as in `Store`.
     """
 
     points: Tensor
@@ -30,10 +30,13 @@ class Scene:
     rigid_index: Tensor
     level_depth: Tensor
     rod_radius: float
+    rod_edge: float
 
     def to(self, device: torch.device | str) -> Scene:
         """The same scene on a device."""
-        moved = {f.name: getattr(self, f.name).to(device) for f in fields(self) if f.name != "rod_radius"}
+        moved = {
+            f.name: getattr(self, f.name).to(device) for f in fields(self) if not f.name.startswith("rod_")
+        }
         return replace(self, **moved)
 
     def only(self, geometries: NDArray[np.int64]) -> Scene:
@@ -63,6 +66,7 @@ def make_scene(
     profile: NDArray[np.uint8],
     level_depth: NDArray[np.float64],
     rod_radius: float,
+    rod_edge: float,
 ) -> Scene:
     """The scene of any point cloud; profile as stored (255 = rigid), (g, n, levels)."""
     masks, index = rigid_masks(profile)
@@ -74,6 +78,7 @@ def make_scene(
         rigid_index=torch.from_numpy(index),
         level_depth=torch.from_numpy(level_depth),
         rod_radius=rod_radius,
+        rod_edge=rod_edge,
     )
 
 
@@ -85,6 +90,7 @@ def scene_of(store: Store) -> Scene:
         profile=store.profile,
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
 
 

@@ -12,7 +12,7 @@ import torch
 from learn.data.statistics import Statistics
 from learn.data.store import Store
 from learn.errors import InputError
-from learn.models import Model, make_model
+from learn.models import VERSIONS, Model, make_model
 from learn.training.recipe import Recipe, check_recipe
 
 FORMAT = 1
@@ -65,10 +65,21 @@ def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
         )
 
 
+def check_version(content: dict[str, Any], path: Path) -> None:
+    """InputError where a checkpoint is of another version of its model."""
+    name, found = str(content["recipe"]["model"]), content.get("version", 1)
+    now = VERSIONS.get(name, found)
+    if found != now:
+        raise InputError(
+            f"{path}: weights of version {found} of model {name}, this is version {now}: train again"
+        )
+
+
 def load_run(folder: Path | str) -> Run:
     """The best model of a run's folder, in evaluation mode on the CPU."""
     path = Path(folder) / BEST
     content = load_checkpoint(path)
+    check_version(content, path)
     statistics = Statistics(**content["statistics"])
     recipe = check_recipe(content["recipe"], str(path))
     model = make_model(recipe.model, statistics)

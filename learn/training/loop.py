@@ -17,10 +17,17 @@ from torch import Tensor, nn
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, split_pokes, statistics
 from learn.errors import InputError
-from learn.models import Scene, make_model, pokes_of, scene_of
+from learn.models import VERSIONS, Scene, make_model, pokes_of, scene_of
 from learn.training._distributed import Team
 from learn.training._log import Log
-from learn.training.checkpoint import BEST, LAST, check_dataset, load_checkpoint, save_checkpoint
+from learn.training.checkpoint import (
+    BEST,
+    LAST,
+    check_dataset,
+    check_version,
+    load_checkpoint,
+    save_checkpoint,
+)
 from learn.training.losses import Loss, loss_of
 from learn.training.recipe import Recipe
 
@@ -255,6 +262,7 @@ class Trainer:
 
     def _save(self, line: dict[str, Any]) -> None:
         about = {
+            "version": VERSIONS[self.recipe.model],
             "uuid": self.store.uuid,
             "law": self.store.law,
             "location": self.store.location,
@@ -288,6 +296,7 @@ class Trainer:
             return None
         content = load_checkpoint(path)
         check_dataset(content, path, self.store)
+        check_version(content, path)
         mine = self.recipe.model_dump(mode="json")
         different = [key for key in mine if content["recipe"].get(key) != mine[key]]
         if different:

@@ -31,7 +31,7 @@ class Recipe(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: str = "fast"
-    model: Literal["ours", "cegnn"] = "ours"
+    model: Literal["ours", "ours-small", "cegnn"] = "ours"
     split: Literal["shape", "site"] = "shape"
     fold: Annotated[int, Field(ge=0, le=4)] = 0
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0

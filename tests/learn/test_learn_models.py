@@ -17,6 +17,7 @@ from learn.evaluation.cases import cases_of
 from learn.evaluation.summary import summarise
 from learn.models import Model, Pokes, Scene, Surrogate, make_model, make_scene, pokes_of, scene_of
 from learn.models._stencil import stencil
+from learn.models.single import SinglePoke
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -63,15 +64,15 @@ def _error_mm(model: Model, scene: Scene, pokes: Pokes, turn: Tensor, shift: Ten
     return float(apart.norm(dim=2).max()) * 1e3, float((moved.force / still.force - 1).abs().max())
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("name", "seed"), [*(("ours", k) for k in range(4)), ("ours-small", 4)])
 def test_ours_turns_mirrors_and_moves_with_the_scene(
-    store: Store, sizes: Statistics, pokes: Pokes, seed: int
+    store: Store, sizes: Statistics, pokes: Pokes, name: str, seed: int
 ) -> None:
     """Rotations about any axis, mirrorings, translations by metres; float32."""
     random = np.random.default_rng(seed)
     turn = torch.from_numpy(ortho_group.rvs(3, random_state=random))  # half of them mirror
     shift = torch.from_numpy(random.uniform(-3, 3, 3))
-    model, scene = _model("ours", sizes), scene_of(store)
+    model, scene = _model(name, sizes), scene_of(store)
     model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
     with torch.no_grad():
         size = float(model(scene, pokes).displacement.norm(dim=2).max()) * 1e3
@@ -111,6 +112,7 @@ def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
         profile=store.profile[:, order],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
     with torch.no_grad():
         plain, shuffled = model(scene, pokes), model(mixed, pokes)
@@ -118,6 +120,25 @@ def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
     torch.testing.assert_close(shuffled.displacement, plain.displacement[:, order], atol=1e-8, rtol=1e-5)
     torch.testing.assert_close(alone.displacement[0], plain.displacement[2], atol=1e-8, rtol=1e-5)
     torch.testing.assert_close(alone.force[0], plain.force[2])
+
+
+@pytest.mark.parametrize("name", ["ours", "ours-small"])
+def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, pokes: Pokes, name: str) -> None:
+    """The fast path: displacement to rounding, near the rod and far from it."""
+    model, scene = _model(name, sizes), scene_of(store)
+    assert isinstance(model, Surrogate)
+    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
+    with torch.no_grad():
+        encoded = model.encode(scene, model.prepare(scene))
+        found = model.decode(encoded, pokes)
+    for k in (0, 3):
+        one = SinglePoke(model, encoded, int(scene.rigid_index[pokes.geometry[k]]))
+        u, force = one(pokes.start[k], pokes.direction[k], float(pokes.depth[k]), float(pokes.modulus[k]))
+        size = float(found.displacement[k].norm(dim=1).max())
+        assert float((u - found.displacement[k]).norm(dim=1).max()) < 3e-6 * size
+        assert force == pytest.approx(float(found.force[k]), rel=1e-5)
+        again, _ = one(pokes.start[k], pokes.direction[k], float(pokes.depth[k]), float(pokes.modulus[k]))
+        assert torch.equal(again, u)
 
 
 def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
@@ -130,6 +151,7 @@ def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, 
         profile=store.profile[:, some],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
     with torch.no_grad():
         whole, part = model(scene, pokes).displacement[:, some], model(sparse, pokes).displacement
@@ -141,6 +163,7 @@ def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, 
         profile=store.profile[:, :3],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
     )
     assert bool(torch.isfinite(model(few, pokes).displacement).all())
 
@@ -182,7 +205,7 @@ def test_gradients_of_the_sparse_product_are_right() -> None:
 
 
 def test_unknown_model() -> None:
-    with pytest.raises(InputError, match="expected one of ours, cegnn"):
+    with pytest.raises(InputError, match="expected one of ours, ours-small, cegnn"):
         make_model("best", Statistics(1, 1, 1, 1, 1, 1, 1, 1))
 
 

@@ -32,6 +32,7 @@ def test_what_is_read_is_what_was_written(whole: Path) -> None:
     assert (store.pokes, store.frames) == (12, 48)
     assert store.modulus[[0, 2]] == pytest.approx([MODULI["S0"], MODULI["S1"]])
     assert store.rod_radius == pytest.approx(2.5e-3)
+    assert store.rod_edge == pytest.approx(1e-3)
     np.testing.assert_allclose(store.normals, np.tile([0, 0, 1.0], (1024, 1)))
     group = zarr.open_group(whole, mode="r")
     array = np.asarray(group["grid_displacement"][...]).reshape(-1, 1024, 3)  # type: ignore[index, union-attr]
@@ -106,6 +107,12 @@ def _lose(folder: Path) -> None:
         (_attribute(pokes=3), "attribute pokes is 3"),
         (_attribute(model="gum"), "law gum"),
         (_attribute(identity={}), "radius_mm"),
+        (_attribute(identity={"recipe": {"rod": {"radius_mm": 2}}}), "rod.tip is missing"),
+        (_attribute(identity={"recipe": {"rod": {"radius_mm": 2, "tip": "flat"}}}), "edge_radius_mm"),
+        (
+            _attribute(identity={"recipe": {"rod": {"radius_mm": 2, "tip": "flat", "edge_radius_mm": 3}}}),
+            "expected 0 to the rod's radius",
+        ),
         (_attribute(parameter_names=["c10", "c01"]), "expected a parameter mu"),
         (_delete("depth"), "array depth is missing"),
         (_edit("depth", lambda a: a.attrs.update(units="mm")), "depth: units mm, expected m"),

@@ -22,7 +22,7 @@ from learn.train import app
 from learn.training import DivergedError, Recipe, Trainer, load_recipe, load_run
 from learn.training._distributed import Team
 from learn.training._log import read_log
-from learn.training.checkpoint import load_checkpoint
+from learn.training.checkpoint import load_checkpoint, save_checkpoint
 from learn.training.recipe import RECIPES
 
 ROOT = Path(__file__).parent.parent.parent
@@ -108,6 +108,17 @@ def test_a_checkpoint_carries_dataset_recipe_and_statistics(folder: Path, tmp_pa
     assert run.recipe.name == "tiny"
     assert run.statistics.frames == 8
     assert set(run.groups) == {"train", "validation", "test"}
+
+
+def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) -> None:
+    _train(folder, TINY.model_copy(update={"epochs": 1}), tmp_path / "run")
+    for name in ("best.pt", "last.pt"):
+        content = load_checkpoint(tmp_path / "run" / name)
+        save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
+    with pytest.raises(InputError, match="weights of version 1 of model ours, this is version 2"):
+        load_run(tmp_path / "run")
+    with pytest.raises(InputError, match="train again"):
+        _train(folder, TINY, tmp_path / "run", resume=True)
 
 
 def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
