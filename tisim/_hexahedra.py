@@ -12,8 +12,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim._quadrature import HEX_CUTS, TETRAHEDRAL_PART, Reference
+from tisim._quadrature import TETRAHEDRAL_PART, Reference
 from tisim.mesh import Mesh
+from tisim.mesh._reference import HEX_CUTS
 
 Array = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh import ElementKind, Mesh
+from tisim.mesh._reference import HEX_CUTS, cut_hexahedra
 
 Array = NDArray[np.float64]
 
@@ -59,13 +60,6 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
     return n, d
 
 
-# The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
-HEX_CUTS = np.array(
-    [
-        *([0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]),
-        *([1, 2, 0, 5], [3, 0, 2, 7], [4, 5, 0, 7], [6, 7, 2, 5], [0, 7, 5, 2]),
-    ]
-)
 # Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra` (and `tisim._hexahedra`).
 TETRAHEDRAL_PART = 0.1
 
@@ -123,10 +117,7 @@ def _hexahedra(mesh: Mesh) -> Reference:
     gauss = det * weights
     volume = gauss.sum(axis=1)
     mean = np.einsum("eq,qak,eqki->eai", gauss, d, np.linalg.inv(jac)) / volume[:, None, None]
-    tets = corners[:, HEX_CUTS]
-    edges = tets[:, :, 1:] - tets[:, :, :1]
-    six = np.linalg.det(edges)
-    vanished = np.abs(six) < 1e-12 * volume[:, None]
+    edges, six, vanished = cut_hexahedra(corners, volume)
     _refuse_inside_out(np.where(vanished, 1.0, six))
     edges[vanished] = np.eye(3)
     inverse = np.linalg.inv(edges)  # columns: gradients of the last three nodes' shape functions

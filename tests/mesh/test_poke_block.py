@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from poke_cases import assert_good, assert_matching_facets, gauss_jacobians, random_poke
 
+from tisim._quadrature import reference
 from tisim.mesh._errors import MeshError
 from tisim.mesh.poke_block import poke_mesh
 from tisim.scene import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion
@@ -189,3 +190,20 @@ def test_what_cannot_be_meshed_is_said_in_one_sentence(change, words):
 def test_an_inclusion_that_cannot_be_met_is_refused(inclusion, words):
     with pytest.raises(MeshError, match=words):
         poke_mesh(block=Block(inclusion=inclusion), site=(0.0, 0.0), rod=ROD)
+
+
+@pytest.mark.parametrize(
+    ("site", "direction"),
+    [
+        ((0.02572594163975595, -0.028353964550106834), (-0.231, -0.643, -0.731)),
+        ((0.0179226492638343, -0.01884594549249195), (-0.467, -0.248, -0.849)),
+    ],
+)
+def test_tetrahedra_of_hexahedra_above_a_dome_stay_upright(site, direction):
+    """The first grid that meets this sphere raises a hexahedron that is sound at its quadrature points, while
+    one of its tetrahedra, which the solver integrates over too, is inside-out."""
+    centre = (-0.005932481361387259, 0.0033707093804314415, 0.009)
+    block = Block(inclusion=SphereInclusion(radius=0.011, centre=centre))
+    mesh = poke_mesh(block=block, site=site, direction=direction, rod=ROD)
+    assert (reference(mesh).weights >= 0.0).all()
+    assert_good(mesh, block)

@@ -55,6 +55,39 @@ def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float
     return NODE_PLACES["hex8"] / 3**0.5, np.ones(8)
 
 
+# The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
+HEX_CUTS = np.array(
+    [
+        *([0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]),
+        *([1, 2, 0, 5], [3, 0, 2, 7], [4, 5, 0, 7], [6, 7, 2, 5], [0, 7, 5, 2]),
+    ]
+)
+
+
+def cut_hexahedra(
+    corners: NDArray[np.float64], volume: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """The tetrahedra of HEX_CUTS of hexahedra with these corners (m, 8, 3) and volumes (m,): edges from the
+    first node (m, 10, 3, 3), six times the volumes (m, 10), and which vanish in a wedge (m, 10)."""
+    tets = corners[:, HEX_CUTS]
+    edges = tets[:, :, 1:] - tets[:, :, :1]
+    six = np.linalg.det(edges)
+    return edges, six, np.abs(six) < 1e-12 * volume[:, None]
+
+
+def is_sound(kind: ElementKind, nodes: NDArray[np.float64], elements: NDArray[np.int32]) -> bool:
+    """Whether no element is inside-out where the solver integrates: its quadrature points, and the
+    tetrahedra that it cuts a hexahedron into."""
+    places, weights = quadrature(kind)
+    det = det_jacobian(kind, nodes, elements, places)
+    if det.min() <= 0.0:
+        return False
+    if kind != "hex8":
+        return True
+    _, six, vanished = cut_hexahedra(nodes[elements], (det * weights).sum(axis=1))
+    return bool((vanished | (six > 0.0)).all())
+
+
 def det_jacobian(
     kind: ElementKind,
     nodes: NDArray[np.float64],

@@ -12,7 +12,7 @@ from tisim.mesh._errors import MeshError
 from tisim.mesh._inclusion import Outline, outline_of
 from tisim.mesh._mesh import ElementKind, Mesh
 from tisim.mesh._ogrid import Focus, PlaneGrid, o_grid
-from tisim.mesh._reference import det_jacobian, quadrature
+from tisim.mesh._reference import is_sound
 from tisim.mesh._snap import Snapped, snap
 
 if TYPE_CHECKING:  # tisim.scene imports tisim.mesh
@@ -74,23 +74,40 @@ def poke_mesh(
     away = float(np.clip((np.hypot(*(outline.centre - grids.site)) - outline.reach) / FAR, 0.0, 1.0))
     coarser = 1.0 + away * (COARSER_FAR_AWAY - 1.0)
     cell = coarser * (CELL_AT_OUTLINE if outline.dome is None else CELL_AT_DOME) * outline.radius / refinement
-    best: tuple[float, PlaneGrid, Snapped] | None = None
+    worse: list[tuple[float, PlaneGrid, Snapped]] = []
     for spacing, turn, more in ATTEMPTS:
         focus = Focus(centre=outline.centre, reach=outline.reach, spacing=spacing * cell)
         grid = grids.make(focus, turn=turn, more=more)
         snapped = snap(points=grid.points, cells=grid.cells, border=grid.border, outline=outline)
         if snapped is None or not _meets(snapped, outline):
             continue
-        if best is None or snapped.quality > best[0]:
-            best = snapped.quality, grid, snapped
-        if snapped.quality >= GOOD_QUALITY:
-            break
-    if best is None or best[0] < WORST_QUALITY:
-        raise MeshError(
-            f"inclusion: no grid around the poke site {tuple(site)} meets its outline; "
-            "try a larger refinement, or an inclusion that is wider"
-        )
-    _, grid, snapped = best
+        if snapped.quality < GOOD_QUALITY:
+            worse.append((snapped.quality, grid, snapped))
+            continue
+        mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
+        if mesh is not None:
+            return mesh
+    met = sorted(worse, key=lambda one: -one[0])
+    for _, grid, snapped in [one for one in met if one[0] >= WORST_QUALITY]:
+        mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
+        if mesh is not None:
+            return mesh
+    raise MeshError(
+        f"inclusion: no grid around the poke site {tuple(site)} meets its outline without elements that turn "
+        "over; try a larger refinement, or an inclusion that is wider"
+    )
+
+
+def _raised(
+    grid: PlaneGrid,
+    snapped: Snapped,
+    *,
+    size: tuple[float, float, float],
+    refinement: float,
+    kind: ElementKind,
+    outline: Outline,
+) -> Mesh | None:
+    """The block's mesh over a plane grid; None where elements turn over."""
     # above the inclusion the columns lean back to the undisturbed grid, if the cover has room for that
     for top_points in (grid.points, None):
         mesh = extrude(
@@ -104,9 +121,9 @@ def poke_mesh(
             within=snapped.within,
             top_points=top_points,
         )
-        if det_jacobian(kind, mesh.nodes, mesh.elements, quadrature(kind)[0]).min() > 0.0:
+        if is_sound(kind, mesh.nodes, mesh.elements):
             return mesh
-    raise MeshError(f"inclusion: elements above it turn over for the poke site {tuple(site)}")
+    return None
 
 
 def _meets(snapped: Snapped, outline: Outline) -> bool:
