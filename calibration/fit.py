@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from calibration._command import plain_ends
+from calibration._options import Laws, Measured, Workers, command, laws_in, names_in, processes
 from calibration._screen import FitScreen, law_table
 from calibration.diagnosis.rig import Rig, read_rig
 from calibration.errors import InputError
@@ -28,9 +29,8 @@ from calibration.study import (
     write_card,
 )
 from calibration.study.report import write_report
-from tisim import laws
 
-app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+app = command()
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -63,10 +63,8 @@ Exit codes: 0 fitted, 1 some fit did not converge, 2 bad input, 130 stopped by C
 
 @app.command(epilog=EXAMPLES)
 def main(
-    experiment: Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")],
-    model: Annotated[
-        str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")
-    ] = "all",
+    experiment: Measured,
+    model: Laws = "all",
     material: Annotated[
         str | None, typer.Option(help="Materials, separated by commas. Default: all of the experiment.")
     ] = None,
@@ -89,13 +87,13 @@ def main(
     restarts: Annotated[int, typer.Option(help="Restarts with twice the population.", min=0)] = 0,
     polish: Annotated[bool, typer.Option(help="Gauss-Newton polish and error bars.")] = True,
     held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = True,
-    workers: Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)] = None,
+    workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Start anew instead of going on.")] = False,
 ) -> None:
     """Fit constitutive laws to beams and coupons; writes fits, cards and report.html."""
     with plain_ends():
         data = read(experiment)
-        names = _laws(model)
+        names = laws_in(model)
         wanted = _materials(material, data)
         minimised = _objective(objective)
         setup = _rig(rig, data, minimised, wanted)
@@ -124,7 +122,7 @@ def main(
         console = Console()
         if setup is not None:
             console.print(setup.sentence, markup=False, highlight=False)
-        results = _fit(tasks, OnSetup.of(data, setup), console, workers or os.cpu_count() or 1, folder, cards)
+        results = _fit(tasks, OnSetup.of(data, setup), console, processes(workers), folder, cards)
     raise typer.Exit(0 if all(r.status == "converged" for r in results) else 1)
 
 
@@ -158,16 +156,6 @@ def _write(
     console.print(f"report: {write_report(folder, results, data)}")
 
 
-def _laws(model: str) -> list[str]:
-    names = list(laws.names()) if model == "all" else [n.strip() for n in model.split(",") if n.strip()]
-    for name in names:
-        if name not in laws.names():
-            raise InputError(f"--model {name}: expected all or some of {', '.join(laws.names())}")
-    if not names:
-        raise InputError("--model: expected at least one law")
-    return list(dict.fromkeys(names))
-
-
 def _objective(name: str) -> ObjectiveName:
     if name == "likelihood":
         return "likelihood"
@@ -194,7 +182,7 @@ def _materials(wanted: str | None, data: Experiment) -> list[str]:
     used = {t.material for t in data.trials}
     if wanted is None:
         return [m for m in data.materials if m in used]
-    names = [n.strip() for n in wanted.split(",") if n.strip()]
+    names = names_in(wanted)
     for name in names:
         if name not in used:
             raise InputError(f"--material {name}: expected some of {', '.join(sorted(used))}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +11,7 @@ from rich.console import Console
 from rich.progress import track
 
 from calibration._command import plain_ends
+from calibration._options import Laws, Measured, Workers, command, laws_in, processes
 from calibration._screen import FitScreen
 from calibration.errors import InputError
 from calibration.experiment import Experiment, read
@@ -28,9 +28,8 @@ from calibration.table_of_paper import (
     write_csv,
     write_markdown,
 )
-from tisim import laws
 
-app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+app = command()
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -49,26 +48,24 @@ Exit codes: 0 written, 1 written and some law has no figures, 2 bad input, 130 s
 
 @app.command(epilog=EXAMPLES)
 def main(
-    experiment: Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")],
+    experiment: Measured,
     fits: Annotated[
         Path | None,
         typer.Option(help="Folder that calibration.fit wrote. Default: calibrations/EXPERIMENT."),
     ] = None,
-    model: Annotated[
-        str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")
-    ] = "all",
+    model: Laws = "all",
     out: Annotated[
         Path | None, typer.Option(help="Folder of table.csv and table.md. Default: that of the fits.")
     ] = None,
     run_missing: Annotated[
         bool, typer.Option("--run/--no-run", help="Make fits that are missing, or leave their rows empty.")
     ] = True,
-    workers: Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)] = None,
+    workers: Workers = None,
 ) -> None:
     """Table of calibration results, ours beside the paper's; writes table.csv and table.md."""
     with plain_ends():
         data = read(experiment)
-        names = _laws(model)
+        names = laws_in(model)
         materials = [m for m in data.materials if traced_beams(data, m)]
         if not materials:
             raise InputError(f"{experiment / 'experiment.yaml'}: expected at least one beam with an outline")
@@ -84,7 +81,7 @@ def main(
         bodies = {m: measured(data, m) for m in materials}
         console = Console()
         if run_missing:
-            _fill(found, data, experiment, folder, workers or os.cpu_count() or 1, console)
+            _fill(found, data, experiment, folder, processes(workers), console)
         rows = [
             row(law, fit, data, m, bodies[m], workers=workers)
             for (law, m), fit in track(
@@ -143,16 +140,6 @@ def _command(experiment: Path, fits: Path | None, model: str, out: Path | None, 
     parts += ["--out", str(out)] if out else []
     parts += [] if run_missing else ["--no-run"]
     return shlex.join(parts)
-
-
-def _laws(model: str) -> list[str]:
-    names = list(laws.names()) if model == "all" else [n.strip() for n in model.split(",") if n.strip()]
-    for name in names:
-        if name not in laws.names():
-            raise InputError(f"--model {name}: expected all or some of {', '.join(laws.names())}")
-    if not names:
-        raise InputError("--model: expected at least one law")
-    return list(dict.fromkeys(names))
 
 
 if __name__ == "__main__":

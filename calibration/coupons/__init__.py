@@ -1,6 +1,6 @@
 """Coupons (homogeneous tests): stress without a mesh, an objective, a fit with its certainty."""
 
-from calibration.coupons._noise import relative_sd
+from calibration.coupons._noise import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
 from calibration.coupons.fit import CouponFit, FitStatus, fit_coupons
 from calibration.coupons.homogeneous import MODES, nominal_stress, nominal_stresses
 from calibration.coupons.misfit import percent_error
@@ -8,6 +8,7 @@ from calibration.coupons.objective import CouponObjective, Coupons
 
 __all__ = [
     "MODES",
+    "SMALLEST_RELATIVE",
     "CouponFit",
     "CouponObjective",
     "Coupons",
@@ -17,4 +18,6 @@ __all__ = [
     "nominal_stresses",
     "percent_error",
     "relative_sd",
+    "scatter_scale",
+    "slope",
 ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.bars.effects import BarEffect
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.fitting import Fit
 from calibration.diagnosis.verdict import Diagnosis
@@ -89,6 +90,7 @@ def valid_range(candidate: Candidate, diagnosis: Diagnosis, experiment: Experime
         if isinstance(t, BeamTrial):
             values.setdefault("free_length_mm", []).append(1e3 * t.free_length)
             values.setdefault("time_s", []).extend(c.time for c in t.captures if c.outline is not None)
+            values["time_s"].extend(float(m.time[-1]) for m in t.markers if _let_go(diagnosis))
         elif isinstance(t, CouponTrial):
             values.setdefault("stretch", []).extend(t.stretch)
         else:
@@ -116,4 +118,11 @@ def _part(covariance: float, sds: float) -> float:
 def _used(diagnosis: Diagnosis, experiment: Experiment) -> Sequence[Trial]:
     kind = _KINDS[diagnosis.unit[0]]
     trials = [t for t in experiment.trials if isinstance(t, kind)]
+    if _let_go(diagnosis):
+        return [t for t in trials if isinstance(t, BeamTrial) and t.markers]
     return [t for t in trials if not isinstance(t, BeamTrial) or any(c.outline for c in t.captures)]
+
+
+def _let_go(diagnosis: Diagnosis) -> bool:
+    """Whether bars with markers were diagnosed, and not traced beams."""
+    return any(isinstance(e, BarEffect) for e in diagnosis.effects.values())

@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from calibration.diagnosis.beams.effects import EFFECTS
-from calibration.experiment._fields import Strict, say
+from calibration.diagnosis.beams import EFFECTS
+from calibration.experiment import Strict, say
 
 FORMAT = 1
 USE = (

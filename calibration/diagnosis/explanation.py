@@ -61,6 +61,8 @@ def explain(
             found = fit(model, replace(start.state, amplitudes=inside), candidates)
         except ValueError:
             continue
+        if part > 0.0 and not found.converged and found.chi2 > start.chi2:
+            continue  # lost, so far out
         cost = sum(np.log(len(found.z)) + worth(c) for c in found.candidates)
         departure = null.departure(found.z, found.jacobian)
         return Explanation(fit=found, cost=float(cost), departure=departure)

@@ -101,14 +101,30 @@ def _step(
         low, high = model.effects[c.effect].bounds
         a = linear.state.amplitudes[c]
         free[n + k] = not ((a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0))
-    move = np.zeros(jacobian.shape[1])
-    # columns differ by orders of magnitude in scale: bring them to one before the rank is judged
-    size = np.linalg.norm(jacobian[:, free], axis=0)
-    size[size == 0.0] = 1.0
-    move[free] = -np.linalg.lstsq(jacobian[:, free] / size, linear.z, rcond=1e-6)[0] / size
+    for _ in range(len(wanted) + 1):
+        move = np.zeros(jacobian.shape[1])
+        # columns differ by orders of magnitude in scale: bring them to one before the rank is judged
+        size = np.linalg.norm(jacobian[:, free], axis=0)
+        size[size == 0.0] = 1.0
+        move[free] = -np.linalg.lstsq(jacobian[:, free] / size, linear.z, rcond=1e-6)[0] / size
+        # the step may lead beyond a bound though the gradient does not
+        blocked = _beyond(model, linear, move, wanted)
+        if not blocked.any():
+            break
+        free &= ~blocked
     promise = float(linear.z @ linear.z - np.sum((linear.z + jacobian @ move) ** 2))
     largest = np.abs(move[:n]).max(initial=0.0)
     return move * min(1.0, LONGEST / largest if largest > 0 else 1.0), promise
+
+
+def _beyond(model: Nested, linear: Linear, move: Array, wanted: tuple[Candidate, ...]) -> NDArray[np.bool_]:
+    """Coordinates at a bound that a step would take beyond it."""
+    found = np.zeros(move.size, dtype=bool)
+    for k, c in enumerate(wanted, start=len(linear.state.u)):
+        low, high = model.effects[c.effect].bounds
+        a = linear.state.amplitudes[c]
+        found[k] = (a <= low and move[k] < 0.0) or (a >= high and move[k] > 0.0)
+    return found
 
 
 def _shortened(

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis._rig_file import RigFile
-from calibration.diagnosis.beams._candidates import reaches
-from calibration.diagnosis.beams.effects import EFFECTS, BeamEffect, Situation
+from calibration.diagnosis.beams import EFFECTS, BeamEffect, Situation, reaches
 from calibration.diagnosis.effect import Candidate
-from calibration.experiment._yaml import parse
+from calibration.experiment import parse
 from calibration.experiment.model import BeamTrial, Experiment
 from tisim import Beam
 

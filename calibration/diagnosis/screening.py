@@ -68,7 +68,7 @@ def screen(linear: Linear, effects: Mapping[str, Effect], *, held: Fit | None = 
     left = raw - free @ (free.T @ raw)
     left -= free @ (free.T @ left)  # once more: the first pass leaves rounding of what was large
     sizes, whole = np.linalg.norm(left, axis=0), np.linalg.norm(raw, axis=0)
-    seen = sizes > UNSEEN * np.where(whole > 0, whole, 1.0)
+    seen = sizes > (linear.unseen or UNSEEN) * np.where(whole > 0, whole, 1.0)
     sizes = np.where(seen, sizes, 0.0)
     directions = np.where(seen, left / np.where(seen, sizes, 1.0), 0.0)
     return Screen(

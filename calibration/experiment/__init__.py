@@ -1,6 +1,8 @@
 """A measured experiment: what a lab writes down (`measured/FORMAT.md`), read, checked and in SI."""
 
+from calibration.experiment._fields import Strict, say
 from calibration.experiment._read import read
+from calibration.experiment._yaml import parse
 from calibration.experiment.model import (
     BeamTrial,
     Capture,
@@ -32,10 +34,13 @@ __all__ = [
     "PokeRecord",
     "PokeTrial",
     "Registration",
+    "Strict",
     "Supports",
     "SurfaceScan",
     "TracedOutline",
     "Trial",
     "Vector",
+    "parse",
     "read",
+    "say",
 ]

@@ -2,7 +2,7 @@
 
 from calibration.outlines._admitted import Admitted, admitted
 from calibration.outlines._edges import Feet, edges, feet
-from calibration.outlines._noise import contour_root, registration_columns, smooth_basis
+from calibration.outlines._noise import Nuisances, contour_root, registration_columns, smooth_basis
 from calibration.outlines.fidelity import COARSE, REFERENCE, Fidelity, beam_scene
 from calibration.outlines.objective import OutlineObjective, Photograph, away_from_clamps
 
@@ -12,6 +12,7 @@ __all__ = [
     "Admitted",
     "Feet",
     "Fidelity",
+    "Nuisances",
     "OutlineObjective",
     "Photograph",
     "admitted",

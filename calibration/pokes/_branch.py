@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.coupons._noise import relative_sd, scatter_scale, slope
+from calibration.coupons import relative_sd, scatter_scale, slope
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
 from calibration.pokes._scene import approach

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
-from calibration.outlines._noise import Nuisances
+from calibration.outlines import Nuisances
 from calibration.pokes import _shape
 from calibration.pokes._branch import loading_branch
 from calibration.pokes._curve import at_depths, log_change, rod_force

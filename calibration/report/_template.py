@@ -1,52 +1,16 @@
-"""The page's HTML, for jinja2. A module, so that an installed package has it without package data."""
+"""The page's HTML, for jinja2."""
 
-TEMPLATE = """\
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Calibration: {{ experiment.name }}</title>
-<style>
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto;
-  padding: 0 1rem; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.3rem; border-bottom: 2px solid #0072B2; margin-top: 3rem; }
-h3 { font-size: 1.05rem; margin: 1.8rem 0 .4rem; }
+PAGE = """\
+{% extends "frame" %}
+{% from "parts" import table, figure %}
+{% block title %}Calibration: {{ experiment.name }}{% endblock %}
+{% block style %}
 .verdict { background: #EEF4FA; border-left: 4px solid #0072B2; padding: .5rem 1rem; margin: .4rem 0; }
-.trouble { background: #FDF1E6; border-left: 4px solid #D55E00; padding: .5rem 1rem; margin: .4rem 0; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .6rem; text-align: left; border-bottom: 1px solid #DDE2E8; vertical-align: top; }
-th { background: #F4F6F8; font-weight: 600; }
-.chosen { font-weight: 700; } .good { color: #00694B; } .bad { color: #B34700; font-weight: 600; }
-.unseen, .note { color: #5B6570; } .note { font-size: .88rem; max-width: 60rem; }
-figure { margin: .8rem 0; } figure img { max-width: 100%; height: auto; }
-figcaption { font-size: .85rem; color: #5B6570; max-width: 60rem; }
+.good { color: #00694B; } .unseen { color: #5B6570; }
 code, pre { font: .85rem ui-monospace, monospace; background: #F4F6F8; }
 pre { padding: .6rem; overflow-x: auto; } code { overflow-wrap: anywhere; }
-</style>
-</head>
-<body>
-{% macro cell(c) %}
-<td{% if c.mark %} class="{{ c.mark }}"{% endif %}>
-{%- if c.value is not none %}<data value="{{ c.value }}">{{ c.text }}</data>{% else %}{{ c.text }}{% endif -%}
-</td>
-{% endmacro %}
-{% macro table(headings, rows) %}
-<div class="wide"><table>
-<thead><tr>{% for h in headings %}<th>{{ h }}</th>{% endfor %}</tr></thead>
-<tbody>
-{% for row in rows %}
-<tr>
-{% for c in row %}{{ cell(c) }}{% endfor %}
-</tr>
-{% endfor %}
-</tbody>
-</table></div>
-{% endmacro %}
-{% macro figure(p) %}
-<figure><img src="{{ p.source }}" alt="{{ p.name }}"><figcaption>{{ p.caption }}</figcaption></figure>
-{% endmacro %}
+{% endblock %}
+{% block body %}
 <h1>Calibration: {{ experiment.name }}</h1>
 {% for s in sections %}
 <p class="verdict">{{ s.verdict }}</p>
@@ -158,6 +122,5 @@ had no equilibrium.</p>
 <p>To repeat:</p>
 <pre>{{ repeat }}</pre>
 </section>
-</body>
-</html>
+{% endblock %}
 """

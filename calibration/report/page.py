@@ -6,13 +6,12 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-
 from calibration.experiment.model import Experiment
+from calibration.report._base import template
 from calibration.report._material import Section, section
 from calibration.report._origin import command
 from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS
-from calibration.report._template import TEMPLATE
+from calibration.report._template import PAGE
 from calibration.report._words import rule
 from calibration.study.calibration import Calibration
 
@@ -40,10 +39,7 @@ def render(
     sections: Sequence[Section], results: Sequence[Calibration], experiment: Experiment, repeat: str
 ) -> str:
     """The page as HTML; repeat: the command that makes it again."""
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    return environment.from_string(TEMPLATE).render(
+    return template(PAGE).render(
         experiment=experiment,
         sections=sections,
         headings=HEADINGS,

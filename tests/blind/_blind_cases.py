@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from _blind_beam import Beam, Resolution
 from _blind_effects import EFFECTS, IMAGE, OUTSIDE, PARAMETER, SIZE, Effect, at_work, photographed
-from _blind_solver import Beam, Resolution
 from _blind_table import LENGTHS, POINTS, RADIUS, Table, interpolate, true_edges
 from numpy.typing import NDArray
 
@@ -184,6 +184,11 @@ def resized(case: Case, amplitudes: tuple[float, ...]) -> Case:
 
 def true_beam(case: Case, trial: int, photograph: int) -> Beam:
     """The beam of a trial at the time of a photograph, with all that is hidden in it."""
+    return beam_at(case, trial, time=TIMES[photograph], dice=float(case.dice[trial, photograph]))
+
+
+def beam_at(case: Case, trial: int, *, time: float, dice: float) -> Beam:
+    """The beam of a trial `time` [s] after its release; dice: a standard normal number of the photograph."""
     own = case.trials[trial]
     beam = own.beam()
     for hidden in case.hidden:
@@ -193,8 +198,8 @@ def true_beam(case: Case, trial: int, photograph: int) -> Beam:
                 hidden.effect,
                 hidden.amplitude,
                 place=hidden.place * own.length,
-                time=TIMES[photograph],
-                dice=float(case.dice[trial, photograph]),
+                time=time,
+                dice=dice,
             )
     return beam
 

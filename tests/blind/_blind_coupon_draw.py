@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from _blind_coupon_case import LIBRARY, OUTSIDE, Case, Hidden, Protocol
 from _blind_coupon_law import Solid
-from _blind_coupon_maker import LIBRARY, OUTSIDE, Case, Hidden, Protocol, sigmas, sized
+from _blind_coupon_sigma import sigmas, sized
+from _blind_record_case import apart, in_turn
 
 NEEDS_TWO_MODES = ("anisotropy", "second-invariant")
 
@@ -27,7 +29,7 @@ def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = 
         if kind == "two":
             wanted = max(wanted, 8.0)
         hidden = tuple(_hidden(rng, n, protocols, wanted) for n in names)
-        if all(h.sigma > 0.8 * wanted for h in hidden) and _apart(protocols, hidden):
+        if all(h.sigma > 0.8 * wanted for h in hidden) and apart(sigmas, protocols, hidden):
             moduli: dict[str, list[float]] = {}
             for p in {q.specimen or q.material: q for q in protocols}.values():
                 moduli.setdefault(p.material, []).append(p.G)
@@ -38,18 +40,7 @@ def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = 
 
 def draw_cases(count: int, seed: int) -> list[Case]:
     """A quarter clean, a tenth outside the library, a tenth of two, the rest one effect each, all in turn."""
-    clean, outside, two = round(0.25 * count), round(0.1 * count), round(0.1 * count)
-    kinds = ["clean"] * clean + ["outside"] * outside + ["two"] * two
-    kinds += ["one"] * (count - len(kinds))
-    found = []
-    for n, kind in enumerate(kinds):
-        name = ""
-        if kind == "one":
-            name = LIBRARY[n % len(LIBRARY)]
-        elif kind == "outside":
-            name = OUTSIDE[(n + seed) % len(OUTSIDE)]
-        found.append(make_coupon(1000 * seed + n, kind, name))
-    return found
+    return in_turn(count, seed, make_coupon, library=LIBRARY, outside=OUTSIDE, trap=False)
 
 
 def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ...]:
@@ -135,8 +126,3 @@ def _hidden(rng: np.random.Generator, name: str, protocols: tuple[Protocol, ...]
     }.get(name, 1.0)
     unit = {"machine-compliance": 1e-8}.get(name, 1e-3)
     return sized(protocols, Hidden(name=name, amplitude=unit, where=where, shape=float(shape)), target)
-
-
-def _apart(protocols: tuple[Protocol, ...], hidden: tuple[Hidden, ...]) -> bool:
-    """Whether each of two causes is still seen beside the other."""
-    return all(sigmas(protocols, h, tuple(o for o in hidden if o is not h)) > 3.0 for h in hidden)

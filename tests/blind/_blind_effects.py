@@ -1,7 +1,7 @@
 """What can be hidden in a beam experiment: how an amplitude changes the true beams and the photographs.
 
 Amplitudes are in SI here; `PARAMETER` says what a diagnosis reports (the unit stands in its name) and its
-factor to SI. Signs stand in `_blind_solver.Beam` and below.
+factor to SI. Signs stand in `_blind_beam.Beam` and below.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from _blind_solver import Beam
+from _blind_beam import Beam
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -27,10 +27,10 @@ def write_experiment(case: Case, edges: Array, folder: Path) -> None:
         captures = []
         for photograph, time in enumerate(TIMES):
             name = f"beams/{trial.id}-t{time:.0f}.csv"
-            clean = seen(case, edges, k, photograph, _jittered(trace(trial.kind), rng))
-            (folder / name).write_text(_table(_registered(_noisy(clean, rng), rng)), encoding="utf-8")
-            captures.append(_capture(name, time))
-        trials.append(_trial(trial, captures))
+            clean = seen(case, edges, k, photograph, jittered(trace(trial.kind), rng))
+            (folder / name).write_text(as_traced(clean, rng), encoding="utf-8")
+            captures.append(capture(name, time))
+        trials.append(entry_of(trial, captures))
     experiment = {
         "format": 1,
         "name": f"blind-{case.index:03d}",
@@ -49,11 +49,16 @@ def write_experiment(case: Case, edges: Array, folder: Path) -> None:
     (folder / "experiment.yaml").write_text(text, encoding="utf-8")
 
 
-def _jittered(s: Array, rng: np.random.Generator) -> Array:
+def jittered(s: Array, rng: np.random.Generator) -> Array:
     """Traced where the eye falls: points moved by a few per cent of their spacing."""
     moved = s.copy()
     moved[1:-1] += 0.05 * np.diff(s).min() * rng.uniform(-1, 1, len(s) - 2)
     return moved
+
+
+def as_traced(edges: Array, rng: np.random.Generator) -> str:
+    """Edges (2, k, 2) [m] as a photograph's table has them: contour noise, and where the photograph lies."""
+    return _table(_registered(_noisy(edges, rng), rng))
 
 
 def _noisy(edges: Array, rng: np.random.Generator) -> Array:
@@ -85,7 +90,7 @@ def _table(edges: Array) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _capture(name: str, time: float) -> dict[str, object]:
+def capture(name: str, time: float) -> dict[str, object]:
     return {
         "time_s": time,
         "outline": name,
@@ -95,7 +100,7 @@ def _capture(name: str, time: float) -> dict[str, object]:
     }
 
 
-def _trial(trial: Trial, captures: list[dict[str, object]]) -> dict[str, object]:
+def entry_of(trial: Trial, captures: list[dict[str, object]]) -> dict[str, object]:
     length, bridge = LENGTHS[trial.kind]
     return {
         "id": trial.id,

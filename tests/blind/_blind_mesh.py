@@ -80,6 +80,21 @@ def half_disc(degree: int, rings: tuple[float, ...], split: int = 1) -> Section:
     return Section(nodes, quads, flat, int(flat[nodes[flat, 1].argmax()]), int(flat[nodes[flat, 1].argmin()]))
 
 
+def face_shares(section: Section, degree: int) -> Array:
+    """Part of a load spread evenly over the section that each node carries (n,)."""
+    points, gauss = legendre.leggauss(degree + 2)
+    value, slope = lagrange(lobatto(degree), points)
+    shares = np.zeros(len(section.nodes))
+    for quad in section.quads:
+        corner = section.nodes[quad].reshape(degree + 1, degree + 1, 2)
+        slow = np.einsum("sa,tb,abi->sti", slope, value, corner)
+        fast = np.einsum("sa,tb,abi->sti", value, slope, corner)
+        area = np.abs(slow[..., 0] * fast[..., 1] - slow[..., 1] * fast[..., 0])
+        area *= gauss[:, None] * gauss
+        np.add.at(shares, quad, np.einsum("st,sa,tb->ab", area, value, value).ravel())
+    return np.asarray(shares / shares.sum())
+
+
 def axial_breaks(
     start: float, end: float, *, both_ends: bool, first: float, growth: float, longest: float
 ) -> Array:

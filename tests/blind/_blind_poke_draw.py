@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from _blind_poke_maker import LIBRARY, OUTSIDE, TABLED, Case, Hidden, Trial, sigmas, sized, table
+from _blind_poke_case import LIBRARY, OUTSIDE, TABLED, Case, Hidden, Trial
+from _blind_poke_curve import table
+from _blind_poke_sigma import sigmas, sized
+from _blind_record_case import apart, in_turn
 
 RIG = ("depth-offset", "force-gain", "force-offset", "force-drift", "friction")
 
@@ -30,7 +33,9 @@ def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = No
             trap = Hidden(name="force-gain", amplitude=float(rng.uniform(-0.3, 0.3)))
             return Case(seed=seed, kind=kind, trials=trials, hidden=(trap,), moduli=moduli)
         hidden = tuple(_hidden(rng, n, trials, wanted) for n in names)
-        if all(h.sigma > (4.0 if h.table else 0.8 * wanted) for h in hidden) and _apart(trials, hidden):
+        if all(h.sigma > (4.0 if h.table else 0.8 * wanted) for h in hidden) and apart(
+            sigmas, trials, hidden
+        ):
             return Case(seed=seed, kind=kind, trials=trials, hidden=hidden, moduli=moduli)
     raise RuntimeError(f"seed {seed}: no protocol shows {kind} {name} at {target} sigmas")
 
@@ -38,18 +43,7 @@ def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = No
 def draw_cases(count: int, seed: int) -> list[Case]:
     """A quarter clean, a tenth each of traps, outside the library and two at once, the rest one each in
     turn."""
-    tenth = round(0.1 * count)
-    kinds = ["clean"] * round(0.25 * count) + ["trap"] * tenth + ["outside"] * tenth + ["two"] * tenth
-    kinds += ["one"] * (count - len(kinds))
-    found = []
-    for n, kind in enumerate(kinds):
-        name = ""
-        if kind == "one":
-            name = LIBRARY[n % len(LIBRARY)]
-        elif kind == "outside":
-            name = OUTSIDE[(n + seed) % len(OUTSIDE)]
-        found.append(make_poke(1000 * seed + n, kind, name))
-    return found
+    return in_turn(count, seed, make_poke, library=LIBRARY, outside=OUTSIDE, trap=True)
 
 
 def _trials(rng: np.random.Generator, names: list[str]) -> tuple[Trial, ...]:
@@ -114,8 +108,3 @@ def _hidden(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], targ
     sign = float(rng.choice([-1.0, 1.0])) if name in RIG else 1.0
     hidden = Hidden(name=name, amplitude=sign, where=where, shape=float(shape.get(name, 0.0)), table=ending)
     return sized(trials, hidden, target)
-
-
-def _apart(trials: tuple[Trial, ...], hidden: tuple[Hidden, ...]) -> bool:
-    """Whether each of two causes is still seen beside the other."""
-    return all(sigmas(trials, h, tuple(o for o in hidden if o is not h)) > 3.0 for h in hidden)

@@ -90,7 +90,7 @@ def goals(cases: list[Scored]) -> list[Goal]:
     clean = [c for c in cases if c.truth["category"] == "clean"]
     density = [c for c in cases if c.truth["category"] == "density"]
     outside = [c for c in cases if c.truth["category"] == "outside" and c.sigma >= 10]
-    five, seven, ten = ([c for c in one if c.sigma >= least] for least in (5, 7, 10))
+    five, seven = ([c for c in one if c.sigma >= least] for least in (5, 7))
     found: list[Goal] = [
         _part("one effect, >= 5 sigma: noticed", "-", five, lambda c: c.verdict != "none"),
         _part("one effect, >= 5 sigma: ranked first", "95 %", five, lambda c: c.named == c.effects),
@@ -129,10 +129,6 @@ def goals(cases: list[Scored]) -> list[Goal]:
     right = [c for c in [*one, *two] if c.effects == c.named]
     errors = [e for c in right for e in c.moduli()]
     found.append(("shear moduli within 2 %", "100 %", sum(abs(e) <= 0.02 for e in errors), len(errors)))
-    gains = [c.said["gain"] for c in ten if c.named == c.effects and c.said.get("gain")]
-    gains = [g for g in gains if g.get("rms_mm_before")]
-    fell = sum(g["rms_mm_after"] <= 0.7 * g["rms_mm_before"] for g in gains)
-    found.append((">= 10 sigma, held out: error falls by 30 %", "100 %", fell, len(gains)))
     seconds = [c.said["seconds"] for c in cases]
     found.append(("diagnosed within 5 minutes", "100 %", sum(s <= 300 for s in seconds), len(seconds)))
     found.append(("diagnosed within 1 minute", "-", sum(s <= 60 for s in seconds), len(seconds)))

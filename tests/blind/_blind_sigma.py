@@ -10,8 +10,8 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
+from _blind_beam import GRAVITY, Beam
 from _blind_cases import LENGTH_SD, RADIUS_SD, TIMES, Case, seen
-from _blind_solver import GRAVITY, Beam
 from _blind_table import LENGTHS, LOAD, RADIUS, STRETCH, Table, edge_points, interpolate
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
@@ -26,8 +26,12 @@ FLOOR = 0.4
 
 
 def trace(kind: int) -> Array:
+    """`traced` for a beam of this kind (index of LENGTHS)."""
+    return traced(*LENGTHS[kind])
+
+
+def traced(length: float, bridge: bool) -> Array:
     """Where an edge is traced: s, parts of the free length; dense near a clamp, as on the bench."""
-    length, bridge = LENGTHS[kind]
     half = length / 2 if bridge else length
     steps = [TRACE_START]
     while sum(steps) < half - 0.5e-3:

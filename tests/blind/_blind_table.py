@@ -11,7 +11,8 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
-from _blind_solver import GRAVITY, Beam, Resolution, axis_of, solve
+from _blind_beam import GRAVITY, Beam, Resolution
+from _blind_solver import axis_of, solve
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -15,10 +15,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from _blind_beam import Resolution
 from _blind_cases import Case, draw, resized, solve_case, stiff_enough
 from _blind_effects import EFFECTS, OUTSIDE
 from _blind_sigma import FLOOR, sigmas
-from _blind_solver import NoEquilibriumError, Resolution
+from _blind_solver import NoEquilibriumError
 from _blind_store import load_case, load_truth, save_case
 from _blind_table import Table, table
 

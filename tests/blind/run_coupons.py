@@ -6,48 +6,25 @@ process's memory.
 
 from __future__ import annotations
 
-import argparse
-import json
 import tempfile
-import time
 from dataclasses import replace
 from pathlib import Path
 
+from _blind_coupon_case import Case, Protocol
+from _blind_coupon_curve import until_it_locks
 from _blind_coupon_draw import draw_cases
-from _blind_coupon_maker import Case, Protocol, until_it_locks, write
-from _blind_coupon_score import Pair, confusion, goals, named, part, true_names
+from _blind_coupon_file import write
 from _blind_coupon_verdict import verdict_on
+from _blind_record_run import diagnosed, parser, show
+from _blind_record_score import Pair, named, part, true_names
 
-SAME_TESTS = (
-    "further",
-    "twice",
-    "to-the-end",
-    "unload",
-    "second-cycle",
-    "faster",
-)  # each trial once more, in another way
+# each trial once more, in another way
+SAME_TESTS = ("further", "twice", "to-the-end", "unload", "second-cycle", "faster")
 
 
 def run(count: int, seed: int, *, tell: bool = True) -> list[Pair]:
     """(truth, verdict) of each case."""
-    pairs: list[Pair] = []
-    for n, case in enumerate(draw_cases(count, seed)):
-        with tempfile.TemporaryDirectory() as place:
-            folder = Path(place) / "experiment"
-            write(case, folder)
-            began = time.perf_counter()
-            said = verdict_on(folder)
-            seconds = time.perf_counter() - began
-        truth = case.truth()
-        pairs.append((truth, said))
-        if tell:
-            sizes = ", ".join(f"{e['sigma']:.1f}" for e in truth["effects"])
-            print(
-                f"{n:3d} {'+'.join(true_names(truth)) or 'clean'} [{sizes}]: {said['verdict']}"
-                f" {'+'.join(named(said))} {said['alternatives'][1:]} {seconds:.1f} s",
-                flush=True,
-            )
-    return pairs
+    return diagnosed(enumerate(draw_cases(count, seed)), write, verdict_on, tell=tell)
 
 
 def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | None]]:
@@ -79,20 +56,11 @@ def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | 
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cases", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, help="JSON file for truths and verdicts")
-    parser.add_argument("--settle", action="store_true", help="simulate the experiments that are advised")
-    asked = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("--settle", action="store_true", help="simulate the experiments that are advised")
+    asked = options.parse_args()
     pairs = run(asked.cases, asked.seed)
-    if asked.out:
-        asked.out.write_text(json.dumps([{"truth": t, "verdict": v} for t, v in pairs], indent=1))
-    print()
-    print(confusion(pairs))
-    print()
-    for what, goal, reached in goals(pairs):
-        print(f"{what:60} goal {goal:12} {reached}")
+    show(pairs, asked.out)
     if asked.settle:
         settled = settle(pairs, draw_cases(asked.cases, asked.seed))
         for cause, name, right in settled:

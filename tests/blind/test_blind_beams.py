@@ -16,11 +16,11 @@ import pytest
 import yaml
 from _blind_cases import draw
 from _blind_effects import EFFECTS, OUTSIDE, PARAMETER
+from _blind_finder import Finder
 from _blind_lab import write_experiment
 from _blind_score import Scored
 from _blind_store import load_case, load_truth, save_case
 from _blind_table import LENGTHS, POINTS
-from run_beams import verdict_on
 
 SURVEY = Path(__file__).parent / "survey"
 INDEX = {
@@ -49,7 +49,8 @@ HIDDEN = [
 
 def judged(name: str, place: Path) -> Scored:
     index = INDEX[name]
-    said = verdict_on(SURVEY, index, place, in_process=True, workers=1, gain=False)
+    write_experiment(*load_case(SURVEY, index), place / "experiment")
+    said = Finder(in_process=True, workers=1)(place / "experiment")
     return Scored(load_truth(SURVEY)["cases"][f"{index:03d}"], said)
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _blind_coupon_draw import make_coupon
+from _blind_coupon_file import write
 from _blind_coupon_law import Solid
-from _blind_coupon_maker import write
-from _blind_coupon_score import Pair, named, named_set, part, sigma, true_names
 from _blind_coupon_verdict import verdict_on
+from _blind_record_score import Pair, named, named_set, part, sigma, true_names
 from run_coupons import run
 
 CASES = [

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from _blind_poke_case import BASES, Case
+from _blind_poke_curve import force, table
 from _blind_poke_draw import make_poke
-from _blind_poke_maker import BASES, Case, force, table, write
-from _blind_poke_score import named, named_set, true_names
+from _blind_poke_file import write
 from _blind_poke_verdict import verdict_on
+from _blind_record_score import named, named_set, true_names
 from run_pokes import run
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from _blind_solver import GRAVITY, Beam, Resolution, axis_of, solve
+from _blind_beam import GRAVITY, Beam, Resolution
+from _blind_solver import axis_of, solve
 from _blind_table import edge_points, interpolate
 
 STIFF = 4e6  # Pa: deflections of about a hundredth of a millimetre
@@ -93,6 +94,12 @@ def test_blob_and_string_pull_as_their_forces() -> None:
     assert plain - hung == pytest.approx(2e-3 * GRAVITY * 0.2**3 / (9 * STIFF * inertia), rel=0.04)
     held = tip(Beam(length=0.2, bridge=False, mu=STIFF, string=0.01))
     assert held - plain == pytest.approx(0.01 * 0.1**2 * (0.6 - 0.1) / (18 * STIFF * inertia), rel=0.04)
+
+
+def test_mass_on_the_face_pulls_at_the_end() -> None:
+    plain, loaded = (tip(Beam(length=0.2, bridge=False, mu=STIFF, tip=m)) for m in (0.0, 2e-3))
+    theory = 2e-3 * GRAVITY * 0.2**3 / (9 * STIFF * np.pi * 0.010**4 / 4)
+    assert plain - loaded == pytest.approx(theory, rel=0.01)
 
 
 def test_fifty_mm_beam_is_converged() -> None:

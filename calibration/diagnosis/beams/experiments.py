@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from calibration.diagnosis.beams.effects._effect import cantilever
+from calibration.diagnosis.experiments import Gauge
 from calibration.experiment.model import BeamTrial
 from tisim import Beam
 
@@ -33,15 +34,6 @@ class Photographs:
     trial: Callable[[BeamTrial], BeamTrial | None]
     pose: Callable[[Beam, BeamTrial], Beam] = _as_it_is
     time: float = 100.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Gauge:
-    """A direct measurement: standard deviation [SI] with which it tells an effect's amplitude, by effect."""
-
-    name: str
-    sentence: str
-    sds: Mapping[str, float] = field(default_factory=dict)
 
 
 def _turned(beam: Beam, _: BeamTrial) -> Beam:

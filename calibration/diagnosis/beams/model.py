@@ -16,17 +16,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
+from calibration.diagnosis.advice import all_parted
 from calibration.diagnosis.beams._bank import Bank
 from calibration.diagnosis.beams._candidates import candidates_of, reaches
 from calibration.diagnosis.beams._nuisances import beliefs, corners, registrations
 from calibration.diagnosis.beams._patterns import patterns_of
 from calibration.diagnosis.beams._pictures import distances, feet_of, pictures_of
 from calibration.diagnosis.beams._scenes import Kind, Nudge, Scenes
+from calibration.diagnosis.beams.advice import advise
 from calibration.diagnosis.beams.effects import EFFECTS, BeamEffect
 from calibration.diagnosis.beams.simulators import OURS, Simulator
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
+from calibration.diagnosis.specimens import mean_moduli, scatter_rows
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.outlines import Fidelity
@@ -34,7 +37,6 @@ from tisim import Beam, Result
 
 Array = NDArray[np.float64]
 
-SCATTER = 0.15  # of ln G from one specimen of a material to the next
 MESH_LEFT = 0.2  # of the mesh's correction, as in calibration.outlines
 STEP = 0.003  # of ln G, in a finite difference
 SCAN = np.geomspace(3e5, 3e3, 9)  # shear moduli to begin from, stiff to soft [Pa]
@@ -90,7 +92,7 @@ class BeamModel:
         )
         self.bank = Bank(scenes=self.scenes, pictures=self.pictures, simulator=simulator, workers=workers)
         self.uncorrected = "" if simulator.reference else f"simulated as they are: {simulator.sentence}"
-        self._prior = _scatter(self.materials)
+        self._prior = scatter_rows(self.materials)
         self._correction = np.zeros(self.points)
         self._known = np.zeros((self.points, 0))  # nuisances' columns
         self._root: Array | None = None
@@ -234,6 +236,11 @@ class BeamModel:
         some._whitened()
         return some
 
+    def measuring(self, experiment: Experiment, pose: Callable[[Beam, BeamTrial], Beam]) -> BeamModel:
+        """The same specimens in other photographs, simulated as they are: coordinates stay."""
+        plain = replace(self.simulator, reference=None)
+        return BeamModel(experiment, simulator=plain, workers=self.workers, pose=pose, names=self.names)
+
     def unseen(self, group: object) -> NDArray[np.bool_]:
         assert isinstance(group, frozenset)
         seen = {self.materials[self.specimen[p.trial]] for k, p in enumerate(self.pictures) if k not in group}
@@ -272,15 +279,7 @@ class BeamModel:
         return "mm", 1e3
 
     def advice(self, rivals: list[Explanation]) -> str:
-        from calibration.diagnosis.beams.advice import ENOUGH, advise
-
-        best = advise(self, rivals)[0]
-        names = ", ".join(" + ".join(e.names) for e in rivals)
-        if best.separation < 1.0:
-            return f"no experiment of the catalogue parts {names}"
-        sure = "" if best.separation >= ENOUGH else ", which will help but may not settle it"
-        apart = float(np.sqrt(best.separation))
-        return f"{best.sentence}: {names} part there by {apart:.0f} standard deviations{sure}"
+        return all_parted(advise(self, rivals)[0], rivals)
 
     def remarks(self) -> list[str]:
         return [f"the mesh's error is not corrected: {self.uncorrected}"] if self.uncorrected else []
@@ -303,10 +302,7 @@ class BeamModel:
 
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
-        found: dict[str, list[float]] = {}
-        for m, value in zip(self.materials, u, strict=True):
-            found.setdefault(m, []).append(float(value))
-        return {m: float(np.exp(np.mean(v))) for m, v in found.items()}
+        return mean_moduli(self.materials, u)
 
     # -- algebra --
 
@@ -328,16 +324,3 @@ class BeamModel:
 
     def _of_trial(self) -> NDArray[np.int64]:
         return np.concatenate([np.full(p.basis.shape[1], p.trial) for p in self.pictures])
-
-
-def _scatter(materials: Sequence[str]) -> Array:
-    """Rows that hold the specimens of one material together, (k, n), in sd of their scatter."""
-    rows = []
-    for m in dict.fromkeys(materials):
-        mine = [k for k, name in enumerate(materials) if name == m]
-        for k in mine if len(mine) > 1 else []:
-            row = np.zeros(len(materials))
-            row[mine] = -1.0 / len(mine)
-            row[k] += 1.0
-            rows.append(row / SCATTER)
-    return np.array(rows).reshape(len(rows), len(materials))

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from calibration.coupons import nominal_stresses
 from calibration.diagnosis.coupons._kinematics import stress_of
 from calibration.diagnosis.coupons._record import Record
+from calibration.diagnosis.specimens import scatter_rows
 from calibration.experiment.model import CouponMode
 from calibration.parameters import parametrisation
 from tisim import Material
 
 Array = NDArray[np.float64]
 
-SCATTER = 0.15  # of ln G from one specimen of a material to the next
 REFERENCE = 1e5  # of a law's first modulus, from which its stress is scaled [Pa]
 # K/G of solid rubbers is above 1000 (K some GPa, G below 1 MPa). At 3000 a stress is the incompressible one
 # to 0.1 %; it is not fitted, since a law that misfits would use it to mend its curve.
@@ -28,8 +28,8 @@ class Baseline:
     """Coordinates u: ln(G / 1 Pa) of each specimen (trials that name none share one a material), then
     the law's other coordinates of each material, as `calibration.parameters` has them, without bulk_ratio.
 
-    names (n,), prior rows (k, n) and their centres (k,): specimens of one material lie together within
-    SCATTER, and the law's coordinates have the priors that they have in a fit.
+    names (n,), prior rows (k, n) and their centres (k,): specimens of one material lie together, and the
+    law's coordinates have the priors that they have in a fit.
     """
 
     def __init__(self, records: Sequence[Record], law: str, terms: int = 1) -> None:
@@ -118,15 +118,9 @@ class Baseline:
             return [p / shear for p in nominal_stresses(self.law.material(stiff), curves)]
 
     def _priors(self) -> tuple[Array, Array]:
-        rows, centres = [], []
-        for m in self.materials:
-            mine = [k for k, owner in enumerate(self.owners) if owner == m]
-            for k in mine if len(mine) > 1 else []:
-                row = np.zeros(len(self.names))
-                row[mine] = -1.0 / len(mine)
-                row[k] += 1.0
-                rows.append(row / SCATTER)
-                centres.append(0.0)
+        held = scatter_rows(self.owners)
+        rows = list(np.pad(held, ((0, 0), (0, len(self.names) - held.shape[1]))))
+        centres = [0.0] * len(rows)
         for n in range(len(self.materials)):
             for j, k in enumerate(self.free):
                 prior = self.law.coordinates[k].prior

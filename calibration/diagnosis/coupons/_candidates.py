@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from calibration.diagnosis.coupons._record import Record
 from calibration.diagnosis.coupons.effects import CouponEffect
 from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.records import scopes
 
 
 def candidates_of(records: Sequence[Record], effects: Mapping[str, CouponEffect]) -> tuple[Candidate, ...]:
@@ -17,8 +18,6 @@ def candidates_of(records: Sequence[Record], effects: Mapping[str, CouponEffect]
         touched = [r for r in records if effect.touches(r)]
         if not touched:
             continue
-        groups: list[tuple[str, ...]] = [tuple(r.name for r in touched)]
-        found.append(Candidate(effect=effect.name))
         labels = (
             ([r.material for r in touched], [r.specimen for r in touched])
             if effect.reach == "material"
@@ -26,13 +25,8 @@ def candidates_of(records: Sequence[Record], effects: Mapping[str, CouponEffect]
         )
         # another direction of one piece: specimens without a name of their own are told apart by their trial
         own = ([r.name for r in touched],) if effect.name == "anisotropy" else ()
-        for names in (*labels, *own):
-            distinct = list(dict.fromkeys(names))
-            for name in distinct:
-                members = tuple(r.name for r, n in zip(touched, names, strict=True) if n == name)
-                if members not in groups:
-                    groups.append(members)
-                    found.append(Candidate(effect=effect.name, at=name, rivals=len(distinct)))
+        for at, rivals in scopes([r.name for r in touched], (*labels, *own)):
+            found.append(Candidate(effect=effect.name, at=at, rivals=rivals))
     return tuple(found)
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.coupons import relative_sd
-from calibration.coupons._noise import SMALLEST_RELATIVE, scatter_scale, slope
+from calibration.coupons import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
 from calibration.diagnosis.coupons._branches import Branch, branches_of, rates_of, turning
 from calibration.diagnosis.coupons._kinematics import first_excess
+from calibration.diagnosis.records import bins
 from calibration.experiment.model import CouponMode, CouponTrial
 
 Array = NDArray[np.float64]
@@ -88,7 +88,7 @@ def _record(trial: CouponTrial, before: float) -> Record:
     rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
     sds, numbers = [], []
     for n, b in enumerate(parts):
-        first, count = _bins(b.points)
+        first, count = bins(b.points, MOST)
         raw = {
             "stretch": trial.stretch,
             "stress": trial.stress,
@@ -135,13 +135,6 @@ def _loads_again(turn: Array) -> bool:
     """Whether a loading follows an unloading."""
     unloading = np.isfinite(turn)
     return bool((~unloading[int(np.argmax(unloading)) :]).any())
-
-
-def _bins(points: slice) -> tuple[NDArray[np.intp], Array]:
-    """First points of bins, counted from the branch's first, and how many are in each."""
-    size = points.stop - points.start
-    first = np.unique(np.linspace(0, size, min(size, MOST), endpoint=False).astype(np.intp))
-    return first, np.diff(np.append(first, size)).astype(float)
 
 
 def _sd(trial: CouponTrial, b: Branch, stretch: Array, stress: Array, count: Array) -> Array:

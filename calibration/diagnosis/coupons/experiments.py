@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis.coupons._kinematics import first_excess
 from calibration.diagnosis.coupons._record import Record
+from calibration.diagnosis.experiments import Gauge, Test
 from calibration.experiment.model import CouponMode, CouponTrial
 
 Array = NDArray[np.float64]
@@ -19,25 +19,7 @@ SLOW = 0.01  # [1/s], where the lab wrote down no time
 FURTHER = 1.5  # as much strain
 
 
-@dataclass(frozen=True, kw_only=True)
-class Test:
-    """Another coupon test of each specimen.
-
-    sentence: what to do. trials: the new test of a specimen, of its records; empty where it cannot be done.
-    """
-
-    name: str
-    sentence: str
-    trials: Callable[[Sequence[Record]], Sequence[CouponTrial]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Gauge:
-    """A direct measurement: standard deviation [SI] with which it tells an effect's amplitude, by effect."""
-
-    name: str
-    sentence: str
-    sds: Mapping[str, float] = field(default_factory=dict)
+CouponTest = Test[Record, CouponTrial]
 
 
 def made(
@@ -99,7 +81,7 @@ def _beyond(top: float, further: float) -> float:
     return 1.0 + further * (top - 1.0) if top > 1.0 else float(top**further)
 
 
-EXPERIMENTS: tuple[Test | Gauge, ...] = (
+EXPERIMENTS: tuple[CouponTest | Gauge, ...] = (
     Test(name="unload", sentence="record the unloading too", trials=_again("unload", ramps=2)),
     Test(name="second-cycle", sentence="load each specimen a second time", trials=_again("again", ramps=4)),
     Test(

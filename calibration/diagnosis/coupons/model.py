@@ -13,24 +13,26 @@ from copy import copy
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.advice import most_parted
 from calibration.diagnosis.coupons._baseline import Baseline
 from calibration.diagnosis.coupons._candidates import candidates_of, reaches
+from calibration.diagnosis.coupons._compliance import yielding
+from calibration.diagnosis.coupons._families import families_of
 from calibration.diagnosis.coupons._patterns import patterns_of
 from calibration.diagnosis.coupons._record import Record, records_of
 from calibration.diagnosis.coupons._remarks import remarks_on
+from calibration.diagnosis.coupons.advice import advise
 from calibration.diagnosis.coupons.effects import EFFECTS, CouponEffect
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
+from calibration.diagnosis.specimens import mean_moduli
 from calibration.errors import InputError
 from calibration.experiment.model import CouponTrial, Experiment
 
 Array = NDArray[np.float64]
 
 STEP = 1e-4  # of a coordinate u, in a finite difference
-PARTS = 5  # of a record, for folds where there is nothing else to leave out
-_SOLVE = 30  # steps to the stress that strains the rig
-_TOLERANCE = 1e-10  # of that stress, over the largest
 
 
 class CouponModel:
@@ -116,34 +118,8 @@ class CouponModel:
     # -- what folds ask for --
 
     def families(self) -> Mapping[str, Sequence[tuple[str, object]]]:
-        """Points (by index) by mode, by material, by trial, by loading and unloading, and in fifths of each
-        record. A family of one group, or the same as another, is left out."""
-        by: dict[str, dict[str, list[int]]] = {}
-        first = 0
-        for r in self.records:
-            fifths = np.array_split(np.arange(r.points), PARTS)
-            for family, labels in (
-                ("leave-one-mode-out", [str(r.mode)] * r.points),
-                ("leave-one-material-out", [r.material] * r.points),
-                ("leave-one-trial-out", [r.name] * r.points),
-                ("leave-one-branch-out", [f"{r.name} branch {b + 1:.0f}" for b in r.branch]),
-                (
-                    "leave-one-fifth-out",
-                    [f"part {n + 1} of each record" for n, part in enumerate(fifths) for _ in part],
-                ),
-            ):
-                groups = by.setdefault(family, {})
-                for k, label in enumerate(labels):
-                    groups.setdefault(label, []).append(first + k)
-            first += r.points
-        found: dict[str, Sequence[tuple[str, object]]] = {}
-        known = []
-        for family, groups in by.items():
-            sets = {frozenset(points) for points in groups.values()}
-            if len(groups) > 1 and sets not in known:
-                known.append(sets)
-                found[family] = [(name, frozenset(points)) for name, points in groups.items()]
-        return found
+        """Points by mode, by material, by trial, by loading and unloading, and in fifths of each record."""
+        return families_of(self.records)
 
     def rows(self, group: object) -> NDArray[np.bool_]:
         hit = np.zeros(self.points + len(self.baseline.prior), dtype=bool)
@@ -192,21 +168,7 @@ class CouponModel:
         return "kPa", 1e-3
 
     def advice(self, rivals: list[Explanation]) -> str:
-        from calibration.diagnosis.coupons.advice import ENOUGH, advise
-
-        best = advise(self, rivals)[0]
-        first, *others = (" + ".join(e.names) for e in rivals)
-        parted = [n for n, s in zip(others, best.separations, strict=True) if s >= 1.0]
-        if not parted:
-            return f"no experiment of the catalogue parts {first} from {', '.join(others)}"
-        apart = float(np.sqrt(min(s for s in best.separations if s >= 1.0)))
-        left = [n for n in others if n not in parted]
-        sure = "" if apart**2 >= ENOUGH else ", which will help but may not settle it"
-        rest = f"; nothing of the catalogue parts it from {', '.join(left)}" if left else ""
-        return (
-            f"{best.sentence}: {first} parts there from {', '.join(parted)} by {apart:.0f} standard"
-            f" deviations{sure}{rest}"
-        )
+        return most_parted(advise(self, rivals)[0], rivals)
 
     def remarks(self) -> list[str]:
         return remarks_on(self.records)
@@ -220,10 +182,7 @@ class CouponModel:
 
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
-        found: dict[str, list[float]] = {}
-        for m, value in zip(self.baseline.owners, u, strict=False):
-            found.setdefault(m, []).append(float(value))
-        return {m: float(np.exp(np.mean(v))) for m, v in found.items()}
+        return mean_moduli(self.baseline.owners, u[: len(self.baseline.owners)])
 
     def stresses(self, state: State) -> list[Array]:
         """Nominal stress of each record at its stretches [Pa], with the state's effects; NaN where there is
@@ -237,24 +196,7 @@ class CouponModel:
                     s = s + e.shift(r.stretch, a, r)
             moved.append(s)
             yields.append(sum(e.yields * a for e, a in acting))
-        p = self._stresses_at(state, moved)
-        if not any(yields):
-            return p
-        # the rig's strain is in proportion to the stress that it causes: a secant search for that stress
-        p_before, left_before = [np.zeros(r.points) for r in self.records], [-x for x in p]
-        size = max(float(np.nanmax(np.abs(x), initial=0.0)) for x in p) or 1.0
-        for _ in range(_SOLVE):
-            true = [s - c * x for s, c, x in zip(moved, yields, p, strict=True)]
-            left = [x - q for x, q in zip(p, self._stresses_at(state, true), strict=True)]
-            if not max(float(np.max(np.abs(x), initial=0.0)) for x in left) > _TOLERANCE * size:
-                return p
-            step = [
-                -y * np.divide(x - xb, y - yb, out=np.zeros_like(x), where=y != yb)
-                for x, xb, y, yb in zip(p, p_before, left, left_before, strict=True)
-            ]
-            p_before, left_before = p, left
-            p = [x + d for x, d in zip(p, step, strict=True)]
-        return [np.full(x.size, np.nan) for x in p]
+        return yielding(lambda own: self._stresses_at(state, own), moved, yields)
 
     def _stresses_at(self, state: State, stretches: Sequence[Array]) -> list[Array]:
         found = []

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.pokes._record import Record
 from calibration.diagnosis.pokes.effects import PokeEffect
+from calibration.diagnosis.records import scopes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,20 +49,12 @@ def candidates_of(records: Sequence[Record], effects: Mapping[str, PokeEffect]) 
 
 
 def _scopes(touched: Sequence[Record], effect: PokeEffect) -> list[tuple[str, int]]:
-    found, groups = [("all", 1)], [tuple(r.name for r in touched)]
     labels = (
         ([r.material for r in touched], [r.specimen for r in touched])
         if effect.reach == "material"
         else ([r.rod for r in touched], [r.name for r in touched])
     )
-    for names in labels:
-        distinct = list(dict.fromkeys(names))
-        for name in distinct:
-            members = tuple(r.name for r, n in zip(touched, names, strict=True) if n == name)
-            if members not in groups:
-                groups.append(members)
-                found.append((name, len(distinct)))
-    return found
+    return scopes([r.name for r in touched], labels)
 
 
 def kind_of(candidate: Candidate) -> float | None:

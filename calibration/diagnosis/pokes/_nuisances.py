@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from calibration.diagnosis.pokes._record import Record
 from calibration.diagnosis.pokes._smooth import left_over
-from calibration.pokes._errors import TOGETHER, scatter, wandering_modes
+from calibration.pokes import TOGETHER, scatter, wandering_modes
 
 Array = NDArray[np.float64]
 

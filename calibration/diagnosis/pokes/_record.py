@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.coupons import relative_sd
-from calibration.coupons._noise import scatter_scale
+from calibration.coupons import relative_sd, scatter_scale
 from calibration.diagnosis.pokes._geometry import Geometry, geometry_of
 from calibration.diagnosis.pokes._phases import Phase, phases_of
 from calibration.diagnosis.pokes._smooth import smooth_depth
+from calibration.diagnosis.records import bins
 from calibration.experiment.model import PokeTrial
-from calibration.pokes._scene import approach
+from calibration.pokes import approach
 
 Array = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
     across = None if raw.force_vector is None else raw.force_vector @ geometry.across.T
     columns: dict[str, list[Array]] = {name: [] for name in (*_ARRAYS, "across")}
     for n, p in enumerate(phases):
-        first, count = _bins(p)
+        first, count = bins(p.points, MOST)
 
         def mean(x: Array, first: NDArray[np.intp] = first, p: Phase = p) -> Array:
             size = np.diff(np.append(first, p.points.stop - p.points.start))
@@ -153,10 +153,3 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
         estimated=trial.force_sd is None,
         **whole,
     )
-
-
-def _bins(p: Phase) -> tuple[NDArray[np.intp], Array]:
-    """First points of bins, counted from the phase's first, and how many are in each."""
-    size = p.points.stop - p.points.start
-    first = np.unique(np.linspace(0, size, min(size, MOST), endpoint=False).astype(np.intp))
-    return first, np.diff(np.append(first, size)).astype(float)

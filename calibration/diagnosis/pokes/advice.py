@@ -3,86 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis import advice
+from calibration.diagnosis.advice import Advice, from_nearest, gauged, measured
+from calibration.diagnosis.experiments import Gauge
 from calibration.diagnosis.explanation import Explanation
-from calibration.diagnosis.nested import State
-from calibration.diagnosis.pokes.experiments import EXPERIMENTS, Gauge, Test
-from calibration.diagnosis.pokes.model import PokeModel
+from calibration.diagnosis.nested import Nested, State
+from calibration.diagnosis.pokes._record import Record
+from calibration.diagnosis.pokes.experiments import EXPERIMENTS, PokeTest
 from calibration.errors import InputError
+from calibration.experiment.model import PokeTrial
 
 Array = NDArray[np.float64]
 
 ENOUGH = 25.0  # of chi-square: rivals that part by 5 standard deviations are separated
 
 
-@dataclass(frozen=True, kw_only=True)
-class Advice:
-    """An experiment, and by how much chi-square it would part the chosen cause from its nearest rival."""
+class Pokes(Nested, Protocol):
+    """What advice needs of a model of pokes."""
 
-    name: str
-    sentence: str
-    separation: float
+    records: Sequence[Record]
+
+    def measuring(self, trials: Sequence[PokeTrial]) -> Self: ...
+
+    def forces(self, state: State) -> list[Array]: ...
 
 
-def advise(model: PokeModel, rivals: Sequence[Explanation]) -> list[Advice]:
+def advise(model: Pokes, rivals: Sequence[Explanation]) -> list[Advice]:
     """All experiments, the advised one first: of those that part the first of these explanations from all
     others the cheapest (the catalogue's order), else the one that comes nearest to it."""
-    first, others = rivals[0], rivals[1:]
-    found: list[Advice] = []
-    for e in EXPERIMENTS:
+
+    def apart(e: PokeTest | Gauge, first: Explanation, others: Sequence[Explanation]) -> Sequence[float]:
         if isinstance(e, Gauge):
-            apart = min((_gauged(e, first, other) for other in others), default=0.0)
-        else:
-            apart = _tested(model, e, first, others)
-        found.append(Advice(name=e.name, sentence=e.sentence, separation=apart))
-    order = {a.name: k for k, a in enumerate(found)}
-    return sorted(found, key=lambda a: (-min(a.separation, ENOUGH), order[a.name]))
+            return gauged(e.sds, first, others)
+        return measured(_predicted(model, e, first.fit.state), first, others)
+
+    return advice.advise(EXPERIMENTS, rivals, apart, enough=ENOUGH, rank=from_nearest)
 
 
-def _gauged(gauge: Gauge, one: Explanation, other: Explanation) -> float:
-    """Squared distance of two explanations' amplitudes in what a gauge measures, in its sd and theirs."""
-    total = 0.0
-    for effect, sd in gauge.sds.items():
-        values, spread = [], sd**2
-        for e in (one, other):
-            mine = [e.fit.amplitude(c) for c in e.candidates if c.effect == effect]
-            values.append(sum(v for v, _ in mine))
-            spread += sum(s**2 for _, s in mine)
-        total += (values[0] - values[1]) ** 2 / spread
-    return total
-
-
-def _tested(model: PokeModel, test: Test, first: Explanation, others: Sequence[Explanation]) -> float:
-    """What new tests add to the least squared distance between the first explanation's predictions and any
-    other's, whose free coordinates may adapt to old and new data alike."""
-    specimens = dict.fromkeys(r.specimen for r in model.records)
-    trials = [t for s in specimens for t in test.trials([r for r in model.records if r.specimen == s])]
+def _predicted(model: Pokes, test: PokeTest, state: State) -> Nested | None:
+    """The same specimens in a new test, as a state predicts it; None where there is no force."""
+    trials = test.of_each(model.records)
     if not trials:
-        return 0.0
+        return None
     try:
         new = model.measuring(trials)
-        predicted = new.forces(first.fit.state)
+        predicted = new.forces(state)
     except (InputError, ValueError):
-        return 0.0  # no room for it on the block, or no equilibrium: not an experiment to advise
+        return None  # no room for it on the block, or no equilibrium: not an experiment to advise
     new.records = [replace(r, force=p) for r, p in zip(new.records, predicted, strict=True)]
-    new.retake(State(u=first.fit.state.u))
-    least = np.inf
-    for other in others:
-        linear = new.linearise(other.fit.state, other.candidates)
-        old = other.fit.z - first.fit.z
-        m = new.points  # the prior's rows are in the old data already
-        jacobian = np.column_stack([linear.by_u, linear.columns])[:m]
-        both = np.vstack([other.fit.jacobian, jacobian])
-        apart = _left(np.concatenate([old, linear.z[:m]]), both) - _left(old, other.fit.jacobian)
-        least = min(least, apart)
-    return float(least) if np.isfinite(least) else 0.0
-
-
-def _left(values: Array, jacobian: Array) -> float:
-    size = np.linalg.norm(jacobian, axis=0)
-    q, _ = np.linalg.qr(jacobian[:, size > 0] / size[size > 0])
-    return float(values @ values - np.sum((q.T @ values) ** 2))
+    new.retake(State(u=state.u))
+    return new

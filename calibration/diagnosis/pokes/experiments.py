@@ -3,12 +3,12 @@ measurements."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.experiments import Gauge, Test
 from calibration.diagnosis.pokes._record import Record
 from calibration.experiment.model import PokeRecord, PokeTrial
 
@@ -21,22 +21,7 @@ OTHER_ROD = 1.6  # as wide
 SHALLOWER = 0.8  # of the depth, with another rod: what its simulation still reaches
 
 
-@dataclass(frozen=True, kw_only=True)
-class Test:
-    """Another poke of each specimen: the new trials, of its records; none where it cannot be done."""
-
-    name: str
-    sentence: str
-    trials: Callable[[Sequence[Record]], Sequence[PokeTrial]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Gauge:
-    """A direct measurement: standard deviation [SI] with which it tells an effect's amplitude, by effect."""
-
-    name: str
-    sentence: str
-    sds: Mapping[str, float] = field(default_factory=dict)
+PokeTest = Test[Record, PokeTrial]
 
 
 def made(
@@ -111,7 +96,7 @@ def _again(
     return trials
 
 
-EXPERIMENTS: tuple[Test | Gauge, ...] = (
+EXPERIMENTS: tuple[PokeTest | Gauge, ...] = (
     Gauge(name="known-weight", sentence="hang a known weight on the load cell", sds={"force-gain": 0.003}),
     Gauge(
         name="free-rod",

@@ -8,15 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from calibration.diagnosis.drawing import label
 from calibration.diagnosis.explanation import Explanation
-from calibration.diagnosis.report._labels import label
 from calibration.diagnosis.report._words import HEADLINE
-from calibration.diagnosis.search import Finding
-from calibration.report._figure import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
-from calibration.report._numbers import significant
+from calibration.diagnosis.search import Finding, Rules
+from calibration.report import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
 
 CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
-ALARM, RARE = 0.05, 0.01  # chances of noise alone, drawn as lines
+ALARM, RARE = 0.05, Rules().alarm  # chances of noise alone, drawn as lines
 RIVAL = 6.0  # of chi-square: what comes as near to the best is not told from it
 _MOST = 40  # bars
 
@@ -25,8 +24,9 @@ _MOST = 40  # bars
 class Bar:
     """A cause, or several at once, at the place where it explains most.
 
-    gain: improvement of chi-square over the baseline. behind: how much worse than the best its chi-square is,
-    amplitudes and choices of places counted; None where it was only screened. named: in the verdict.
+    gain: improvement of chi-square over the baseline, less what the choice of places is worth. behind: how
+    much worse than the best its chi-square is, amplitudes and choices of places counted; None where it was
+    only screened. named: in the verdict.
     """
 
     name: str
@@ -44,19 +44,18 @@ def bars(finding: Finding) -> list[Bar]:
     for e in sorted(finding.explanations, key=lambda e: e.score):
         if e.names not in found:
             found[e.names] = _confirmed(e, finding, best)
-    gains = finding.screened.gains(finding.baseline.z)
-    dear = np.array([2.0 * np.log(c.rivals) for c in finding.screened.candidates])
-    for k in np.argsort(-(gains - dear)):
+    gains = finding.screened.promises(finding.baseline.z)
+    for k in np.argsort(-gains):
         c = finding.screened.candidates[k]
         if (c.effect,) not in found:
-            found[(c.effect,)] = Bar(name=c.label, gain=float(gains[k]), behind=None, named=False)
+            found[(c.effect,)] = Bar(name=c.label, gain=max(0.0, float(gains[k])), behind=None, named=False)
     return sorted(found.values(), key=lambda b: -b.gain)
 
 
 def _confirmed(e: Explanation, finding: Finding, best: float) -> Bar:
     return Bar(
         name=e.fit.reports(),
-        gain=max(0.0, finding.baseline.chi2 - e.fit.chi2),
+        gain=max(0.0, finding.baseline.chi2 - e.fit.chi2 - e.choice),
         behind=e.score - best,
         named=e.names in finding.rivals,
         converged=e.fit.converged,
@@ -79,9 +78,10 @@ def draw_evidence(finding: Finding) -> Picture:
     left_out = len(everything) - len(shown)
     caption = (
         f"{HEADLINE[finding.verdict]}. How much of the departure each cause explains: bars in standard"
-        " deviations (root of the improvement of chi-square, which is written at their ends), each effect at"
-        " the place where it explains most. Grey bars were screened to first order, coloured ones fitted in"
-        " the simulator. Left of the lines is what noise alone gives the best of all causes tried."
+        " deviations (root of the improvement of chi-square less twice the logarithm of the number of places"
+        " to choose from, which is written at their ends), each effect at the place where it explains most."
+        " Grey bars were screened to first order, coloured ones fitted in the simulator. Left of the lines is"
+        " what noise alone gives the best of all causes tried."
         + (" Right: what the best explains and this cause does not." if finding.rivals else "")
         + (f" {left_out} weaker ones are not drawn." if left_out else "")
     )

@@ -7,8 +7,7 @@ from calibration.diagnosis.null import Departure
 from calibration.diagnosis.report._evidence import ALARM, RARE
 from calibration.diagnosis.report._words import SUSPECT, chance, pattern, tiny
 from calibration.diagnosis.verdict import Diagnosis
-from calibration.report._numbers import significant
-from calibration.report._words import listed
+from calibration.report import listed, significant
 
 
 def alarm(diagnosis: Diagnosis) -> str:
@@ -23,10 +22,10 @@ def alarm(diagnosis: Diagnosis) -> str:
     single = [e for e in finding.explanations if len(e.candidates) == 1]
     if not single:
         return f"{limits} No cause explained enough to be fitted in the simulator."
-    gain = max(finding.baseline.chi2 - e.fit.chi2 for e in single)
+    gain = max(finding.baseline.chi2 - e.fit.chi2 - e.choice for e in single)
     return (
-        f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}: the chance that noise"
-        f" alone does so is {tiny(finding.chance)}."
+        f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, the choice of"
+        f" its place taken off: the chance that noise alone does so is {tiny(finding.chance)}."
     )
 
 

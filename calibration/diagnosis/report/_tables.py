@@ -8,8 +8,7 @@ from typing import Any
 from calibration.diagnosis.report._units import quantity_and_unit
 from calibration.diagnosis.report._words import MEANING, SUSPECT, chance, pattern, scope
 from calibration.diagnosis.verdict import Diagnosis
-from calibration.report._numbers import NOTHING, significant, with_sd
-from calibration.report._tables import Cell
+from calibration.report import NOTHING, Cell, significant, with_sd
 
 Rows = list[list[Cell]]
 

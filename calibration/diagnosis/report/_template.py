@@ -1,17 +1,11 @@
-"""The page's HTML, for jinja2. A module, so that an installed package has it without package data."""
+"""The page's HTML, for jinja2."""
 
-TEMPLATE = """\
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Diagnosis: {{ title }}</title>
-<style>
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto;
-  padding: 0 1rem; overflow-wrap: anywhere; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.3rem; border-bottom: 2px solid #0072B2; margin-top: 3rem; }
-h3 { font-size: 1.05rem; margin: 1.8rem 0 .4rem; }
+PAGE = """\
+{% extends "frame" %}
+{% from "parts" import table, figure %}
+{% block title %}Diagnosis: {{ title }}{% endblock %}
+{% block style %}
+body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26rem; }
 .verdict { border-left: 8px solid; padding: .8rem 1.2rem; margin: .4rem 0 1rem; font-size: 1.15rem; }
 .verdict strong { display: block; font-size: .85rem; letter-spacing: .06em; text-transform: uppercase; }
 .none { background: #E8F5EF; border-color: #009E73; } .none strong { color: #00694B; }
@@ -19,39 +13,8 @@ h3 { font-size: 1.05rem; margin: 1.8rem 0 .4rem; }
 .ambiguous { background: #FDF7E3; border-color: #E69F00; } .ambiguous strong { color: #8A5A00; }
 .unexplained { background: #F7EAF2; border-color: #A3286F; } .unexplained strong { color: #8A1F5C; }
 .next { background: #EEF4FA; border-left: 4px solid #0072B2; padding: .5rem 1rem; margin: .8rem 0; }
-.trouble { background: #FDF1E6; border-left: 4px solid #D55E00; padding: .5rem 1rem; margin: .4rem 0; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .6rem; text-align: left; border-bottom: 1px solid #DDE2E8; vertical-align: top;
-  overflow-wrap: normal; max-width: 26rem; }
-th { background: #F4F6F8; font-weight: 600; }
-.chosen { font-weight: 700; } .bad { color: #B34700; font-weight: 600; }
-.note { color: #5B6570; font-size: .88rem; max-width: 60rem; }
-figure { margin: .8rem 0; } figure img { max-width: 100%; height: auto; }
-figcaption { font-size: .85rem; color: #5B6570; max-width: 60rem; }
-</style>
-</head>
-<body>
-{% macro cell(c) %}
-<td{% if c.mark %} class="{{ c.mark }}"{% endif %}>
-{%- if c.value is not none %}<data value="{{ c.value }}">{{ c.text }}</data>{% else %}{{ c.text }}{% endif -%}
-</td>
-{% endmacro %}
-{% macro table(headings, rows) %}
-<div class="wide"><table>
-<thead><tr>{% for h in headings %}<th>{{ h }}</th>{% endfor %}</tr></thead>
-<tbody>
-{% for row in rows %}
-<tr>
-{% for c in row %}{{ cell(c) }}{% endfor %}
-</tr>
-{% endfor %}
-</tbody>
-</table></div>
-{% endmacro %}
-{% macro figure(p) %}
-<figure><img src="{{ p.source }}" alt="{{ p.name }}"><figcaption>{{ p.caption }}</figcaption></figure>
-{% endmacro %}
+{% endblock %}
+{% block body %}
 <h1>Diagnosis: {{ title }}</h1>
 <p class="verdict {{ verdict }}"><strong>{{ headline }}</strong>
 {{ sentence }}</p>
@@ -130,6 +93,5 @@ plausible.</p>
 {{ table(test_headings, tests) }}
 {% endif %}
 </section>
-</body>
-</html>
+{% endblock %}
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from calibration.diagnosis.effect import Scope
 from calibration.diagnosis.null import EVERYTHING
-from calibration.report._numbers import significant
+from calibration.report import significant
 
 SUSPECT = 0.005  # a chance below is no accident
 

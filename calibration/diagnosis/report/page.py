@@ -6,17 +6,15 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-
+from calibration.diagnosis.drawing import Figure, noise_of, pictures_of
 from calibration.diagnosis.nested import Nested
 from calibration.diagnosis.report import _tables as tables
-from calibration.diagnosis.report._domain import Figure, noise_of, pictures_of
 from calibration.diagnosis.report._evidence import draw_evidence
 from calibration.diagnosis.report._method import alarm, departure, method, troubles
-from calibration.diagnosis.report._template import TEMPLATE
+from calibration.diagnosis.report._template import PAGE
 from calibration.diagnosis.report._words import HEADLINE
 from calibration.diagnosis.verdict import Diagnosis
-from calibration.report._figure import Picture, file_name, picture
+from calibration.report import Picture, file_name, picture, template
 
 LONGEST = 60  # letters of a picture's file name
 
@@ -54,10 +52,7 @@ def render(
     """The page as HTML. extra: what went wrong with the pictures."""
     told = diagnosis.to_json()
     finding = diagnosis.finding
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    return environment.from_string(TEMPLATE).render(
+    return template(PAGE).render(
         title=title,
         verdict=finding.verdict,
         headline=HEADLINE[finding.verdict],

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 from diagnosis_cases import diagnosis
 
+from calibration.diagnosis.drawing import label
 from calibration.diagnosis.report._evidence import bars
-from calibration.diagnosis.report._labels import label
 from calibration.diagnosis.report._units import quantity_and_unit
 
 

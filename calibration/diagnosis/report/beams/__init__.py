@@ -1,7 +1,7 @@
 """Pictures of photographed beams for the page of a diagnosis."""
 
-from calibration.diagnosis.beams.model import BeamModel
-from calibration.diagnosis.report._domain import Figure, noise_of, pictures_of
+from calibration.diagnosis.beams import BeamModel
+from calibration.diagnosis.drawing import Figure, noise_of, pictures_of
 from calibration.diagnosis.report.beams._drawn import drawn, in_time
 from calibration.diagnosis.report.beams._noise import noise
 from calibration.diagnosis.report.beams._residuals import draw_residuals, draw_rms

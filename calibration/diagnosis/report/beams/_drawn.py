@@ -9,8 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.beams._pictures import feet_of
-from calibration.diagnosis.beams.model import BeamModel
+from calibration.diagnosis.beams import BeamModel, feet_of
 from calibration.diagnosis.verdict import Diagnosis
 from calibration.experiment.model import BeamTrial
 from calibration.outlines import edges

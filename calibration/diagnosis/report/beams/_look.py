@@ -10,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.patches import Rectangle
 
 from calibration.diagnosis.report.beams._drawn import DrawnTrial
-from calibration.report._figure import INK
+from calibration.report import INK
 
 MEASURED, EXTENDED = "Blues", "Oranges"
 CLAMP = "#6B7480"

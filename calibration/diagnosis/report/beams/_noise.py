@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from calibration.diagnosis.beams.model import BeamModel
-from calibration.report._numbers import significant
+from calibration.diagnosis.beams import BeamModel
+from calibration.report import significant
 
 
 def noise(model: BeamModel) -> str:

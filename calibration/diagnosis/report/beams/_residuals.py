@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 from matplotlib.lines import Line2D
 
-from calibration.diagnosis.report._bars import paired_bars
-from calibration.diagnosis.report._domain import Figure
-from calibration.diagnosis.report._labels import label
+from calibration.diagnosis.drawing import Figure, label, paired_bars
 from calibration.diagnosis.report.beams._drawn import Array, DrawnTrial, rms_of
 from calibration.diagnosis.report.beams._grid import grid_of, left_out
 from calibration.diagnosis.report.beams._look import EXTENDED, MEASURED, shade
 from calibration.diagnosis.verdict import Diagnosis
-from calibration.report._figure import BAND, COLOURS, INK, paper, plain
+from calibration.report import BAND, COLOURS, INK, paper, plain
 
 SAMPLES = 60
 MEAN = {MEASURED: COLOURS[0], EXTENDED: COLOURS[1]}

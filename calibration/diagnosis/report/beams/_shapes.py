@@ -9,9 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from calibration.diagnosis.report._bars import AFTER, BEFORE
-from calibration.diagnosis.report._domain import Figure
-from calibration.diagnosis.report._labels import label
+from calibration.diagnosis.drawing import AFTER, BEFORE, Figure, label
 from calibration.diagnosis.report.beams._drawn import DrawnEdge, DrawnPhotograph, DrawnTrial
 from calibration.diagnosis.report.beams._grid import Grid, grid_of, left_out
 from calibration.diagnosis.report.beams._look import (
@@ -22,7 +20,7 @@ from calibration.diagnosis.report.beams._look import (
     scale_bar,
     shade,
 )
-from calibration.report._figure import BAND, paper
+from calibration.report import BAND, paper
 
 WIDE = 11.0  # inches
 LETTER = 0.075  # inches that one of a panel's title takes

@@ -8,9 +8,8 @@ from typing import Any
 import matplotlib.figure
 import numpy as np
 
-from calibration.diagnosis.report._labels import label
-from calibration.report._figure import COLOURS, INK, paper, plain
-from calibration.report._numbers import significant
+from calibration.diagnosis.drawing._labels import label
+from calibration.report import COLOURS, INK, paper, plain, significant
 
 BEFORE, AFTER = COLOURS[0], COLOURS[1]
 

@@ -1,0 +1,82 @@
+"""Measured curves before and after the extension: what of them is drawn, and what it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.explanation import Explanation
+from calibration.diagnosis.search import Finding
+from calibration.diagnosis.verdict import Diagnosis
+
+Array = NDArray[np.float64]
+
+MOST = 24  # panels of one picture
+NAMED, PARTIAL = "extended", "best of the library, which is not the cause"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnCurve:
+    """What is left of a trial's curve: measured less simulated, (k,), by the baseline and by the extension
+    (None where there is none), and each point's own standard deviation, all in one SI unit."""
+
+    name: str
+    left_before: Array
+    left_after: Array | None
+    sd: Array
+
+    @property
+    def extended(self) -> bool:
+        return self.left_after is not None
+
+    def left(self, which: str) -> Array:
+        """which: "before" or "after"."""
+        return np.asarray(getattr(self, f"left_{which}"))
+
+    def rms(self, which: str) -> float:
+        return float(np.sqrt(np.mean(self.left(which) ** 2)))
+
+    @property
+    def size(self) -> float:
+        """Its departure from the baseline, in standard deviations."""
+        return float(np.sqrt(np.mean((self.left_before / self.sd) ** 2)))
+
+
+def rms_of_all(curves: Sequence[DrawnCurve], which: str) -> float:
+    return float(np.sqrt(np.mean(np.concatenate([c.left(which) for c in curves]) ** 2)))
+
+
+def shown_explanation(finding: Finding, chosen: Explanation | None) -> Explanation | None:
+    """What stands for the extension: the chosen explanation; where nothing is named, what explains most of an
+    unexplained departure."""
+    if chosen is not None:
+        return chosen
+    best = finding.explanations[0] if finding.explanations else None
+    return best if finding.verdict == "unexplained" and finding.chance < 0.01 else None
+
+
+def legend_of(diagnosis: Diagnosis) -> str:
+    """What the lines after are called; empty where there are none."""
+    shown = shown_explanation(diagnosis.finding, diagnosis.chosen)
+    if shown is None:
+        return ""
+    names = " + ".join(shown.names)
+    return f"{NAMED if diagnosis.chosen is not None else PARTIAL} ({names})"
+
+
+Drawn = TypeVar("Drawn", bound=DrawnCurve)
+
+
+def most_telling(curves: Sequence[Drawn]) -> tuple[list[Drawn], int]:
+    """Those that have a panel, in the file's order, and how many depart too little to have one."""
+    largest = sorted(curves, key=lambda d: -d.size)[:MOST]
+    return [d for d in curves if d in largest], len(curves) - len(largest)
+
+
+def missing(count: int) -> str:
+    """What a caption says of them."""
+    return f" {count} trials that depart less are not drawn." if count else ""

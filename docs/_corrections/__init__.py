@@ -1,0 +1,1 @@
+"""The parts of `docs/corrections_study.py`."""

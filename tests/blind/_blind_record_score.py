@@ -1,0 +1,143 @@
+"""What a set of verdicts on made coupons or pokes is worth: the confusion matrix, and the goals.
+
+verdicts: as `_blind_record_verdict.told` gives them; truths: as `_blind_record_case.truth_of` does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+# the parameter that diagnosis.json writes for an effect, and how many of its units make one SI unit; only of
+# effects whose amplitude means the same on both sides (not: the size of a loop whose form no name settles)
+UNITS = {
+    "rate-dependence": ("per_decade", 1.0),
+    "anisotropy": ("fibre_excess", 1.0),
+    "strain-offset": ("offset_percent", 100.0),
+    "machine-compliance": ("strain_per_MPa", 1e6),
+    "platen-friction": ("mu_d_over_3h", 1.0),
+    "strain-stiffening": ("c2_over_c1", 1.0),
+    "second-invariant": ("c01_share", 1.0),
+    "limited-extensibility": ("one_over_locking_stretch_squared", 1.0),
+    "depth-offset": ("offset_mm", 1e3),
+    "force-gain": ("excess_percent", 100.0),
+    "force-offset": ("offset_N", 1.0),
+    "force-drift": ("drift_mN_per_s", 1e3),
+    "adhesion": ("pull_mN", 1e3),
+    "inclusion-debonded": ("loose_part", 1.0),
+}
+ALARMS = {"clean": "at most 5 %", "trap": "0"}  # kinds of which nothing can be said, and how often it may be
+Pair = tuple[dict[str, Any], dict[str, Any]]
+Row = tuple[str, str, str]
+
+
+def true_names(truth: dict[str, Any]) -> tuple[str, ...]:
+    return tuple(sorted(e["effect"] for e in truth["effects"]))
+
+
+def named(verdict: dict[str, Any]) -> tuple[str, ...]:
+    return tuple(sorted(c["effect"] for c in verdict["causes"]))
+
+
+def named_set(verdict: dict[str, Any]) -> list[tuple[str, ...]]:
+    return [tuple(sorted(a)) for a in verdict["alternatives"]] or [named(verdict)]
+
+
+def sigma(truth: dict[str, Any]) -> float:
+    return min((float(e["sigma"]) for e in truth["effects"]), default=0.0)
+
+
+def part(hits: Sequence[bool]) -> str:
+    """hits of all, as text."""
+    return f"{sum(hits)} of {len(hits)}" + (f" ({100 * sum(hits) / len(hits):.0f} %)" if hits else "")
+
+
+def goals(pairs: Sequence[Pair]) -> Iterator[Row]:
+    """(what, goal, reached)."""
+    yield from _naming(pairs)
+    yield from _numbers([p for p in pairs if p[0]["kind"] == "one"])
+
+
+def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
+    single = [p for p in pairs if p[0]["kind"] == "one"]
+    for least, goal in ((5.0, "95 %"), (7.0, "98 %")):
+        some = [p for p in single if sigma(p[0]) >= least]
+        right = [named(v) == true_names(t) for t, v in some]
+        yield f"ranked first, {least:g} sigmas and above", goal, part(right)
+    for what, some in (
+        ("5 sigmas and above", [p for p in single if sigma(p[0]) >= 5.0]),
+        ("of those named", [p for p in single if p[1]["causes"]]),
+    ):
+        held = [true_names(t) in named_set(v) for t, v in some]
+        yield f"truth in the named set, {what}", "97 %", part(held)
+    wrong = [v["verdict"] == "found" and named(v) != true_names(t) for t, v in single]
+    yield "a unique and wrong name", "at most 1 %", part(wrong)
+    for kind, goal in ALARMS.items():
+        alarms = [v["verdict"] != "none" for t, v in pairs if t["kind"] == kind]
+        if alarms:
+            yield f"something named or unexplained: {kind}", goal, part(alarms)
+    out = [v["verdict"] for t, v in pairs if t["kind"] == "outside" and sigma(t) >= 10.0]
+    unsure = [said in ("unexplained", "ambiguous") for said in out]
+    yield "outside the library, 10 sigmas: unexplained or ambiguous", "90 %", part(unsure)
+    alone = [said == "found" for said in out]
+    yield "outside the library, 10 sigmas: one name", "at most 5 %", part(alone)
+    two = [p for p in pairs if p[0]["kind"] == "two"]
+    yield "two at once: both first", "-", part([named(v) == true_names(t) for t, v in two])
+    yield "two at once: both in the named set", "-", part([true_names(t) in named_set(v) for t, v in two])
+
+
+def _numbers(single: Sequence[Pair]) -> Iterator[Row]:
+    """Of rightly named causes: amplitudes, moduli, held-out gain."""
+    right = [p for p in single if named(p[1]) == true_names(p[0])]
+    off = list(_deviations(right))
+    yield "amplitude within 3 of its sd", "97 %", part([abs(d) <= 3.0 for d in off])
+    yield "95 % interval covers", "90 %", part([abs(d) <= 1.96 for d in off])
+    wrong = [
+        abs(math.log(v["extended"]["shear_modulus_Pa"][m] / g))
+        for t, v in right
+        for m, g in t["shear_modulus_Pa"].items()
+    ]
+    yield "shear moduli within 2 % after extension", "all", part([w < 0.02 for w in wrong])
+    yield "  within 5 %: twice the mesh error that pokes state", "-", part([w < 0.05 for w in wrong])
+    gained = [v["gain"] for t, v in right if sigma(t) >= 10.0 and v["gain"]["held_out"] != "none"]
+    fell = [g["rms_after"] < 0.7 * g["rms_before"] for g in gained]
+    yield "held-out rms falls by 30 %, 10 sigmas and above", "all", part(fell)
+    beyond = [_beyond(g, "rms_after") < 0.7 * _beyond(g, "rms_before") for g in gained]
+    yield "the same beyond the noise", "all", part(beyond)
+    likelier = [g["log_likelihood"] > 0.0 for g in gained]
+    yield "held-out likelihood grows, 10 sigmas and above", "-", part(likelier)
+
+
+def _deviations(right: Sequence[Pair]) -> Iterator[float]:
+    """(amplitude - truth) / sd."""
+    for t, v in right:
+        (effect,) = t["effects"]
+        if effect["effect"] in UNITS:
+            parameter, per_si = UNITS[effect["effect"]]
+            estimate = v["causes"][0]["parameters"][parameter]
+            yield (estimate["value"] - per_si * effect["amplitude"]) / estimate["sd"]
+
+
+def _beyond(gain: dict[str, Any], which: str) -> float:
+    """What a held-out rms has beyond that of the noise."""
+    return math.sqrt(max(gain[which] ** 2 - gain["rms_noise"] ** 2, 0.0))
+
+
+def confusion(pairs: Sequence[Pair]) -> str:
+    """One line a true cause: how often it was named what."""
+    lines: dict[str, Counter[str]] = {}
+    for t, v in pairs:
+        truth = "two at once" if t["kind"] == "two" else "+".join(true_names(t)) or "(clean)"
+        if v["verdict"] in ("none", "unexplained"):
+            said = v["verdict"]
+        else:
+            said = "right" if named(v) == true_names(t) else "+".join(named(v))
+            said += " (ambiguous)" if v["verdict"] == "ambiguous" else ""
+        lines.setdefault(truth, Counter())[said] += 1
+    width = max(len(n) for n in lines)
+    return "\n".join(
+        f"{truth:{width}}  " + ", ".join(f"{said} {n}" for said, n in counts.most_common())
+        for truth, counts in sorted(lines.items())
+    )
