@@ -43,8 +43,12 @@ def _turned(beam: Beam, _: BeamTrial) -> Beam:
 
 
 def _swapped(beam: Beam, trial: BeamTrial) -> Beam:
+    """What was at x from the clamp comes to L - x; of a cantilever what its grip held comes free, so that it
+    comes to L - x less the grip, and its free end is held."""
     s = beam.specimen
-    void = s.void and replace(s.void, position=trial.free_length - s.void.position)
+    held = trial.grip_length if cantilever(trial) else 0.0
+    at = trial.free_length - held - s.void.position if s.void else 0.0
+    void = replace(s.void, position=at) if s.void and at > 0.0 else None
     swapped = replace(
         s,
         axial_gradient=-s.axial_gradient,
@@ -63,8 +67,10 @@ def _hung(trial: BeamTrial) -> BeamTrial | None:
     return replace(trial, gravity=(GRAVITY, 0.0, 0.0)) if cantilever(trial) else None
 
 
-def _longer(trial: BeamTrial) -> BeamTrial | None:
-    return replace(trial, free_length=OTHER_LENGTH) if cantilever(trial) else None
+def _deeper(trial: BeamTrial) -> BeamTrial | None:
+    """Pushed deeper into its grip; a shorter one has not enough in the grip to be pulled out."""
+    fits = cantilever(trial) and trial.free_length > OTHER_LENGTH
+    return replace(trial, free_length=OTHER_LENGTH) if fits else None
 
 
 def _loaded(trial: BeamTrial) -> BeamTrial | None:
@@ -113,7 +119,7 @@ EXPERIMENTS: tuple[Photographs | Gauge, ...] = (
     Photographs(
         name="other-length",
         sentence=f"photograph cantilevers of {1e3 * OTHER_LENGTH:.0f} mm free length",
-        trial=_longer,
+        trial=_deeper,
     ),
     Photographs(
         name="tip-mass",
