@@ -25,13 +25,15 @@ class State:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Linear:
     """A state's whitened residuals z (m,), their derivatives by u (m, n), and by candidates' amplitudes, one
-    column each (m, c). Under the right model z is standard normal but for the coordinates fitted."""
+    column each (m, c). Under the right model z is standard normal but for the coordinates fitted.
+    unseen: part of a column's length that differences may leave of an exact alias (None: the usual)."""
 
     state: State
     z: Array
     by_u: Array
     columns: Array
     candidates: tuple[Candidate, ...]
+    unseen: float | None = None
 
 
 class Nested(Protocol):

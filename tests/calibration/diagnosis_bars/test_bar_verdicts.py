@@ -1,0 +1,131 @@
+"""Whole diagnoses of made bars: what is hidden is found, nothing is found where nothing is hidden, and what
+is not in the library has no name."""
+
+from __future__ import annotations
+
+import io
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from let_go_bars import Truth, write_bars
+from matplotlib.image import imread
+
+from calibration.diagnosis.bars import BarModel
+from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.report import noise_of, pictures_of
+from calibration.diagnosis.run import diagnose
+from calibration.diagnosis.verdict import Diagnosis
+from calibration.experiment import Experiment, read
+
+CLEAN = Truth()
+YIELDING = Truth(clamp=0.1)
+RELAXING = Truth(branches=((0.08, 0.5),))
+# a part of 0.015 every third of a decade, from a hundredth of a second to twenty seconds
+CREEPING = Truth(branches=tuple((0.015, 10.0 ** (k / 3.0)) for k in range(-6, 5)))
+HUMMING = Truth(extra=lambda t: 1e-4 * np.exp(-t) * np.sin(130.0 * t))
+
+
+@cache
+def made(truth: Truth) -> Experiment:
+    with TemporaryDirectory() as folder:
+        return read(write_bars(Path(folder) / "experiment", truth))
+
+
+@cache
+def diagnosed(truth: Truth) -> tuple[BarModel, Diagnosis]:
+    model = BarModel(made(truth), workers=1, fem=False)
+    return model, diagnose(model, gain=truth is YIELDING)
+
+
+def named(found: Diagnosis) -> dict[str, dict[str, dict[str, float]]]:
+    return {c["effect"]: c["parameters"] for c in found.causes()}
+
+
+def test_nothing_is_found_where_nothing_is_hidden() -> None:
+    _, found = diagnosed(CLEAN)
+    assert found.finding.verdict == "none"
+    assert found.baseline.reduced_chi2 == pytest.approx(1.0, abs=0.1)
+    assert found.baseline.shear_modulus_Pa["S0"] == pytest.approx(CLEAN.shear, rel=0.005)
+
+
+def test_a_yielding_clamp_is_found() -> None:
+    _, found = diagnosed(YIELDING)
+    assert found.finding.verdict == "found"
+    (parameters,) = [p for name, p in named(found).items() if name == "clamp-compliance"]
+    estimate = parameters["rad_per_Nm"]
+    assert abs(estimate["value"] - YIELDING.clamp) < 3.0 * estimate["sd"] < YIELDING.clamp
+    # the modulus had taken the clamp's share of the softness
+    assert found.baseline.shear_modulus_Pa["S0"] < 0.93 * YIELDING.shear
+    assert found.extended is not None
+    assert found.extended.shear_modulus_Pa["S0"] == pytest.approx(YIELDING.shear, rel=0.03)
+
+
+def test_a_second_relaxation_time_is_found() -> None:
+    _, found = diagnosed(RELAXING)
+    assert found.finding.verdict == "found"
+    (cause,) = found.causes()
+    assert (cause["effect"], cause["scope"]) == ("relaxation", "all")
+    assert cause["kind"] == "relaxation time 0.5 s"
+    estimate = cause["parameters"]["part_of_modulus"]
+    assert abs(estimate["value"] - 0.08 / 1.08) < 3.0 * estimate["sd"]  # of what a swing shows
+
+
+def test_creep_is_found_and_is_no_single_time() -> None:
+    model, found = diagnosed(CREEPING)
+    assert found.finding.rivals == (("creep",),)
+    estimate = named(found)["creep"]["per_decade"]
+    swing = 1.0 + sum(
+        p * (t / model.reference) ** 2 / (1.0 + (t / model.reference) ** 2) for p, t in CREEPING.branches
+    )
+    assert estimate["value"] == pytest.approx(0.045 / swing, rel=0.08)
+    single = [e for e in found.finding.explanations if e.names == ("relaxation",)]
+    assert all(e.score > found.finding.explanations[0].score + 100.0 for e in single)
+
+
+def test_what_is_not_in_the_library_has_no_name() -> None:
+    _, found = diagnosed(HUMMING)
+    assert found.finding.verdict == "unexplained"
+    assert found.causes() == []
+
+
+@pytest.mark.slow
+def test_without_the_cause_its_name_is_not_used() -> None:
+    less = BarModel(made(RELAXING), without=["relaxation", "creep"], workers=1, fem=False)
+    found = diagnose(less, gain=False)
+    assert found.finding.verdict == "unexplained"
+
+
+def test_the_gain_is_measured_on_what_was_not_seen() -> None:
+    _, found = diagnosed(YIELDING)
+    told = found.to_json()["gain"]
+    assert told["held_out"] in ("leave-one-load-out", "swing-or-settled-out")
+    assert told["rms_mm_after"] < told["rms_mm_before"]
+
+
+def test_pictures_show_something() -> None:
+    model, found = diagnosed(RELAXING)
+    pictures = pictures_of(model, found)
+    assert [p.name for p in pictures] == ["motion", "residuals", "rms"]
+    for p in pictures:
+        file = io.BytesIO()
+        p.figure.savefig(file, format="png")
+        file.seek(0)
+        assert imread(file).std() > 0.02
+        assert p.caption
+    labels = [t.get_text() for t in pictures[0].figure.legends[0].get_texts()]
+    assert labels == ["measured", "baseline", "extended (relaxation)"]
+    assert "2 records" in noise_of(model)
+
+
+def test_cards_of_a_bar(tmp_path: Path) -> None:
+    _, found = diagnosed(RELAXING)
+    (path,) = write_cards(tmp_path / "cards", found, made(RELAXING))
+    text = path.read_text(encoding="utf-8")
+    assert "relaxation" in text
+    assert "part_of_modulus" in text
+    _, found = diagnosed(YIELDING)
+    names = [p.name for p in write_cards(tmp_path / "more", found, made(YIELDING))]
+    assert names == ["S0.yaml", "rig.yaml"]
