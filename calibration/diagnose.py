@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from calibration._command import plain_ends
-from calibration.diagnosis import SIMULATORS, Diagnosis, Rules, diagnose, model_of
+from calibration.diagnosis import KINDS, SIMULATORS, Diagnosis, Rules, diagnose, model_of
 from calibration.diagnosis.card import write_cards
 from calibration.diagnosis.report import write_report
 from calibration.errors import InputError
@@ -41,7 +41,7 @@ def main(
         Path | None, typer.Option(help="Folder of the results. Default: diagnoses/EXPERIMENT.")
     ] = None,
     kind: Annotated[
-        str | None, typer.Option(help="beams, pokes or coupons, where the experiment has several.")
+        str | None, typer.Option(help=f"{', '.join(KINDS)}: where the experiment has several.")
     ] = None,
     without: Annotated[str, typer.Option(help="Effects to leave out of the catalogue, by commas.")] = "",
     simulator: Annotated[
