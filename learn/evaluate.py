@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +13,7 @@ from rich.table import Table
 from learn._screen import make_console, plain_errors
 from learn.data import open_store
 from learn.errors import InputError
-from learn.evaluation import evaluate, write_report
+from learn.evaluation import evaluate, save_intervals, write_report
 from learn.evaluation.report import full_table, interval_table, paper_table, symmetry_table
 from learn.training import load_run
 
@@ -28,6 +27,10 @@ EXAMPLES = """
 Several folds, or our model beside the paper's; the first run's folder gets the report:
 
   python -m learn.evaluate runs/fast-ours-ogden-*-0 runs/paper-cegnn-ogden-0-0
+
+Runs of one fold that differ in seed, alone and together:
+
+  python -m learn.evaluate runs/fast-ours-ogden-0-0 runs/fast-ours-ogden-0-1 --ensemble
 
 On pokes of another law or recipe than it was trained on:
 
@@ -46,6 +49,10 @@ def main(
     ] = False,
     baselines: Annotated[bool, typer.Option(help="Fit and show the baselines as well.")] = True,
     clouds: Annotated[bool, typer.Option(help="Show errors on other point clouds as well.")] = True,
+    ensemble: Annotated[
+        bool,
+        typer.Option("--ensemble", help="Join runs that differ in seed alone, and evaluate them as one too."),
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="Default: evaluation/ in the first run.")] = None,
     threads: Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")] = None,
 ) -> None:
@@ -61,13 +68,14 @@ def main(
                     f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid} "
                     "(--transfer allows it)"
                 )
-        found = evaluate(loaded, store, baselines=baselines, clouds=clouds, say=console.print)
+        found = evaluate(
+            loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble, say=console.print
+        )
         folder = out or runs[0] / "evaluation"
         write_report(found, folder)
-        first = next(iter(found.covered.values()), None)
-        if first is not None and not transfer:
-            text = json.dumps(first.intervals.as_dict())
-            (runs[0] / "intervals.json").write_text(text + "\n", encoding="utf-8")
+        if not transfer:
+            for run, covered in found.intervals:
+                save_intervals(run, covered)
     everything = {name: levels["all"] for name, levels in found.tables.items()}
     for title, (heads, rows) in {
         "The paper's table": paper_table(found),

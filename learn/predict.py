@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from learn._screen import make_console, plain_errors
 from learn.data import Store, open_store
 from learn.errors import InputError
-from learn.evaluation import Intervals
+from learn.evaluation import load_intervals, together
 from learn.metrics import Cases
-from learn.models import Surrogate
+from learn.models import Pokes, Prediction
 from learn.scene_file import load_poke, scene_and_poke
 from learn.training import Run, load_run
 
@@ -31,6 +31,10 @@ EXAMPLES = """
 [bold]Example[/bold]
 
   python -m learn.predict runs/fast-ours-ogden-0-0 poke.yaml --out poke
+
+Runs of several seeds as one, the mean of their answers:
+
+  python -m learn.predict runs/fast-ours-ogden-0-0 runs/fast-ours-ogden-0-1 poke.yaml
 
 with poke.yaml, for instance:
 
@@ -47,7 +51,9 @@ Exit codes: 0 done, 2 bad input.
 
 @app.command(epilog=EXAMPLES)
 def main(
-    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    runs: Annotated[
+        list[Path], typer.Argument(help="Folder of a run, or of several to be joined.", metavar="RUN...")
+    ],
     scene: Annotated[Path, typer.Argument(help="A YAML file: the poke.")],
     dataset: Annotated[str | None, typer.Option(help="The store, if it moved since the training.")] = None,
     out: Annotated[
@@ -57,12 +63,14 @@ def main(
     """Predicts one poke on the dataset's block."""
     console = make_console()
     with plain_errors():
-        loaded = load_run(run)
+        loaded = _loaded(runs)
         store = open_store(dataset or loaded.location, verify=False)
         if loaded.uuid != store.uuid:
-            raise InputError(f"{run}: trained on dataset {loaded.uuid}, but {store.location} is {store.uuid}")
+            raise InputError(
+                f"{runs[0]}: trained on dataset {loaded.uuid}, but {store.location} is {store.uuid}"
+            )
         file = load_poke(scene)
-        if not isinstance(loaded.model, Surrogate) and (
+        if not loaded.recipe.model.startswith("ours") and (
             file.inclusion is not None or file.shear_modulus_kPa is not None
         ):
             raise InputError(
@@ -72,7 +80,7 @@ def main(
         with torch.no_grad():
             found = loaded.model(about, pokes)
         u, force = found.displacement[0].numpy(), float(found.force[0])
-        radius, factor = _uncertainty(loaded, store, u, force, pokes.start.numpy()[0], file.depth_mm * 1e-3)
+        radius, factor = _uncertainty(loaded, store, found, pokes)
         out.mkdir(parents=True, exist_ok=True)
         _write_csv(out / "displacement.csv", store, u, radius)
         answer = {"force_N": force, "largest_displacement_mm": float(np.linalg.norm(u, axis=1).max() * 1e3)}
@@ -84,7 +92,7 @@ def main(
     for key, value in answer.items():
         console.print(f"{key}: {value:.4g}")
     if radius is None:
-        console.print("no intervals: python -m learn.evaluate RUN makes them")
+        console.print("no intervals: python -m learn.evaluate RUN (or RUN... --ensemble) makes them")
     if file.depth_mm * 1e-3 > loaded.statistics.depth_max * 1.001:
         deepest = loaded.statistics.depth_max * 1e3
         console.print(f"beyond the deepest trained frame ({deepest:.1f} mm): intervals do not hold")
@@ -92,27 +100,37 @@ def main(
 
 
 def _uncertainty(
-    run: Run, store: Store, u: NDArray[np.float32], force: float, start: NDArray[np.float64], depth: float
+    run: Run, store: Store, found: Prediction, pokes: Pokes
 ) -> tuple[NDArray[np.float64] | None, float | None]:
     """Radius at each point [mm] and factor around the force; None without intervals."""
-    path = run.folder / "intervals.json"
-    if not path.is_file():
+    intervals = load_intervals(run)
+    if intervals is None:
         return None, None
-    try:
-        intervals = Intervals(**json.loads(path.read_text(encoding="utf-8")))
-    except (ValueError, TypeError):
-        raise InputError(f"{path}: not readable; learn.evaluate writes it again") from None
+    u, force = found.displacement.numpy(), found.force.double().numpy()
     case = Cases(
-        truth=u[None],
-        predicted=u[None],
-        force=np.array([force]),
-        force_predicted=np.array([force]),
-        away=np.linalg.norm(store.points - start, axis=1)[None],
-        depth=np.array([depth]),
+        truth=u,
+        predicted=u,
+        force=force,
+        force_predicted=force,
+        away=np.linalg.norm(store.points - pokes.start.numpy(), axis=1)[None],
+        depth=pokes.depth.numpy(),
         poke=np.zeros(1, dtype=np.int64),
         softness=np.array([""]),
+        spread=np.zeros(0) if found.spread is None else found.spread.double().numpy(),
+        force_spread=np.zeros(0) if found.force_spread is None else found.force_spread.double().numpy(),
     )
-    return intervals.radius_mm(case)[0], float(np.exp(intervals.force))
+    return intervals.radius_mm(case)[0], float(np.exp(intervals.force_log(case)[0]))
+
+
+def _loaded(folders: list[Path]) -> Run:
+    """The run, or the runs as one."""
+    runs = [load_run(folder) for folder in folders]
+    for run in runs[1:]:
+        if run.uuid != runs[0].uuid:
+            raise InputError(
+                f"{run.folder}: trained on dataset {run.uuid}, {runs[0].folder} on {runs[0].uuid}"
+            )
+    return together(runs) if len(runs) > 1 else runs[0]
 
 
 def _write_csv(path: Path, store: Store, u: NDArray[np.float32], radius: NDArray[np.float64] | None) -> None:

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from learn.data import Batch, MemoryDataset, Store
 from learn.metrics import Cases
@@ -50,7 +51,14 @@ def collect(model: Answers, scene: Scene, store: Store, batches: Iterable[Batch]
                 depth=batch.depth.numpy(),
                 poke=poke,
                 softness=np.array(store.softness_names)[store.softness[poke]],
+                spread=_or_zero(found.spread, away.shape),
+                force_spread=_or_zero(found.force_spread, poke.shape),
             )
         )
     names = Cases.__dataclass_fields__
     return Cases(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def _or_zero(spread: torch.Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """The spread, zero of a single model."""
+    return np.zeros(shape) if spread is None else spread.double().numpy()

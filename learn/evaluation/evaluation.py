@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from learn.baselines import BASELINES
 from learn.data import MemoryDataset, Split, Store, split_pokes
+from learn.errors import InputError
 from learn.evaluation.cases import cases_of
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
-from learn.evaluation.intervals import Intervals, coverage, fit_intervals, rank_correlation
+from learn.evaluation.intervals import Coverage, Intervals, coverage, fit_intervals, rank_correlation
 from learn.evaluation.summary import Value, by_softness, over_folds, summarise
 from learn.evaluation.symmetry import TurnError, turn_error
 from learn.metrics import Cases
-from learn.models import pokes_of, scene_of
+from learn.models import Ensemble, pokes_of, scene_of
 from learn.training import Recipe, Run
 
 CLOUD_SIZES = (512, 1024, 4096)
@@ -28,26 +29,28 @@ class Covered:
     """Intervals of a run and how they did on its test part. radius_mm: mean over points."""
 
     intervals: Intervals
-    points: float
-    force: float
+    found: Coverage
     rank: float
     radius_mm: float
 
 
 @dataclass(eq=False, kw_only=True)
 class Evaluation:
-    """What was found. tables: by name of a model, over folds, by softness. deeper: beyond the trained depth.
+    """What was found. models: names of what was trained, in `folds` beside baselines. tables: by name of a
+    model, over folds, by softness. deeper: beyond the trained depth.
 
-    clouds: by size of the cloud. floor_mm: what interpolation of the surface meshes alone is off. cases: of
-    the first run, for pictures.
+    clouds: by size of the cloud. intervals: of which run (or runs together). floor_mm: what interpolation of
+    the surface meshes alone is off. cases: of the first run, for pictures.
     """
 
     runs: list[Run]
     store: Store
+    models: list[str] = field(default_factory=list)
     folds: dict[str, list[dict[str, dict[str, Value]]]] = field(default_factory=dict)
     turned: dict[str, TurnError] = field(default_factory=dict)
     turned_flat: dict[str, TurnError] = field(default_factory=dict)
     covered: dict[str, Covered] = field(default_factory=dict)
+    intervals: list[tuple[Run, Intervals]] = field(default_factory=list)
     clouds: dict[str, dict[str, Value]] = field(default_factory=dict)
     floor_mm: float = float("nan")
     deeper: dict[str, dict[str, Value]] = field(default_factory=dict)
@@ -77,23 +80,29 @@ def evaluate(
     *,
     baselines: bool = True,
     clouds: bool = True,
+    ensemble: bool = False,
     say: Say = lambda _text: None,
 ) -> Evaluation:
-    """Answers of every run to its own test part; baselines fitted to each distinct training part."""
+    """Answers of every run to its own test part; baselines fitted to each distinct training part.
+
+    ensemble: runs of one model and training part, from different seeds, are evaluated as one as well, before
+    they are alone. InputError where no two runs can be joined so.
+    """
     found = Evaluation(runs=runs, store=store)
     scene = scene_of(store)
     fitted: set[str] = set()
-    for run in runs:
+    joined = ensembles(runs) if ensemble else []
+    for run, name in [*joined, *((run, run.recipe.model) for run in runs)]:
         split = split_of(store, run.recipe)
         test = MemoryDataset(store, split.test)
         say(f"{run.folder}: {len(test)} test frames")
         cases = cases_of(run.model, scene, test)
-        name = run.recipe.model
         found.folds.setdefault(name, []).append(by_softness(cases))
+        found.models += [name] if name not in found.models else []
         if found.cases is None:
             found.cases = cases
-        _look_closer(found, run, split, cases, clouds=clouds and run is runs[0])
-        key = repr((run.recipe.fold, run.recipe.split, run.recipe.train_softness, run.recipe.train_depth_mm))
+        _look_closer(found, run, name, split, cases, clouds=clouds and not found.clouds)
+        key = _part(run.recipe)
         if not baselines or key in fitted:
             continue
         fitted.add(key)
@@ -106,10 +115,44 @@ def evaluate(
     return found
 
 
-def _look_closer(found: Evaluation, run: Run, split: Split, cases: Cases, *, clouds: bool) -> None:
+def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
+    """Runs of one model and training part joined, with a name: each as a run of its first member's folder."""
+    groups: dict[str, list[Run]] = {}
+    for run in runs:
+        groups.setdefault(f"{run.recipe.model} {_part(run.recipe)}", []).append(run)
+    joined = [
+        (together(group), f"{group[0].recipe.model}, {len(group)} together")
+        for group in groups.values()
+        if len({run.recipe.seed for run in group}) == len(group) > 1
+    ]
+    if not joined:
+        raise InputError(
+            "an ensemble wants two or more runs of one model and training part, each of another seed"
+        )
+    return joined
+
+
+def together(runs: list[Run]) -> Run:
+    """Runs as one, of the first one's folder."""
+    return replace(
+        runs[0],
+        model=Ensemble([run.model for run in runs]).eval(),
+        members=tuple(run.folder for run in runs),
+    )
+
+
+def _part(recipe: Recipe) -> str:
+    """What the parts of a store depend on."""
+    return repr((recipe.fold, recipe.split, recipe.train_softness, recipe.train_depth_mm))
+
+
+def _look_closer(
+    found: Evaluation, run: Run, title: str, split: Split, cases: Cases, *, clouds: bool
+) -> None:
     """Symmetry, intervals, depth and clouds of one run."""
     store, scene, model = found.store, scene_of(found.store), run.model
-    name = f"{run.recipe.model}, fold {run.recipe.fold}"
+    name = f"{title}, fold {run.recipe.fold}"
+    name += f", seed {run.recipe.seed}" if name in found.turned else ""
     validation = MemoryDataset(store, split.validation)
     few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
     part = scene.only(few.geometry.numpy())
@@ -118,11 +161,10 @@ def _look_closer(found: Evaluation, run: Run, split: Split, cases: Cases, *, clo
     held = cases_of(model, scene, validation)
     if len(np.unique(held.poke)) >= 2:
         intervals = fit_intervals(held)
-        points, force = coverage(intervals, cases)
+        found.intervals.append((run, intervals))
         found.covered[name] = Covered(
             intervals=intervals,
-            points=points,
-            force=force,
+            found=coverage(intervals, cases),
             rank=rank_correlation(intervals, cases),
             radius_mm=float(intervals.radius_mm(cases).mean()),
         )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from learn.evaluation.paper import PAPER
 from learn.evaluation.pictures import draw_forces, draw_poke, encoded, ranked_pokes
 from learn.evaluation.summary import Value
 from learn.metrics import METRICS
+from learn.metrics.rings import EDGES_MM
 
 PAPER_METRICS = ("force", "mean", "max", "tip")
 Table = tuple[list[str], list[list[str]]]  # heads, rows
@@ -47,7 +50,7 @@ def paper_table(found: Evaluation) -> Table:
     """The paper's columns, by softness, its own rows beside."""
     heads = ["", "softness", *(f"{name} [{METRICS[name].units}]" for name in PAPER_METRICS)]
     rows = []
-    for name in dict.fromkeys(run.recipe.model for run in found.runs):
+    for name in found.models:
         for level, values in found.tables[name].items():
             rows.append([name, level, *(values[m].text(METRICS[m]) for m in PAPER_METRICS)])
             paper = PAPER.get((found.store.law, level))
@@ -84,11 +87,16 @@ def symmetry_table(found: Evaluation) -> Table:
 
 
 def interval_table(found: Evaluation) -> Table:
+    rings = [f"{low:g}+" if high == inf else f"{low:g}-{high:g}" for low, high in pairwise(EDGES_MM)]
     heads = [
         "",
         "asked",
+        "calibrated on pokes",
+        "promised at most",
         "points covered",
+        *(f"{ring} mm" for ring in rings),
         "forces covered",
+        "pokes covered so",
         "mean radius [mm]",
         "rank correlation with the error",
     ]
@@ -96,8 +104,12 @@ def interval_table(found: Evaluation) -> Table:
         [
             name,
             f"{c.intervals.level:.0%}",
-            f"{c.points:.1%}",
-            f"{c.force:.1%}",
+            str(c.intervals.pokes),
+            f"{c.intervals.promised:.0%}",
+            f"{c.found.points:.1%}",
+            *(f"{ring:.1%}" if isfinite(ring) else "-" for ring in c.found.rings),
+            f"{c.found.force:.1%}",
+            f"{c.found.pokes:.0%}",
             f"{c.radius_mm:.4f}",
             f"{c.rank:.2f}",
         ]
@@ -119,7 +131,7 @@ def write_report(found: Evaluation, folder: Path) -> None:
     pictures.append(("force against depth", encoded(draw_forces(found.cases))))
     many = len(found.runs) > 1
     spread = (
-        "± is the standard deviation over folds"
+        "± is the standard deviation over runs"
         if many
         else "± is the standard deviation over frames, as in the paper"
     )
@@ -143,7 +155,10 @@ def write_report(found: Evaluation, folder: Path) -> None:
         },
     ]
     if found.covered:
-        note = "Split-conformal, calibrated on validation pokes, counted on test pokes."
+        note = (
+            "Conformal, calibrated on half the validation pokes, each poke one draw, in rings of distance "
+            "from first touch; counted on test pokes. Few pokes cannot promise 90 %."
+        )
         sections.append({"title": "Intervals", "table": interval_table(found), "note": note})
     if found.clouds:
         note = (
@@ -189,7 +204,7 @@ def as_json(found: Evaluation) -> dict[str, Any]:
         "turned": {n: vars(t) for n, t in found.turned.items()},
         "turned_about_vertical": {n: vars(t) for n, t in found.turned_flat.items()},
         "intervals": {
-            n: {"points": c.points, "force": c.force, "rank": c.rank, "radius_mm": c.radius_mm}
+            n: {**vars(c.found), "promised": c.intervals.promised, "rank": c.rank, "radius_mm": c.radius_mm}
             for n, c in found.covered.items()
         },
         "clouds": {n: plain(v) for n, v in found.clouds.items()},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ class Cases:
 
     truth, predicted: displacement (f, n, 3) [m]. force, force_predicted (f,) [N]. away: distance of each
     point's rest position from the rod's tip at first touch (f, n) [m]. depth (f,) [m]. poke: (f,) which
-    poke each frame is of. softness: (f,) name.
+    poke each frame is of. softness: (f,) name. spread (f, n) [m], force_spread (f,) of ln(force): how far the
+    members of an ensemble differ, 0 of one model.
     """
 
     truth: NDArray[np.float32]
@@ -28,6 +29,14 @@ class Cases:
     depth: Floats
     poke: NDArray[np.int64]
     softness: NDArray[np.str_]
+    spread: Floats = field(default_factory=lambda: np.zeros(0))
+    force_spread: Floats = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        if not self.spread.size:
+            object.__setattr__(self, "spread", np.zeros(self.away.shape))
+        if not self.force_spread.size:
+            object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
 
     @property
     def distance_mm(self) -> Floats:

@@ -9,6 +9,7 @@ from learn.data.statistics import Statistics
 from learn.errors import InputError
 from learn.models._model import Model
 from learn.models.cegnn import Cegnn
+from learn.models.ensemble import Ensemble
 from learn.models.ours import Surrogate
 from learn.models.scene import Pokes, Prediction, Scene, make_scene, pokes_of, scene_of
 
@@ -33,6 +34,7 @@ __all__ = [
     "MODELS",
     "VERSIONS",
     "Cegnn",
+    "Ensemble",
     "Model",
     "Pokes",
     "Prediction",

@@ -118,7 +118,13 @@ def pokes_of(batch: Batch) -> Pokes:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Prediction:
-    """displacement of the scene's points (b, n, 3) [m]; size of the force on the rod (b,) [N]."""
+    """displacement of the scene's points (b, n, 3) [m]; size of the force on the rod (b,) [N].
+
+    spread (b, n) [m], force_spread (b,) of ln(force): how far the members of an ensemble differ; None of one
+    model.
+    """
 
     displacement: Tensor
     force: Tensor
+    spread: Tensor | None = None
+    force_spread: Tensor | None = None

@@ -1,17 +1,20 @@
-"""One poke at a time over one interior, as fast as plain torch goes: what a haptic loop calls.
+"""One poke at a time over one interior, as fast as torch and NumPy go: what a haptic loop calls.
 
 The same numbers as `Surrogate.decode` but for rounding. What makes it faster: everything that does not
-depend on the poke is made once; points are the last axis of all small arrays, so that features are rows of
-one buffer that feeds one product; nothing is concatenated; the rod's surface is looked at near the rod alone.
+depend on the poke is made once; features are rows of one buffer that feeds one product; nothing is
+concatenated; small arrays are NumPy's, whose operations cost a quarter of torch's, products are torch's; the
+rod's surface is looked at near the rod alone.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
-from torch.nn.functional import silu, softplus
+from torch.nn.functional import silu
 
 from learn.models import _prior, _rod
 from learn.models._contact import RINGS, WIDTHS
@@ -19,7 +22,10 @@ from learn.models._geometry import Encoded
 from learn.models._stencil import Gathered, Sparse
 from learn.models.ours import Surrogate, _Messages
 
-# rows of the buffer, and the columns of `Contact.point` that they stand for, with their signs
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
+
+# rows of the buffer: columns of `Contact.point` that they stand for, with their signs
 _PLAIN = [(0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (8, 1), (9, 1)]
 _BUMPS = [(10 + k, 1) for k in range(10)]
 _EXP = [(21, 1), (22, 1), (25, 1), (26, 1)]
@@ -33,153 +39,170 @@ class SinglePoke:
 
     @torch.inference_mode()
     def __init__(self, model: Surrogate, encoded: Encoded, inclusion: int = 0) -> None:
-        self._model, scene = model, encoded.scene
+        scene = encoded.scene
         self._matrices = tuple((_matrix(s.mean), _matrix(s.slope)) for s in encoded.stencils)
         self._radius, self._edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
-        self._points = (scene.points / self._radius).T.contiguous()
-        self._normals64 = scene.normals.T.contiguous()
-        self._normals = self._normals64.float()
+        self._log_modulus, self._force_unit = model.log_modulus, model.force_unit
+        self._points = np.ascontiguousarray((scene.points / self._radius).numpy().T)
+        self._normals64 = np.ascontiguousarray(scene.normals.numpy().T)
+        self._normals = self._normals64.astype(np.float32)
         n = self._points.shape[1]
         code = encoded.code[:, inclusion]
-        self._looked = model.look(code)
+        self._looked = model.look(code).numpy()
         self._code = model.from_code(code)
-        self._clear = encoded.clear[:, inclusion].double()
-        self._vectors = encoded.vectors[:, :, inclusion].transpose(1, 2).contiguous()  # (3, v, n)
-        self._prior = model.prior.coefficients
+        self._clear = encoded.clear[:, inclusion].double().numpy()
+        vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
+        self._vectors = np.ascontiguousarray(vectors.numpy())
+        self._prior = model.prior.coefficients.numpy()
+
         weight = model.from_point.weight.T
         picked = [row for part in (_PLAIN, _BUMPS, _EXP, _TANH, _UNDER) for row in part]
         mine = torch.stack([sign * weight[column] for column, sign in picked])
-        v, seen = self._vectors.shape[1], len(WIDTHS) * self._looked.shape[1]
+        v, seen = len(self._vectors[0]), len(WIDTHS) * self._looked.shape[1]
         first = weight.shape[0] - 2 * v - seen
-        self._toward = weight[first : first + seen].contiguous()
-        self._of_depth = weight[list(_OF_POKE)]
-        nothing = torch.zeros(4, weight.shape[1])  # of the direction to the contact, and of the poke
+        self._toward = weight[first : first + seen].numpy()
+        self._of_depth = weight[list(_OF_POKE)].numpy()
+        self._of_poke = model.from_poke.weight.numpy()
+        nothing = torch.zeros(4, weight.shape[1])  # of the direction from the contact, and of the poke
         self._first = torch.cat([mine, nothing, weight[first + seen :]]).contiguous()
-        self._rows = torch.ones(len(self._first), n)
-        self._rings = RINGS[:, None] * len(RINGS)
-        self._widths = torch.tensor([-0.5 * (self._radius / w) ** 2 for w in WIDTHS])[:, None]
-        self._scales = torch.tensor([2.5e-3 / w for w in WIDTHS])[:, None, None]
+        self._own = len(mine)  # the row at which those four begin
+        # one memory, seen from both sides
+        self._rows = np.ones((len(self._first), n), dtype=np.float32)
+        self._rows_there, self._first_here = torch.from_numpy(self._rows), self._first.numpy()
+
+        self._rings = (RINGS[:, None] * len(RINGS)).numpy()
+        self._widths = np.array([[-0.5 * (self._radius / w) ** 2] for w in WIDTHS], dtype=np.float32)
+        self._scales = np.array([[[2.5e-3 / w]] for w in WIDTHS], dtype=np.float32)
         self._rounds = [_Round(part, n) for part in model.rounds if isinstance(part, _Messages)]
-        self._enter = _Layer(model.enter)
-        leave = model.leave[0]
+        leave, head, last = model.leave[0], model.force_head[0], model.force_head[2]
         assert isinstance(leave, nn.Linear)
-        self._leave = _Layer(leave)
+        assert isinstance(head, nn.Linear)
+        assert isinstance(last, nn.Linear)
+        self._enter, self._leave = _Layer(model.enter), _Layer(leave)
         self._out, self._out_bias = model.coefficients.weight, model.coefficients.bias[:, None]
+        self._head = tuple(t.numpy() for t in (head.weight, head.bias, last.weight[0], last.bias))
 
     @torch.inference_mode()
     def __call__(
-        self, start: Tensor, direction: Tensor, depth: float, modulus: float
-    ) -> tuple[Tensor, float]:
+        self, start: Doubles, direction: Doubles, depth: float, modulus: float
+    ) -> tuple[Floats, float]:
         """Displacement of the points (n, 3) [m] and size of the force [N].
 
         start: of the rod's tip at first touch (3,) [m]; direction: unit (3,), both float64; depth [m];
         modulus: small-strain shear modulus [Pa].
         """
-        radius, model = self._radius, self._model
-        deep = depth / radius
-        r64 = self._points - (start / radius)[:, None]
-        push64, push = direction, direction.float()
-        r = r64.float()
-        square = (r * r).sum(dim=0)
-        near = torch.softmax(self._widths * square, dim=1)  # (w, n)
+        deep = depth / self._radius
+        r64 = self._points - (start / self._radius)[:, None]
+        r, push = r64.astype(np.float32), direction.astype(np.float32)
+        square = (r * r).sum(axis=0)
+        near = np.exp(self._widths * (square - square.min()))
+        near /= near.sum(axis=1, keepdims=True)  # (w, n)
         here = self._normals @ near[0]
-        facing = float(here @ push)
-        log_deep, stiff = math.log(deep), math.log(modulus) - model.log_modulus
-        of_poke = torch.tensor([deep / 4, log_deep, facing, facing * deep / 4, stiff])
-        # the code as the contact sees it
-        weights = torch.cat([near[:, None], self._scales * near[:, None] * r], dim=1)  # (w, 4, n)
-        seen = (weights.reshape(-1, weights.shape[2]) @ self._looked).reshape(len(WIDTHS), 4, -1)
-        toward = seen[:, 1:].transpose(0, 1).reshape(3, -1)
-        about = torch.cat([of_poke, seen[:, 0].reshape(-1), push @ toward, here @ toward])
+        about, toward = self._about(r, near, here, push, deep, math.log(modulus) - self._log_modulus)
 
         unit, along, aside = self._fill(r, square, push, deep)
-        code = self._first
-        k = len(code) - 2 * self._vectors.shape[1] - 4
-        code[k : k + 3] = toward @ self._toward
-        code[k + 3] = (
-            model.from_poke.weight @ about + deep / 4 * self._of_depth[0] + log_deep * self._of_depth[1]
-        )
-        h = silu(torch.addmm(self._code, self._rows.T, code), inplace=True)
+        k = self._own
+        self._first_here[k : k + 3] = toward @ self._toward
+        of_depth = deep / 4 * self._of_depth[0] + math.log(deep) * self._of_depth[1]
+        self._first_here[k + 3] = self._of_poke @ about + of_depth
+        h = silu(torch.addmm(self._code, self._rows_there.T, self._first), inplace=True)
         h = silu(self._enter(h), inplace=True)
+        unit_there, push_there, near_there = (torch.from_numpy(a) for a in (unit, push, near))
         slope = h
         for round_ in self._rounds:
-            h, slope = round_(h, self._matrices, unit, push, near[2:])
+            h, slope = round_(h, self._matrices, unit_there, push_there, near_there[2:])
         out = silu(self._leave(h), inplace=True)
-        amounts = torch.addmm(self._out_bias, self._out, out.T)  # (outputs, n)
-
+        amounts = torch.addmm(self._out_bias, self._out, out.T).numpy()  # (outputs, n)
+        gates, middle = _rod.N_GATES, 3 + self._vectors.shape[1]
         own = amounts[0] * self._normals + amounts[1] * unit + amounts[2] * push[:, None]
-        middle = 3 + self._vectors.shape[1]
-        own += (self._vectors * amounts[3:middle]).sum(dim=1)
-        own += torch.einsum("knc,cn->kn", slope, amounts[middle : -_rod.N_GATES])
-        smooth = self._smooth(r64, push64, deep, float(near[0].double() @ self._clear), here)
-        u = own * self._rows[0] + smooth
-        beside = torch.nonzero(aside < _rod.LAND[1])[:, 0]
-        if len(beside):
-            place = _rod.Place(
-                r[:, beside].T[:, None], push[None], torch.tensor([deep]),
-                along[beside, None], aside[beside, None], self._edge,
-            )  # fmt: skip
-            gates = torch.sigmoid(amounts[-_rod.N_GATES :, beside]).T[:, None]
-            held = _rod.held(place, smooth[:, beside].T[:, None], (u - smooth)[:, beside].T[:, None], gates)
-            u[:, beside] = held[:, 0].T
-        pooled = (near[:2] @ out).reshape(-1)
-        kappa = model.force_head(torch.cat([pooled, about]))
-        force = modulus * depth * radius * model.force_unit * float(softplus(kappa))
-        return (u * depth).T, force
+        own += (self._vectors * amounts[3:middle]).sum(axis=1)
+        own += (slope.numpy() * amounts[middle:-gates].T).sum(axis=2)
+        own *= self._rows[0]
 
-    def _fill(self, r: Tensor, square: Tensor, push: Tensor, deep: float) -> tuple[Tensor, Tensor, Tensor]:
+        soft = float(near[0] @ self._clear)
+        smooth = self._smooth(r64, direction, deep, soft, float(here @ push)).astype(np.float32)
+        u = own + smooth
+        beside = np.flatnonzero(aside < _rod.LAND[1])
+        if len(beside):
+            place = _rod.Place(r.T[beside], push, _column(deep)[0], along[beside], aside[beside], self._edge)
+            gate = 1 / (1 + np.exp(-amounts[-gates:, beside].T))
+            u[:, beside] = _rod.held(place, smooth.T[beside], own.T[beside], gate, np).T
+        pooled = (near_there[:2] @ out).numpy().reshape(-1)
+        weight, bias, last, last_bias = self._head
+        hidden = weight @ np.concatenate([pooled, about]) + bias
+        kappa = float(last @ (hidden / (1 + np.exp(-hidden))) + last_bias[0])
+        force = modulus * depth * self._radius * self._force_unit * float(np.logaddexp(0, kappa))
+        return np.ascontiguousarray((u * np.float32(depth)).T), force
+
+    def _about(
+        self, r: Floats, near: Floats, here: Floats, push: Floats, deep: float, stiff: float
+    ) -> tuple[Floats, Floats]:
+        """Invariants of the poke, and the vectors to where the code is large (3, c), as `Contact.seen`."""
+        facing = float(here @ push)
+        of_poke = np.array([deep / 4, math.log(deep), facing, facing * deep / 4, stiff], dtype=np.float32)
+        means = near @ self._looked
+        moments = ((self._scales * near[:, None] * r).reshape(-1, r.shape[1]) @ self._looked).reshape(
+            len(WIDTHS), 3, -1
+        )
+        toward = moments.transpose(1, 0, 2).reshape(3, -1)
+        return np.concatenate([of_poke, means.reshape(-1), push @ toward, here @ toward]), toward
+
+    def _fill(self, r: Floats, square: Floats, push: Floats, deep: float) -> tuple[Floats, Floats, Floats]:
         """The features of all points, a row each; direction from the contact, distances along and aside."""
         rows = self._rows
-        far = torch.rsqrt(square + 1, out=rows[0])
-        unit = r * far
-        along = push @ r
+        far = np.divide(1, np.sqrt(square + 1), out=rows[0])
+        unit, along = r * far, push @ r
         off = r - along * push[:, None]
-        aside = (off * off).sum(dim=0).add_(1e-6).sqrt_()
-        torch.log(far, out=rows[1])
-        lift = torch.sum(unit * self._normals, dim=0, out=rows[2])
-        lean = torch.mv(self._normals.T, push, out=rows[3])
-        turn = torch.mul(along, far, out=rows[4])
-        flat = torch.addcmul(turn, lift, lean, value=-1, out=rows[5])
-        torch.mul(far, deep, out=rows[6])
-        torch.mul(flat, far, out=rows[7])
-        ring = torch.sqrt(square + 1e-6).mul_(self._radius * 1e3 / 2).log1p_()
+        aside = np.sqrt((off * off).sum(axis=0) + np.float32(1e-6))
+        np.log(far, out=rows[1])
+        lift = np.sum(unit * self._normals, axis=0, out=rows[2])
+        lean = np.matmul(push, self._normals, out=rows[3])
+        turn = np.multiply(along, far, out=rows[4])
+        flat = np.subtract(turn, lift * lean, out=rows[5])
+        np.multiply(far, np.float32(deep), out=rows[6])
+        np.multiply(flat, far, out=rows[7])
+        ring = np.log1p(np.sqrt(square + np.float32(1e-6)) * np.float32(self._radius * 500))
         e = 8 + len(_BUMPS)
-        torch.sub(ring * (len(RINGS) / math.log1p(20.0)), self._rings, out=rows[8:e])
-        torch.mul(aside, torch.tensor([[1.0], [0.5], [1 / (1 + 0.5 * deep)]]), out=rows[e : e + 3])
-        torch.square(aside / 1.5, out=rows[e + 3])
+        np.subtract(ring * np.float32(len(RINGS) / math.log1p(20.0)), self._rings, out=rows[8:e])
+        np.multiply(aside, _column(1, 0.5, 1 / (1 + 0.5 * deep)), out=rows[e : e + 3])
+        np.square(aside / np.float32(1.5), out=rows[e + 3])
         exp = rows[8 : e + 4]
-        exp.square_().mul_(-0.5).exp_()
-        near, t = rows[e + 3], e + 4
-        go = deep - along
-        over = (off * self._normals).sum(dim=0)
-        torch.mul(go, torch.tensor([[1.0], [0.25]]), out=rows[t : t + 2])
-        torch.sub(2, aside, alpha=2, out=rows[t + 2])
+        exp *= exp
+        exp *= np.float32(-0.5)
+        np.exp(exp, out=exp)
+        t = e + 4
+        go, over = np.float32(deep) - along, (off * self._normals).sum(axis=0)
+        np.multiply(go, _column(1, 0.25), out=rows[t : t + 2])
+        np.subtract(2, aside + aside, out=rows[t + 2])
         rows[t + 3] = over
-        torch.mul(go, torch.tensor([[1.0], [4.0], [1 / deep]]), out=rows[t + 4 : t + 7])
-        torch.div(over, aside, out=rows[t + 7]).mul_(3)
-        rows[t : t + 8].tanh_()
-        rows[t + 4 : t + 8] *= near
-        t += 8
-        rows[t : t + 3] = unit
-        v = self._vectors.shape[1]
-        torch.sum(self._vectors * unit[:, None], dim=0, out=rows[t + 4 : t + 4 + v])
-        rows[t + 4 + v :] = (push @ self._vectors.reshape(3, -1)).reshape(v, -1)
+        np.multiply(go, _column(1, 4, 1 / deep), out=rows[t + 4 : t + 7])
+        np.divide(3 * over, aside, out=rows[t + 7])
+        np.tanh(rows[t : t + 8], out=rows[t : t + 8])
+        rows[t + 4 : t + 8] *= rows[e + 3]
+        rows[self._own : self._own + 3] = unit
+        v, w = self._own + 4, len(self._vectors[0])
+        np.sum(self._vectors * unit[:, None], axis=0, out=rows[v : v + w])
+        np.matmul(push, self._vectors.reshape(3, -1), out=rows[v + w :].reshape(-1))
         return unit, along, aside
 
-    def _smooth(self, r: Tensor, push: Tensor, deep: float, soft: float, here: Tensor) -> Tensor:
+    def _smooth(self, r: Doubles, push: Doubles, deep: float, soft: float, facing: float) -> Doubles:
         """The closed form (3, n), as `Prior.forward`."""
-        square = (r * r).sum(dim=0)
-        size = torch.sqrt(square + 1e-6)
-        cores = torch.stack([torch.rsqrt(square + a * a) for a in _prior.CORES])
-        falls = torch.stack([torch.exp(size / -length) for length in _prior.RANGES])
+        square = (r * r).sum(axis=0)
+        size = np.sqrt(square + 1e-6)
+        cores = 1 / np.sqrt(square + np.array([[a * a] for a in _prior.CORES]))
+        falls = np.exp(size / np.array([[-length] for length in _prior.RANGES]))
         radial = (cores[:, None] * falls).reshape(-1, len(size))
-        lean, part = float(here.double() @ push) + 0.8, deep / 4
-        factors = torch.tensor([1, lean, part, soft, part * lean, part * part, part * soft], dtype=r.dtype)
-        mixed = torch.einsum("f,kfv->vk", factors, self._prior[:, :-1])
-        amounts = torch.cat([mixed, self._prior[:, -1].T]) @ radial  # (6, n)
-        unit = r * torch.rsqrt(square + 1)
-        a = torch.addcmul(amounts[:3], amounts[3:], push @ unit)
-        return (a[0] * self._normals64 + a[1] * unit + a[2] * push[:, None]).float()
+        lean, part = facing + 0.8, deep / 4
+        factors = np.array([1, lean, part, soft, part * lean, part * part, part * soft])
+        mixed = np.tensordot(self._prior[:, :-1], factors, axes=(1, 0)).T  # (vectors, radial)
+        amounts = np.concatenate([mixed, self._prior[:, -1].T]) @ radial
+        unit = r / np.sqrt(square + 1)
+        a = amounts[:3] + amounts[3:] * (push @ unit)
+        return np.asarray(a[0] * self._normals64 + a[1] * unit + a[2] * push[:, None])
+
+
+def _column(*values: float) -> Floats:
+    return np.array(values, dtype=np.float32)[:, None]
 
 
 def _matrix(operator: Sparse | Gathered) -> Tensor:
@@ -202,7 +225,7 @@ class _Round:
 
     def __init__(self, part: _Messages, n: int) -> None:
         d, hidden = part.directions, part.back.out_features
-        self._scales, self._whole = part.scales, part.whole.weight.T
+        self._scales, self._whole = part.scales, part.whole.weight.T.contiguous()
         weight, bias = part.thin.weight.T, part.thin.bias
         self._scalar, self._vector = weight[:, :-d].contiguous(), weight[:, -d:].contiguous()
         self._scalar_bias, self._vector_bias = bias[:-d], bias[-d:]

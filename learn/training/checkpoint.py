@@ -21,7 +21,10 @@ LAST, BEST = "last.pt", "best.pt"
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run:
-    """A trained model ready to use. uuid, law, location: of the dataset it was trained on."""
+    """A trained model ready to use. uuid, law, location: of the dataset it was trained on.
+
+    members: folders of the runs that were joined to this one, none of a plain run.
+    """
 
     folder: Path
     recipe: Recipe
@@ -32,6 +35,7 @@ class Run:
     groups: dict[str, list[str]]
     epoch: int
     model: Model
+    members: tuple[Path, ...] = ()
 
 
 def save_checkpoint(path: Path, content: dict[str, Any]) -> None:

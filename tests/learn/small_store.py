@@ -59,7 +59,6 @@ def write_store(
     profile, arrays = [], {name: [] for name in _FRAME + _POKE}
     surface: list[np.ndarray[Any, Any]] = []
     count = 0
-    corners = _triangles()
     for shape in range(shapes):
         centre = random.uniform(-0.02, 0.02, 2)
         reach = 0.008 + 0.002 * shape
@@ -85,17 +84,16 @@ def write_store(
     data["displacement"] = np.concatenate(arrays["displacement"]).astype(np.float32)
     for name in _FRAME[:-1]:
         data[name] = np.concatenate(arrays[name])
-    _write(
+    write_arrays(
         folder,
         data,
         np.array(profile),
         xyz,
         depth_of_level,
         np.concatenate(surface),
-        corners,
-        chunk,
-        shard,
-        blosc,
+        chunk=chunk,
+        shard=shard,
+        blosc=blosc,
     )
     group = zarr.open_group(folder, mode="r+")
     rod = {"radius_mm": RADIUS * 1e3, "tip": "flat", "edge_radius_mm": 1.0}
@@ -148,18 +146,20 @@ def _triangles() -> np.ndarray[Any, Any]:
     return np.concatenate([np.stack([a, a + 1, a + 33], 1), np.stack([a, a + 33, a + 32], 1)])
 
 
-def _write(
+def write_arrays(
     folder: Path,
     data: dict[str, np.ndarray[Any, Any]],
     profile: np.ndarray[Any, Any],
     xyz: np.ndarray[Any, Any],
     level_depth: np.ndarray[Any, Any],
     surface: np.ndarray[Any, Any],
-    corners: np.ndarray[Any, Any],
+    *,
     chunk: int,
     shard: int,
-    blosc: bool,
+    blosc: bool = True,
 ) -> None:
+    """All arrays of the format; the surface's nodes are the grid's points, poke after poke."""
+    corners = _triangles()
     pokes, frames = len(data["poke_shape"]), data["frame_count"]
     nodes = len(surface) // pokes
     group = zarr.create_group(folder, zarr_format=3)

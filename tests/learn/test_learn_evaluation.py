@@ -17,11 +17,11 @@ import learn.evaluate
 import learn.export
 import learn.predict
 import learn.train
-from learn.data import open_store
+from learn.data import MemoryDataset, open_store
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
 from learn.evaluation.summary import summarise
 from learn.metrics import METRICS
-from learn.models import Model, Prediction, scene_of
+from learn.models import Ensemble, Model, Prediction, pokes_of, scene_of
 from learn.models.scene import Pokes, Scene
 from learn.scene_file import load_poke, scene_and_poke
 
@@ -62,6 +62,69 @@ def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert tables["turned"]["ours, fold 0"]["displacement_mm"] < 1e-5
     assert set(tables["tables"]["ours"]) == {"S0", "S1", "all"}
     assert (run / "intervals.json").is_file()
+
+
+@pytest.fixture(scope="module")
+def second(store: Path, run: Path) -> Path:
+    """A run that differs from the first in seed alone."""
+    folder = run.parent / "second"
+    done = _call(
+        learn.train.app,
+        store,
+        "--recipe",
+        run.parent / "r.yaml",
+        "--seed",
+        1,
+        "--out",
+        folder,
+        "--threads",
+        1,
+    )
+    assert done.exit_code == 0, done.output
+    return folder
+
+
+def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
+    """A row of their mean, better than the worse of them; intervals and predictions of both together."""
+    flags = ("--ensemble", "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "both")
+    done = _call(learn.evaluate.app, run, second, *flags)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "both" / "tables.json").read_text())
+    assert list(tables["tables"]) == ["ours, 2 together", "ours"]
+    assert tables["turned"]["ours, 2 together, fold 0"]["displacement_mm"] < 1e-5
+    assert list(tables["intervals"]) == ["ours, 2 together, fold 0", "ours, fold 0", "ours, fold 0, seed 1"]
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE)
+    answers = []
+    for number, runs in enumerate(([run], [second], [run, second])):
+        done = _call(learn.predict.app, *runs, scene, "--out", tmp_path / str(number))
+        assert done.exit_code == 0, done.output
+        answers.append(json.loads((tmp_path / str(number) / "prediction.json").read_text()))
+    one, other, both = answers
+    assert both["force_N"] == pytest.approx((one["force_N"] * other["force_N"]) ** 0.5, rel=1e-5)
+    assert both["radius_max_mm"] > 0
+    alone = _call(learn.evaluate.app, run, "--ensemble", "--out", tmp_path / "alone")
+    assert alone.exit_code == 2
+    assert "two or more runs" in alone.stderr
+    assert not (tmp_path / "alone").exists()
+    swapped = _call(learn.predict.app, run, run, scene, "--out", tmp_path / "swapped")
+    assert swapped.exit_code == 2
+    assert "--ensemble writes it again" in swapped.stderr
+
+
+def test_an_ensemble_is_the_mean_of_its_members(store: Path) -> None:
+    opened = open_store(store)
+    scene, data = scene_of(opened), MemoryDataset(opened, np.arange(4))
+    pokes = pokes_of(data.__getitems__([0, 1, 2, 3]))
+    plain = _Truth()
+    found = Ensemble([plain, _Truth(more=1.02), _Truth(more=1.04)])(scene, pokes)
+    exact = plain(scene, pokes)
+    torch.testing.assert_close(found.displacement, exact.displacement * 1.02)
+    size = exact.displacement.norm(dim=2)
+    torch.testing.assert_close(found.spread, 0.02 * size, rtol=1e-3, atol=1e-9)
+    torch.testing.assert_close(
+        found.force_spread, torch.full((4,), float(np.log([1, 1.02, 1.04]).std(ddof=1)))
+    )
 
 
 def test_a_run_of_another_dataset_is_refused(run: Path, tmp_path: Path) -> None:
@@ -133,7 +196,11 @@ def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
 
 
 class _Truth(Model):
-    """Answers with a smooth field known everywhere."""
+    """Answers with a smooth field known everywhere, times a number."""
+
+    def __init__(self, more: float = 1.0) -> None:
+        super().__init__()
+        self.more = more
 
     def encode(self, scene: Scene, prepared: object = None) -> Scene:  # noqa: ARG002
         return scene
@@ -143,7 +210,8 @@ class _Truth(Model):
         rho = (r.square().sum(dim=2) + 2.5e-3**2).sqrt()
         fall = (2.5e-3 / rho * torch.exp(-rho / 0.02))[..., None] * pokes.depth[:, None, None]
         lean = pokes.direction[:, None] + 0.3 * (1 + 20 * pokes.depth[:, None, None]) * r / rho[..., None]
-        return Prediction(displacement=(fall * lean).float(), force=pokes.depth.float())
+        u = (fall * lean).float() * self.more
+        return Prediction(displacement=u, force=pokes.depth.float() * self.more)
 
 
 def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:

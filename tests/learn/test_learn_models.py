@@ -133,12 +133,12 @@ def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, poke
         found = model.decode(encoded, pokes)
     for k in (0, 3):
         one = SinglePoke(model, encoded, int(scene.rigid_index[pokes.geometry[k]]))
-        u, force = one(pokes.start[k], pokes.direction[k], float(pokes.depth[k]), float(pokes.modulus[k]))
-        size = float(found.displacement[k].norm(dim=1).max())
-        assert float((u - found.displacement[k]).norm(dim=1).max()) < 3e-6 * size
+        rod = (pokes.start[k].numpy(), pokes.direction[k].numpy(), float(pokes.depth[k]))
+        u, force = one(*rod, float(pokes.modulus[k]))
+        truth = found.displacement[k].numpy()
+        assert np.abs(u - truth).max() < 3e-6 * np.abs(truth).max()
         assert force == pytest.approx(float(found.force[k]), rel=1e-5)
-        again, _ = one(pokes.start[k], pokes.direction[k], float(pokes.depth[k]), float(pokes.modulus[k]))
-        assert torch.equal(again, u)
+        assert np.array_equal(one(*rod, float(pokes.modulus[k]))[0], u)
 
 
 def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
