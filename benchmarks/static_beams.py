@@ -31,7 +31,7 @@ import numpy as np
 from accuracy_beams import FILE, material
 
 import tisim
-from tisim._beam import _own_layout, _structured_layout
+from tisim._beam_system import _own_layout, _structured_layout
 from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, beam_mesh
 
 Array = np.ndarray[Any, Any]

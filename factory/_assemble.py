@@ -30,7 +30,7 @@ from factory._store import PROVENANCE
 from factory.errors import InputError
 from factory.materials import STORED_LAWS
 from factory.plan import FORMAT, Plan
-from tisim.scene import BoxInclusion, Inclusion, SphereInclusion
+from tisim.bodies import BoxInclusion, Inclusion, SphereInclusion
 
 _RAGGED: dict[Rows, str] = {"frame": "depth", "node": "surface_rest", "triangle": "surface_triangle"}
 

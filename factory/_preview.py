@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from factory._grid import grid_points
 from factory.plan import Plan
-from tisim.scene import BoxInclusion, Inclusion
+from tisim.bodies import BoxInclusion, Inclusion
 
 COLOURS = ("#08306b", "#2171b5", "#6baed6", "#9ecae1", "#c6dbef")
 

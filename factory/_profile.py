@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.scene import BoxInclusion, CylinderInclusion, Inclusion, SphereInclusion
+from tisim.bodies import BoxInclusion, CylinderInclusion, Inclusion, SphereInclusion
 
 LEVELS = 128
 RIGID = 1.0

@@ -18,16 +18,8 @@ from factory._extended import in_one_law
 from factory.errors import InputError
 from factory.materials import Card, card_path, check_law, load_card, material_of
 from factory.recipe import Cube, Cylinder, Recipe, Sphere
-from tisim.scene import (
-    Block,
-    BoxInclusion,
-    CylinderInclusion,
-    Inclusion,
-    Material,
-    Poke,
-    Rod,
-    SphereInclusion,
-)
+from tisim.bodies import Block, BoxInclusion, CylinderInclusion, Inclusion, Rod, SphereInclusion
+from tisim.scene import Material, Poke
 
 FORMAT = 1  # of the store; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")

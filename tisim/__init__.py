@@ -17,32 +17,23 @@ converged: the end sinks by 69 mm
 
 from tisim import export, laws, mesh
 from tisim._specimen import rest_positions
+from tisim.bodies import (
+    Block,
+    BoxInclusion,
+    Circle,
+    CylinderInclusion,
+    Inclusion,
+    Rectangle,
+    Rod,
+    SphereInclusion,
+)
 from tisim.export import surface_triangles, write
 from tisim.laws import Moduli
 from tisim.materials import material_from_moduli
 from tisim.mesh import Mesh
 from tisim.picture import picture
 from tisim.result import Cost, Result, Status
-from tisim.scene import (
-    Beam,
-    Block,
-    BoxInclusion,
-    Circle,
-    Clamps,
-    Coupon,
-    CylinderInclusion,
-    Inclusion,
-    Material,
-    Poke,
-    Press,
-    Rectangle,
-    Rod,
-    Scene,
-    Solver,
-    Specimen,
-    SphereInclusion,
-    Void,
-)
+from tisim.scene import Beam, Clamps, Coupon, Material, Poke, Press, Scene, Solver, Specimen, Void
 from tisim.simulate import simulate
 
 __all__ = [

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim._beam import BeamSystem
+from tisim._beam_system import BeamSystem
 from tisim._body import Body, Layout
 from tisim._newton import Outcome, newton
 from tisim.mesh import Mesh, boundary_facets

@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from tisim import _explicit, _implicit
-from tisim._beam import beam_layout, beam_system
+from tisim._beam_system import beam_layout, beam_system
 from tisim.result import Cost, Result
 from tisim.scene import Beam
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim._beam import BeamSystem, Neighbour, _mixed_newton, beam_system, equilibrium, rod_shape
+from tisim._beam_equilibrium import Neighbour, equilibrium, mixed_newton, rod_shape
+from tisim._beam_system import BeamSystem, beam_system
 from tisim._body import Layout
 from tisim._newton import Outcome
 from tisim._specimen import specimen_layout
@@ -126,7 +127,7 @@ class _Attempt:
         early = scene
         if yields and scene.solver.tolerance < EARLY_TOLERANCE:
             early = replace(scene, solver=replace(scene.solver, tolerance=EARLY_TOLERANCE))
-        outcome = _mixed_newton(early, self.system, x, pressure)
+        outcome = mixed_newton(early, self.system, x, pressure)
         if not yields or outcome.status is not Status.CONVERGED:
             return outcome
         final = early is scene
@@ -142,7 +143,7 @@ class _Attempt:
                 return outcome
             else:
                 start = outcome.x
-            outcome = _mixed_newton(scene, self.system, start, pressure)
+            outcome = mixed_newton(scene, self.system, start, pressure)
             final = True
             if outcome.status is not Status.CONVERGED:
                 return outcome

@@ -63,7 +63,7 @@ def difference(step: float, before: float | None) -> tuple[float, float, float]:
 class ImplicitSystem:
     """The equation of one step, as Newton wants it (see `tisim._newton.System`).
 
-    The element pressures are unknowns of their own (as in `tisim._beam.BeamSystem.free_pressures`), so
+    The element pressures are unknowns of their own (as in `tisim._beam_system.BeamSystem.free_pressures`), so
     that steps are whole and not cut by second-order errors of volume.
     """
 

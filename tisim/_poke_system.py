@@ -12,8 +12,9 @@ from tisim._contact import contact_kernels, pack_rod
 from tisim._hexahedra import TetrahedralParts
 from tisim._krylov import FactorGMRES
 from tisim._quadrature import facet_areas, facet_quadrature
+from tisim.bodies import Rod
 from tisim.mesh import Mesh
-from tisim.scene import Poke, Rod
+from tisim.scene import Poke
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.scene import Rod
+from tisim.bodies import Rod
 
 Array = NDArray[np.float64]
 

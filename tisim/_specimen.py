@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from tisim import _quadrature
 from tisim._body import Layout
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh import Mesh
-from tisim.scene import Beam, Circle, Clamps, Rectangle, Specimen, Void
+from tisim.scene import Beam, Clamps, Specimen, Void
 
 Array = NDArray[np.float64]
 

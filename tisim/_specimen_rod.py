@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._specimen import along, half_sizes, heaviness, scale, skin_factors
+from tisim.bodies import Circle
 from tisim.laws import Moduli
 from tisim.mesh import Mesh
-from tisim.scene import Beam, Circle
+from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 

@@ -10,26 +10,9 @@ import numpy as np
 
 from tisim import laws
 from tisim._specimen import half_sizes, is_ideal, skin_profile
+from tisim.bodies import Block, BoxInclusion, Circle, CylinderInclusion, Rectangle, Rod, SphereInclusion
 from tisim.mesh import Mesh
-from tisim.scene import (
-    Beam,
-    Block,
-    BoxInclusion,
-    Circle,
-    Clamps,
-    Coupon,
-    CylinderInclusion,
-    Material,
-    Poke,
-    Press,
-    Rectangle,
-    Rod,
-    Scene,
-    Solver,
-    Specimen,
-    SphereInclusion,
-    Void,
-)
+from tisim.scene import Beam, Clamps, Coupon, Material, Poke, Press, Scene, Solver, Specimen, Void
 
 LARGEST = 10.0  # of any length [m]: beyond it somebody wrote millimetres
 STEEPEST = 45.0  # of a push against the normal [degrees]

@@ -16,7 +16,8 @@ from factory._grid import SIZE, grid_points, interpolation
 from factory._profile import LEVELS, inside, level_depths, profiles
 from factory._record import first_touch
 from factory._surface import surface_triangles
-from tisim.scene import BoxInclusion, CylinderInclusion, Material, Poke, Rod, SphereInclusion
+from tisim.bodies import BoxInclusion, CylinderInclusion, Rod, SphereInclusion
+from tisim.scene import Material, Poke
 
 BLOCK = (0.1, 0.1, 0.032)
 LINEAR = np.array([[0.3, -0.2, 0.1], [0.05, 0.4, -0.7], [0.2, 0.1, 0.9]])

@@ -21,7 +21,7 @@ from factory.errors import InputError
 from factory.materials import LAWS, load_card
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe, recipe_names
-from tisim.scene import BoxInclusion, CylinderInclusion, SphereInclusion
+from tisim.bodies import BoxInclusion, CylinderInclusion, SphereInclusion
 
 
 def test_the_papers_recipe() -> None:

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesh_checks import assert_conforming, assert_positive, facet_set
 
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh._errors import MeshError
 from tisim.mesh._mesh import boundary_facets
 from tisim.mesh._reference import NODE_PLACES, TET_EDGES
@@ -13,7 +14,6 @@ from tisim.mesh._section import half, moments
 from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, beam_mesh, plane_section
 from tisim.mesh.outline import outline
 from tisim.mesh.quality import quality, volumes
-from tisim.scene import Circle, Rectangle
 
 R = 0.010
 CIRCLE = Circle(radius=R)

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from poke_cases import assert_good, assert_matching_facets, gauss_jacobians, random_poke
 
 from tisim._quadrature import reference
+from tisim.bodies import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion
 from tisim.mesh._errors import MeshError
 from tisim.mesh.poke_block import poke_mesh
-from tisim.scene import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion
 
 BLOCK, ROD = Block(), Rod()
 DOWN, TILTED = (0.0, 0.0, -1.0), (0.6, 0.37, -0.709)

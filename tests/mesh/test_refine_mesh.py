@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesh_checks import assert_conforming, assert_positive, facet_set
 
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh._errors import MeshError
 from tisim.mesh._mesh import Mesh, boundary_facets
 from tisim.mesh._reference import TET_EDGES
@@ -15,7 +16,6 @@ from tisim.mesh.quality import nodal_determinants, quality
 from tisim.mesh.refine import refine, refine_around
 from tisim.mesh.sets import with_facet_set, with_node_set
 from tisim.mesh.smooth import smooth
-from tisim.scene import Circle, Rectangle
 
 CENTRE = (0.025, 0.0, 0.01)
 

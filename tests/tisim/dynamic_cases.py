@@ -9,10 +9,11 @@ from scipy import sparse
 from scipy.sparse.linalg import eigsh
 
 from tisim import _explicit, _implicit
-from tisim._beam import beam_layout, beam_system
+from tisim._beam_system import beam_layout, beam_system
 from tisim._body import Body, Layout
 from tisim._mass import consistent_mass, lumped_mass
-from tisim.scene import Beam, Circle, Material, Solver
+from tisim.bodies import Circle
+from tisim.scene import Beam, Material, Solver
 
 MU, LAM, DENSITY = 40e3, 800e3, 1000.0
 SOFT = Material(law="neo-hookean", parameters={"mu": MU, "lam": LAM}, density=DENSITY)

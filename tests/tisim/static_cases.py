@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tisim import laws
-from tisim._beam import BeamSystem
+from tisim._beam_system import BeamSystem
 from tisim._body import Body, Layout
 from tisim._newton import newton
 from tisim.mesh import Mesh, boundary_facets

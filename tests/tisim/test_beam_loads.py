@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from static_cases import deflection, neo_hookean
 
-from tisim._beam import beam_layout, solve_beam
+from tisim._beam import solve_beam
+from tisim._beam_system import beam_layout
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh import Mesh
 from tisim.mesh.beam import beam_mesh
 from tisim.mesh.quadratic import to_quadratic
-from tisim.scene import Beam, Circle, Material, Rectangle, Solver
+from tisim.scene import Beam, Material, Solver
 
 SOFT = neo_hookean(2e4, 100.0)
 EXACT = Solver(tolerance=1e-9)

@@ -6,10 +6,11 @@ from static_cases import beam_of, deflection, neo_hookean, of_reference, referen
 
 from tisim._beam import solve_beam
 from tisim._body import Body, Layout
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh import Mesh
 from tisim.mesh.beam import beam_mesh
 from tisim.mesh.quadratic import to_quadratic
-from tisim.scene import Beam, Circle, Rectangle
+from tisim.scene import Beam
 
 BEAMS = references("beams.json")["beams"]
 CASES = references("cases.json")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from static_cases import neo_hookean
 
-from tisim import _beam
+from tisim import _beam_equilibrium
 from tisim._beam import solve_beam
 from tisim.result import Status
 from tisim.scene import Beam, Material, Solver
@@ -18,7 +18,7 @@ BEAMS = [("clamped-free", 0.05), ("clamped-free", 0.1), ("clamped-clamped", 0.15
 def test_load_steps_from_rest_give_the_same_answer(supports, length, mu, ratio, monkeypatch):
     scene = Beam(material=neo_hookean(mu, ratio), length=length, supports=supports)
     quick = solve_beam(scene)
-    monkeypatch.setattr(_beam, "rod_shape", lambda *_: None)
+    monkeypatch.setattr(_beam_equilibrium, "rod_shape", lambda *_: None)
     slow = solve_beam(scene)
     assert quick.ok
     assert slow.ok
@@ -33,9 +33,9 @@ def test_load_steps_without_element_pressures(monkeypatch):
     """Where the mixed iteration fails the potential with its line search takes over."""
     scene = Beam(material=neo_hookean(4e4, 100.0), length=0.1, solver=Solver(max_iterations=100))
     quick = solve_beam(scene)
-    monkeypatch.setattr(_beam, "rod_shape", lambda *_: None)
-    failed = _beam.Outcome(quick.mesh.nodes, Status.NOT_CONVERGED, 1.0, 1)
-    monkeypatch.setattr(_beam, "_mixed_newton", lambda *_: failed)
+    monkeypatch.setattr(_beam_equilibrium, "rod_shape", lambda *_: None)
+    failed = _beam_equilibrium.Outcome(quick.mesh.nodes, Status.NOT_CONVERGED, 1.0, 1)
+    monkeypatch.setattr(_beam_equilibrium, "mixed_newton", lambda *_: failed)
     slow = solve_beam(scene)
     assert slow.ok
     size = np.abs(quick.positions - quick.mesh.nodes).max()

@@ -9,10 +9,12 @@ from static_cases import deflection, neo_hookean
 import tisim
 from tisim import _imperfect
 from tisim._batch import make_chunks
-from tisim._beam import beam_layout, solve_beam
+from tisim._beam import solve_beam
+from tisim._beam_system import beam_layout
 from tisim._imperfect import clamp_moments, imperfect_system
+from tisim.bodies import Circle
 from tisim.result import Status
-from tisim.scene import Beam, Circle, Clamps, Material, Solver, Specimen, Void
+from tisim.scene import Beam, Clamps, Material, Solver, Specimen, Void
 
 G, DENSITY = 9.81, 1000.0
 SOFT = neo_hookean(1.5e4, 50.0)
@@ -249,14 +251,14 @@ def test_start_that_fails_does_not_spoil_the_next(monkeypatch):
     layout = beam_layout(first)
     neighbour = _imperfect.imperfect_equilibrium(first, layout).neighbour
     assert neighbour is not None
-    newton, calls = _imperfect._mixed_newton, []
+    newton, calls = _imperfect.mixed_newton, []
 
     def failing(*arguments):
         calls.append(1)
         outcome = newton(*arguments)
         return replace(outcome, status=Status.NOT_CONVERGED) if len(calls) == 2 else outcome
 
-    monkeypatch.setattr(_imperfect, "_mixed_newton", failing)
+    monkeypatch.setattr(_imperfect, "mixed_newton", failing)
     found = _imperfect.imperfect_equilibrium(second, layout, neighbour)
     assert found.outcome.status is Status.CONVERGED
     assert found.counts["steps"] == 1

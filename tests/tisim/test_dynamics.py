@@ -22,10 +22,11 @@ from tisim import _explicit, _implicit
 from tisim._beam import solve_beam
 from tisim._dynamics import solve_dynamic
 from tisim._mass import consistent_mass, lumped_mass
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh.beam import beam_mesh
 from tisim.paper_stop import paper_stop
 from tisim.result import Status
-from tisim.scene import Beam, Circle, Rectangle, Solver
+from tisim.scene import Beam, Solver
 
 METHODS = ["implicit", "explicit"]
 REST = Solver(mass_damping=300.0, until_rest=True, duration=1.0)

@@ -6,7 +6,8 @@ from scipy.integrate import solve_bvp
 from static_cases import deflection, neo_hookean
 
 from tisim._beam import solve_beam
-from tisim.scene import Beam, Circle, Rectangle
+from tisim.bodies import Circle, Rectangle
+from tisim.scene import Beam
 
 LENGTH, RATIO, DENSITY, G = 0.1, 1000.0, 1000.0, 9.81
 

@@ -6,9 +6,11 @@ from scipy.integrate import cumulative_trapezoid
 from static_cases import deflection, neo_hookean
 
 import tisim
-from tisim._beam import beam_layout, solve_beam
+from tisim._beam import solve_beam
+from tisim._beam_system import beam_layout
 from tisim._imperfect import clamp_moments, imperfect_system
-from tisim.scene import Beam, Circle, Rectangle, Specimen, Void
+from tisim.bodies import Circle, Rectangle
+from tisim.scene import Beam, Specimen, Void
 
 MU, RATIO, DENSITY, G = 2e6, 200.0, 1000.0, 9.81
 YOUNG = 9 * RATIO / (3 * RATIO + 1) * MU

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tisim.bodies import BoxInclusion, Inclusion, SphereInclusion
 from tisim.mesh._errors import MeshError
-
-if TYPE_CHECKING:  # tisim.scene imports tisim.mesh
-    from tisim.scene import Inclusion
 
 Floats = NDArray[np.float64]
 
@@ -91,8 +88,6 @@ class Outline:
 
 def outline_of(inclusion: Inclusion, *, size: tuple[float, float, float]) -> Outline:
     """The outline of an inclusion in a block of that size, or a MeshError that says why it cannot be met."""
-    from tisim.scene import BoxInclusion, SphereInclusion
-
     centre = np.array(inclusion.centre, dtype=np.float64)
     if centre.shape != (3,) or not np.isfinite(centre).all():
         raise MeshError(f"inclusion centre: expected three finite coordinates [m], got {inclusion.centre}")

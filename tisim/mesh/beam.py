@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tisim.bodies import Circle, Rectangle
 from tisim.mesh._errors import MeshError
 from tisim.mesh._extrude import extrude, layer_ends
 from tisim.mesh._mesh import ElementKind, Mesh, boundary_facets
 from tisim.mesh._section import Section, check_positive, circle_quadrangles, circle_triangles, half, rectangle
-
-if TYPE_CHECKING:  # the scene needs the mesh, so the mesh must not need the scene
-    from tisim.scene import Circle, Rectangle
 
 # Widths of the layers next to a clamp, against the others. In small strains, with one pressure an
 # element, 2 rings and 7 mm layers, the deflection of the 50, 100 and 150 mm beams comes within -0.34 and
@@ -71,8 +69,6 @@ def beam_mesh(
 
 def plane_section(section: Circle | Rectangle, *, kind: ElementKind, rings: int) -> Section:
     """The whole cross-section as a plane mesh in (y, z), fit for elements of this kind."""
-    from tisim.scene import Circle
-
     if isinstance(section, Circle):
         check_positive(radius=section.radius)
         if kind == "hex8":

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from tisim.bodies import Block, Rod, Vector
 from tisim.mesh._columns import extrude
 from tisim.mesh._errors import MeshError
 from tisim.mesh._inclusion import Outline, outline_of
@@ -14,9 +13,6 @@ from tisim.mesh._mesh import ElementKind, Mesh
 from tisim.mesh._ogrid import Focus, PlaneGrid, o_grid
 from tisim.mesh._reference import is_sound
 from tisim.mesh._snap import Snapped, snap
-
-if TYPE_CHECKING:  # tisim.scene imports tisim.mesh
-    from tisim.scene import Block, Rod, Vector
 
 Floats = NDArray[np.float64]
 

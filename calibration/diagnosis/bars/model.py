@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from calibration.diagnosis.bars._patterns import patterns_of
 from calibration.diagnosis.bars._record import LAST, Record, further, groups_of, records_of
 from calibration.diagnosis.bars._remarks import remarks_on
 from calibration.diagnosis.bars._setting import Setting
+from calibration.diagnosis.bars.advice import advise
 from calibration.diagnosis.bars.effects import EFFECTS, BarEffect
 from calibration.diagnosis.bars.experiments import Release, as_it_is
 from calibration.diagnosis.effect import Candidate
@@ -239,7 +241,7 @@ class BarModel:
         some._whitener = None
         return some
 
-    def released_anew(self, release: Release, state: State) -> BarModel | None:
+    def released_anew(self, release: Release, state: State) -> Self | None:
         """The same bars in another experiment, as a state predicts it, nuisances drawn anew; None where it
         cannot be done."""
         some = copy(self)
@@ -294,8 +296,6 @@ class BarModel:
         return "mm", 1e3
 
     def advice(self, rivals: list[Explanation]) -> str:
-        from calibration.diagnosis.bars.advice import advise
-
         return most_parted(advise(self, rivals)[0], rivals)
 
     def remarks(self) -> list[str]:

@@ -116,7 +116,7 @@ def test_what_is_left_out_has_the_defaults_of_the_format(tmp_path: Path) -> None
     ],
 )
 def test_inclusions(
-    entry: dict[str, Any] | None, inclusion: tisim.scene.Inclusion | None, tmp_path: Path
+    entry: dict[str, Any] | None, inclusion: tisim.bodies.Inclusion | None, tmp_path: Path
 ) -> None:
     made = sample()
     made.poke.pop("inclusion")
