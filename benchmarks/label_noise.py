@@ -114,7 +114,7 @@ def main() -> None:
         for p in track(pokes, description="re-meshed pokes")
     ]
     first, *others = given.refinements
-    console = Console()
+    console = Console(width=160)
     table = Table(title=f"{len(pokes)} pokes against themselves at refinement {first:g}")
     rings = [f"{a:g}-{b:g} mm" for a, b in pairwise(RINGS)]
     names = ["mean mm", "max mm", "tip %", "force %", *rings, "moved mm"]
@@ -126,7 +126,7 @@ def main() -> None:
         nodes = np.mean([run[r].nodes for run in runs])
         means = np.nanmean(rows, axis=0)
         table.add_row(f"{r:g}", f"{nodes:.0f}", str(len(rows)), *(f"{v:.4f}" for v in means), str(early))
-    console.print(table, width=180) if console.width < 180 else console.print(table)
+    console.print(table)
     signed = [
         100 * (run[r].force[k] / run[first].force[k] - 1)
         for run in runs
