@@ -66,6 +66,7 @@ class SinglePoke:
         nothing = torch.zeros(4, weight.shape[1])  # of the direction from the contact, and of the poke
         self._first = torch.cat([mine, nothing, weight[first + seen :]]).contiguous()
         self._own = len(mine)  # the row at which those four begin
+        self._ones = np.ones(weight.shape[1], dtype=np.float32)  # a sum by a product
         # one memory, seen from both sides
         self._rows = np.ones((len(self._first), n), dtype=np.float32)
         self._rows_there, self._first_here = torch.from_numpy(self._rows), self._first.numpy()
@@ -108,15 +109,17 @@ class SinglePoke:
         h = silu(torch.addmm(self._code, self._rows_there.T, self._first), inplace=True)
         h = silu(self._enter(h), inplace=True)
         unit_there, push_there, near_there = (torch.from_numpy(a) for a in (unit, push, near))
-        slope = h
+        slopes: list[Tensor] = []
         for round_ in self._rounds:
-            h, slope = round_(h, self._matrices, unit_there, push_there, near_there[2:])
+            h, slopes = round_(h, self._matrices, unit_there, push_there, near_there[2:])
         out = silu(self._leave(h), inplace=True)
         amounts = torch.addmm(self._out_bias, self._out, out.T).numpy()  # (outputs, n)
         gates, middle = _rod.N_GATES, 3 + self._vectors.shape[1]
         own = amounts[0] * self._normals + amounts[1] * unit + amounts[2] * push[:, None]
         own += (self._vectors * amounts[3:middle]).sum(axis=1)
-        own += (slope.numpy() * amounts[middle:-gates].T).sum(axis=2)
+        for slope, amount in zip(slopes, np.split(amounts[middle:-gates], len(slopes)), strict=True):
+            each = slope.numpy() * np.ascontiguousarray(amount.T)
+            own += (each.reshape(-1, each.shape[2]) @ self._ones[: each.shape[2]]).reshape(own.shape)
         own *= self._rows[0]
 
         soft = float(near[0] @ self._clear)
@@ -206,8 +209,11 @@ def _column(*values: float) -> Floats:
 
 
 def _matrix(operator: Sparse | Gathered) -> Tensor:
+    """Its matrix, with indices of 32 bits, which the product would make of longer ones at every call."""
     assert isinstance(operator, Sparse)
-    return operator.matrix
+    m = operator.matrix
+    rows, columns = m.crow_indices().int(), m.col_indices().int()
+    return torch.sparse_csr_tensor(rows, columns, m.values(), size=m.shape, check_invariants=False)
 
 
 class _Layer:
@@ -226,31 +232,30 @@ class _Round:
     def __init__(self, part: _Messages, n: int) -> None:
         d, hidden = part.directions, part.back.out_features
         self._scales, self._whole = part.scales, part.whole.weight.T.contiguous()
-        weight, bias = part.thin.weight.T, part.thin.bias
-        self._scalar, self._vector = weight[:, :-d].contiguous(), weight[:, -d:].contiguous()
-        self._scalar_bias, self._vector_bias = bias[:-d], bias[-d:]
-        self._mix, self._back = _Layer(part.mix), _Layer(part.back)
+        self._thin, self._mix, self._back = _Layer(part.thin), _Layer(part.mix), _Layer(part.back)
         self._x = torch.empty(n, part.mix.in_features)
-        self._hidden, self._m, self._d = hidden, weight.shape[1] - d, d
+        self._hidden, self._m, self._d = hidden, part.thin.out_features - d, d
 
     def __call__(
         self, h: Tensor, matrices: tuple[tuple[Tensor, Tensor], ...], unit: Tensor, push: Tensor, near: Tensor
-    ) -> tuple[Tensor, Tensor]:
-        """New h (n, hidden), and the slopes (3, n, directions x scales)."""
+    ) -> tuple[Tensor, list[Tensor]]:
+        """New h (n, hidden), and the slopes (3, n, directions) of each scale."""
         n, m, d, x = len(h), self._m, self._d, self._x
         x[:, : self._hidden] = h
-        scalar = torch.addmm(self._scalar_bias, h, self._scalar)
-        vector = torch.addmm(self._vector_bias, h, self._vector)
+        thin = self._thin(h)
+        scalar, vector = thin[:, :m].contiguous(), thin[:, m:].contiguous()
+        u = unit[..., None]
         at, slopes = self._hidden, []
         for k in self._scales:
             mean, slope_of = matrices[k]
             x[:, at : at + m] = torch.mm(mean, scalar)
             slope = torch.mm(slope_of, vector).reshape(3, n, d)
-            torch.sum(slope * unit[..., None], dim=0, out=x[:, at + m : at + m + d])
+            turned = torch.mul(slope[0], u[0], out=x[:, at + m : at + m + d])
+            turned.addcmul_(slope[1], u[1]).addcmul_(slope[2], u[2])
             x[:, at + m + d : at + m + 2 * d] = (push @ slope.reshape(3, -1)).reshape(n, d)
             at += m + 2 * d
             slopes.append(slope)
         whole = near @ h @ self._whole
         mixed = torch.addmm(self._mix.bias + whole[0], x, self._mix.weight)
         new = torch.addmm(h, silu(mixed, inplace=True), self._back.weight).add_(self._back.bias)
-        return new, torch.cat(slopes, dim=2) if len(slopes) > 1 else slopes[0]
+        return new, slopes
