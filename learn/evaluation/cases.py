@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from learn.data import Batch, MemoryDataset, Store
-from learn.metrics import Cases
+from learn.metrics import Cases, join_cases
 from learn.models import Pokes, Prediction, Scene, pokes_of
 
 
@@ -55,8 +55,7 @@ def collect(model: Answers, scene: Scene, store: Store, batches: Iterable[Batch]
                 force_spread=_or_zero(found.force_spread, poke.shape),
             )
         )
-    names = Cases.__dataclass_fields__
-    return Cases(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    return join_cases(parts)
 
 
 def _or_zero(spread: torch.Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float64]:

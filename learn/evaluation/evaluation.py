@@ -10,6 +10,7 @@ import numpy as np
 from learn.baselines import BASELINES
 from learn.data import MemoryDataset, Split, Store, split_pokes
 from learn.errors import InputError
+from learn.evaluation.across import Answered, across_folds
 from learn.evaluation.cases import cases_of
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
 from learn.evaluation.intervals import Coverage, Intervals, coverage, fit_intervals, rank_correlation
@@ -39,8 +40,9 @@ class Evaluation:
     """What was found. models: names of what was trained, in `folds` beside baselines. tables: by name of a
     model, over folds, by softness. deeper: beyond the trained depth.
 
-    clouds: by size of the cloud. intervals: of which run (or runs together). floor_mm: what interpolation of
-    the surface meshes alone is off. cases: of the first run, for pictures.
+    covered, across: by intervals from the run's own validation part, and from the other folds' test parts.
+    intervals: the latter where there are any; of which run (or runs together). clouds: by size of the cloud.
+    floor_mm: what interpolation of the surface meshes alone is off. cases: of the first run, for pictures.
     """
 
     runs: list[Run]
@@ -50,6 +52,7 @@ class Evaluation:
     turned: dict[str, TurnError] = field(default_factory=dict)
     turned_flat: dict[str, TurnError] = field(default_factory=dict)
     covered: dict[str, Covered] = field(default_factory=dict)
+    across: dict[str, Covered] = field(default_factory=dict)
     intervals: list[tuple[Run, Intervals]] = field(default_factory=list)
     clouds: dict[str, dict[str, Value]] = field(default_factory=dict)
     floor_mm: float = float("nan")
@@ -91,6 +94,7 @@ def evaluate(
     found = Evaluation(runs=runs, store=store)
     scene = scene_of(store)
     fitted: set[str] = set()
+    answers: list[Answered] = []
     joined = ensembles(runs) if ensemble else []
     for run, name in [*joined, *((run, run.recipe.model) for run in runs)]:
         split = split_of(store, run.recipe)
@@ -101,6 +105,7 @@ def evaluate(
         found.models += [name] if name not in found.models else []
         if found.cases is None:
             found.cases = cases
+        answers.append(Answered(run, name, cases))
         _look_closer(found, run, name, split, cases, clouds=clouds and not found.clouds)
         key = _part(run.recipe)
         if not baselines or key in fitted:
@@ -112,6 +117,9 @@ def evaluate(
             baseline = kind()
             baseline.fit(train, scene)
             found.folds.setdefault(title, []).append(by_softness(cases_of(baseline, scene, test)))
+    for one, intervals in across_folds(answers):
+        found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one.cases)
+        found.intervals = [(r, intervals if r is one.run else i) for r, i in found.intervals]
     return found
 
 
@@ -146,6 +154,15 @@ def _part(recipe: Recipe) -> str:
     return repr((recipe.fold, recipe.split, recipe.train_softness, recipe.train_depth_mm))
 
 
+def _covered(intervals: Intervals, cases: Cases) -> Covered:
+    return Covered(
+        intervals=intervals,
+        found=coverage(intervals, cases),
+        rank=rank_correlation(intervals, cases),
+        radius_mm=float(intervals.radius_mm(cases).mean()),
+    )
+
+
 def _look_closer(
     found: Evaluation, run: Run, title: str, split: Split, cases: Cases, *, clouds: bool
 ) -> None:
@@ -162,12 +179,7 @@ def _look_closer(
     if len(np.unique(held.poke)) >= 2:
         intervals = fit_intervals(held)
         found.intervals.append((run, intervals))
-        found.covered[name] = Covered(
-            intervals=intervals,
-            found=coverage(intervals, cases),
-            rank=rank_correlation(intervals, cases),
-            radius_mm=float(intervals.radius_mm(cases).mean()),
-        )
+        found.covered[name] = _covered(intervals, cases)
     if run.recipe.train_depth_mm is not None:
         limit = run.recipe.train_depth_mm * 1e-3
         found.deeper[f"{name}, to {run.recipe.train_depth_mm:g} mm"] = summarise(

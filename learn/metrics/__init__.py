@@ -11,6 +11,6 @@ from learn.metrics import (  # noqa: F401, I001
     worst as _worst,
     skill as _skill,
 )
-from learn.metrics._cases import METRICS, Cases, Metric
+from learn.metrics._cases import METRICS, Cases, Metric, join_cases
 
-__all__ = ["METRICS", "Cases", "Metric"]
+__all__ = ["METRICS", "Cases", "Metric", "join_cases"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -47,6 +47,12 @@ class Cases:
     def where(self, keep: NDArray[np.bool_]) -> Cases:
         """Some of the frames."""
         return Cases(**{name: getattr(self, name)[keep] for name in self.__dataclass_fields__})
+
+
+def join_cases(parts: Sequence[Cases]) -> Cases:
+    """The frames of all parts, in their order."""
+    names = Cases.__dataclass_fields__
+    return Cases(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 @dataclass(frozen=True, kw_only=True)

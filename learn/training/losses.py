@@ -33,6 +33,7 @@ def loss_of(
     distance = torch.sqrt(wrong.square().sum(dim=2) + _SMOOTH**2) - _SMOOTH
     away = (scene.points[None] - batch.start[:, None]).square().sum(dim=2).float()
     weight = 1 + recipe.near_weight * torch.exp(-0.5e6 * away / recipe.near_width_mm**2)
+    weight = weight * batch.depth[:, None].float() ** -recipe.depth_power
     displacement = (weight * distance).sum() / weight.sum()
     force = prediction.force.float()
     if recipe.force_loss == "log":

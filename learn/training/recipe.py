@@ -21,7 +21,8 @@ class Recipe(BaseModel):
     falls to 1 % of it over the epochs; warmup: share of all steps over which the rate rises. clip: largest
     norm of the gradient (0: none). average: decay of the weights' running mean, which is what is validated
     and kept (0: the weights themselves). near_weight, near_width_mm: a point at distance r from first touch
-    weighs 1 + near_weight exp(-r^2 / 2 width^2) in the displacement's loss, the mean weighted distance in mm.
+    weighs 1 + near_weight exp(-r^2 / 2 width^2) in the displacement's loss, the mean weighted distance in mm;
+    a frame weighs depth^-depth_power in it: 0 minds millimetres, 1 shares of the depth.
     force_loss: "log" is |ln(predicted / true)|, "square" the squared error in units of the training part's
     root mean square; force_weight: its weight against the displacement's loss. thin: share of the batches
     that see a random 40 to 100 % of the points, so that the model learns other clouds than the grid. data:
@@ -46,6 +47,7 @@ class Recipe(BaseModel):
     average: Share = 0.998
     near_weight: Annotated[float, Field(ge=0, lt=1e4)] = 20.0
     near_width_mm: Positive = 6.0
+    depth_power: Annotated[float, Field(ge=0, le=2)] = 0.0
     force_loss: Literal["log", "square"] = "log"
     force_weight: Annotated[float, Field(ge=0, lt=1e4)] = 0.3
     thin: Share = 0.3

@@ -17,7 +17,7 @@ import learn.evaluate
 import learn.export
 import learn.predict
 import learn.train
-from learn.data import MemoryDataset, open_store
+from learn.data import MemoryDataset, open_store, split_pokes
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
 from learn.evaluation.summary import summarise
 from learn.metrics import METRICS
@@ -82,6 +82,28 @@ def second(store: Path, run: Path) -> Path:
     )
     assert done.exit_code == 0, done.output
     return folder
+
+
+def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
+    """Each run's intervals come from the other folds' test parts, in the tables and in its folder."""
+    runs = [tmp_path / f"fold{k}" for k in range(3)]
+    for fold, folder in enumerate(runs):
+        flags = ("--fold", fold, "--out", folder, "--threads", 1)
+        done = _call(learn.train.app, store, "--recipe", run.parent / "r.yaml", *flags)
+        assert done.exit_code == 0, done.output
+    flags = ("--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "all")
+    done = _call(learn.evaluate.app, *runs, *flags)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "all" / "tables.json").read_text())
+    names = [f"ours, fold {k}" for k in range(3)]
+    assert list(tables["intervals"]) == [*names, *(f"{name}, by the other folds" for name in names)]
+    assert "mean of those by the other folds" in (tmp_path / "all" / "report.html").read_text()
+    tested = [split_pokes(open_store(store), fold=k, train_depth=2.5e-3).test for k in range(3)]
+    poke = open_store(store).frame_poke
+    for fold, folder in enumerate(runs):
+        others = [len(np.unique(poke[rows])) for k, rows in enumerate(tested) if k != fold]
+        kept = json.loads((folder / "intervals.json").read_text())
+        assert kept["pokes"] == sum(others) - sum(others) // 2  # the other half fits the scale
 
 
 def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
