@@ -45,7 +45,10 @@ def main(
     runs: Annotated[list[Path], typer.Argument(help="Folders of runs, trained on one dataset.")],
     dataset: Annotated[str | None, typer.Option(help="The store, if it moved since the training.")] = None,
     transfer: Annotated[
-        bool, typer.Option("--transfer", help="Allow another dataset than the run was trained on.")
+        bool,
+        typer.Option(
+            "--transfer", help="Allow another dataset than the run was trained on: all its unseen shapes."
+        ),
     ] = False,
     baselines: Annotated[bool, typer.Option(help="Fit and show the baselines as well.")] = True,
     clouds: Annotated[bool, typer.Option(help="Show errors on other point clouds as well.")] = True,

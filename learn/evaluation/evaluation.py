@@ -8,12 +8,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store, split_pokes
+from learn.data import MemoryDataset, Split, Store
 from learn.errors import InputError
 from learn.evaluation.across import Answered, across_folds
 from learn.evaluation.cases import cases_of
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
 from learn.evaluation.intervals import Coverage, Intervals, coverage, fit_intervals, rank_correlation
+from learn.evaluation.kept import load_intervals
+from learn.evaluation.parts import parts_of
 from learn.evaluation.summary import Value, by_softness, over_folds, summarise
 from learn.evaluation.symmetry import TurnError, turn_error
 from learn.metrics import Cases
@@ -69,14 +71,6 @@ class Evaluation:
         return joined
 
 
-def split_of(store: Store, recipe: Recipe) -> Split:
-    """The parts that a recipe trains and tests on."""
-    depth = recipe.train_depth_mm * 1e-3 if recipe.train_depth_mm else None
-    return split_pokes(
-        store, fold=recipe.fold, by=recipe.split, train_softness=recipe.train_softness, train_depth=depth
-    )
-
-
 def evaluate(
     runs: list[Run],
     store: Store,
@@ -89,7 +83,8 @@ def evaluate(
     """Answers of every run to its own test part; baselines fitted to each distinct training part.
 
     ensemble: runs of one model and training part, from different seeds, are evaluated as one as well, before
-    they are alone. InputError where no two runs can be joined so.
+    they are alone. InputError where no two runs can be joined so. On another dataset than a run was trained
+    on (`parts_of`) there are no baselines, and the intervals are those that were kept with the run.
     """
     found = Evaluation(runs=runs, store=store)
     scene = scene_of(store)
@@ -97,7 +92,7 @@ def evaluate(
     answers: list[Answered] = []
     joined = ensembles(runs) if ensemble else []
     for run, name in [*joined, *((run, run.recipe.model) for run in runs)]:
-        split = split_of(store, run.recipe)
+        split = parts_of(store, run)
         test = MemoryDataset(store, split.test)
         say(f"{run.folder}: {len(test)} test frames")
         cases = cases_of(run.model, scene, test)
@@ -108,7 +103,7 @@ def evaluate(
         answers.append(Answered(run, name, cases))
         _look_closer(found, run, name, split, cases, clouds=clouds and not found.clouds)
         key = _part(run.recipe)
-        if not baselines or key in fitted:
+        if not baselines or key in fitted or not len(split.train):
             continue
         fitted.add(key)
         train = MemoryDataset(store, split.train)
@@ -117,7 +112,7 @@ def evaluate(
             baseline = kind()
             baseline.fit(train, scene)
             found.folds.setdefault(title, []).append(by_softness(cases_of(baseline, scene, test)))
-    for one, intervals in across_folds(answers):
+    for one, intervals in across_folds([a for a in answers if a.run.uuid == store.uuid]):
         found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one.cases)
         found.intervals = [(r, intervals if r is one.run else i) for r, i in found.intervals]
     return found
@@ -170,14 +165,18 @@ def _look_closer(
     store, scene, model = found.store, scene_of(found.store), run.model
     name = f"{title}, fold {run.recipe.fold}"
     name += f", seed {run.recipe.seed}" if name in found.turned else ""
-    validation = MemoryDataset(store, split.validation)
+    own = store.uuid == run.uuid
+    validation = MemoryDataset(store, split.validation if own else split.test)
     few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
     part = scene.only(few.geometry.numpy())
     found.turned[name] = turn_error(model, part, few)
     found.turned_flat[name] = turn_error(model, part, few, about_normal=True)
-    held = cases_of(model, scene, validation)
-    if len(np.unique(held.poke)) >= 2:
+    intervals: Intervals | None = None
+    if not own:
+        intervals = load_intervals(run)
+    elif len(np.unique((held := cases_of(model, scene, validation)).poke)) >= 2:
         intervals = fit_intervals(held)
+    if intervals is not None:
         found.intervals.append((run, intervals))
         found.covered[name] = _covered(intervals, cases)
     if run.recipe.train_depth_mm is not None:

@@ -13,6 +13,7 @@ import jinja2
 
 from learn.evaluation.evaluation import Covered, Evaluation
 from learn.evaluation.paper import PAPER
+from learn.evaluation.parts import parts_of
 from learn.evaluation.pictures import draw_forces, draw_poke, encoded, ranked_pokes
 from learn.evaluation.summary import Value
 from learn.metrics import METRICS
@@ -182,7 +183,12 @@ def write_report(found: Evaluation, folder: Path) -> None:
     about = [
         ("runs", ", ".join(str(run.folder.name) for run in found.runs)),
         ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes, uuid {store.uuid}"),
-        ("tested on", "; ".join(f"fold {r.recipe.fold}: {', '.join(r.groups['test'])}" for r in found.runs)),
+        (
+            "tested on",
+            "; ".join(
+                f"fold {r.recipe.fold}: {', '.join(parts_of(store, r).groups['test'])}" for r in found.runs
+            ),
+        ),
         (
             "trained on",
             f"{first.statistics.frames} frames, epoch {first.epoch} of {first.recipe.epochs} kept",

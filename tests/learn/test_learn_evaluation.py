@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,15 @@ import learn.export
 import learn.predict
 import learn.train
 from learn.data import MemoryDataset, open_store, split_pokes
+from learn.errors import InputError
+from learn.evaluation import parts_of
 from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
 from learn.evaluation.summary import summarise
 from learn.metrics import METRICS
 from learn.models import Ensemble, Model, Prediction, pokes_of, scene_of
 from learn.models.scene import Pokes, Scene
 from learn.scene_file import load_poke, scene_and_poke
+from learn.training import load_run
 
 POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
 
@@ -252,12 +256,31 @@ def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
     assert grid_floor_mm(store, rows) < 1e-6
 
 
-@pytest.mark.slow
 def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
-    other = write_store(tmp_path / "o.zarr", seed=4, sites=3, frames=2)
-    flags = ("--transfer", "--no-baselines", "--no-clouds", "--threads", 1)
+    """All pokes of shapes that the run has not seen, no others; its kept intervals are not changed."""
+    other = write_store(tmp_path / "o.zarr", seed=4, shapes=5, sites=1, frames=2)
+    flags = ("--transfer", "--no-clouds", "--threads", 1)
+    own = _call(
+        learn.evaluate.app, run, "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "own"
+    )
+    assert own.exit_code == 0, own.output
+    kept = (run / "intervals.json").read_bytes()
+    refused = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out")
+    assert refused.exit_code == 2
+    assert not (tmp_path / "out").exists()
     allowed = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out", *flags)
     assert allowed.exit_code == 0, allowed.output
+    tables = json.loads((tmp_path / "out" / "tables.json").read_text())
+    assert list(tables["tables"]) == ["ours"]
+    assert list(tables["intervals"]) == ["ours, fold 0"]
+    assert (run / "intervals.json").read_bytes() == kept
+    store, loaded = open_store(other), load_run(run)
+    tested = np.unique(store.shape[store.frame_poke[parts_of(store, loaded).test]])
+    assert {store.shapes[k] for k in tested} == {*loaded.groups["test"], "shape-3", "shape-4"}
+    few = write_store(tmp_path / "few.zarr", seed=5, shapes=3)
+    everything = replace(loaded, groups={**loaded.groups, "train": ["shape-0", "shape-1", "shape-2"]})
+    with pytest.raises(InputError, match="trained on all its shapes"):
+        parts_of(open_store(few), everything)
 
 
 @pytest.mark.slow
