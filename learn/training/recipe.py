@@ -38,16 +38,16 @@ class Recipe(BaseModel):
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     train_softness: list[str] | None = None
     train_depth_mm: Positive | None = None
-    epochs: Annotated[int, Field(ge=1, le=100_000)] = 60
-    batch: Annotated[int, Field(ge=1, le=65536)] = 32
+    epochs: Annotated[int, Field(ge=1, le=100_000)] = 30
+    batch: Annotated[int, Field(ge=1, le=65536)] = 16
     rate: Positive = 2e-3
     schedule: Literal["cosine", "constant"] = "cosine"
     warmup: Share = 0.03
     clip: Annotated[float, Field(ge=0)] = 1.0
     average: Share = 0.998
-    near_weight: Annotated[float, Field(ge=0, lt=1e4)] = 20.0
-    near_width_mm: Positive = 6.0
-    depth_power: Annotated[float, Field(ge=0, le=2)] = 0.0
+    near_weight: Annotated[float, Field(ge=0, lt=1e4)] = 60.0
+    near_width_mm: Positive = 4.0
+    depth_power: Annotated[float, Field(ge=0, le=2)] = 0.5
     force_loss: Literal["log", "square"] = "log"
     force_weight: Annotated[float, Field(ge=0, lt=1e4)] = 0.3
     thin: Share = 0.3
@@ -58,7 +58,16 @@ class Recipe(BaseModel):
 
 RECIPES: dict[str, Recipe] = {
     "fast": Recipe(),
-    "quick": Recipe(name="quick", split="site", epochs=25, batch=10, average=0.98),
+    "quick": Recipe(
+        name="quick",
+        split="site",
+        epochs=25,
+        batch=10,
+        average=0.98,
+        near_weight=20.0,
+        near_width_mm=6.0,
+        depth_power=0.0,
+    ),
     # Adam 1e-4, batches of 64, 200 epochs, as published; the weights of the loss are not public
     "paper": Recipe(
         name="paper",
@@ -72,6 +81,7 @@ RECIPES: dict[str, Recipe] = {
         average=0.0,
         near_weight=4.0,
         near_width_mm=10.0,
+        depth_power=0.0,
         force_loss="square",
         force_weight=0.1,
         thin=0.0,
