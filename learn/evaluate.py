@@ -94,7 +94,7 @@ def main(
         for row in rows:
             table.add_row(*row)
         console.print(table)
-    console.print(f"{folder}: report.html, tables.json")
+    console.print(f"{folder}: report.html, tables.json, pictures")
 
 
 if __name__ == "__main__":

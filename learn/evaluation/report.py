@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from itertools import pairwise
 from math import inf, isfinite
@@ -127,7 +128,7 @@ def interval_table(found: Evaluation) -> Table:
 
 
 def write_report(found: Evaluation, folder: Path) -> None:
-    """FOLDER/report.html and FOLDER/tables.json."""
+    """FOLDER/report.html, tables.json and the pictures: best.png, median.png, worst.png, force.png."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "tables.json").write_text(json.dumps(as_json(found), indent=1) + "\n", encoding="utf-8")
     store, first = found.store, found.runs[0]
@@ -137,6 +138,8 @@ def write_report(found: Evaluation, folder: Path) -> None:
         for name, poke in ranked_pokes(found.cases).items()
     ]
     pictures.append(("force against depth", encoded(draw_forces(found.cases))))
+    for (_, picture), name in zip(pictures, ("best", "median", "worst", "force"), strict=True):
+        (folder / f"{name}.png").write_bytes(base64.b64decode(picture))
     many = len(found.runs) > 1
     spread = (
         "± is the standard deviation over runs"

@@ -41,7 +41,10 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run") / "run"
     recipe = folder.parent / "r.yaml"
-    recipe.write_text("name: small\nepochs: 3\nbatch: 8\naverage: 0.9\ntrain_depth_mm: 2.5\n")
+    recipe.write_text(
+        "name: small\nepochs: 3\nbatch: 8\naverage: 0.9\ntrain_depth_mm: 2.5\n"
+        "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"  # minds the mean, which is asked for below
+    )
     done = _call(learn.train.app, store, "--recipe", recipe, "--out", folder, "--threads", 1)
     assert done.exit_code == 0, done.output
     return folder
@@ -57,6 +60,8 @@ def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert done.exit_code == 0, done.output
     html = (run / "evaluation" / "report.html").read_text()
     assert html.count("data:image/png;base64") == 4
+    for name in ("best", "median", "worst", "force"):
+        assert (run / "evaluation" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     for words in ("analytic kernel", "zero displacement", "Symmetry", "Intervals", "Deeper"):
         assert words in html
     tables = json.loads((run / "evaluation" / "tables.json").read_text())
