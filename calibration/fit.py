@@ -73,7 +73,10 @@ def main(
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
     ] = "likelihood",
     rig: Annotated[
-        Path | None, typer.Option(help="rig.yaml of a diagnosis: faults of rig and camera to correct for.")
+        Path | None,
+        typer.Option(
+            help="rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for."
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")

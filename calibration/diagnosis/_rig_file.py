@@ -2,19 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from calibration.diagnosis.beams import EFFECTS
+from calibration.diagnosis.beams import EFFECTS, BeamEffect
+from calibration.diagnosis.effect import Effect
 from calibration.experiment import Strict, say
 
 FORMAT = 1
-USE = (
-    "Corrects later calibrations of beams on this rig (calibration.fit --rig rig.yaml). It belongs to no"
-    " material: it must not enter a dataset, and factory.build refuses it."
-)
+DIGITS = 1e-5  # what six digits, as files hold numbers, may move one by
+
+Corrects = Literal["outlines", "nothing"]
+_NO_DATASET = "It belongs to no material: it must not enter a dataset, and factory.build refuses it."
+USES: dict[Corrects, str] = {
+    "outlines": (
+        "Corrects later calibrations of photographed beams on this rig (calibration.fit --rig rig.yaml)."
+        f" {_NO_DATASET}"
+    ),
+    "nothing": (
+        "A record, which no command reads: calibration.fit --rig corrects outlines of photographed beams, and"
+        f" this was found on other measurements. The cards beside it allow for it. {_NO_DATASET}"
+    ),
+}
+
+
+def corrects(effects: Iterable[Effect]) -> Corrects:
+    """What a rig's file with these effects corrects: a fit knows how effects on photographed beams enter its
+    scenes and pictures; those of bars, coupons, pressed cylinders and pokes only their diagnosis knows."""
+    return "outlines" if all(isinstance(e, BeamEffect) for e in effects) else "nothing"
+
 
 Text = Annotated[str, Field(min_length=1, max_length=300)]
 Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
@@ -53,7 +72,7 @@ class RigEffect(Strict):
             raise say("parameters", f"expected {effect.parameter} of {self.effect}, and no other")
         low, high = (effect.in_file(b) for b in effect.bounds)
         value = self.parameters[effect.parameter].value
-        if not low <= value <= high:
+        if not low - DIGITS * abs(low) <= value <= high + DIGITS * abs(high):
             raise say(
                 f"parameters.{effect.parameter}.value", f"expected {low:.4g} to {high:.4g}, got {value:.4g}"
             )
@@ -68,16 +87,30 @@ class Covariance(Strict):
 
 
 class RigFile(Strict):
-    """gain: on data that the fit had not seen."""
+    """corrects: what later calibrations can use it for; a file without it is of photographed beams, or older
+    than it. gain: on data that the fit had not seen."""
 
     format: Literal[1]
     experiment: str
     experiment_sha256: Hash
     base_law: Text
+    corrects: Literal["outlines"] = "outlines"
     use: Text
     effects: Annotated[tuple[RigEffect, ...], Field(min_length=1)]
     covariance: Covariance
     gain: dict[str, float | str | None] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_record(cls, data: Any) -> Any:
+        """Before its effects are looked at: some have the names of a beam's."""
+        if isinstance(data, dict) and data.get("corrects") == "nothing":
+            raise say(
+                "corrects",
+                "expected outlines, got nothing: this was not found on photographed beams, and is a"
+                " record that no command reads",
+            )
+        return data
 
     @model_validator(mode="after")
     def _covariance_of_the_effects(self) -> Self:

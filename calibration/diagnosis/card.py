@@ -1,7 +1,7 @@
 """Extended cards: what a diagnosis found, in the form that `factory.build` and `calibration.fit` read.
 
 One MATERIAL.yaml a material, as `calibration.fit` writes it, with the specimen's effects; and rig.yaml, where
-rig, camera or simulator are at fault.
+rig, camera or simulator are at fault. It says itself whether `calibration.fit` reads it, or nothing does.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from calibration.diagnosis._card_numbers import (
     rounded,
     valid_range,
 )
-from calibration.diagnosis._rig_file import FORMAT, USE
+from calibration.diagnosis._rig_file import FORMAT, USES, corrects
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.verdict import Diagnosis
 from calibration.errors import InputError
@@ -102,12 +102,15 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
 
 def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
     covariance, names = file_covariance(diagnosis)
+    candidates = chosen_fit(diagnosis).candidates
+    said = corrects(diagnosis.effects[candidates[k].effect] for k in at_fault)
     content = {
         "format": FORMAT,
         "experiment": experiment.name,
         "experiment_sha256": experiment.digest,
         "base_law": BASE,
-        "use": USE,
+        "corrects": said,
+        "use": USES[said],
         "effects": [_entry(k, diagnosis, experiment) for k in at_fault],
         "covariance": {
             "names": [names[k] for k in at_fault],

@@ -96,7 +96,8 @@ class Rig:
 
 
 def read_rig(path: Path) -> Rig:
-    """A rig.yaml. InputError, in one sentence, names the key where it cannot be used; OSError as it comes."""
+    """Of a file on photographed beams. InputError, in one sentence, names the key where it cannot be used, as
+    in a record of other measurements; OSError as it comes."""
     content = path.read_bytes()
     file = parse(content, path, RigFile)
     effects = [EFFECTS[e.effect] for e in file.effects]

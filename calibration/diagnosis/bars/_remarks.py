@@ -8,7 +8,7 @@ from calibration.diagnosis.bars._record import FIRST, Record
 
 
 def remarks_on(records: Sequence[Record], near: bool) -> list[str]:
-    """Sentences: what was left out, what was taken for granted."""
+    """Sentences: what was left out, what was taken for granted, what the verdict is good for."""
     found = [
         f"of each trial the first {FIRST:g} periods after the release are left out, since no hand lets go in"
         " an instant; where and when it let go is free",
@@ -28,4 +28,8 @@ def remarks_on(records: Sequence[Record], near: bool) -> list[str]:
             f"{', '.join(silent)}: no sample before the release, so where markers are counted from is"
             " not known"
         )
+    found.append(
+        "a fault of rig or cameras, where one is named, is on record in cards/rig.yaml, which no command"
+        " reads: calibration.fit --rig corrects outlines of photographed beams"
+    )
     return found

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from calibration.diagnosis.report._units import quantity_and_unit
-from calibration.diagnosis.report._words import MEANING, SUSPECT, chance, pattern, scope
+from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
 from calibration.diagnosis.verdict import Diagnosis
 from calibration.report import NOTHING, Cell, significant, with_sd
 
@@ -33,7 +33,7 @@ def cause_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
                 Cell(text="; ".join(text for text, _ in values), value=values[0][1], mark="chosen"),
                 Cell(text=_confidence(cause["confidence"]), value=cause["confidence"]),
                 Cell(text=effect.belongs_to),
-                Cell(text=MEANING[effect.belongs_to]),
+                Cell(text=meaning(effect)),
             ]
         )
     return rows

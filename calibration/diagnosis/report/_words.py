@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from calibration.diagnosis.effect import Scope
+from calibration.diagnosis._rig_file import corrects
+from calibration.diagnosis.effect import Effect, Scope
 from calibration.diagnosis.null import EVERYTHING
 from calibration.report import significant
 
@@ -14,6 +15,11 @@ MEANING: dict[Scope, str] = {
     "camera": "a fault of the camera: it corrects the calibration, and must not enter a simulated dataset",
     "simulator": "a fault of the simulator: cure it there; it must not enter a simulated dataset",
 }
+
+UNREAD = (
+    "a fault of the {}: the modulus beside it allows for it, later calibrations are not corrected by it"
+    " (rig.yaml is a record); it must not enter a simulated dataset"
+)
 
 HEADLINE = {
     "none": "No cause to name",
@@ -34,6 +40,13 @@ _PATTERNS = {
 def pattern(name: str) -> str:
     """A set of patterns for people; what a domain calls it where it is not known here."""
     return _PATTERNS.get(name, name)
+
+
+def meaning(effect: Effect) -> str:
+    """What it means that an effect belongs where it does."""
+    if effect.belongs_to in ("rig", "camera") and corrects([effect]) == "nothing":
+        return UNREAD.format(effect.belongs_to)
+    return MEANING[effect.belongs_to]
 
 
 def scope(at: str) -> str:

@@ -10,8 +10,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+import yaml
+from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 from let_go_bars import Truth, write_bars
 from matplotlib.image import imread
+from typer.testing import CliRunner
 
 from calibration.diagnosis.bars import BarModel
 from calibration.diagnosis.card import write_cards
@@ -19,6 +22,7 @@ from calibration.diagnosis.report import noise_of, pictures_of
 from calibration.diagnosis.run import diagnose
 from calibration.diagnosis.verdict import Diagnosis
 from calibration.experiment import Experiment, read
+from calibration.fit import app as fit
 
 CLEAN = Truth()
 YIELDING = Truth(clamp=0.1)
@@ -129,3 +133,29 @@ def test_cards_of_a_bar(tmp_path: Path) -> None:
     _, found = diagnosed(YIELDING)
     names = [p.name for p in write_cards(tmp_path / "more", found, made(YIELDING))]
     assert names == ["S0.yaml", "rig.yaml"]
+
+
+def test_a_rig_of_bars_is_a_record_and_corrects_no_photograph(tmp_path: Path) -> None:
+    """Its clamp-compliance has the name of a beam's, and would be taken for one."""
+    model, found = diagnosed(YIELDING)
+    _, path = write_cards(tmp_path / "cards", found, made(YIELDING))
+    rig = yaml.safe_load(path.read_text(encoding="utf-8"))
+    assert "clamp-compliance" in [e["effect"] for e in rig["effects"]]
+    assert rig["corrects"] == "nothing"
+    assert rig["use"].startswith("A record, which no command reads")
+    (said,) = [r for r in model.remarks() if "rig.yaml, which no command reads" in r]
+    assert said in found.notes
+    x = np.linspace(1.0, 45.0, 30)
+    edges = [np.column_stack([x, np.full_like(x, side)]) for side in (10.0, -10.0)]
+    beam = write_experiment(
+        tmp_path / "beam",
+        [beam_entry("a", free_length_mm=50.0, captures=[capture_entry(10.0, "a.csv")])],
+        tables={"a.csv": outline_columns(*edges)},
+    )
+    out = tmp_path / "out"
+    arguments = [str(beam), "--rig", str(path), "--out", str(out)]
+    ended = CliRunner().invoke(fit, arguments, env={"COLUMNS": "1000"})
+    assert ended.exit_code == 2
+    text = " ".join((ended.stdout + ended.stderr).split())
+    assert f"{path}: key corrects: expected outlines, got nothing: this was not found on photographed" in text
+    assert not out.exists()
