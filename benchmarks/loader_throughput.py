@@ -25,10 +25,10 @@ from learn.data._source import group_here
 
 # name, frames a chunk, frames a shard, codec of Blosc (None: uncompressed), shuffle
 LAYOUTS: list[tuple[str, int, int, str | None, str]] = [
-    ("256 / 1024, zstd shuffle (the factory's)", 256, 1024, "zstd", "shuffle"),
+    ("256 / 1024, zstd shuffle", 256, 1024, "zstd", "shuffle"),
     ("64 / 1024, zstd shuffle", 64, 1024, "zstd", "shuffle"),
     ("1024 / 1024, zstd shuffle", 1024, 1024, "zstd", "shuffle"),
-    ("256 / 1024, lz4 shuffle", 256, 1024, "lz4", "shuffle"),
+    ("256 / 1024, lz4 shuffle (the factory's)", 256, 1024, "lz4", "shuffle"),
     ("256 / 1024, lz4 bitshuffle", 256, 1024, "lz4", "bitshuffle"),
     ("256 / 1024, uncompressed", 256, 1024, None, "shuffle"),
 ]
@@ -61,8 +61,8 @@ def store_of(folder: Path, data: np.ndarray[Any, Any]) -> Store:
     points = np.column_stack([flat, np.zeros(1024)])
     return Store(
         location=str(folder), attributes={}, points=points, normals=np.repeat(three, 1024, axis=0),
-        profile=np.zeros((1, 1024, 128), dtype=np.uint8), level_depth=np.zeros(128), rod_radius=2.5e-3,
-        done=one.astype(bool), shape=zero, softness=zero, geometry=zero, modulus=one, direction=three,
+        profile=np.zeros((1, 1024, 128), dtype=np.uint8), level_depth=np.zeros(128),
+        rod_radius=2.5e-3, rod_edge=1e-3, done=one.astype(bool), shape=zero, softness=zero, geometry=zero, modulus=one, direction=three,
         path_start=three, frame_start=zero, frame_count=np.array([frames]),
         frame_poke=np.zeros(frames, dtype=np.int64), depth=np.full(frames, 1e-3),
         rod_force=np.repeat(three, frames, axis=0),

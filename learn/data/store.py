@@ -87,6 +87,12 @@ class Store:
         array: Any = group_here(self.location)["grid_displacement"]
         return int((array.shards or array.chunks)[0])
 
+    @property
+    def chunk(self) -> int:
+        """Frames that are decompressed together."""
+        array: Any = group_here(self.location)["grid_displacement"]
+        return int(array.chunks[0])
+
     def displacement(self, rows: slice, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
         """Displacement [m] of the grid points in these frames, (frames, n, 3); out: room for it, optional.
 
