@@ -62,8 +62,8 @@ def store_of(folder: Path, data: np.ndarray[Any, Any]) -> Store:
     return Store(
         location=str(folder), attributes={}, points=points, normals=np.repeat(three, 1024, axis=0),
         profile=np.zeros((1, 1024, 128), dtype=np.uint8), level_depth=np.zeros(128),
-        rod_radius=2.5e-3, rod_edge=1e-3, done=one.astype(bool), shape=zero, softness=zero, geometry=zero, modulus=one, direction=three,
-        path_start=three, frame_start=zero, frame_count=np.array([frames]),
+        rod_radius=2.5e-3, rod_edge=1e-3, done=one.astype(bool), shape=zero, softness=zero, geometry=zero,
+        modulus=one, direction=three, path_start=three, frame_start=zero, frame_count=np.array([frames]),
         frame_poke=np.zeros(frames, dtype=np.int64), depth=np.full(frames, 1e-3),
         rod_force=np.repeat(three, frames, axis=0),
     )  # fmt: skip
