@@ -10,16 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation, Names, confidence, explain, rivals
 from calibration.diagnosis.fitting import Fit, fit
 from calibration.diagnosis.nested import Linear, Nested, State
 from calibration.diagnosis.null import Departure, Null
 from calibration.diagnosis.pairs import best_pairs
+from calibration.diagnosis.places import settled
 from calibration.diagnosis.screening import Screen, screen
 
 Array = NDArray[np.float64]
 PERHAPS = 0.1  # chance of a second cause by the baseline's columns, below which it is looked for properly
 HOPELESS = 0.35  # of the best promise: a candidate that promises less is not fitted
+PLACED = 3  # pairs of which a cause is moved to where it sits: the best
 FAR = 0.05  # of ln G: what was taken so far from the fit's end is taken anew
 Verdict = Literal["none", "found", "ambiguous", "unexplained"]
 Tell = Callable[[str], None]
@@ -88,7 +91,10 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
         found = explain(model, baseline, (c,), [float(screened.amplitudes(linear.z)[k])], null)
         if found is not None:
             singles.append(found)
-    singles.sort(key=lambda e: e.score)
+    enough = baseline.chi2 - gains.threshold(rules.alarm)
+    singles, moved = _placed(model, singles, [e for e in singles if e.fit.chi2 < enough], null, tell)
+    # a second cause is sought beside the first where that sits
+    screened = replace(screened, candidates=tuple(moved.get(c, c) for c in screened.candidates))
     gain = max((baseline.chi2 - e.fit.chi2 - e.choice for e in singles), default=0.0)
     chance = gains.chance(gain)
 
@@ -113,6 +119,9 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
     else:
         tell("looking for two causes that hide each other")
         pairs = _hidden(model, baseline, screened, linear, null, rules, tell)
+    where = set(moved.values())
+    loose = [e for e in pairs if any(c.place is not None and c not in where for c in e.candidates)]
+    pairs, _ = _placed(model, pairs, sorted(loose, key=lambda e: e.score)[:PLACED], null, tell)
     both = sorted(singles + pairs, key=lambda e: e.score)
     if (chance > rules.alarm and not pairs) or both[0].departure.p < rules.unlike:
         return finding("unexplained", both, False)
@@ -133,6 +142,23 @@ def calibrated(model: Nested) -> Fit:
         if moved < FAR:
             break
     return found
+
+
+def _placed(
+    model: Nested, explanations: Sequence[Explanation], some: Sequence[Explanation], null: Null, tell: Tell
+) -> tuple[list[Explanation], dict[Candidate, Candidate]]:
+    """All explanations, best first, causes of some of them moved to where they sit; and what moved where."""
+    found: list[Explanation] = []
+    moved: dict[Candidate, Candidate] = {}
+    for e in explanations:
+        if e in some and any(c.place is not None for c in e.candidates):
+            tell(f"looking where it sits: {e.fit.reports()}")
+            there = settled(model, e, null)
+            moved |= dict(zip(e.candidates, there.candidates, strict=True))
+            found.append(there)
+        else:
+            found.append(e)
+    return sorted(found, key=lambda e: e.score), moved
 
 
 def _shortlist(screened: Screen, z: Array, count: int, *, at_least: float) -> list[int]:
