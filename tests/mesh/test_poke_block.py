@@ -98,7 +98,7 @@ def test_any_poke_gets_a_good_mesh(seed):
     case = random_poke(np.random.default_rng(seed))
     mesh = poke_mesh(**case, rod=ROD)
     assert_good(mesh, case["block"])
-    # layers are fewer where a large sphere leaves little above it; in plane nothing is coarser than without one
+    # layers are fewer where a large sphere leaves little above it; in plane nothing is coarser than without
     plain = poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD)
     assert len(mesh.node_sets["top"]) >= len(plain.node_sets["top"])
     assert mesh.n_nodes < 16_000
