@@ -200,6 +200,10 @@ class PokeSystem:
         )  # fmt: skip
         return float(np.linalg.norm(self._free(total)))
 
+    def rod_force(self) -> float:
+        """Size of the force on the rod, from the last residual or linearisation [N]."""
+        return float(np.linalg.norm(self.report[:3]))
+
     def advance(self, x: Array, step: Array) -> Array:
         moved = x.copy()
         moved[self.layout.pattern.free] += step
