@@ -5,6 +5,7 @@ from calibration.search.guess import guess
 from calibration.search.identify import Estimate, Identification, identify
 from calibration.search.polish import Polished, polish
 from calibration.search.problem import Objective, Problem
+from calibration.search.profile import profile
 
 __all__ = [
     "CmaOptions",
@@ -18,5 +19,6 @@ __all__ = [
     "guess",
     "identify",
     "polish",
+    "profile",
     "search",
 ]

@@ -19,11 +19,13 @@ Seen = Literal["identified", "weak", "not identified", "at a bound"]
 PRIOR_SHARE = 0.7
 WEAK, UNSEEN = 0.15, 0.5
 
+FLAT = 12.0**-0.5  # sd of a belief that is flat over a range, as a part of the range
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Estimate:
-    """value with its 95 % interval [low, high] (SI); sd: of its logarithm where relative, else of itself;
-    seen: what the data say of it."""
+    """value with its 95 % interval [low, high] (SI); sd: of its logarithm where relative, else of itself,
+    never more than that of a flat belief over its bounds; seen: what the data say of it."""
 
     name: str
     unit: str
@@ -61,14 +63,15 @@ def identify(
     data = jacobian.T @ jacobian - prior
     bounds = parametrisation.bounds
     span = bounds[:, 1] - bounds[:, 0]
-    # a flat prior over the bounds keeps directions that nobody sees finite
-    floor = np.diag((span / np.sqrt(12.0)) ** -2.0)
+    # keeps directions that nobody sees finite, and takes next to nothing off what the data say of the others
+    floor = np.diag(span**-2.0)
     scale = max(1.0, reduced_chi2)
     covariance = np.asarray(np.linalg.inv(data / scale + prior + floor))
     estimates = []
     for i, c in enumerate(parametrisation.coordinates):
-        sd = float(np.sqrt(covariance[i, i]))
-        low, high = np.clip([u[i] - 1.96 * sd, u[i] + 1.96 * sd], *bounds[i])
+        wide = float(np.sqrt(covariance[i, i]))
+        low, high = np.clip([u[i] - 1.96 * wide, u[i] + 1.96 * wide], *bounds[i])
+        sd = min(wide, FLAT * float(span[i]))
         estimates.append(
             Estimate(
                 name=c.name,
@@ -78,7 +81,7 @@ def identify(
                 low=c.value(low),
                 high=c.value(high),
                 relative=c.log,
-                seen=_seen(sd, prior_sd[i], span[i], u[i], bounds[i], c.log),
+                seen=_seen(sd, prior_sd[i], u[i], bounds[i], yardstick(parametrisation, i, u[i])),
             )
         )
     return Identification(
@@ -90,11 +93,18 @@ def identify(
     )
 
 
-def _seen(sd: float, prior: float, span: float, u: float, bounds: Array, log: bool) -> Seen:
+def yardstick(parametrisation: Parametrisation, i: int, u: float) -> float:
+    """What a coordinate's sd is compared with: its value, or a fifth of its range where that is more; 1 for
+    a logarithm."""
+    low, high = parametrisation.bounds[i]
+    return 1.0 if parametrisation.coordinates[i].log else max(abs(u), 0.2 * (high - low))
+
+
+def _seen(sd: float, prior: float, u: float, bounds: Array, unit: float) -> Seen:
+    span = bounds[1] - bounds[0]
     if min(u - bounds[0], bounds[1] - u) < AT_BOUND * span:
         return "at a bound"
-    unit = 1.0 if log else max(abs(u), 0.2 * span)
-    if sd > PRIOR_SHARE * min(prior, span / np.sqrt(12.0)) or sd > UNSEEN * unit:
+    if sd > PRIOR_SHARE * min(prior, FLAT * span) or sd > UNSEEN * unit:
         return "not identified"
     return "weak" if sd > WEAK * unit else "identified"
 

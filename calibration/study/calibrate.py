@@ -13,7 +13,17 @@ from numpy.typing import NDArray
 
 from calibration.outlines import OutlineObjective
 from calibration.parameters import Parametrisation
-from calibration.search import CmaOptions, Generation, Polished, Problem, guess, identify, polish, search
+from calibration.search import (
+    CmaOptions,
+    Generation,
+    Polished,
+    Problem,
+    guess,
+    identify,
+    polish,
+    profile,
+    search,
+)
 from calibration.study.calibration import Calibration, Status
 from calibration.study.heldout import held_out
 from calibration.study.measurements import Measurements
@@ -199,7 +209,7 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished) -> Calibratio
     known = identify(problem.parametrisation, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
     return replace(
         fitted,
-        estimates=known.estimates,
+        estimates=profile(problem, end, known),
         blind=known.blind,
         shear_modulus_sd=known.shear_modulus_sd,
     )

@@ -58,6 +58,16 @@ def test_settled_markers_say_the_modulus(tmp_path: Path) -> None:
     assert found.shear_modulus == pytest.approx(young / 3.0, rel=0.06)
 
 
+def test_wide_intervals_are_those_of_the_likelihood(tmp_path: Path) -> None:
+    """A Neo-Hookean strip: chains that lock early are excluded, by less than linear theory says."""
+    data = measurements(read(mixed(tmp_path, kinds="coupon")), "S0", workers=1)
+    found = calibrate(parametrisation("arruda-boyce"), data)
+    (locking,) = [e for e in found.estimates if e.name == "locking"]
+    assert locking.seen != "identified"
+    assert locking.low < locking.value <= locking.high
+    assert np.log(locking.value / locking.low) < 0.8 * 1.96 * locking.sd
+
+
 def test_nothing_to_fit_is_one_sentence(tmp_path: Path) -> None:
     folder = mixed(tmp_path, kinds="coupon")
     with pytest.raises(InputError, match="expected at least one beam with a traced outline"):
