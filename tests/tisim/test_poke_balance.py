@@ -37,7 +37,7 @@ class Springs:
     def linearise(self, x: Array) -> tuple[Array, float]:
         return self.residual(x)
 
-    def step(self, residual: Array, *, forcing: float) -> Array:
+    def step(self, residual: Array, *, forcing: float) -> Array:  # noqa: ARG002
         return -0.5 * residual
 
     def advance(self, x: Array, step: Array) -> Array:
