@@ -23,8 +23,8 @@ class Fidelity:
 # What the search's mesh gets wrong (1.2 % of the deflection at most, waves of 10 to 20 micrometres along a
 # strongly bent edge) is small and hardly depends on the material, but nine photographs' likelihood sees it.
 # Of what they correct, the reference's own error is a fifth at most (15 micrometres on the 100 mm beam): its
-# layers matter more than its rings. With 2.5 mm and 4 rings it cost 1.7 times as much, left the beams of
-# another solver with 2 to 40 more of chi-square, and the second constant of Mooney-Rivlin a third of its sd off.
+# layers matter more than its rings. With 2.5 mm and 4 rings it cost 1.7 times as much, left another solver's
+# beams with 2 to 40 more of chi-square, and the second constant of Mooney-Rivlin a third of its sd off.
 COARSE = Fidelity(rings=1, solver=Solver(max_iterations=12))
 REFERENCE = Fidelity(layer=0.00175, rings=3, solver=Solver(max_iterations=12))
 
