@@ -283,3 +283,17 @@ def test_photographs_share_what_they_can(tmp_path: Path) -> None:
     creeping = model.results(State(u=STATE.u, amplitudes={Candidate(effect="creep"): 0.05}))
     sag = [r.positions[-1][:, 2].min() for r in creeping]
     assert sag[0] > sag[1] > sag[2]
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.1, 0.3, 0.6, 0.85])
+def test_a_void_bends_as_much_as_one_with_sharp_ends(model: BeamModel, loss: float) -> None:
+    """By beam theory: the same flexibility is added along the beam as by 15 mm that lack this part of E I."""
+    trial = model.trials[0]
+    ideal = model.scenes.beam(0, STATE, time=10.0, fidelity=COARSE)
+    situation = Situation(trial=trial, time=10.0, place=0.5)
+    hole = EFFECTS["void"].bend(ideal, loss, situation).specimen.void  # type: ignore[misc]
+    assert hole is not None
+    assert hole.position == pytest.approx(0.5 * trial.free_length)
+    x = np.linspace(-hole.length, hole.length, 20001)
+    left = 1.0 - hole.fraction * np.cos(0.5 * np.pi * x / hole.length) ** 2
+    assert np.trapezoid(1.0 / left - 1.0, x) == pytest.approx(0.015 * loss / (1.0 - loss), rel=1e-6)
