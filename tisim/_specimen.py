@@ -91,10 +91,11 @@ def heaviness(scene: Beam, x: Array) -> Array:
 
 
 def missing(void: Void | None, x: Array) -> Array:
-    """Part of the section that a void takes away: a raised cosine, `length` wide at half its height."""
+    """Part of the section that a void takes away."""
     if void is None:
         return np.zeros_like(x)
-    phase = np.clip((x - void.position) / void.length, -1.0, 1.0)
+    beyond = np.abs(x - void.position) - 0.5 * (void.length - void.edge)
+    phase = np.clip(beyond / void.edge, 0.0, 1.0)
     return np.asarray(0.5 * void.fraction * (1.0 + np.cos(np.pi * phase)))
 
 

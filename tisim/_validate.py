@@ -193,6 +193,12 @@ def _specimen(scene: Beam) -> None:
     )
     _length("specimen.void.length", s.void.length)
     _number(
+        "specimen.void.edge",
+        s.void.edge,
+        f"a length above 0 and at most the void's, {s.void.length:g} m",
+        lambda v: 0.0 < v <= s.void.length,  # type: ignore[union-attr]
+    )
+    _number(
         "specimen.void.fraction",
         s.void.fraction,
         f"a part between 0 and {MOST_LOSS:g}",

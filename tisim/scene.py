@@ -55,13 +55,16 @@ class Void:
     """A stretch of a beam in which material is missing: bubbles, a hollow.
 
     position: of its middle along the beam [m].
-    length: over which the whole of `fraction` would be missing [m]; the loss is a raised cosine, half of its
-        peak at position -+ length / 2, so that its integral along the beam is fraction * length.
+    length: between the places where half of `fraction` is missing [m]; the loss integrates to fraction *
+        length.
+    edge: over which the loss sets in at either end, as half a cosine [m]: a mesh cannot follow a jump.
+        `length` at most (a raised cosine).
     fraction: peak loss of the section's stiffness, in bending and stretching, and of its weight, 0 to 0.95.
     """
 
     position: float
     length: float = 0.015
+    edge: float = 0.003
     fraction: float
 
 

@@ -40,9 +40,9 @@ def test_the_clean_bench(material: str) -> None:
 def test_intervals_hold_the_truth(law: str, tmp_path: Path) -> None:
     """95 % intervals hold the truth in at least 90 % of 20 seeds; the polish alone, started off the truth."""
     p = parametrisation(law)
-    # the softest beams that each law can hold up: St Venant-Kirchhoff folds at the clamp below 40 kPa, on a
+    # the softest beams that each law can hold up: St Venant-Kirchhoff folds at the clamp below 50 kPa, on a
     # mesh as fine as that which makes the data
-    shear = 40e3 if law == "st-venant-kirchhoff" else 12e3
+    shear = 50e3 if law == "st-venant-kirchhoff" else 12e3
     values = {"shear_modulus": shear, "bulk_ratio": 400.0, **SHAPES.get(law, {})}
     truth = np.array([c.inside(values[c.name]) for c in p.coordinates])
     material = p.material(truth, density=1000.0)

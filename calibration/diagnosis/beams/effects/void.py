@@ -1,26 +1,31 @@
 """A bubble or a cut: over 15 mm of one beam part of its bending stiffness, and of its weight, is missing.
 
-The amplitude is that of a void with sharp ends. `tisim.Void` fades out, which any mesh can follow; both bend
-the beam by the same angle where the flexibility that they add along it, the integral of 1 / (1 - loss) - 1, is
-the same. That of a raised cosine of peak p over twice its length L is 2 L (1 / sqrt(1 - p) - 1), that of a loss f
-over L is L f / (1 - f).
+The amplitude is that of a void with sharp ends. `tisim.Void` sets in over `edge`, since a mesh cannot follow
+a jump; both bend the beam by the same angle where the flexibility that they add along it, the integral of
+1 / (1 - loss) - 1, is the same. That of a loss f over the length L is L f / (1 - f); that of one of peak p,
+half a cosine over E at either end, is (L - E) (w^2 - 1) + 2 E (w - 1) with w = 1 / sqrt(1 - p).
 """
 
 from dataclasses import replace
+from math import sqrt
 
 from calibration.diagnosis.beams.effects._effect import BeamEffect, Situation
 from tisim import Beam, Void
 
 
-def faded(loss: float) -> float:
-    """Peak loss of the raised cosine that bends as much as a loss with sharp ends."""
-    return 1.0 - (1.0 + 0.5 * loss / (1.0 - loss)) ** -2.0
+def hole(loss: float, *, position: float) -> Void:
+    """The void that bends a beam as much as a loss with sharp ends."""
+    flat = Void(position=position, fraction=0.0)
+    length, edge = flat.length, flat.edge
+    core = length - edge
+    w = (sqrt(edge**2 + core * (length + edge + length * loss / (1.0 - loss))) - edge) / core
+    return replace(flat, fraction=1.0 - w**-2.0)
 
 
 def _bend(beam: Beam, amplitude: float, situation: Situation) -> Beam:
     assert situation.place is not None, "a void sits somewhere"
-    hole = Void(position=situation.place * situation.trial.free_length, fraction=faded(amplitude))
-    return replace(beam, specimen=replace(beam.specimen, void=hole))
+    void = hole(amplitude, position=situation.place * situation.trial.free_length)
+    return replace(beam, specimen=replace(beam.specimen, void=void))
 
 
 EFFECT = BeamEffect(
@@ -29,7 +34,7 @@ EFFECT = BeamEffect(
     per_unit=1.0,
     belongs_to="specimen",
     step=0.1,
-    bounds=(0.0, 0.85),  # a peak of 0.93: tisim takes 0.95 at most
+    bounds=(0.0, 0.9),
     plausible=0.5,
     sentence="a void or a cut weakens the beam in one place",
     remedy="look through the beam, or swap its ends: the kink moves along",
