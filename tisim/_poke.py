@@ -83,8 +83,13 @@ def _push(
         system.move_to(target)
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
+        frame = target >= min(next_frame, scene.depth) - SAME
         outcome = contact_newton(
-            system, guess, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations
+            system,
+            guess,
+            tolerance=scene.solver.tolerance,
+            max_iterations=scene.solver.max_iterations,
+            kept=frame,
         )
         steps += 1
         iterations += outcome.iterations
@@ -116,7 +121,7 @@ def _push(
             step = min(step * 2.0, LARGEST_STEP)
         elif outcome.iterations > 12:
             step *= 0.7
-        if depth >= next_frame - SAME or depth >= scene.depth - SAME:
+        if frame:
             frames.append(
                 Frame(
                     depth, x, system.report[:3].copy(), system.base_force(), system.tip, max(overlap, 0.0),
