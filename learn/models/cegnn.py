@@ -6,7 +6,7 @@ Not public, and chosen here: coordinates in units of 10 mm in the block's own fr
 units; C_h is the columns (values, then heights) under the points nearest to start and end of the rod's path;
 outputs in units of the training part's root mean square. It is not equivariant: phi_s, phi_t and the heads
 act on coordinates, as published. Each edge's first linear map is applied to its two points before it is
-gathered, which changes speed and nothing else.
+gathered, and the head's to what all points share once a poke, which changes speed and nothing else.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import silu
+from torch.nn.functional import linear, silu
 
 from learn.data.statistics import Statistics
 from learn.models._model import Model
@@ -89,13 +89,23 @@ class Cegnn(Model):
             x = x + step + self.phi_s(x - start[:, None]) + self.phi_t(x - end[:, None])
             h = h + self.phi_h(torch.cat([h, message.sum(dim=2)], dim=2))
             layers.append(x)
-        path = torch.cat([start, end, at_start, at_end], dim=1)[:, None].expand(b, n, -1)
-        u = self.head(torch.cat([*layers, path], dim=2)) * self.displacement_unit
+        path = torch.cat([start, end, at_start, at_end], dim=1)
+        u = self._head(torch.cat(layers, dim=2), path) * self.displacement_unit
         moved = encoded.points + u / UNIT - end[:, None]
         around = columns - at_start[:, None]
         points = self.force_point(torch.cat([moved, around], dim=2))
         pooled = torch.cat([points.amax(dim=1), points.mean(dim=1)], dim=1)
         return Prediction(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
+
+    def _head(self, layers: Tensor, path: Tensor) -> Tensor:
+        """The head of layers (b, n, 12) and path (b, c) joined; what all points share is mapped once a poke."""
+        first, *others = self.head
+        assert isinstance(first, nn.Linear)
+        of_layers, of_path = first.weight.split([layers.shape[2], path.shape[1]], dim=1)
+        u = linear(layers, of_layers) + linear(path, of_path, first.bias)[:, None]
+        for part in others:
+            u = part(u)
+        return u
 
 
 def _mlp(*widths: int) -> nn.Sequential:

@@ -17,6 +17,7 @@ from learn.evaluation.cases import cases_of
 from learn.evaluation.summary import summarise
 from learn.models import Model, Pokes, Scene, Surrogate, make_model, make_scene, pokes_of, scene_of
 from learn.models._stencil import stencil
+from learn.models.cegnn import Cegnn
 from learn.models.single import SinglePoke
 
 
@@ -99,6 +100,14 @@ def test_the_published_scheme_does_not(store: Store, sizes: Statistics, pokes: P
     apart, force = _error_mm(_model("cegnn", sizes), scene_of(store), pokes, turn, torch.zeros(3))
     assert apart > 1e-3
     assert force > 1e-3
+
+
+def test_the_published_head_acts_on_layers_and_path_joined(sizes: Statistics) -> None:
+    model = make_model("cegnn", sizes)
+    assert isinstance(model, Cegnn)
+    layers, path = torch.randn(2, 7, 12), torch.randn(2, 518)
+    joined = torch.cat([layers, path[:, None].expand(2, 7, 518)], dim=2)
+    torch.testing.assert_close(model._head(layers, path), model.head(joined), rtol=1e-4, atol=1e-5)
 
 
 def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(

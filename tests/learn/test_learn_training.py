@@ -182,7 +182,7 @@ def test_recipes(tmp_path: Path) -> None:
     file.write_text("[1, 2")
     with pytest.raises(InputError, match="not YAML"):
         load_recipe(str(file))
-    with pytest.raises(InputError, match="expected fast, quick, paper or a YAML file"):
+    with pytest.raises(InputError, match="expected fast, quick, cegnn, paper or a YAML file"):
         load_recipe("slow")
 
 
