@@ -98,7 +98,7 @@ class Cegnn(Model):
         return Prediction(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
 
     def _head(self, layers: Tensor, path: Tensor) -> Tensor:
-        """The head of layers (b, n, 12) and path (b, c) joined; what all points share is mapped once a poke."""
+        """The head of layers (b, n, 12) and path (b, c); what all points share is mapped once a poke."""
         first, *others = self.head
         assert isinstance(first, nn.Linear)
         of_layers, of_path = first.weight.split([layers.shape[2], path.shape[1]], dim=1)
