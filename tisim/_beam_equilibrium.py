@@ -17,6 +17,8 @@ from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 
+HELD = 0.5  # of the half thickness: how far a clamp keeps a bent section's shape
+
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
@@ -95,13 +97,20 @@ def _load_steps(scene: Beam, system: BeamSystem) -> tuple[Outcome, dict[str, int
 
 
 def rod_shape(scene: Beam, body: Body) -> Array | None:
-    """Node positions of the beam bent as a planar rod; None where rod theory has nothing to say."""
+    """Node positions of the beam bent as a planar rod; None where rod theory has nothing to say.
+
+    Its sections narrow where the bending stretches them and widen where it shortens them (Saint-Venant's
+    anticlastic bending), but in the clamps: flat ones would change in volume, which 4-node tetrahedra answer
+    by pressures thousands of times the load.
+    """
     section = scene.section
     if isinstance(section, Circle):
         area, inertia = np.pi * section.radius**2, np.pi * section.radius**4 / 4.0
+        thick = section.radius
     else:
         area = section.width * section.height
         inertia = None
+        thick = 0.5 * max(section.width, section.height)
     line = scene.material.density * area * np.asarray(scene.gravity, dtype=float)
     tip = np.asarray(scene.tip_force, dtype=float)
     across = (line * scene.length + tip) * np.array([0.0, 1.0, 1.0])
@@ -127,6 +136,12 @@ def rod_shape(scene: Beam, body: Body) -> Array | None:
     e3 = np.cross([1.0, 0.0, 0.0], e2)
     offset, side = rest @ e2, rest @ e3
     angle = np.interp(t, s, theta)
+    poisson = (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+    held = np.exp(-((t / (HELD * thick)) ** 2))
+    if scene.supports == "clamped-clamped":
+        held = held + np.exp(-(((scene.length - t) / (HELD * thick)) ** 2))
+    narrowing = poisson * np.maximum(1.0 - held, 0.0) * np.interp(t, s, np.gradient(theta, s))
+    offset, side = offset + 0.5 * narrowing * (offset**2 - side**2), side * (1.0 + narrowing * offset)
     x1 = np.interp(t, s, r[:, 0]) - offset * np.sin(angle) + (rest[:, 0] - t)
     x2 = np.interp(t, s, r[:, 1]) + offset * np.cos(angle)
     x = x1[:, None] * np.array([1.0, 0.0, 0.0]) + x2[:, None] * e2 + side[:, None] * e3

@@ -137,14 +137,14 @@ class BeamSystem:
         diagonal = layout.pattern.indptr[:-1]
         scale = float(np.abs(self._blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
         shift = 0.0
-        for attempt in range(12):
+        for attempt in range(8):
             layout.solver.factorise(self._blocks)
             self.counts["factorisations"] += 1
             step = layout.solver.solve(-residual)
             if layout.solver.negative == 0 and np.vdot(step, residual) < 0.0:
                 return step
             # indefinite: shift the spectrum until the step goes downhill
-            more = scale * 1e-4 * 4.0**attempt
+            more = scale * 1e-4 * 8.0**attempt
             self._blocks[diagonal] += (more - shift) * np.eye(3)
             shift = more
         return -residual / scale
