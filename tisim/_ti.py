@@ -15,6 +15,21 @@ os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
     import taichi as ti
+    from taichi.lang.ast import ast_transformer_utils
+
+
+class _Unwrapped:
+    """Stands in for the `TextWrapper` by which Taichi breaks a line of source for each node of a kernel's
+    syntax tree, in case an error should have to show it: over half of the time that a kernel in its cache
+    takes to load. Errors show the line as it is."""
+
+    def __init__(self, **options: object) -> None: ...
+
+    def wrap(self, text: str) -> list[str]:
+        return [text] if text.strip() else []
+
+
+ast_transformer_utils.TextWrapper = _Unwrapped
 
 f64 = ti.f64
 i32 = ti.i32

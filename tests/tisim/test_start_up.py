@@ -1,0 +1,49 @@
+"""What a new process loads before its first solve: MKL without a walk over the disk, kernels that can err."""
+
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tisim._linear import HAVE_PARDISO
+from tisim._pardiso import _file_of_mkl
+from tisim._ti import ensure_runtime, ti
+
+
+@pytest.mark.skipif(not HAVE_PARDISO, reason="pypardiso is for x86-64")
+def test_mkl_is_found_where_its_package_says(monkeypatch):
+    monkeypatch.delenv("PYPARDISO_MKL_RT", raising=False)
+    found = _file_of_mkl()
+    assert found is not None
+    assert Path(found).is_file()
+    assert "mkl_rt" in Path(found).name
+
+
+def test_a_library_that_the_user_names_is_left_to_pypardiso(monkeypatch):
+    monkeypatch.setenv("PYPARDISO_MKL_RT", "somewhere")
+    assert _file_of_mkl() is None
+
+
+def test_without_the_package_the_search_is_left_to_pypardiso(monkeypatch):
+    def absent(name):
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.delenv("PYPARDISO_MKL_RT", raising=False)
+    monkeypatch.setattr(metadata, "files", absent)
+    assert _file_of_mkl() is None
+    monkeypatch.setattr(metadata, "files", lambda _: [])
+    assert _file_of_mkl() is None
+
+
+def test_errors_of_kernels_show_their_line():
+    ensure_runtime()
+
+    @ti.kernel
+    def wrong(values: ti.types.ndarray(dtype=ti.f64, ndim=1)):
+        for i in range(3):
+            values[i] = name_that_nobody_defined + 1.0  # noqa: F821
+
+    with pytest.raises(ti.TaichiCompilationError, match="name_that_nobody_defined \\+ 1.0") as caught:
+        wrong(np.zeros(3))
+    assert "^^^^" in str(caught.value)
