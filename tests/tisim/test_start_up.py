@@ -44,6 +44,6 @@ def test_errors_of_kernels_show_their_line():
         for i in range(3):
             values[i] = name_that_nobody_defined + 1.0  # noqa: F821
 
-    with pytest.raises(ti.TaichiCompilationError, match="name_that_nobody_defined \\+ 1.0") as caught:
+    with pytest.raises(ti.TaichiCompilationError, match=r"name_that_nobody_defined \+ 1.0") as caught:
         wrong(np.zeros(3))
     assert "^^^^" in str(caught.value)
