@@ -1,10 +1,12 @@
 """Large-deflection start values: a planar, inextensible Euler-Bernoulli rod under weight and a tip force.
 
-Nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps, serves both
+Nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps if need be, serves both
 supports. The continuous rod obeys EI theta'' + V(s) x t = 0, V(s) the load beyond s.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +29,7 @@ def planar_rod(
 
     bending EI [N m2], stretching EA [N]; line_load [N/m] and tip_force [N] as (along, across).
     Returns arc length s (k,), positions (k, 2) [m] and section angles (k,) [rad], k = segments + 1.
-    A discrete rod of nodes with axial springs and bending springs, loaded in steps.
+    A discrete rod of nodes with axial springs and bending springs, loaded in steps where the whole load fails.
     """
     h = length / segments
     rest = np.column_stack([np.linspace(0.0, length, segments + 1), np.zeros(segments + 1)])
@@ -38,7 +40,7 @@ def planar_rod(
     # ghost nodes one segment beyond each clamp hold its direction
     x = rest.copy()
     free = slice(1, segments) if clamped_end else slice(1, segments + 1)
-    factor, step = 0.0, 0.25
+    factor, step = 0.0, 1.0
     while factor < 1.0 and step > 1e-3:
         target = min(1.0, factor + step)
         trial = _equilibrium(x, target * load, h, bending, stretching, free, clamped_end)
@@ -106,24 +108,29 @@ def _forces(x: Array, h: float, ei: float, ea: float, clamped_end: bool) -> tupl
     force[1:] += pull[:, None] * t
     tt = t[:, :, None] * t[:, None, :]
     stiff = ea / h * tt + (pull / size)[:, None, None] * (np.eye(2) - tt)
-    m = len(points)
-    dense = np.zeros((11, 2 * m))
+    band = _bending_band(len(points), c).copy()
+    for a, b in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        _add(band, 0, 0, a, b, stiff[:, a, b])
+        _add(band, 1, 1, a, b, stiff[:, a, b])
+        _add(band, 0, 1, a, b, -stiff[:, a, b])
+        _add(band, 1, 0, a, b, -stiff[:, a, b])
+    return force[1 : 1 + k], band[:, 2 : 2 + 2 * k]
 
-    def add(i: NDArray[np.intp], j: NDArray[np.intp], block: Array) -> None:
-        for a in range(2):
-            for b in range(2):
-                rows, cols = 2 * i + a, 2 * j + b
-                np.add.at(dense, (5 + rows - cols, cols), block[..., a, b])
 
-    i = np.arange(m - 1, dtype=np.intp)
-    add(i, i, stiff)
-    add(i + 1, i + 1, stiff)
-    add(i, i + 1, -stiff)
-    add(i + 1, i, -stiff)
-    j = np.arange(m - 2, dtype=np.intp)
-    eye = np.broadcast_to(c * np.eye(2), (m - 2, 2, 2))
+@lru_cache(maxsize=32)
+def _bending_band(points: int, stiffness: float) -> Array:
+    """The bending springs' part of the tangent, which no motion changes; (11, 2 points)."""
+    band = np.zeros((11, 2 * points))
+    ones = np.full(points - 2, stiffness)
     coefficient = (1.0, -2.0, 1.0)
     for p in range(3):
         for q in range(3):
-            add(j + p, j + q, coefficient[p] * coefficient[q] * eye)
-    return force[1 : 1 + k], dense[:, 2 : 2 + 2 * k]
+            for a in range(2):
+                _add(band, p, q, a, a, coefficient[p] * coefficient[q] * ones)
+    return band
+
+
+def _add(band: Array, i: int, j: int, a: int, b: int, values: Array) -> None:
+    """values (n,) to the entries (component a of point i + k, component b of point j + k), k = 0 to n - 1."""
+    first = 2 * j + b
+    band[5 + 2 * (i - j) + a - b, first : first + 2 * len(values) : 2] += values
