@@ -1,7 +1,8 @@
 """Large-deflection start values: a planar, inextensible Euler-Bernoulli rod under weight and a tip force.
 
-Nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps if need be, serves both
-supports. The continuous rod obeys EI theta'' + V(s) x t = 0, V(s) the load beyond s.
+Nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps where the
+whole load fails, serves both supports. The continuous rod obeys EI theta'' + V(s) x t = 0, V(s) the load
+beyond s.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def planar_rod(
 
     bending EI [N m2], stretching EA [N]; line_load [N/m] and tip_force [N] as (along, across).
     Returns arc length s (k,), positions (k, 2) [m] and section angles (k,) [rad], k = segments + 1.
-    A discrete rod of nodes with axial springs and bending springs, loaded in steps where the whole load fails.
+    A discrete rod of nodes with axial springs and bending springs.
     """
     h = length / segments
     rest = np.column_stack([np.linspace(0.0, length, segments + 1), np.zeros(segments + 1)])
