@@ -104,7 +104,7 @@ def _time_run(times: Table, run: Run, scene: Scene, store: Store, repeats: int) 
         middle, best = _times(lambda: model.decode(encoded, many), max(3, repeats // 10))
         each = f"{name}, {len(rows)} at once, each"
         times.add_row(each, str(threads), f"{middle / len(rows):.2f}", f"{best / len(rows):.2f}")
-        if (run.folder / "onnx" / "poke.onnx").is_file():
+        if (run.folder / "onnx" / "encoder.onnx").is_file():
             onnx = OnnxSurrogate(run.folder / "onnx", threads=threads)
             code = onnx.encode(scene.rigid[scene.rigid_index[one.geometry[0]]])
             middle, best = _times(lambda onnx=onnx, code=code: onnx.poke(code, one, 0), repeats)  # type: ignore[misc]

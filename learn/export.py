@@ -15,6 +15,7 @@ import torch
 import typer
 from torch import Tensor, nn
 
+from learn._export_cegnn import INPUTS, CegnnPart, difference, example, in_double
 from learn._screen import make_console, plain_errors
 from learn.data import MemoryDataset, open_store
 from learn.errors import InputError
@@ -22,6 +23,7 @@ from learn.evaluation import split_of
 from learn.models import Pokes, Scene, Surrogate, pokes_of, scene_of
 from learn.models._geometry import Encoded
 from learn.models._stencil import Stencil, gathered
+from learn.models.cegnn import Cegnn
 from learn.training import Run, load_run
 
 app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
@@ -36,6 +38,7 @@ EXAMPLES = """
 
 encoder.onnx: rigid (n, levels) -> code, vectors, clear: once an interior.
 poke.onnx: code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
+Of the paper's model, in double precision, poke.onnx alone: profile (n, levels), start, direction, depth.
 model.json: the points, the rod, and what it was trained on.
 
 Exit codes: 0 written and checked, 2 bad input or a check that failed.
@@ -79,15 +82,19 @@ class EncoderPart(nn.Module):
 
 
 def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
-    """Writes encoder.onnx and poke.onnx for a scene's cloud; InputError without the onnx packages."""
-    if not isinstance(run.model, Surrogate):
-        raise InputError(f"{run.folder}: model {run.recipe.model} cannot be exported, only ours")
+    """Writes poke.onnx, and encoder.onnx for ours, for a scene's cloud; InputError without the packages."""
     for name in ("onnx", "onnxscript", "onnxruntime"):
         try:
             importlib.import_module(name)
         except ImportError:
             raise InputError(f"learn.export needs the package {name}, which is not installed") from None
     folder.mkdir(parents=True, exist_ok=True)
+    if isinstance(run.model, Cegnn):
+        files = {"poke": folder / "poke.onnx"}
+        part = CegnnPart(in_double(run.model), scene)
+        _write(part, example(scene), files["poke"], INPUTS, ["displacement", "force"])
+        return files
+    assert isinstance(run.model, Surrogate)
     sparse = run.model.prepare(scene)
     stencils = tuple(gathered(s) for s in sparse)
     one = replace(scene, rigid=scene.rigid[:1], rigid_index=torch.zeros(1, dtype=torch.int64))
@@ -121,18 +128,21 @@ def _write(part: nn.Module, inputs: tuple[Tensor, ...], path: Path, names: list[
         )  # fmt: skip
 
 
+def _session(path: Path, *, threads: int = 1) -> Any:
+    runtime: Any = importlib.import_module("onnxruntime")
+    options = runtime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+
+
 class OnnxSurrogate:
     """The exported files, run by onnxruntime."""
 
     def __init__(self, folder: Path, *, threads: int = 1) -> None:
-        runtime: Any = importlib.import_module("onnxruntime")
-        options = runtime.SessionOptions()
-        options.intra_op_num_threads = threads
-        options.inter_op_num_threads = 1
-        options.log_severity_level = 3
         self._encoder, self._poke = (
-            runtime.InferenceSession(str(folder / name), options, providers=["CPUExecutionProvider"])
-            for name in ("encoder.onnx", "poke.onnx")
+            _session(folder / name, threads=threads) for name in ("encoder.onnx", "poke.onnx")
         )
 
     def encode(self, rigid: Tensor) -> dict[str, Any]:
@@ -147,8 +157,11 @@ class OnnxSurrogate:
         return displacement, force
 
 
-def largest_difference(onnx: OnnxSurrogate, run: Run, scene: Scene, pokes: Pokes) -> float:
-    """From torch, relative to each poke's largest displacement, and to its force."""
+def largest_difference(folder: Path, run: Run, scene: Scene, pokes: Pokes) -> float:
+    """Of the files in a folder from torch, relative to each poke's largest displacement, and to its force."""
+    if isinstance(run.model, Cegnn):
+        return difference(_session(folder / "poke.onnx"), run.model, scene, pokes)
+    onnx = OnnxSurrogate(folder)
     with torch.no_grad():
         found = run.model(scene, pokes)
     worst = 0.0
@@ -178,7 +191,7 @@ def main(
         test = MemoryDataset(store, split_of(store, loaded.recipe).test)
         files = export(loaded, scene, folder)
         some = np.linspace(0, len(test) - 1, min(_CHECKED, len(test))).astype(int)
-        wrong = largest_difference(OnnxSurrogate(folder), loaded, scene, pokes_of(test.__getitems__(some)))
+        wrong = largest_difference(folder, loaded, scene, pokes_of(test.__getitems__(some)))
         if not wrong <= TOLERANCE:
             for path in files.values():
                 path.unlink()
@@ -194,7 +207,8 @@ def main(
         }
         (folder / "model.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
     console.print(
-        f"{folder}: encoder.onnx, poke.onnx, model.json; {wrong:.1e} off torch over {len(some)} pokes"
+        f"{', '.join(str(path) for path in files.values())} and model.json; "
+        f"{wrong:.1e} off torch over {len(some)} pokes"
     )
 
 

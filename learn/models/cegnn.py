@@ -26,7 +26,7 @@ UNIT = 1e-2  # m
 NEIGHBOURS = 5  # the point itself is one
 LAYERS = 4
 HIDDEN = 64
-_KNN_SAMPLES = 16  # distances of so many samples at a time: memory
+_TIE = {torch.float32: 1e-7, torch.float64: 1e-14}  # of a squared distance, from one index to the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,16 +62,18 @@ class Cegnn(Model):
 
     def encode(self, scene: Scene, prepared: object = None) -> CegnnEncoded:  # noqa: ARG002
         """Columns and coordinates; nothing is learned here."""
-        points = (scene.points / UNIT).float()
-        heights = ((scene.points[:, 2:] - scene.level_depth) / UNIT).float()
-        columns = torch.cat([scene.profile, heights[None].expand_as(scene.profile)], dim=2)
+        digits = self.edge_i.weight.dtype
+        points = (scene.points / UNIT).to(digits)
+        heights = ((scene.points[:, 2:] - scene.level_depth) / UNIT).to(digits)
+        columns = torch.cat([scene.profile.to(digits), heights[None].expand_as(scene.profile)], dim=2)
         return CegnnEncoded(scene, points, columns)
 
     def decode(self, encoded: CegnnEncoded, pokes: Pokes) -> Prediction:
         """The answer to b pokes."""
         b, n = len(pokes.depth), len(encoded.points)
-        start = (pokes.start / UNIT).float()
-        end = ((pokes.start + pokes.depth[:, None] * pokes.direction) / UNIT).float()
+        digits = encoded.points.dtype
+        start = (pokes.start / UNIT).to(digits)
+        end = ((pokes.start + pokes.depth[:, None] * pokes.direction) / UNIT).to(digits)
         x = encoded.points[None].expand(b, n, 3)
         h = encoded.columns[pokes.geometry]
         at_start, at_end = (h[torch.arange(b), _nearest(encoded.points, c)] for c in (start, end))
@@ -116,17 +118,25 @@ def _mlp(*widths: int) -> nn.Sequential:
 
 
 def _nearest(points: Tensor, places: Tensor) -> Tensor:
-    return torch.cdist(places, points).argmin(dim=1)
+    return _squared_distances(places, points).argmin(dim=1)
 
 
 def _neighbours(x: Tensor) -> Tensor:
-    """Indices (b, n, k) of the k nearest points, the point itself among them."""
-    with torch.no_grad():
+    """Indices (b, n, k) of the k nearest points, the point itself among them; of equals, those of lower index
+    (at the rim of a grid there are such, which rounding would choose among)."""
+    order = torch.arange(x.shape[1], dtype=x.dtype, device=x.device) * _TIE[x.dtype]
+    with torch.no_grad():  # sample by sample, whose distances stay in the cache
         found = [
-            torch.cdist(part, part).topk(NEIGHBOURS, dim=2, largest=False).indices
-            for part in x.detach().split(_KNN_SAMPLES)
+            (_squared_distances(part, part) + order).topk(NEIGHBOURS, dim=1, largest=False).indices
+            for part in x.detach()
         ]
-    return torch.cat(found)
+    return torch.stack(found)
+
+
+def _squared_distances(a: Tensor, b: Tensor) -> Tensor:
+    """Of points a (n, 3) and b (m, 3): (n, m), from differences, since products would round."""
+    x, y, z = (a[:, None, k] - b[None, :, k] for k in range(3))
+    return x * x + y * y + z * z
 
 
 def _gather(values: Tensor, index: Tensor) -> Tensor:

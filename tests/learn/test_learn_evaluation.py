@@ -313,3 +313,18 @@ def test_onnx_gives_what_torch_gives(run: Path, tmp_path: Path) -> None:
     about = json.loads((tmp_path / "model.json").read_text())
     assert about["difference_from_torch"] < 1e-5
     assert (tmp_path / "poke.onnx").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("onnx", "onnxscript", "onnxruntime")),
+    reason="the onnx packages are not installed",
+)
+def test_onnx_of_the_papers_model(store: Path, run: Path, tmp_path: Path) -> None:
+    recipe = ("--recipe", run.parent / "r.yaml", "--model", "cegnn", "--epochs", 1)
+    done = _call(learn.train.app, store, *recipe, "--out", tmp_path / "run", "--threads", 1)
+    assert done.exit_code == 0, done.output
+    done = _call(learn.export.app, tmp_path / "run")
+    assert done.exit_code == 0, done.output
+    about = json.loads((tmp_path / "run" / "onnx" / "model.json").read_text())
+    assert about["difference_from_torch"] < 1e-5

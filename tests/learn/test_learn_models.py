@@ -17,7 +17,7 @@ from learn.evaluation.cases import cases_of
 from learn.evaluation.summary import summarise
 from learn.models import Model, Pokes, Scene, Surrogate, make_model, make_scene, pokes_of, scene_of
 from learn.models._stencil import stencil
-from learn.models.cegnn import Cegnn
+from learn.models.cegnn import Cegnn, _neighbours
 from learn.models.single import SinglePoke
 
 
@@ -108,6 +108,16 @@ def test_the_published_head_acts_on_layers_and_path_joined(sizes: Statistics) ->
     layers, path = torch.randn(2, 7, 12), torch.randn(2, 518)
     joined = torch.cat([layers, path[:, None].expand(2, 7, 518)], dim=2)
     torch.testing.assert_close(model._head(layers, path), model.head(joined), rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("digits", [torch.float32, torch.float64])
+def test_of_equally_near_points_the_first_are_neighbours(digits: torch.dtype) -> None:
+    line = np.arange(6) * 0.3
+    grid = np.stack([*np.meshgrid(line, line, indexing="ij"), np.zeros((6, 6))], axis=-1).reshape(-1, 3)
+    distance = np.linalg.norm(grid[:, None] - grid[None], axis=2).round(6)
+    nearest = np.argsort(distance, axis=1, kind="stable")[:, :5]
+    found = _neighbours(torch.from_numpy(grid).to(digits)[None])[0]
+    np.testing.assert_array_equal(np.sort(found.numpy(), axis=1), np.sort(nearest, axis=1))
 
 
 def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
