@@ -63,15 +63,17 @@ class FactorGMRES:
     shift: what the factor has on the diagonal besides, in units of its mean: 0 while the matrix is positive
         and nobody asked for more (`stiffen`, `relax`, `reset`). As it fades, solves are with less than that,
         and the factor is kept while it serves.
+    weights (n, 1): what each row takes of the shift; all 1 unless they are set.
     """
 
-    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 30) -> None:
+    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 20) -> None:
         self._pattern = pattern
         self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
         self._patience, self._limit = patience, limit
         self._stale = True
         self._added = self._scale = 0.0
         self._wanted = 0.0
+        self.weights = np.ones((len(pattern.indptr) - 1, 1))
         self.shift = 0.0
         self.factorisations = 0
         self.iterations = 0
@@ -125,7 +127,7 @@ class FactorGMRES:
             matrix = blocks
             if self.shift:
                 matrix = blocks.copy()
-                matrix[diagonal] += self.shift * scale * np.eye(3)
+                matrix[diagonal] += self.shift * scale * self.weights[:, :, None] * np.eye(3)
             self._factor.factorise(matrix)
             self.factorisations += 1
             if self._factor.negative == 0:
@@ -146,7 +148,7 @@ class FactorGMRES:
             w = np.zeros_like(rhs)
             multiply(p.indptr, p.indices, blocks, z, w)
             if self._added:
-                w += self._added * z
+                w += self._added * self.weights * z
             if skew is not None:
                 skew(z, w)
             images.append(z)
