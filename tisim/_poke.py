@@ -75,6 +75,7 @@ def _push(
     x = system.previous.copy()
     velocity = np.zeros_like(x)
     near = NearField(system)
+    refused = 0
     depth, step = 0.0, FIRST_STEP
     frames: list[Frame] = []
     steps = cuts = iterations = 0
@@ -93,7 +94,8 @@ def _push(
             system,
             guess,
             tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
-            max_iterations=scene.solver.max_iterations,
+            # what stops most steps is a snap, which no smaller step goes round: it takes iterations
+            max_iterations=scene.solver.max_iterations * (1 + refused),
             kept=frame,
             relax=near.relax,
         )
@@ -115,10 +117,12 @@ def _push(
         if failed is not None:
             status = failed
             cuts += 1
+            refused += 1
             step *= 0.4
             if step < SMALLEST_STEP:
                 return frames, status, steps, cuts, iterations
             continue
+        refused = 0
         velocity = (outcome.x - x) / (target - depth)
         x, depth = outcome.x, target
         system.accept(x)
