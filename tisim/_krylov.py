@@ -9,6 +9,7 @@ and the matrix is shifted until it is positive, so that the step leads downhill 
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
 
+import math
 from collections.abc import Callable
 from functools import cache
 
@@ -63,15 +64,17 @@ class FactorGMRES:
     shift: what the factor has on the diagonal besides, in units of its mean: 0 while the matrix is positive
         and nobody asked for more (`stiffen`, `relax`, `reset`). As it fades, solves are with less than that,
         and the factor is kept while it serves.
+    weights (n, 1): what each row takes of the shift; all 1 unless they are set.
     """
 
-    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 30) -> None:
+    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 20) -> None:
         self._pattern = pattern
         self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
         self._patience, self._limit = patience, limit
         self._stale = True
         self._added = self._scale = 0.0
         self._wanted = 0.0
+        self.weights = np.ones((len(pattern.indptr) - 1, 1))
         self.shift = 0.0
         self.factorisations = 0
         self.iterations = 0
@@ -125,7 +128,7 @@ class FactorGMRES:
             matrix = blocks
             if self.shift:
                 matrix = blocks.copy()
-                matrix[diagonal] += self.shift * scale * np.eye(3)
+                matrix[diagonal] += self.shift * scale * self.weights[:, :, None] * np.eye(3)
             self._factor.factorise(matrix)
             self.factorisations += 1
             if self._factor.negative == 0:
@@ -139,30 +142,38 @@ class FactorGMRES:
         """One cycle, right-preconditioned, so that the residual it minimises is the true one."""
         p, multiply = self._pattern, _multiply_kernel()
         beta = float(np.linalg.norm(rhs))
-        basis, images = [rhs / beta], []
-        H = np.zeros((self._limit + 1, self._limit))
+        basis = np.empty((self._limit + 1, rhs.size))
+        images = np.empty((self._limit, rhs.size))
+        basis[0] = rhs.ravel() / beta
+        triangle = np.zeros((self._limit, self._limit))
+        left = [beta]  # the projected right side
+        turns: list[tuple[float, float]] = []  # the rotations that make the projected matrix triangular
         for k in range(self._limit):
-            z = self._factor.solve(basis[k])
+            z = self._factor.solve(basis[k].reshape(rhs.shape))
             w = np.zeros_like(rhs)
             multiply(p.indptr, p.indices, blocks, z, w)
             if self._added:
-                w += self._added * z
+                w += self._added * self.weights * z
             if skew is not None:
                 skew(z, w)
-            images.append(z)
-            for j, v in enumerate(basis):
-                H[j, k] = np.vdot(v, w)
-                w -= H[j, k] * v
-            H[k + 1, k] = np.linalg.norm(w)
-            e = np.zeros(k + 2)
-            e[0] = beta
-            y, *_ = np.linalg.lstsq(H[: k + 2, : k + 1], e)
-            left = float(np.linalg.norm(H[: k + 2, : k + 1] @ y - e))
-            if left <= tolerance * beta or H[k + 1, k] <= 1e-14 * beta:
+            images[k], v = z.ravel(), w.ravel()
+            column = basis[: k + 1] @ v
+            v = v - column @ basis[: k + 1]
+            below = float(np.linalg.norm(v))
+            h = column.tolist()
+            for j, (c, s) in enumerate(turns):
+                h[j], h[j + 1] = c * h[j] + s * h[j + 1], c * h[j + 1] - s * h[j]
+            size = math.hypot(h[k], below)
+            c, s = (h[k] / size, below / size) if size > 0.0 else (1.0, 0.0)
+            turns.append((c, s))
+            h[k] = size
+            triangle[: k + 1, k] = h
+            left[k:] = [c * left[k], -s * left[k]]
+            if abs(left[-1]) <= tolerance * beta or below <= 1e-14 * beta:
                 break
-            basis.append(w / H[k + 1, k])
-        self.iterations += len(images)
-        x = np.zeros_like(rhs)
-        for c, z in zip(y, images, strict=True):
-            x += c * z
-        return x, len(images), left <= tolerance * beta
+            basis[k + 1] = v / below
+        used = len(turns)
+        self.iterations += used
+        y, *_ = np.linalg.lstsq(triangle[:used, :used], np.array(left[:used]))
+        x: Array = (y @ images[:used]).reshape(rhs.shape)
+        return x, used, abs(left[-1]) <= tolerance * beta

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Layout
+from tisim._poke_near import NearField
 from tisim._poke_newton import contact_newton
 from tisim._poke_system import PokeSystem
 from tisim.mesh import Mesh
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 # Penetration, as a part of the edge radius, at which the contact is made stiffer, and a step refused.
 STIFFEN_AT, REFUSE_AT = 0.25, 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
+# Tolerance of steps between frames, which are there to follow the path, in units of the frames'.
+BETWEEN = 6.0
 SAME = 1e-9  # depths closer than this are one [m]
 
 
@@ -71,6 +74,8 @@ def _push(
 ) -> tuple[list[Frame], Status, int, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
+    near = NearField(system)
+    refused = 0
     depth, step = 0.0, FIRST_STEP
     frames: list[Frame] = []
     steps = cuts = iterations = 0
@@ -84,12 +89,15 @@ def _push(
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
         frame = target >= min(next_frame, scene.depth) - SAME
+        near.begin()
         outcome = contact_newton(
             system,
             guess,
-            tolerance=scene.solver.tolerance,
-            max_iterations=scene.solver.max_iterations,
+            tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
+            # what stops most steps is a snap, which no smaller step goes round: it takes iterations
+            max_iterations=scene.solver.max_iterations * (1 + refused),
             kept=frame,
+            relax=near.relax,
         )
         steps += 1
         iterations += outcome.iterations
@@ -104,14 +112,17 @@ def _push(
                 f" overlap {overlap * 1e3:.3f}"
                 f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} cg {system.linear.iterations}"
                 f" fac {system.linear.factorisations} shift {system.linear.shift:.0e}"
+                f" near {near.iterations} fac {near.factorisations}"
             )
         if failed is not None:
             status = failed
             cuts += 1
+            refused += 1
             step *= 0.4
             if step < SMALLEST_STEP:
                 return frames, status, steps, cuts, iterations
             continue
+        refused = 0
         velocity = (outcome.x - x) / (target - depth)
         x, depth = outcome.x, target
         system.accept(x)

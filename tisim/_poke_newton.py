@@ -5,10 +5,14 @@ singular, and Newton's step runs far off along a few modes. Cutting the whole st
 a multiple of the identity added to the tangent (`FactorGMRES.stiffen`) holds back just these modes. It is
 the implicit step of a viscous motion, so a snap is followed downhill, the residual rising on the way; and
 it fades as steps are taken whole. The residual that ends the iteration knows nothing of it.
+
+Much of this happens next to the rod only, and can be left to a cheaper iteration there after each step:
+`relax`, see `tisim._poke_near`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -51,15 +55,24 @@ class ContactSystem(Protocol):
 
 
 def contact_newton(
-    system: ContactSystem, x: Array, *, tolerance: float, max_iterations: int, kept: bool = True
+    system: ContactSystem,
+    x: Array,
+    *,
+    tolerance: float,
+    max_iterations: int,
+    kept: bool = True,
+    relax: Callable[[Array], Array] | None = None,
 ) -> Outcome:
     """Equilibrium from x on: |residual| <= tolerance * load.
 
     kept: the result is to be kept as a frame. Then the residual's sum is within BALANCE of the rod's force as
     well: small residuals of thousands of nodes may all point one way.
+    relax: improves x, here and at each trial of a step.
     """
     relative, radius = np.inf, RADIUS
     system.linear.reset()
+    if relax is not None:
+        x = relax(x)
     for iteration in range(max_iterations + 1):
         residual, load = system.residual(x)
         size = float(np.linalg.norm(residual))
@@ -74,7 +87,7 @@ def contact_newton(
         system.linearise(x)
         forcing = 3e-2 if iteration == 0 else float(np.clip(0.1 * relative / previous, 5e-3, 3e-2))
         try:
-            found, status, radius = _step(system, x, residual, radius, forcing)
+            found, status, radius = _step(system, x, residual, radius, forcing, relax)
         except LinearSolveError:
             return Outcome(x, Status.SINGULAR, relative, iteration)
         if found is None:
@@ -84,12 +97,18 @@ def contact_newton(
 
 
 def _step(
-    system: ContactSystem, x: Array, residual: Array, radius: float, forcing: float
+    system: ContactSystem,
+    x: Array,
+    residual: Array,
+    radius: float,
+    forcing: float,
+    relax: Callable[[Array], Array] | None,
 ) -> tuple[Array | None, Status, float]:
     """The next x (None if there is none), why there is none, and the next radius."""
     linear = system.linear
     start, _ = system.potential(x)
     status = Status.NOT_CONVERGED
+    held_back = False
     for _ in range(ATTEMPTS):
         step = system.step(residual, forcing=forcing)
         peak = float(np.sqrt((step * step).sum(axis=1).max()))
@@ -99,11 +118,15 @@ def _step(
         # too long, or uphill, which friction can make it
         if (peak > 2.0 * radius or slope > 0.0) and linear.can_stiffen:
             linear.stiffen()
+            held_back = True
             continue
         scale = min(1.0, radius / peak)
         for _ in range(2):
             trial = system.advance(x, scale * step)
             energy, min_jacobian = system.potential(trial)
+            if relax is not None and min_jacobian > CRUSHED and np.isfinite(energy):
+                trial = relax(trial)
+                energy, min_jacobian = system.potential(trial)
             if min_jacobian <= CRUSHED or not np.isfinite(energy):
                 status = Status.INVERTED
             else:
@@ -112,12 +135,14 @@ def _step(
                 if _good(system, trial, residual, scale, lower=lower):
                     if scale * peak >= 0.99 * radius:
                         radius = min(2.0 * radius, LARGEST_RADIUS)
-                    if scale == 1.0 or scale * peak > 0.25 * radius:
+                    # a shift that was needed now is needed in the next iteration as well
+                    if not held_back and (scale == 1.0 or scale * peak > 0.25 * radius):
                         linear.relax()
                     return trial, Status.CONVERGED, radius
             scale *= 0.5
         radius = max(0.5 * min(radius, peak), 2.0 * scale * peak)
         linear.stiffen()
+        held_back = True
     return None, status, radius
 
 

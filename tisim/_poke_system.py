@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -118,6 +119,18 @@ class PokeSystem:
         if self._parts is not None:
             self._parts.update(x)
             self._known = None
+
+    def restricted(self, body: Body, linear: FactorGMRES, slot: NDArray[np.int32]) -> PokeSystem:
+        """This system at its depth on a body of some of the elements, the nodes it lacks held.
+
+        What contact remembers of the last converged state is shared; what it makes of a trial is not.
+        slot: of the facets in the body's pattern.
+        """
+        part = copy(self)
+        part.layout, part.body, part.linear, part._slot = body.layout, body, linear, slot
+        part._pressure, part._slip, part._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
+        part._known, part.report = None, np.zeros(6)
+        return part
 
     def stiffen(self) -> None:
         """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
