@@ -37,7 +37,7 @@ class Solver:
         equilibrium, where `until_rest` is set.
     time_step: step of the implicit method [s] (the explicit one takes its stable step).
     mass_damping, stiffness_damping: Rayleigh coefficients [1/s] and [s].
-    max_iterations: Newton iterations a step.
+    max_iterations: Newton iterations a step (of pokes: as many more after each step refused before it).
     """
 
     method: Literal["static", "implicit", "explicit"] = "static"
