@@ -26,7 +26,10 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """core_seconds: CPU time of the solve; mesh_seconds: of making the mesh; counts of the work done."""
+    """core_seconds: CPU time of the solve; mesh_seconds: of making the mesh; counts of the work done.
+
+    Counts of a poke are of the whole block; what its near field took besides is in the seconds alone.
+    """
 
     core_seconds: float = 0.0
     mesh_seconds: float = 0.0
