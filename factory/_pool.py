@@ -104,13 +104,13 @@ def _stop(worker: _Worker) -> None:
 
 def _work(pipe: Connection, simulator: str, parent: int) -> None:
     threading.Thread(target=end_with_parent, args=(parent,), daemon=True).start()
-    try:
-        load_simulator(simulator)
-    except Exception as error:
-        pipe.send(f"{type(error).__name__}: {error}")
-        return
-    pipe.send(None)
-    with contextlib.suppress(EOFError, OSError):
+    with contextlib.suppress(EOFError, OSError):  # the parent may close the pipe at any moment, even this early
+        try:
+            load_simulator(simulator)
+        except Exception as error:
+            pipe.send(f"{type(error).__name__}: {error}")
+            return
+        pipe.send(None)
         while True:
             pipe.send(run_poke(pipe.recv(), simulator))
 

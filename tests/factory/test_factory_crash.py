@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import multiprocessing
 import os
 import random
 import resource
@@ -22,7 +23,7 @@ import psutil
 import pytest
 from conftest import Builder, digest
 
-from factory import _assemble, _parts
+from factory import _assemble, _parts, _pool
 from factory._build import build
 from factory._parts import Parts, building_folder
 from factory.errors import InputError
@@ -273,6 +274,16 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
         time.sleep(0.05)
     assert standin_build(quick, target).fresh == 12 - kept
     assert digest(target) == digest(reference)
+
+
+@pytest.mark.parametrize("simulator", ["math:sqrt", "math:nothing"])
+def test_a_worker_that_loads_while_the_build_is_stopped_says_nothing(
+    simulator: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_pool, "end_with_parent", lambda parent: None)
+    ours, theirs = multiprocessing.Pipe()
+    ours.close()
+    _pool._work(theirs, simulator, 0)
 
 
 def _alive_in_group(group: int) -> list[str]:
