@@ -104,7 +104,7 @@ def _stop(worker: _Worker) -> None:
 
 def _work(pipe: Connection, simulator: str, parent: int) -> None:
     threading.Thread(target=end_with_parent, args=(parent,), daemon=True).start()
-    with contextlib.suppress(EOFError, OSError):  # the parent may close the pipe at any moment, even this early
+    with contextlib.suppress(EOFError, OSError):  # a build that is stopped closes the pipe
         try:
             load_simulator(simulator)
         except Exception as error:

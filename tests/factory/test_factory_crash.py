@@ -280,7 +280,7 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
 def test_a_worker_that_loads_while_the_build_is_stopped_says_nothing(
     simulator: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(_pool, "end_with_parent", lambda parent: None)
+    monkeypatch.setattr(_pool, "end_with_parent", lambda _: None)
     ours, theirs = multiprocessing.Pipe()
     ours.close()
     _pool._work(theirs, simulator, 0)
