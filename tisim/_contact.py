@@ -29,7 +29,6 @@ from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
 _f1 = ti.types.ndarray(dtype=f64, ndim=1)
 _f2 = ti.types.ndarray(dtype=f64, ndim=2)
 _f3 = ti.types.ndarray(dtype=f64, ndim=3)
-_i1 = ti.types.ndarray(dtype=i32, ndim=1)
 _i2 = ti.types.ndarray(dtype=i32, ndim=2)
 _i3 = ti.types.ndarray(dtype=i32, ndim=3)
 
@@ -69,8 +68,8 @@ def rod_distance(y, rod: ti.template()):
 
 
 @cache
-def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
-    """(measure, energy, assemble, multiply_skew) kernels; see each."""
+def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
+    """(measure, energy, assemble) kernels; see each."""
     ensure_runtime()
 
     @ti.func
@@ -212,32 +211,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel, Kernel]:
             out[3] = least
             out[4] = touching
 
-    @ti.kernel
-    def multiply_skew(
-        conn: _i2, index: _i1, shape: _f2, pressure: _f2, part: _f2, skew: _f3, v: _f2, out: _f2
-    ):
-        """out += (unsymmetric part) v, over the free nodes; index: node -> row or -1."""
-        ti.loop_config(serialize=True)
-        for f in range(conn.shape[0]):
-            for q in range(shape.shape[0]):
-                if pressure[f, q] > 0.0 and part[f, q] > 0.0:
-                    s = ti.Vector([0.0, 0.0, 0.0])
-                    for b in range(conn.shape[1]):
-                        row = index[conn[f, b]]
-                        if row >= 0:
-                            for i in ti.static(range(3)):
-                                s[i] += shape[q, b] * v[row, i]
-                    t = ti.Vector([0.0, 0.0, 0.0])
-                    for i in ti.static(range(3)):
-                        for j in ti.static(range(3)):
-                            t[i] += skew[f, q, 3 * i + j] * s[j]
-                    for b in range(conn.shape[1]):
-                        row = index[conn[f, b]]
-                        if row >= 0:
-                            for i in ti.static(range(3)):
-                                out[row, i] = out[row, i] + shape[q, b] * t[i]
-
-    return measure, energy, assemble, multiply_skew
+    return measure, energy, assemble
 
 
 def pack_rod(tip: Any, axis: Any, radius: float, edge_radius: float, shift: Any) -> Any:

@@ -7,55 +7,19 @@ and the matrix is shifted until it is positive, so that the step leads downhill 
 (the shift fades as the iteration comes near one; the residual it is judged by knows nothing of it).
 """
 
-# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
+from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim._linear import DirectSolver
 from tisim._pattern import Pattern
-from tisim._ti import Kernel, ensure_runtime, f64, i32, ti
 
 Array = NDArray[np.float64]
 SMALLEST_SHIFT, LARGEST_SHIFT = 1e-3, 0.5
-
-
-@cache
-def _multiply_kernel() -> Kernel:
-    ensure_runtime()
-
-    @ti.kernel
-    def multiply(
-        indptr: ti.types.ndarray(dtype=i32, ndim=1),
-        indices: ti.types.ndarray(dtype=i32, ndim=1),
-        blocks: ti.types.ndarray(dtype=f64, ndim=3),
-        v: ti.types.ndarray(dtype=f64, ndim=2),
-        out: ti.types.ndarray(dtype=f64, ndim=2),
-    ):
-        """out += A v, A by its upper triangle."""
-        ti.loop_config(serialize=True)
-        for r in range(indptr.shape[0] - 1):
-            s = ti.Vector([0.0, 0.0, 0.0])
-            vr = ti.Vector([v[r, 0], v[r, 1], v[r, 2]])
-            for k in range(indptr[r], indptr[r + 1]):
-                c = indices[k]
-                for i in ti.static(range(3)):
-                    for j in ti.static(range(3)):
-                        s[i] += blocks[k, i, j] * v[c, j]
-                if c != r:
-                    for i in ti.static(range(3)):
-                        t = 0.0
-                        for j in ti.static(range(3)):
-                            t += blocks[k, j, i] * vr[j]
-                        out[c, i] = out[c, i] + t
-            for i in ti.static(range(3)):
-                out[r, i] = out[r, i] + s[i]
-
-    return multiply
 
 
 class FactorGMRES:
@@ -64,7 +28,6 @@ class FactorGMRES:
     shift: what the factor has on the diagonal besides, in units of its mean: 0 while the matrix is positive
         and nobody asked for more (`stiffen`, `relax`, `reset`). As it fades, solves are with less than that,
         and the factor is kept while it serves.
-    weights (n, 1): what each row takes of the shift; all 1 unless they are set.
     """
 
     def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 20) -> None:
@@ -74,7 +37,6 @@ class FactorGMRES:
         self._stale = True
         self._added = self._scale = 0.0
         self._wanted = 0.0
-        self.weights = np.ones((len(pattern.indptr) - 1, 1))
         self.shift = 0.0
         self.factorisations = 0
         self.iterations = 0
@@ -102,21 +64,22 @@ class FactorGMRES:
         rhs: Array,
         *,
         tolerance: float,
-        skew: Callable[[Array, Array], None] | None = None,
+        multiply: Callable[[Array], Array],
     ) -> Array:
         """A^-1 rhs to a relative residual, or as near as `limit` iterations with a new factor come.
 
-        skew: (v, out) adds the unsymmetric part of A times v to out. LinearSolveError from the factor.
+        blocks: what the factor is made of, an approximation of A's symmetric part. multiply: A v of v (3 n,).
+        LinearSolveError from the factor.
         """
         fresh = self._stale
         if fresh:
             self._refresh(blocks)
         self._added = self._wanted * self._scale
-        x, used, good = self._gmres(blocks, rhs, tolerance, skew)
+        x, used, good = self._gmres(rhs, tolerance, multiply)
         if not good and not fresh:
             self._refresh(blocks)
             self._added = self._wanted * self._scale
-            x, used, good = self._gmres(blocks, rhs, tolerance, skew)
+            x, used, good = self._gmres(rhs, tolerance, multiply)
         self._stale = used > self._patience
         return x
 
@@ -128,7 +91,7 @@ class FactorGMRES:
             matrix = blocks
             if self.shift:
                 matrix = blocks.copy()
-                matrix[diagonal] += self.shift * scale * self.weights[:, :, None] * np.eye(3)
+                matrix[diagonal] += self.shift * scale * np.eye(3)
             self._factor.factorise(matrix)
             self.factorisations += 1
             if self._factor.negative == 0:
@@ -137,10 +100,9 @@ class FactorGMRES:
         self._wanted, self._scale = self.shift, scale
 
     def _gmres(
-        self, blocks: Array, rhs: Array, tolerance: float, skew: Callable[[Array, Array], None] | None
+        self, rhs: Array, tolerance: float, multiply: Callable[[Array], Array]
     ) -> tuple[Array, int, bool]:
         """One cycle, right-preconditioned, so that the residual it minimises is the true one."""
-        p, multiply = self._pattern, _multiply_kernel()
         beta = float(np.linalg.norm(rhs))
         basis = np.empty((self._limit + 1, rhs.size))
         images = np.empty((self._limit, rhs.size))
@@ -149,14 +111,10 @@ class FactorGMRES:
         left = [beta]  # the projected right side
         turns: list[tuple[float, float]] = []  # the rotations that make the projected matrix triangular
         for k in range(self._limit):
-            z = self._factor.solve(basis[k].reshape(rhs.shape))
-            w = np.zeros_like(rhs)
-            multiply(p.indptr, p.indices, blocks, z, w)
+            images[k] = self._factor.solve(basis[k].reshape(rhs.shape)).ravel()
+            v = multiply(images[k])
             if self._added:
-                w += self._added * self.weights * z
-            if skew is not None:
-                skew(z, w)
-            images[k], v = z.ravel(), w.ravel()
+                v += self._added * images[k]
             column = basis[: k + 1] @ v
             v = v - column @ basis[: k + 1]
             below = float(np.linalg.norm(v))

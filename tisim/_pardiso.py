@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _ANALYSE, _FACTOR, _SOLVE, _RELEASE = 11, 22, 33, -1
+_FORWARD, _BACKWARD = 331, 333
 _POSITIVE, _INDEFINITE = 2, -2
 
 
@@ -88,6 +89,7 @@ class Pardiso:
         self._iparm[34] = 1  # zero-based, so that blocks are row-major
         self._iparm[36] = 3  # block size
         self._values = np.zeros(len(indices) * 9, dtype=self._dtype)
+        self._order = np.zeros(1, dtype=np.int32)
         self._analysed = False
         self.negative = 0
 
@@ -121,7 +123,7 @@ class Pardiso:
         Pardiso._function(
             pointer(self._pt), integer(1), integer(1), integer(self._type), integer(phase),
             integer(self._n), pointer(self._values), pointer(self._ia), pointer(self._ja),
-            pointer(np.zeros(1, dtype=np.int32)), integer(1), pointer(self._iparm), integer(0),
+            pointer(self._order), integer(1), pointer(self._iparm), integer(0),
             pointer(dummy if b is None else b), pointer(dummy if x is None else x), ctypes.byref(error),
         )  # fmt: skip
         if error.value != 0:
@@ -131,3 +133,45 @@ class Pardiso:
         # when the interpreter ends, the process frees the memory, and modules (sys, ctypes) may be gone
         if getattr(self, "_analysed", False) and not finalizing():
             self._call(_RELEASE)
+
+
+class PardisoSchur(Pardiso):
+    """A symmetric matrix of which some rows are left after the others are eliminated; single precision.
+
+    indptr, indices: scalar CSR, upper triangle (PARDISO has no complements of block matrices). kept: the rows
+    that are left. A solve comes in halves, `forward` and `backward`; what is between them is the caller's.
+    """
+
+    def __init__(
+        self, indptr: NDArray[np.int32], indices: NDArray[np.int32], kept: NDArray[np.bool_]
+    ) -> None:
+        super().__init__(indptr, indices, single=True)
+        self._iparm[35] = 2  # the complement, and factors for partial solves
+        self._iparm[36] = 0
+        self._values = np.zeros(len(indices), dtype=self._dtype)
+        self._order = np.ascontiguousarray(kept, dtype=np.int32)
+        self._left = int(kept.sum())
+
+    def factorise(self, values: NDArray[np.float64]) -> NDArray[np.float32]:  # type: ignore[override]
+        """values (nnz,) -> the complement, (kept, kept)."""
+        self._values[:] = values
+        if not self._analysed:
+            self._call(_ANALYSE)
+            self._analysed = True
+        complement = np.zeros((self._left, self._left), dtype=self._dtype)
+        self._call(_FACTOR, None, complement)
+        return complement
+
+    def forward(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """L^-1 rhs (n,); its kept rows: rhs_I - K_IF K_FF^-1 rhs_F."""
+        return self._half(_FORWARD, rhs)
+
+    def backward(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The other half, kept rows as they are."""
+        return self._half(_BACKWARD, rhs)
+
+    def _half(self, phase: int, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        b: NDArray[Any] = np.ascontiguousarray(rhs, dtype=self._dtype)
+        x = np.zeros_like(b)
+        self._call(phase, b, x)
+        return x.astype(np.float64)

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Layout
-from tisim._poke_near import NearField
-from tisim._poke_newton import contact_newton
+from tisim._poke_condensed import CondensedBlock
 from tisim._poke_system import PokeSystem
 from tisim.mesh import Mesh
 from tisim.mesh.poke_block import poke_mesh
@@ -56,29 +55,29 @@ def solve_poke(scene: Poke, *, trace: Callable[[str], None] | None = None) -> Re
     mesh_seconds = time.process_time() - mesh_start
     start = time.process_time()
     system = PokeSystem(scene, layout)
-    frames, status, steps, cuts, iterations = _push(scene, system, trace=trace)
+    block = CondensedBlock(system)
+    frames, status, steps, cuts = _push(scene, system, block, trace=trace)
     cost = Cost(
         core_seconds=time.process_time() - start,
         mesh_seconds=mesh_seconds,
         steps=steps,
-        newton_iterations=iterations,
-        factorisations=system.linear.factorisations,
-        linear_iterations=system.linear.iterations,
+        newton_iterations=block.iterations,
+        factorisations=block.factorisations,
+        linear_iterations=block.linear_iterations,
         step_cuts=cuts,
     )
     return _result(scene, mesh, frames, status, cost)
 
 
 def _push(
-    scene: Poke, system: PokeSystem, *, trace: Callable[[str], None] | None
-) -> tuple[list[Frame], Status, int, int, int]:
+    scene: Poke, system: PokeSystem, block: CondensedBlock, *, trace: Callable[[str], None] | None
+) -> tuple[list[Frame], Status, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
-    near = NearField(system)
     refused = 0
     depth, step = 0.0, FIRST_STEP
     frames: list[Frame] = []
-    steps = cuts = iterations = 0
+    steps = cuts = 0
     status = Status.CONVERGED
     next_frame = scene.frame_spacing
     while depth < scene.depth - SAME:
@@ -89,18 +88,14 @@ def _push(
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
         frame = target >= min(next_frame, scene.depth) - SAME
-        near.begin()
-        outcome = contact_newton(
-            system,
+        outcome = block.solve(
             guess,
             tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
             # what stops most steps is a snap, which no smaller step goes round: it takes iterations
             max_iterations=scene.solver.max_iterations * (1 + refused),
             kept=frame,
-            relax=near.relax,
         )
         steps += 1
-        iterations += outcome.iterations
         overlap = -float(system.report[3])
         failed: Status | None = None if outcome.status is Status.CONVERGED else outcome.status
         if failed is None and overlap > REFUSE_AT * system.edge:
@@ -110,9 +105,8 @@ def _push(
                 f"{target * 1e3:7.3f} step {step * 1e3:.3f} it {outcome.iterations:2d}"
                 f" {outcome.status.value:14s} F {system.report[:3] @ -system.axis:8.4f}"
                 f" overlap {overlap * 1e3:.3f}"
-                f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} cg {system.linear.iterations}"
-                f" fac {system.linear.factorisations} shift {system.linear.shift:.0e}"
-                f" near {near.iterations} fac {near.factorisations}"
+                f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} solves {block.linear_iterations}"
+                f" fac {block.factorisations} rounds {block.rounds} far {block.condensations}"
             )
         if failed is not None:
             status = failed
@@ -120,7 +114,7 @@ def _push(
             refused += 1
             step *= 0.4
             if step < SMALLEST_STEP:
-                return frames, status, steps, cuts, iterations
+                return frames, status, steps, cuts
             continue
         refused = 0
         velocity = (outcome.x - x) / (target - depth)
@@ -140,7 +134,7 @@ def _push(
                 )
             )  # fmt: skip
             next_frame = depth + scene.frame_spacing
-    return frames, Status.CONVERGED, steps, cuts, iterations
+    return frames, Status.CONVERGED, steps, cuts
 
 
 def _predict(system: PokeSystem, x: Array, move: Array) -> Array:

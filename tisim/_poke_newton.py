@@ -5,14 +5,10 @@ singular, and Newton's step runs far off along a few modes. Cutting the whole st
 a multiple of the identity added to the tangent (`FactorGMRES.stiffen`) holds back just these modes. It is
 the implicit step of a viscous motion, so a snap is followed downhill, the residual rising on the way; and
 it fades as steps are taken whole. The residual that ends the iteration knows nothing of it.
-
-Much of this happens next to the rod only, and can be left to a cheaper iteration there after each step:
-`relax`, see `tisim._poke_near`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -61,33 +57,24 @@ def contact_newton(
     tolerance: float,
     max_iterations: int,
     kept: bool = True,
-    relax: Callable[[Array], Array] | None = None,
 ) -> Outcome:
-    """Equilibrium from x on: |residual| <= tolerance * load.
-
-    kept: the result is to be kept as a frame. Then the residual's sum is within BALANCE of the rod's force as
-    well: small residuals of thousands of nodes may all point one way.
-    relax: improves x, here and at each trial of a step.
-    """
+    """Equilibrium from x on, see `settled`."""
     relative, radius = np.inf, RADIUS
     system.linear.reset()
-    if relax is not None:
-        x = relax(x)
     for iteration in range(max_iterations + 1):
         residual, load = system.residual(x)
         size = float(np.linalg.norm(residual))
         if not np.isfinite(size):
             return Outcome(x, Status.NOT_CONVERGED, np.inf, iteration)
         previous, relative = relative, size / load
-        missing = float(np.linalg.norm(residual.sum(axis=0))) if kept else 0.0
-        if relative <= tolerance and missing <= max(BALANCE * system.rod_force(), tolerance * load):
+        if settled(system, residual, load, tolerance=tolerance, kept=kept):
             return Outcome(x, Status.CONVERGED, relative, iteration)
         if iteration == max_iterations:
             break
         system.linearise(x)
         forcing = 3e-2 if iteration == 0 else float(np.clip(0.1 * relative / previous, 5e-3, 3e-2))
         try:
-            found, status, radius = _step(system, x, residual, radius, forcing, relax)
+            found, status, radius = _step(system, x, residual, radius, forcing)
         except LinearSolveError:
             return Outcome(x, Status.SINGULAR, relative, iteration)
         if found is None:
@@ -96,13 +83,24 @@ def contact_newton(
     return Outcome(x, Status.NOT_CONVERGED, relative, max_iterations)
 
 
+def settled(system: ContactSystem, residual: Array, load: float, *, tolerance: float, kept: bool) -> bool:
+    """Whether |residual| <= tolerance * load.
+
+    kept: the state is to be kept as a frame. Then the residual's sum is within BALANCE of the rod's force as
+    well: small residuals of thousands of nodes may all point one way.
+    """
+    if float(np.linalg.norm(residual)) > tolerance * load:
+        return False
+    missing = float(np.linalg.norm(residual.sum(axis=0))) if kept else 0.0
+    return missing <= max(BALANCE * system.rod_force(), tolerance * load)
+
+
 def _step(
     system: ContactSystem,
     x: Array,
     residual: Array,
     radius: float,
     forcing: float,
-    relax: Callable[[Array], Array] | None,
 ) -> tuple[Array | None, Status, float]:
     """The next x (None if there is none), why there is none, and the next radius."""
     linear = system.linear
@@ -124,9 +122,6 @@ def _step(
         for _ in range(2):
             trial = system.advance(x, scale * step)
             energy, min_jacobian = system.potential(trial)
-            if relax is not None and min_jacobian > CRUSHED and np.isfinite(energy):
-                trial = relax(trial)
-                energy, min_jacobian = system.potential(trial)
             if min_jacobian <= CRUSHED or not np.isfinite(energy):
                 status = Status.INVERTED
             else:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Body, Layout, gravity_load
 from tisim._contact import contact_kernels, pack_rod
+from tisim._far import FarField
 from tisim._hexahedra import TetrahedralParts
 from tisim._krylov import FactorGMRES
+from tisim._product import FullMatrix
 from tisim._quadrature import facet_areas, facet_quadrature
 from tisim.bodies import Rod
 from tisim.mesh import Mesh
@@ -26,6 +28,16 @@ TANGENT_STIFFNESS = 50.0
 POINTS_PER_SIDE = 4
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Some of a block's elements as a system of their own: body, solver, tangent, slots of the facets."""
+
+    body: Body
+    linear: FactorGMRES
+    full: FullMatrix
+    slot: NDArray[np.int32]
+
+
 def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
     """Tip centre where the rod, its axis through the site, first touches the plane z = height."""
     edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
@@ -38,7 +50,10 @@ def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -
 
 
 class PokeSystem:
-    """The block under a rod at one pose (see `tisim._poke_newton`)."""
+    """The block under a rod at one pose (see `tisim._poke_newton`).
+
+    far: what tissue beyond the body's elements adds, where the body is the near part of a block.
+    """
 
     def __init__(self, scene: Poke, layout: Layout) -> None:
         mesh, rod = layout.mesh, scene.rod
@@ -67,8 +82,10 @@ class PokeSystem:
         self._skew = np.zeros((*points, 9))
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
         self._part = np.zeros(points)
-        self._measure, self._energy, self._assemble, self._multiply_skew = contact_kernels()
+        self._measure, self._energy, self._assemble = contact_kernels()
         self.linear = FactorGMRES(layout.pattern)
+        self.full = FullMatrix(layout.pattern, self.facets)
+        self.far: FarField | None = None
         self.linearisations = 0
         self.min_jacobian = 1.0
         self._known: tuple[Array, tuple[Array, float, float]] | None = None
@@ -120,17 +137,17 @@ class PokeSystem:
             self._parts.update(x)
             self._known = None
 
-    def restricted(self, body: Body, linear: FactorGMRES, slot: NDArray[np.int32]) -> PokeSystem:
-        """This system at its depth on a body of some of the elements, the nodes it lacks held.
+    def restricted(self, part: Part, far: FarField) -> PokeSystem:
+        """This system at its depth on some of the elements, with `far` for the others.
 
         What contact remembers of the last converged state is shared; what it makes of a trial is not.
-        slot: of the facets in the body's pattern.
         """
-        part = copy(self)
-        part.layout, part.body, part.linear, part._slot = body.layout, body, linear, slot
-        part._pressure, part._slip, part._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
-        part._known, part.report = None, np.zeros(6)
-        return part
+        it = copy(self)
+        it.layout, it.body, it.linear = part.body.layout, part.body, part.linear
+        it.full, it._slot, it.far = part.full, part.slot, far
+        it._pressure, it._slip, it._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
+        it._known, it.report = None, np.zeros(6)
+        return it
 
     def stiffen(self) -> None:
         """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
@@ -149,7 +166,10 @@ class PokeSystem:
     def _forces_at(self, x: Array) -> tuple[Array, float, float]:
         """Internal forces (n, 3), energy and smallest det F of the body; an accepted trial is asked again."""
         if self._known is None or self._known[0] is not x:
-            self._known = (x, self.body.forces_and_energy(x))
+            force, energy, min_jacobian = self.body.forces_and_energy(x)
+            if self.far is not None:
+                energy += self.far.add_to(force, x)
+            self._known = (x, (force, energy, min_jacobian))
         return self._known[1]
 
     def residual(self, x: Array) -> tuple[Array, float]:
@@ -161,10 +181,22 @@ class PokeSystem:
     def linearise(self, x: Array) -> tuple[Array, float]:
         """The same, and the tangent for the next steps."""
         self._blocks, force, self.min_jacobian = self.body.stiffness(x)
+        if self.far is not None:
+            self.far.add_to(force, x)
+            self._blocks[self.far.slots] += self.far.paired
         self.linearisations += 1
         found = self._with_contact(x, force, self._slot, self._blocks)
         self.layout.hold(self._blocks)
+        self._matrix = self.full.filled(self._blocks, self._unsymmetric())
         return found
+
+    def _unsymmetric(self) -> Array | None:
+        """What friction adds to the tangent besides its symmetric part, by facet's node pair."""
+        if self.report[5] == 0.0:
+            return None
+        pairs = self._shape[:, :, None] * self._shape[:, None, :]  # (q, a, a)
+        points, nodes = self._shape.shape
+        return (pairs.reshape(points, -1).T @ self._skew).reshape(-1, nodes, nodes, 3, 3)
 
     def _with_contact(
         self, x: Array, force: Array, slot: NDArray[np.int32], blocks: Array
@@ -186,20 +218,14 @@ class PokeSystem:
         return residual
 
     def step(self, residual: Array, *, forcing: float) -> Array:
-        skew = self._skew_product if self.report[5] > 0.0 else None
-        return self.linear.solve(self._blocks, -residual, tolerance=forcing, skew=skew)
+        return self.linear.solve(self._blocks, -residual, tolerance=forcing, multiply=self.multiply)
 
-    def _skew_product(self, v: Array, out: Array) -> None:
-        self._multiply_skew(
-            self.facets,
-            self.layout.pattern.index,
-            self._shape,
-            self._pressure,
-            self._part,
-            self._skew,
-            v,
-            out,
-        )
+    def multiply(self, v: Array) -> Array:
+        """The tangent of the last linearisation times v (3 n_free,)."""
+        product: Array = self._matrix @ v
+        if self.far is not None:
+            self.far.add_unpaired(v, product)
+        return product
 
     def residual_norm(self, x: Array) -> float:
         """Size of the residual at a trial x [N]; changes nothing."""

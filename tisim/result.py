@@ -28,7 +28,7 @@ class Status(StrEnum):
 class Cost:
     """core_seconds: CPU time of the solve; mesh_seconds: of making the mesh; counts of the work done.
 
-    Counts of a poke are of the whole block; what its near field took besides is in the seconds alone.
+    Counts of a poke: iterations are of the tissue near the rod, factorisations of that and of the far tissue.
     """
 
     core_seconds: float = 0.0

@@ -1,0 +1,181 @@
+"""A block with its far tissue condensed: a step is Newton's on the whole block, and what stays as it was."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import tisim
+from tisim import _poke_condensed
+from tisim._body import Layout
+from tisim._newton import Outcome
+from tisim._poke import solve_poke
+from tisim._poke_condensed import CondensedBlock
+from tisim._poke_newton import contact_newton
+from tisim._poke_system import PokeSystem
+from tisim.mesh.poke_block import poke_mesh
+from tisim.result import Status
+
+Array = NDArray[np.float64]
+
+
+def scene(depth: float = 0.002) -> tisim.Poke:
+    return tisim.Poke(
+        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        direction=(0.3, 0.0, -0.9),
+        depth=depth,
+        refinement=0.5,
+        gravity=(0.0, 0.0, -9.81),
+    )
+
+
+def pressed(depth: float = 0.0003) -> tuple[PokeSystem, Array]:
+    """A rod in a block that has not yielded."""
+    poke = scene()
+    mesh = poke_mesh(
+        block=poke.block, site=poke.site, direction=poke.direction, rod=poke.rod, refinement=poke.refinement
+    )
+    it = PokeSystem(poke, Layout.build(mesh, mesh.node_sets["base"]))
+    it.move_to(depth)
+    x = mesh.nodes.copy()
+    it.touch(x)
+    return it, x
+
+
+OPTIONS: dict[str, Any] = {"tolerance": 5e-4, "max_iterations": 40, "kept": True}
+
+
+def test_a_step_is_newtons_on_the_whole_block() -> None:
+    """Far tissue eliminated and brought along again: the same linear system, solved in two parts."""
+    it, x = pressed()
+    rng = np.random.default_rng(3)
+    free = it.layout.pattern.free
+    x[free] += 2e-5 * rng.standard_normal((len(free), 3))
+    residual, _ = it.linearise(x)
+    whole = it.step(residual, forcing=1e-9)
+
+    block = CondensedBlock(it)
+    block._choose(x)
+    split = block._split
+    assert split is not None
+    assert 30 < len(split.near.body.layout.pattern.free) < 0.6 * len(free)
+    it.residual(x)
+    left = block._place(split, x)
+    part = it.restricted(split.near, split.far)
+    part.linear._limit = 80  # its factor knows neighbours only
+    near, _ = part.linearise(x)
+    moved = part.advance(x, part.step(near, forcing=1e-9))
+    found = block._follow(split, x, moved, left)
+    scale = np.abs(whole).max()
+    # the complement is in single precision
+    assert found[free] - x[free] == pytest.approx(whole, abs=2e-5 * scale)
+    fixed = np.setdiff1d(np.arange(len(x)), free)
+    assert np.array_equal(found[fixed], x[fixed])
+
+
+def test_equilibrium_is_that_of_the_whole_block() -> None:
+    it, x = pressed()
+    outcome = CondensedBlock(it).solve(x, **OPTIONS)
+    assert outcome.status is Status.CONVERGED
+    residual, load = it.residual(outcome.x)
+    assert np.linalg.norm(residual) <= 5e-4 * load
+    assert outcome.residual == pytest.approx(np.linalg.norm(residual) / load)
+    whole = contact_newton(it, x, tolerance=1e-6, max_iterations=40, kept=True)
+    assert whole.status is Status.CONVERGED
+    free = it.layout.pattern.free
+    moved = np.abs(whole.x - x)[free].max()
+    assert np.abs(outcome.x - whole.x)[free].max() < 0.02 * moved
+
+
+def test_the_far_tangent_serves_several_steps() -> None:
+    it, x = pressed(0.0001)
+    block = CondensedBlock(it)
+    for depth in (0.0001, 0.0003, 0.0005, 0.0007):
+        it.move_to(depth)
+        it.touch(x)
+        outcome = block.solve(x, **OPTIONS)
+        assert outcome.status is Status.CONVERGED
+        x = outcome.x
+        it.accept(x)
+    assert block.condensations < 4
+    assert block.rounds >= 4
+    assert block.factorisations >= block.condensations
+    assert block.iterations > 0
+    assert block.linear_iterations > 0
+
+
+def test_near_nodes_are_chosen_anew_where_the_rod_has_gone_on() -> None:
+    it, x = pressed()
+    block = CondensedBlock(it)
+    x = block.solve(x, **OPTIONS).x
+    first = block._split
+    it.accept(x)
+    it.move_to(0.0006)
+    it.touch(x)
+    x = block.solve(x, **OPTIONS).x
+    assert block._split is first
+    it.accept(x)
+    it.move_to(0.0022)
+    it.touch(x)
+    block.solve(x, **OPTIONS)
+    assert block._split is not first
+
+
+def test_trying_a_part_leaves_the_state_of_contact_alone() -> None:
+    it, x = pressed()
+    x = CondensedBlock(it).solve(x, **OPTIONS).x
+    it.accept(x)
+    it.move_to(0.0005)
+    it.touch(x)
+    it.linearise(x)
+    kept = [a.copy() for a in (it._memory, it._part, it.previous)]
+    CondensedBlock(it).solve(x, **OPTIONS)
+    for a, b in zip(kept, (it._memory, it._part, it.previous), strict=True):
+        assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("reach", [-1.0, 100.0], ids=["nothing near", "all near"])
+def test_a_block_without_two_parts_is_solved_whole(monkeypatch: pytest.MonkeyPatch, reach: float) -> None:
+    monkeypatch.setattr(_poke_condensed, "REACH", reach)
+    it, x = pressed()
+    block = CondensedBlock(it)
+    outcome = block.solve(x, **OPTIONS)
+    assert block._split is None
+    assert outcome.status is Status.CONVERGED
+    assert block.iterations == outcome.iterations > 0
+    assert block.condensations == 0
+
+
+def test_iterations_end_at_their_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    it, x = pressed()
+    asked: list[int] = []
+
+    def slow(_part: PokeSystem, x: Array, *, max_iterations: int, **_: Any) -> Outcome:
+        asked.append(max_iterations)
+        return Outcome(x, Status.NOT_CONVERGED, 1.0, max_iterations)
+
+    monkeypatch.setattr(_poke_condensed, "contact_newton", slow)
+    outcome = CondensedBlock(it).solve(x, tolerance=5e-4, max_iterations=20, kept=True)
+    assert outcome.status is Status.NOT_CONVERGED
+    assert outcome.iterations == 20
+    assert asked == [8, 8, 4]
+
+
+@pytest.mark.parametrize("status", [Status.SINGULAR, Status.INVERTED])
+def test_a_near_part_that_fails_says_why(monkeypatch: pytest.MonkeyPatch, status: Status) -> None:
+    it, x = pressed()
+    monkeypatch.setattr(_poke_condensed, "contact_newton", lambda _part, x, **_: Outcome(x, status, 1.0, 3))
+    assert CondensedBlock(it).solve(x, **OPTIONS).status is status
+
+
+def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    condensed = solve_poke(scene())
+    monkeypatch.setattr(_poke_condensed, "REACH", -1.0)
+    whole = solve_poke(scene())
+    assert condensed.ok
+    assert whole.ok
+    size = np.linalg.norm(whole.rod_force, axis=1)
+    assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 2e-3 * size).all()
