@@ -83,6 +83,7 @@ class BeamSystem:
             False  # whether clamps strain the body, so that equilibrium has a scale without load
         )
         self.counts = {"factorisations": 0, "newton": 0}
+        self.min_jacobian = 1.0
         self._blocks: Array | None = None
         self._pressure: Array | None = None
 
@@ -108,11 +109,11 @@ class BeamSystem:
 
     def linearise(self, x: Array) -> tuple[Array, float]:
         layout = self.body.layout
-        self._blocks, force, min_jacobian = self.body.stiffness(x, self._pressure)
+        self._blocks, force, self.min_jacobian = self.body.stiffness(x, self._pressure)
         self.counts["newton"] += 1
         residual = (force - self.body.dead_load)[layout.pattern.free]
         residual[layout.held] = 0.0
-        if min_jacobian <= 0.0:
+        if self.min_jacobian <= 0.0:
             residual[:] = np.nan
         load = self.load_norm()
         if self.clamps_load:

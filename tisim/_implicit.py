@@ -100,16 +100,16 @@ class ImplicitSystem:
         return np.asarray(drag + state.f + s.stiffness_damping * rate - self.body.dead_load)
 
     def potential(self, x: Array) -> tuple[float, float]:
-        return self.body.energy(x)  # only its smallest det F is asked for: steps are taken whole
+        return self.body.energy(x)  # for the protocol: steps are taken whole
 
     def linearise(self, x: Array) -> tuple[Array, float]:
         layout, c, s = self.body.layout, self.c, self.solver
         self.newton_iterations += 1
-        self._blocks, force, min_jacobian = self.body.stiffness(x, self._pressure)
+        self._blocks, force, self.min_jacobian = self.body.stiffness(x, self._pressure)
         self._blocks *= 1.0 + c * s.stiffness_damping
         self._blocks += c * (c + s.mass_damping) * self._mass_blocks
         residual = self._free(self.balance(self.state(x, force)))
-        if min_jacobian <= 0.0:
+        if self.min_jacobian <= 0.0:
             residual[:] = np.nan
         # short steps magnify the rounding of positions: nothing can be asked for below that
         diagonal = self._blocks[layout.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]

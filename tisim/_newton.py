@@ -21,7 +21,12 @@ CRUSHED = 1e-4
 
 
 class System(Protocol):
-    """One load level of a scene. x is (n, 3) over all nodes, residual and step over free nodes."""
+    """One load level of a scene. x is (n, 3) over all nodes, residual and step over free nodes.
+
+    min_jacobian: smallest det F at the last linearised x.
+    """
+
+    min_jacobian: float
 
     def potential(self, x: Array) -> tuple[float, float]:
         """Potential [J] and smallest det F."""
@@ -60,10 +65,12 @@ class Outcome:
 
 def newton(system: System, x: Array, *, tolerance: float, max_iterations: int) -> Outcome:
     """Minimise the system's potential from x until |residual| <= tolerance * load."""
-    relative = np.inf
+    relative, before = np.inf, x
     for iteration in range(max_iterations + 1):
         residual, load = system.linearise(x)
         size = float(np.linalg.norm(residual))
+        if iteration > 0 and system.min_jacobian <= CRUSHED:
+            return Outcome(before, Status.INVERTED, relative, iteration)
         if not np.isfinite(size):
             return Outcome(x, Status.NOT_CONVERGED, np.inf, iteration)
         previous, relative = relative, size / load if load > 0 else size
@@ -82,7 +89,7 @@ def newton(system: System, x: Array, *, tolerance: float, max_iterations: int) -
                 found, status = _line_search(system, x, second, residual, _scale(system, second))
         if found is None:
             return Outcome(x, status, relative, iteration)
-        x = found
+        x, before = found, x
     return Outcome(x, Status.NOT_CONVERGED, relative, max_iterations)
 
 
@@ -94,10 +101,8 @@ def _scale(system: System, step: Array) -> float:
 def _line_search(
     system: System, x: Array, step: Array, residual: Array, scale: float
 ) -> tuple[Array | None, Status]:
-    if not system.searches():
-        trial = system.advance(x, scale * step)
-        good = system.potential(trial)[1] > CRUSHED
-        return (trial, Status.CONVERGED) if good else (None, Status.INVERTED)
+    if not system.searches():  # the next linearisation sees whether an element has turned over
+        return system.advance(x, scale * step), Status.CONVERGED
     start, _ = system.potential(x)
     slope = float(np.vdot(residual, step))
     # energy differences below this are rounding; the residual will judge
