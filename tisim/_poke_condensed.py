@@ -33,7 +33,7 @@ Bools = NDArray[np.bool_]
 
 # Near: closer to the rod's surface than this, also when it will have gone on by RENEW; then near nodes are
 # chosen anew (in radii of the rod).
-REACH, RENEW = 0.8, 0.6
+REACH, RENEW = 0.8, 1.2
 # A round ends after so many near iterations: in a snap, far nodes are to come along, and a trust region that
 # has grown small is begun anew (5, 6 and 20 take longer: benchmarks/README.md).
 INNER = 8
