@@ -39,6 +39,8 @@ REACH, RENEW = 0.8, 1.2
 INNER = 8
 # A round leaves less than SLOW of the residual, or the far tangent is renewed; so many rounds are tried.
 SLOW, ROUNDS = 0.3, 12
+# So often the way is halved on which elements turn over.
+SHORTER = 4
 # The near residual goes down to this part of the whole, or of what the whole is to reach.
 REDUCTION, GOAL = 0.03, 0.3
 
@@ -118,10 +120,12 @@ class CondensedBlock:
                 rounds = 0
             else:
                 return Outcome(x, outcome.status, relative, used)
-            x = self._follow(split, x, outcome.x, left)
-            self.rounds += 1
-            if system.potential(x)[1] <= CRUSHED:
+            found, share = self._sound(x, self._follow(split, x, outcome.x, left))
+            if found is None:
                 return Outcome(x, Status.INVERTED, relative, used)
+            self._stale = share < 1.0  # too far for a linear answer of the far tissue
+            x = found
+            self.rounds += 1
 
     def _count(self, linear: FactorGMRES, iterations: int) -> None:
         self.iterations += iterations
@@ -153,6 +157,16 @@ class CondensedBlock:
         found = moved.copy()
         found[split.body.layout.pattern.free[split.beyond]] += change[split.beyond]
         return found
+
+    def _sound(self, x: Array, moved: Array) -> tuple[Array | None, float]:
+        """The way from x to moved as far as no element turns over, and which part of it that is."""
+        part = 1.0
+        for _ in range(SHORTER):
+            trial = moved if part == 1.0 else x + part * (moved - x)
+            if self._system.potential(trial)[1] > CRUSHED:
+                return trial, part
+            part *= 0.5
+        return None, 0.0
 
     def _choose(self, x: Array) -> None:
         """Part the block at x; into no parts where all of it, or nothing, is near."""

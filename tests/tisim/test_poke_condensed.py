@@ -118,7 +118,7 @@ def test_near_nodes_are_chosen_anew_where_the_rod_has_gone_on() -> None:
     x = block.solve(x, **OPTIONS).x
     assert block._split is first
     it.accept(x)
-    it.move_to(0.0022)
+    it.move_to(0.004)
     it.touch(x)
     block.solve(x, **OPTIONS)
     assert block._split is not first
@@ -179,3 +179,31 @@ def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.Monk
     assert whole.ok
     size = np.linalg.norm(whole.rod_force, axis=1)
     assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 2e-3 * size).all()
+
+
+def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    it, x = pressed()
+    block = CondensedBlock(it)
+    far = x.copy()
+    top = np.unique(it.layout.mesh.facet_sets["top"])
+    while it.potential(far)[1] > 0.0:
+        far = far.copy()
+        far[top, 2] -= 1e-3
+    found, part = block._sound(x, far)
+    assert found is not None
+    assert part in (0.5, 0.25, 0.125)
+    assert it.potential(found)[1] > 0.0
+    assert found == pytest.approx(x + part * (far - x))
+    beyond = x.copy()
+    beyond[top, 2] -= 1.0
+    assert block._sound(x, beyond) == (None, 0.0)
+    whole, part = block._sound(x, x)
+    assert whole is x
+    assert part == 1.0
+    # a round that would turn elements over goes on from where they are sound, with a new far tangent
+    monkeypatch.setattr(CondensedBlock, "_sound", lambda _self, x, _moved: (x, 0.5))
+    stuck = block.solve(x, tolerance=5e-4, max_iterations=10, kept=True)
+    assert stuck.status is Status.NOT_CONVERGED
+    assert block.condensations >= block.rounds > 1
+    monkeypatch.setattr(CondensedBlock, "_sound", lambda _self, _x, _moved: (None, 0.0))
+    assert block.solve(x, **OPTIONS).status is Status.INVERTED
