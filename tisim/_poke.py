@@ -24,6 +24,9 @@ STIFFEN_AT, REFUSE_AT = 0.25, 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
 # Tolerance of steps between frames, which are there to follow the path, in units of the frames'.
 BETWEEN = 6.0
+# A frame that finds no equilibrium, which is asked more of than the steps between, is tried again so much of
+# the spacing further on.
+LATER = 0.1
 SAME = 1e-9  # depths closer than this are one [m]
 
 
@@ -81,13 +84,14 @@ def _push(
     status = Status.CONVERGED
     next_frame = scene.frame_spacing
     while depth < scene.depth - SAME:
-        target = min(depth + step, next_frame, scene.depth)
-        if SAME < next_frame - target < 0.2 * step:
-            target = 0.5 * (depth + next_frame)
+        wanted = min(next_frame, scene.depth)
+        target = min(depth + step, wanted)
+        if SAME < wanted - target < 0.2 * step:
+            target = 0.5 * (depth + wanted)
         system.move_to(target)
         guess = _predict(system, x, velocity * (target - depth))
         system.touch(guess)
-        frame = target >= min(next_frame, scene.depth) - SAME
+        frame = target >= wanted - SAME
         outcome = block.solve(
             guess,
             tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
@@ -112,6 +116,10 @@ def _push(
             status = failed
             cuts += 1
             refused += 1
+            if frame and target < scene.depth - SAME:
+                next_frame = min(target + LATER * scene.frame_spacing, scene.depth)
+                if refused == 1:
+                    continue
             step *= 0.4
             if step < SMALLEST_STEP:
                 return frames, status, steps, cuts
@@ -159,11 +167,15 @@ def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: 
     def stack(values: list[Array], width: tuple[int, ...]) -> Array:
         return np.array(values) if values else np.zeros((0, *width))
 
-    reached = f"{frames[-1].depth * 1e3:.2f}" if frames else "0"
+    reached = "0 mm"
+    if frames:  # what stops a poke shows there: tissue crushed against an inclusion, or a surface that folds
+        last = frames[-1]
+        size = float(np.linalg.norm(last.rod_force))
+        reached = f"{last.depth * 1e3:.2f} mm, {size:.3g} N and smallest det F {last.min_jacobian:.3f}"
     return Result(
         scene=scene,
         status=status,
-        message="" if status is Status.CONVERGED else f"{status.value} after {reached} mm",
+        message="" if status is Status.CONVERGED else f"{status.value} after {reached}",
         mesh=mesh,
         load=np.array([f.depth for f in frames]),
         positions=stack([f.x for f in frames], (mesh.n_nodes, 3)),

@@ -115,7 +115,11 @@ def test_a_poke_that_cannot_go_on_says_so() -> None:
     assert not result.ok
     assert 0.001 <= result.load[-1] < 0.0062
     assert (result.min_jacobian > 0).all()
-    assert f"{result.load[-1] * 1e3:.2f} mm" in result.message
+    force = np.linalg.norm(result.rod_force[-1])
+    reached = (
+        f"{result.load[-1] * 1e3:.2f} mm, {force:.3g} N and smallest det F {result.min_jacobian[-1]:.3f}"
+    )
+    assert result.message.endswith(f"after {reached}")
 
 
 @pytest.mark.slow

@@ -37,10 +37,73 @@ def test_frames_are_solved_to_the_tolerance_and_refused_steps_more_patiently(
     )
     assert result.ok
     assert result.cost.step_cuts == 2
-    assert result.load == pytest.approx([0.0003, 0.0006])
+    # the third step that was tried, and refused, was a frame
+    assert result.load == pytest.approx([0.00033, 0.0006])
     assert (result.residual <= 5e-4).all()
     assert [one["max_iterations"] for one in asked[:5]] == [40, 40, 80, 120, 40]
     for one in asked:
         assert one["tolerance"] == pytest.approx(5e-4 if one["kept"] else 3e-3)
     assert sum(one["kept"] for one in asked) >= 2
     assert any(not one["kept"] for one in asked)
+
+
+def test_a_frame_without_equilibrium_is_tried_again_further_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    solve = CondensedBlock.solve
+    asked: list[tuple[float, bool]] = []
+
+    def refusing_a_frame(self: CondensedBlock, x: Any, **options: Any) -> Outcome:
+        depth = self._system.depth
+        asked.append((round(depth * 1e3, 6), options["kept"]))
+        if options["kept"] and depth < 0.00031:
+            return Outcome(x, Status.NOT_CONVERGED, 1e-3, 40)
+        return solve(self, x, **options)
+
+    monkeypatch.setattr(CondensedBlock, "solve", refusing_a_frame)
+    result = solve_poke(
+        tisim.Poke(
+            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+            depth=0.0008,
+            frame_spacing=0.0003,
+            refinement=0.5,
+        )
+    )
+    assert result.ok
+    assert result.cost.step_cuts == 1
+    # a tenth of the spacing later, and the next one a spacing after that
+    assert result.load == pytest.approx([0.00033, 0.00063, 0.0008])
+    tried = [depth for depth, kept in asked if kept]
+    assert tried == pytest.approx([0.3, 0.33, 0.63, 0.8])
+
+
+def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    solve = CondensedBlock.solve
+
+    def refusing_the_end(self: CondensedBlock, x: Any, **options: Any) -> Outcome:
+        if self._system.depth > 0.00059:
+            return Outcome(x, Status.NOT_CONVERGED, 1e-3, 40)
+        return solve(self, x, **options)
+
+    monkeypatch.setattr(CondensedBlock, "solve", refusing_the_end)
+    result = solve_poke(
+        tisim.Poke(
+            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+            depth=0.0006,
+            frame_spacing=0.0003,
+            refinement=0.5,
+        )
+    )
+    assert result.status is Status.NOT_CONVERGED
+    assert result.load == pytest.approx([0.0003])
+
+
+def test_no_step_goes_beyond_the_depth_asked_for() -> None:
+    """Nor where the next frame would lie a little beyond it."""
+    result = solve_poke(
+        tisim.Poke(
+            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+            depth=0.00059,
+            frame_spacing=0.0003,
+            refinement=0.5,
+        )
+    )
+    assert result.load == pytest.approx([0.0003, 0.00059])
