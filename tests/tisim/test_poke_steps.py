@@ -77,8 +77,10 @@ def test_a_frame_without_equilibrium_is_tried_again_further_on(monkeypatch: pyte
 
 def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
     solve = CondensedBlock.solve
+    tried: list[float] = []
 
     def refusing_the_end(self: CondensedBlock, x: Any, **options: Any) -> Outcome:
+        tried.append(self._system.depth)
         if self._system.depth > 0.00059:
             return Outcome(x, Status.NOT_CONVERGED, 1e-3, 40)
         return solve(self, x, **options)
@@ -94,6 +96,8 @@ def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     assert result.status is Status.NOT_CONVERGED
     assert result.load == pytest.approx([0.0003])
+    first = next(k for k, depth in enumerate(tried) if depth > 0.00059)
+    assert tried[first + 1] < tried[first]  # the step is cut at once
 
 
 def test_no_step_goes_beyond_the_depth_asked_for() -> None:
