@@ -66,7 +66,7 @@ def test_pairs_and_the_rest_make_the_stiffness() -> None:
 
 
 def test_the_factor_is_positive_where_distant_pairs_are_left_out() -> None:
-    """A sheet whose points all drag each other along: its neighbours alone are indefinite; with a share of the
+    """A sheet whose points all drag each other along: neighbours alone are indefinite; with a share of the
     others on the diagonal they are positive, and the spectrum of one by the other is narrow."""
     line = np.linspace(0.0, 1.0, 40)
     conn = np.array([[k, k + 1] for k in range(39)], dtype=np.int32)
