@@ -13,6 +13,15 @@ from tisim._poke_condensed import CondensedBlock
 from tisim.result import Status
 
 
+def shallow(depth: float) -> tisim.Poke:
+    return tisim.Poke(
+        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        depth=depth,
+        frame_spacing=0.0003,
+        refinement=0.5,
+    )
+
+
 def test_frames_are_solved_to_the_tolerance_and_refused_steps_more_patiently(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -27,14 +36,7 @@ def test_frames_are_solved_to_the_tolerance_and_refused_steps_more_patiently(
         return solve(self, x, **options)
 
     monkeypatch.setattr(CondensedBlock, "solve", refusing_two)
-    result = solve_poke(
-        tisim.Poke(
-            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
-            depth=0.0006,
-            frame_spacing=0.0003,
-            refinement=0.5,
-        )
-    )
+    result = solve_poke(shallow(0.0006))
     assert result.ok
     assert result.cost.step_cuts == 2
     # the third step that was tried, and refused, was a frame
@@ -59,14 +61,7 @@ def test_a_frame_without_equilibrium_is_tried_again_further_on(monkeypatch: pyte
         return solve(self, x, **options)
 
     monkeypatch.setattr(CondensedBlock, "solve", refusing_a_frame)
-    result = solve_poke(
-        tisim.Poke(
-            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
-            depth=0.0008,
-            frame_spacing=0.0003,
-            refinement=0.5,
-        )
-    )
+    result = solve_poke(shallow(0.0008))
     assert result.ok
     assert result.cost.step_cuts == 1
     # a tenth of the spacing later, and the next one a spacing after that
@@ -86,14 +81,7 @@ def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
         return solve(self, x, **options)
 
     monkeypatch.setattr(CondensedBlock, "solve", refusing_the_end)
-    result = solve_poke(
-        tisim.Poke(
-            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
-            depth=0.0006,
-            frame_spacing=0.0003,
-            refinement=0.5,
-        )
-    )
+    result = solve_poke(shallow(0.0006))
     assert result.status is Status.NOT_CONVERGED
     assert result.load == pytest.approx([0.0003])
     first = next(k for k, depth in enumerate(tried) if depth > 0.00059)
@@ -102,12 +90,5 @@ def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_no_step_goes_beyond_the_depth_asked_for() -> None:
     """Nor where the next frame would lie a little beyond it."""
-    result = solve_poke(
-        tisim.Poke(
-            material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
-            depth=0.00059,
-            frame_spacing=0.0003,
-            refinement=0.5,
-        )
-    )
+    result = solve_poke(shallow(0.00059))
     assert result.load == pytest.approx([0.0003, 0.00059])
