@@ -28,17 +28,12 @@ class Experiment(Protocol):
 @dataclass(frozen=True, kw_only=True)
 class Advice:
     """An experiment, and by how much chi-square it would part the chosen cause from each of its rivals (inf:
-    the rival has no answer there, and would be seen at once). enough: from where on two are parted.
-
-    whichever: the same from the nearest of the others, for each of the causes that is taken to be true, the
-    chosen one first; the chosen one alone where the others were not asked.
-    """
+    the rival has no answer there, and would be seen at once). enough: from where on two are parted."""
 
     name: str
     sentence: str
     separations: tuple[float, ...]
     enough: float
-    whichever: tuple[float, ...]
 
     @property
     def separation(self) -> float:
@@ -52,9 +47,8 @@ class Advice:
 
 
 def from_nearest(advice: Advice) -> float:
-    """A rank: by what the nearest other parts, on average over what may be true, in tenths of what is enough.
-    The first of an ambiguous set is often not the cause."""
-    return round(float(np.mean([min(s / advice.enough, 1.0) for s in advice.whichever])), 1)
+    """A rank: experiments that part all rivals are alike, others come by the nearest."""
+    return min(advice.separation, advice.enough)
 
 
 def from_most(advice: Advice) -> float:
@@ -73,25 +67,14 @@ def advise(
     *,
     enough: float,
     rank: Callable[[Advice], float],
-    whichever: bool = False,
 ) -> list[Advice]:
     """All experiments, the advised one first: of the highest rank, and of several the cheapest (in the
-    catalogue's order). apart: by how much each parts the first of these explanations from the others.
-
-    whichever: ask that for each of them taken to be true, not for the first alone.
-    """
-    found = []
-    for e in experiments:
-        by_truth = [
-            tuple(apart(e, true, [r for r in rivals if r is not true]))
-            for true in (rivals if whichever else rivals[:1])
-        ]
-        found.append(
-            Advice(
-                name=e.name, sentence=e.sentence, separations=by_truth[0], enough=enough,
-                whichever=tuple(min(s, default=0.0) for s in by_truth),
-            )
-        )  # fmt: skip
+    catalogue's order). apart: by how much each parts the first of these explanations from the others."""
+    first, others = rivals[0], rivals[1:]
+    found = [
+        Advice(name=e.name, sentence=e.sentence, separations=tuple(apart(e, first, others)), enough=enough)
+        for e in experiments
+    ]
     return sorted(found, key=lambda a: -rank(a))  # stable
 
 

@@ -38,15 +38,15 @@ class Beams(Nested, Protocol):
 
 
 def advise(model: Beams, rivals: Sequence[Explanation]) -> list[Advice]:
-    """All experiments, the advised one first: of those that separate these explanations, whichever is true,
-    the cheapest, else the one that comes nearest to it."""
+    """All experiments, the advised one first: of those that separate the first of these explanations from all
+    others the cheapest, else the one that comes nearest to it."""
 
     def apart(e: Photographs | Gauge, first: Explanation, others: Sequence[Explanation]) -> Sequence[float]:
         if isinstance(e, Gauge):
             return gauged(e.sds, first, others)
         return measured(_photographed(model, e, first.fit.state), first, others)
 
-    return advice.advise(EXPERIMENTS, rivals, apart, enough=ENOUGH, rank=from_nearest, whichever=True)
+    return advice.advise(EXPERIMENTS, rivals, apart, enough=ENOUGH, rank=from_nearest)
 
 
 def _photographed(model: Beams, design: Photographs, state: State) -> Nested | None:

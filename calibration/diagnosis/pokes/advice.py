@@ -35,15 +35,15 @@ class Pokes(Nested, Protocol):
 
 
 def advise(model: Pokes, rivals: Sequence[Explanation]) -> list[Advice]:
-    """All experiments, the advised one first: of those that part these explanations, whichever is true, the
-    cheapest (the catalogue's order), else the one that comes nearest to it."""
+    """All experiments, the advised one first: of those that part the first of these explanations from all
+    others the cheapest (the catalogue's order), else the one that comes nearest to it."""
 
     def apart(e: PokeTest | Gauge, first: Explanation, others: Sequence[Explanation]) -> Sequence[float]:
         if isinstance(e, Gauge):
             return gauged(e.sds, first, others)
         return measured(_predicted(model, e, first.fit.state), first, others)
 
-    return advice.advise(EXPERIMENTS, rivals, apart, enough=ENOUGH, rank=from_nearest, whichever=True)
+    return advice.advise(EXPERIMENTS, rivals, apart, enough=ENOUGH, rank=from_nearest)
 
 
 def _predicted(model: Pokes, test: PokeTest, state: State) -> Nested | None:
