@@ -51,7 +51,7 @@ def test_force_is_proportional_to_the_modulus(flat: PokeObjective) -> None:
     at_frames = np.interp(load, measured, flat.forces(stiff))
     # the frames lie between measured points: interpolated, to a part of a per cent
     np.testing.assert_allclose(at_frames[1:], force[1:], rtol=3e-3)
-    # both are solved to 5e-4 of the load, each on its own way: the far tissue's tangent is in single precision
+    # both are solved to 5e-4 of the load, each on its own way (single precision in the far tissue's tangent)
     assert flat.check(stiff) < 5e-4
     np.testing.assert_allclose(flat.forces(stiff), 7 * flat.forces(made.SOFT), rtol=1e-12)
 
