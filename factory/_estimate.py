@@ -9,11 +9,11 @@ from statistics import fmean
 from factory._parts import building_folder, read_ledger
 from factory.plan import Plan
 
-# Measured with Ogden on 2 cores: 10 core-s a poke to 10 mm (recipe quick), 55 s to the end, which came at
+# Measured with Ogden on 2 cores: 12 core-s a poke to 10 mm (recipe quick), 55 s to the end, which came at
 # 24 mm on average (recipe sample, asked for 30 mm). What lies deep is dear.
 NODES = 5_500
-SECONDS_TO_10_MM = 10.0
-GROWTH = 1.55  # the power of the depth asked for that joins the two
+SECONDS_TO_10_MM = 12.0
+GROWTH = 1.4  # the power of the depth asked for that joins the two
 FRAMES_PER_MM = 0.65  # frames kept a millimetre asked for: most pokes end before the whole depth
 SURFACE_NODES = 1_700
 _COMPRESSED = 0.85
