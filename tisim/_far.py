@@ -11,10 +11,12 @@ Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
-# The part of the norms of all blocks beyond the pattern that the factor has on its diagonal in their stead.
-# With it the factor is rarely softer than the matrix, so that its inertia means something, and the spectrum
-# of the one by the other lies within 0.03 to 1.2 (a poke at 7 mm; 0.003 to 5 where they are just left out).
-SHARE = 0.3
+# The part of the norms of all blocks beyond the pattern that the factor has on its diagonal in their stead:
+# the first with which what it has of the far tissue is positive, as all of the norms make any matrix
+# (Gershgorin). Otherwise its inertia says that tissue is unstable which is not, and each step is held back.
+# With 0.3 the spectrum of the one by the other lies within 0.03 to 1.2 (a poke at 7 mm; 0.003 to 5 where they
+# are just left out).
+SHARES = (0.3, 0.5, 0.7, 1.0)
 
 
 class FarField:
@@ -47,8 +49,11 @@ class FarField:
         blocks[j, :, i] = 0.0
         size = np.sqrt(np.einsum("iajb,iajb->ij", blocks, blocks)).sum(axis=1, dtype=np.float64)
         own = np.arange(n)
-        more = SHARE * size[:, None, None] * np.eye(3)
-        blocks[own, :, own] = -more
+        for share in SHARES:
+            more = share * size[:, None, None] * np.eye(3)
+            blocks[own, :, own] = -more
+            if share == SHARES[-1] or _positive(stiffness - rest):
+                break
         same = np.flatnonzero(i == j)
         paired[same] += more[i[same]]
         self.paired, self._rest = paired, rest
@@ -69,3 +74,12 @@ class FarField:
         """out += (the stiffness but what is `paired`) v, both (3 n_free,) over the near tissue."""
         product = self._rest @ v.reshape(-1, 3)[self.rows].astype(np.float32).ravel()
         out.reshape(-1, 3)[self.rows] += product.reshape(-1, 3)
+
+
+def _positive(matrix: Singles) -> bool:
+    """Whether a symmetric matrix is positive definite."""
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True

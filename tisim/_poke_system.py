@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 # shear moduli is a twentieth of the edge radius. Points stick and slip less abruptly than at twice as much.
 NORMAL_STIFFNESS = 200.0
 TANGENT_STIFFNESS = 50.0
+# Of the radius: an edge that is rounder counts as this. By its whole radius a hemisphere would sink into the
+# body so far that its force is 1.3 % low, whatever the mesh.
+ROUNDEST = 0.4
 POINTS_PER_SIDE = 4
 
 
@@ -76,8 +79,8 @@ class PokeSystem:
         self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE)[1]
         points = self._area.shape
         g = self.body.moduli.shear
-        kn = NORMAL_STIFFNESS * g / self.edge
-        self._law = np.array([kn, TANGENT_STIFFNESS * g / self.edge, scene.friction])
+        edge = min(self.edge, ROUNDEST * rod.radius)
+        self._law = np.array([NORMAL_STIFFNESS * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction])
         self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
         self._skew = np.zeros((*points, 9))
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
