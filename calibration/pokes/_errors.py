@@ -23,12 +23,13 @@ SHALLOW, WIDTH = 0.4, 0.15
 NEGLIGIBLE = 1e-6
 
 
-def scatter(depth: Array, radius: float, refinement: float) -> Array:
-    """Relative sd of the simulated force at depths (k,), independent from point to point."""
-    return SCATTER / refinement**2 * _shallow(depth, radius)
+def scatter(depth: Array, radius: float, refinement: float | Array) -> Array:
+    """Relative sd of the simulated force at depths (k,), independent from point to point; refinement: one, or
+    of each (k,)."""
+    return np.asarray(SCATTER / refinement**2 * _shallow(depth, radius))
 
 
-def wandering_modes(depth: Array, radius: float, refinement: float) -> Array:
+def wandering_modes(depth: Array, radius: float, refinement: float | Array) -> Array:
     """(k, m): what one sd of each of m independent modes adds to the force, relative, at depths (k,)."""
     sd = WANDERING / refinement**2 * _shallow(depth, radius)
     width = np.sqrt(depth / radius)

@@ -43,8 +43,8 @@ class Geometry:
         first /= np.linalg.norm(first)
         return np.stack([first, np.cross(axis, first)])
 
-    def scene(self, depth: float) -> Poke:
-        """The baseline's poke to `depth` [m]."""
+    def scene(self, depth: float, *, refinement: float = 1.0) -> Poke:
+        """The baseline's poke to `depth` [m], on a mesh so much finer."""
         return Poke(
             material=material(),
             site=self.site,
@@ -54,6 +54,7 @@ class Geometry:
             rod=self.rod,
             friction=FRICTION,
             frame_spacing=max(min(0.25e-3, depth / 6.0), 1e-5),
+            refinement=refinement,
         )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
+from calibration.diagnosis.pokes._curves import Curve
 from calibration.diagnosis.pokes._nuisances import columns_of, point_sd, side_sd
 from calibration.diagnosis.pokes._record import Record
 
@@ -51,13 +52,18 @@ class Noise:
 
 
 def noise_of(
-    records: Sequence[Record], forces: Sequence[Array], slopes: Sequence[Array], kept: NDArray[np.bool_]
+    records: Sequence[Record],
+    curves: Sequence[Curve],
+    forces: Sequence[Array],
+    slopes: Sequence[Array],
+    kept: NDArray[np.bool_],
 ) -> Noise:
-    """Of all forces along the rod, then of all across it; forces [N] and slopes [N/m]: as simulated."""
+    """Of all forces along the rod, then of all across it; forces [N] and slopes [N/m]: as simulated, by the
+    curve of each record."""
     along = [point_sd(r, f, s) for r, f, s in zip(records, forces, slopes, strict=True)]
     across = [
         np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
     ]
-    columns = columns_of(records, forces, slopes)
+    columns = columns_of(records, curves, forces, slopes)
     none = np.zeros((len(kept) - len(columns), columns.shape[1]))  # nuisances are along the rod
     return Noise(np.concatenate([*along, *across]), np.vstack([columns, none]), kept)

@@ -15,6 +15,9 @@ TURN = 0.02  # part of the record's range of depth that a real turn goes back by
 NOISE = 5.0  # standard deviations of the depth that are no turn
 # samples by which noise may have moved a boundary, and those beside it that tell where it was
 MOVED, WINDOW = 6, 14
+ENDS, NEAR = 7, 0.7  # samples that tell where a stroke begins and ends, and how near counts as there
+ROUNDS = 10  # of moving boundaries
+ONE = 1.3  # of the noise: what is left about one line through a rest and a stroke, if there is no rest
 REST = 0.15  # part of a stroke's time that it must stand still at its end to be a hold
 
 
@@ -52,11 +55,44 @@ def phases_of(trial: PokeTrial) -> list[Phase]:
                 )
             else:
                 found.append(Phase(points=slice(a + lo, a + hi), kind=what, cycle=max(number, 1)))
-    return found if trial.depth_sd == 0.0 else _sharper(found, time, depth)
+    return found if trial.depth_sd == 0.0 else _settled(found, time, depth, trial.depth_sd)
+
+
+def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[Phase]:
+    """Boundaries moved until they stay; then rests too short to be holds, and those at an end of the record
+    that noise of `sd` on a stroke explains, go to the strokes beside them."""
+    found = phases
+    for _ in range(ROUNDS):
+        before, found = found, _sharper(found, time, depth)
+        if found == before:
+            break
+    kept: list[Phase] = []
+    for k, p in enumerate(found):
+        beside = [q for q in found[max(k - 1, 0) : k + 2] if q.kind != "hold"]
+        longest = max((_lasts(q, time) for q in beside), default=0.0)
+        short = _lasts(p, time) <= REST * longest
+        if p.kind == "hold" and len(beside) == 1 and not short:
+            both = slice(
+                min(p.points.start, beside[0].points.start), max(p.points.stop, beside[0].points.stop)
+            )
+            left = _off(time[both], depth[both], rests=False) / max(both.stop - both.start - 2, 1)
+            short = left <= (ONE * sd) ** 2
+        if p.kind != "hold" or not short:
+            kept.append(p)
+        elif kept:  # to the stroke that it ends
+            kept[-1] = replace(kept[-1], points=slice(kept[-1].points.start, p.points.stop))
+        else:
+            found[k + 1] = replace(found[k + 1], points=slice(p.points.start, found[k + 1].points.stop))
+    return kept
+
+
+def _lasts(phase: Phase, time: Array) -> float:
+    return float(time[phase.points.stop - 1] - time[phase.points.start])
 
 
 def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
-    """The same with boundaries where two lines, one on either side, come nearest to the noisy depth."""
+    """The same with boundaries where two lines, one on either side, level in a hold, come nearest to a noisy
+    depth."""
     found = list(phases)
     for k in range(len(found) - 1):
         a, b = found[k], found[k + 1]
@@ -65,17 +101,21 @@ def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
         cuts = range(max(low + 3, a.points.stop - MOVED), min(high - 3, a.points.stop + MOVED) + 1)
         if not cuts:
             continue
-        left = [_off(time[low:c], depth[low:c]) + _off(time[c:high], depth[c:high]) for c in cuts]
+        left = [
+            _off(time[low:c], depth[low:c], rests=a.kind == "hold")
+            + _off(time[c:high], depth[c:high], rests=b.kind == "hold")
+            for c in cuts
+        ]
         cut = cuts[int(np.argmin(left))]
         found[k] = replace(a, points=slice(a.points.start, cut))
         found[k + 1] = replace(b, points=slice(cut, b.points.stop))
     return found
 
 
-def _off(time: Array, depth: Array) -> float:
-    """Squared sum of what a line leaves."""
+def _off(time: Array, depth: Array, *, rests: bool) -> float:
+    """Squared sum of what a line leaves, a level one where the rod rests."""
     t, d = time - time.mean(), depth - depth.mean()
-    return float(d @ d - (t @ d) ** 2 / (t @ t))
+    return float(d @ d - (0.0 if rests else (t @ d) ** 2 / (t @ t)))
 
 
 def _strokes(depth: Array, back: float) -> list[tuple[int, int, float]]:
@@ -108,9 +148,11 @@ def _moving(depth: Array, time: Array, back: float) -> tuple[int, int]:
     size = depth.size
     if size < 4:
         return 0, size
-    start = float(np.median(depth[: max(1, size // 50)]))
-    end = float(np.median(depth[-max(1, size // 50) :]))
-    near = 0.5 * back
+    # several samples each: the first and the last are extremes of the noise where a stroke begins and ends at
+    # a rest, and a rest about them would seem to move
+    some = max(1, min(ENDS, size // 8))
+    start, end = float(np.median(depth[:some])), float(np.median(depth[-some:]))
+    near = NEAR * back
     left = np.flatnonzero(np.abs(depth - start) > near)
     arrived = np.flatnonzero(np.abs(depth - end) > near)
     if not left.size or not arrived.size:

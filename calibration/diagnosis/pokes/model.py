@@ -109,13 +109,13 @@ class PokeModel:
         del rough
         forces: list[Array] = []
         slopes = []
-        for r in self.records:
+        curves = [self.simulation.base(r) for r in self.records]
+        for r, curve in zip(self.records, curves, strict=True):
             shear = self.simulation.shear(r, state)
-            curve = self.simulation.base(r)
             forces.append(shear * curve.at(r.depth))
             slopes.append(shear * curve.slope(r.depth, max(TOUCH * r.depth_sd, 1e-6)))
         self._elastic = forces
-        self._noise = noise_of(self.records, forces, slopes, self._kept)
+        self._noise = noise_of(self.records, curves, forces, slopes, self._kept)
 
     def residuals(self, states: Sequence[State]) -> Array:
         self.simulation.prepare(states, self.records)

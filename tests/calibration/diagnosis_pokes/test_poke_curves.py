@@ -1,0 +1,47 @@
+"""Curves of two meshes as one: the finer one's forces, and the coarser one's changes in proportion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from calibration.diagnosis.pokes._curves import Curve, refined
+
+
+def made(depth: np.ndarray, along: np.ndarray, *, side: float, finer: float = 0.0) -> Curve:
+    return Curve(
+        depth=depth,
+        along=along,
+        across=np.column_stack([side * along, np.zeros_like(along)]),
+        reached=float(depth[-1]),
+        finer=finer,
+        round_tip=False,
+        status="converged",
+        core_seconds=0.0,
+    )
+
+
+DEEP = np.linspace(0.25e-3, 6e-3, 24)
+SHORT = DEEP[:12]
+
+
+def test_deeper_than_the_finer_mesh_the_ratio_at_its_end_holds() -> None:
+    """The coarser mesh is 4 % too stiff at all depths: so the sum is the finer one carried on."""
+    whole = refined(
+        made(SHORT, 1e-2 * SHORT, side=0.1, finer=3e-3), made(DEEP, 1.04e-2 * DEEP, side=0.1), None
+    )
+    assert whole.at(DEEP) == pytest.approx(1e-2 * DEEP, rel=1e-6)
+    assert whole.sides(DEEP)[:, 0] == pytest.approx(1e-3 * DEEP, rel=1e-6)
+    assert whole.reached == pytest.approx(6e-3)
+    assert whole.finer == pytest.approx(3e-3)
+
+
+def test_a_change_counts_in_proportion() -> None:
+    """A tenth more on the coarser mesh is a tenth more on the finer one; across the rod what both meshes are
+    off by is no change."""
+    fine = made(DEEP, 1e-2 * DEEP, side=0.0, finer=6e-3)
+    coarse = made(DEEP, 1.04e-2 * DEEP, side=0.02)
+    change = made(DEEP, 1.1 * 1.04e-2 * DEEP, side=0.02)
+    changed = refined(fine, coarse, change)
+    assert changed.at(DEEP) == pytest.approx(1.1e-2 * DEEP, rel=1e-6)
+    assert changed.sides(DEEP)[:, 0] == pytest.approx(0.1 * 0.02 * 1e-2 * DEEP, rel=1e-6)
