@@ -57,7 +57,7 @@ def _trials(rng: np.random.Generator, names: list[str]) -> tuple[Trial, ...]:
     if "thickness" in names and "thin" not in some:
         some[0] = "thin"
     if {"thickness", "force-gain"} & set(names) and len(some) == 1:
-        some.append("ball")
+        some.append("thick" if some == ["ball"] else "ball")
     if "inclusion-misplaced" in names and len(some) == 1:
         some.append("thick")
     back = rng.random() < 0.6 or bool({"adhesion", "mullins", "backlash", "force-drift"} & set(names))

@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from calibration.diagnosis.pokes._curves import Curve, refined
+from poke_records import trial
+
+from calibration.diagnosis.pokes._curves import FINE, Curve, refined
+from calibration.diagnosis.pokes._nuisances import columns_of
+from calibration.diagnosis.pokes._record import records_of
+from calibration.pokes import TOGETHER
 
 
 def made(depth: np.ndarray, along: np.ndarray, *, side: float, finer: float = 0.0) -> Curve:
@@ -45,3 +50,13 @@ def test_a_change_counts_in_proportion() -> None:
     changed = refined(fine, coarse, change)
     assert changed.at(DEEP) == pytest.approx(1.1e-2 * DEEP, rel=1e-6)
     assert changed.sides(DEEP)[:, 0] == pytest.approx(0.1 * 0.02 * 1e-2 * DEEP, rel=1e-6)
+
+
+def test_all_pokes_together_are_surer_where_the_finer_mesh_reaches() -> None:
+    """The factor that all forces share: that of the finer mesh above its end, the coarser mesh's below."""
+    time = np.linspace(0.0, 6.0, 60)
+    (record,) = records_of([trial("p", time, 1e-3 * time, time, depth_sd=0.0)])
+    force = np.full(record.points, 2.0)
+    curve = made(DEEP, 1e-2 * DEEP, side=0.0, finer=3e-3)
+    together = columns_of([record], [curve], [force], [0.0 * force])[:, 0]
+    assert together == pytest.approx(2.0 * TOGETHER / np.where(record.depth <= 3e-3, FINE, 1.0) ** 2)
