@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from poke_records import trial
 
 from calibration.diagnosis.pokes._curves import FINE, Curve, refined
