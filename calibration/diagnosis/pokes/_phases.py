@@ -6,18 +6,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from calibration.experiment.model import PokeTrial
 
 Array = NDArray[np.float64]
 
 TURN = 0.02  # part of the record's range of depth that a real turn goes back by
-NOISE = 5.0  # standard deviations of the depth that are no turn
+NOISE = 6.5  # standard deviations of the depth that are no turn
 # samples by which noise may have moved a boundary, and those beside it that tell where it was
 MOVED, WINDOW = 6, 14
-ENDS, NEAR = 7, 0.7  # samples that tell where a stroke begins and ends, and how near counts as there
-ROUNDS = 10  # of moving boundaries
-ONE = 1.3  # of the noise: what is left about one line through a rest and a stroke, if there is no rest
+ENDS, NEAR, CALM = 7, 0.5, 5  # samples that tell where a stroke begins and ends, and how near counts as there
+# Squared deviations of the depth by which lines without a hold must be worse than with it: it takes two
+# numbers to say where it is and one for its depth, chosen among many places.
+MORE = 15.0
 REST = 0.15  # part of a stroke's time that it must stand still at its end to be a hold
 
 
@@ -59,31 +61,49 @@ def phases_of(trial: PokeTrial) -> list[Phase]:
 
 
 def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[Phase]:
-    """Boundaries moved until they stay; then rests too short to be holds, and those at an end of the record
-    that noise of `sd` on a stroke explains, go to the strokes beside them."""
-    found = phases
-    for _ in range(ROUNDS):
-        before, found = found, _sharper(found, time, depth)
-        if found == before:
-            break
-    kept: list[Phase] = []
-    for k, p in enumerate(found):
-        beside = [q for q in found[max(k - 1, 0) : k + 2] if q.kind != "hold"]
-        longest = max((_lasts(q, time) for q in beside), default=0.0)
-        short = _lasts(p, time) <= REST * longest
-        if p.kind == "hold" and len(beside) == 1 and not short:
-            both = slice(
-                min(p.points.start, beside[0].points.start), max(p.points.stop, beside[0].points.stop)
-            )
-            left = _off(time[both], depth[both], rests=False) / max(both.stop - both.start - 2, 1)
-            short = left <= (ONE * sd) ** 2
-        if p.kind != "hold" or not short:
-            kept.append(p)
-        elif kept:  # to the stroke that it ends
-            kept[-1] = replace(kept[-1], points=slice(kept[-1].points.start, p.points.stop))
-        else:
-            found[k + 1] = replace(found[k + 1], points=slice(p.points.start, found[k + 1].points.stop))
-    return kept
+    """Boundaries moved to where they are; then rests too short to be holds, and those that noise of `sd` on
+    the strokes beside them explains, go to these strokes, and boundaries are moved again."""
+    found = _sharper(phases, time, depth)
+    while True:
+        needless = next((k for k in range(len(found)) if not _rests(found, k, time, depth, sd)), None)
+        if needless is None:
+            return found
+        found = _sharper(_without(found, needless), time, depth)
+
+
+def _rests(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -> bool:
+    """Whether a phase is a stroke, or a hold that has its place: the strokes beside it, run on to where they
+    come nearest, are worse by more than what noise does, and it lasts."""
+    hold = phases[k]
+    beside = [q for q in phases[max(k - 1, 0) : k + 2] if q.kind != "hold"]
+    if hold.kind != "hold" or not beside:
+        return True
+    if _lasts(hold, time) <= REST * max(_lasts(q, time) for q in beside):
+        return False
+    low = max(phases[k - 1].points.start, hold.points.start - WINDOW) if k > 0 else hold.points.start
+    high = (
+        min(phases[k + 1].points.stop, hold.points.stop + WINDOW) if k + 1 < len(phases) else hold.points.stop
+    )
+    three = [slice(low, hold.points.start), hold.points, slice(hold.points.stop, high)]
+    held = sum(_off(time[p], depth[p], rests=p == hold.points) for p in three if p.stop - p.start > 2)
+    if len(beside) == 2:
+        cuts = time[low + 3 : high - 2]
+        two = min(_bent(time[low:high], depth[low:high], at, *beside) for at in cuts)
+    else:
+        two = _off(time[low:high], depth[low:high], rests=False)
+    return two > held + MORE * sd**2
+
+
+def _without(phases: list[Phase], k: int) -> list[Phase]:
+    """The hold's points to the stroke before it, or half of them where there is one on either side."""
+    start, stop = phases[k].points.start, phases[k].points.stop
+    cut = start if k == 0 else stop if k + 1 == len(phases) else (start + stop) // 2
+    found = [replace(p) for p in phases]
+    if k > 0:
+        found[k - 1] = replace(found[k - 1], points=slice(found[k - 1].points.start, cut))
+    if k + 1 < len(found):
+        found[k + 1] = replace(found[k + 1], points=slice(cut, found[k + 1].points.stop))
+    return found[:k] + found[k + 1 :]
 
 
 def _lasts(phase: Phase, time: Array) -> float:
@@ -101,15 +121,20 @@ def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
         cuts = range(max(low + 3, a.points.stop - MOVED), min(high - 3, a.points.stop + MOVED) + 1)
         if not cuts:
             continue
-        left = [
-            _off(time[low:c], depth[low:c], rests=a.kind == "hold")
-            + _off(time[c:high], depth[c:high], rests=b.kind == "hold")
-            for c in cuts
-        ]
+        left = [_bent(time[low:high], depth[low:high], time[c], a, b) for c in cuts]
         cut = cuts[int(np.argmin(left))]
         found[k] = replace(a, points=slice(a.points.start, cut))
         found[k + 1] = replace(b, points=slice(cut, b.points.stop))
     return found
+
+
+def _bent(time: Array, depth: Array, at: float, a: Phase, b: Phase) -> float:
+    """Squared sum of what a line with a bend at a time leaves, level on the side of a hold."""
+    before, after = np.minimum(time - at, 0.0), np.maximum(time - at, 0.0)
+    columns = [np.ones(time.size)]
+    columns += [side for side, p in ((before, a), (after, b)) if p.kind != "hold"]
+    basis = np.linalg.qr(np.column_stack(columns))[0]
+    return float(depth @ depth - np.sum((basis.T @ depth) ** 2))
 
 
 def _off(time: Array, depth: Array, *, rests: bool) -> float:
@@ -153,8 +178,9 @@ def _moving(depth: Array, time: Array, back: float) -> tuple[int, int]:
     some = max(1, min(ENDS, size // 8))
     start, end = float(np.median(depth[:some])), float(np.median(depth[-some:]))
     near = NEAR * back
-    left = np.flatnonzero(np.abs(depth - start) > near)
-    arrived = np.flatnonzero(np.abs(depth - end) > near)
+    calm = median_filter(depth, min(CALM, some), mode="reflect")
+    left = np.flatnonzero(np.abs(calm - start) > near)
+    arrived = np.flatnonzero(np.abs(calm - end) > near)
     if not left.size or not arrived.size:
         return 0, size
     first, last = int(left[0]), int(arrived[-1]) + 1

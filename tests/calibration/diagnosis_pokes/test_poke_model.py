@@ -84,20 +84,6 @@ def test_phases_are_cut_where_the_rod_turns_and_rests() -> None:
     assert all(a.points.stop == b.points.start for a, b in pairwise(found))
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_phases_are_cut_where_they_are_in_a_noisy_shallow_record(seed: int) -> None:
-    """A twentieth of the stroke is noise: the ends of strokes and holds are extremes of it."""
-    stroke, hold = 50, 25
-    ramp = np.arange(1, stroke + 1) / stroke
-    depth = 0.4e-3 * np.concatenate([[0.0], ramp, np.ones(hold), 1.0 - ramp])
-    time = np.concatenate([[0.0], ramp, 1.0 + 15.0 * (np.arange(1, hold + 1) / hold) ** 2, 16.0 + ramp])
-    noise = 2e-5 * np.random.default_rng(seed).standard_normal(depth.size)
-    found = phases_of(trial("p", time, depth + noise, curve(depth), depth_sd=2e-5))
-    assert [p.label for p in found] == ["loading 1", "hold 1", "unloading 1"]
-    starts = [p.points.start for p in found]
-    assert starts == pytest.approx([0, stroke + 1, stroke + hold + 1], abs=7)
-
-
 def test_columns_are_the_residuals_derivatives() -> None:
     time, depth = path(hold=5.0, cycles=2)
     model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)), depth_sd=1e-5)))
