@@ -1,4 +1,4 @@
-"""A rod pushed into a block, step by step, each step an equilibrium with frictional contact."""
+"""A rod pushed into a block, and drawn back, each step an equilibrium with frictional contact."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim._body import Layout
+from tisim._newton import Outcome
 from tisim._poke_condensed import CondensedBlock
 from tisim._poke_system import PokeSystem
 from tisim.mesh import Mesh
@@ -45,7 +46,8 @@ class Frame:
 
 
 def solve_poke(scene: Poke, *, trace: Callable[[str], None] | None = None) -> Result:
-    """Push the rod in until the depth asked for, or until the solution ends; frames at every spacing.
+    """Push the rod in until the depth asked for, then draw it back where that is asked for, or until the
+    solution ends; frames at every spacing.
 
     trace: called with one line of text for each step tried.
     """
@@ -78,71 +80,86 @@ def _push(
     x = system.previous.copy()
     velocity = np.zeros_like(x)
     refused = 0
-    depth, step = 0.0, FIRST_STEP
+    depth = 0.0
     frames: list[Frame] = []
     steps = cuts = 0
     status = Status.CONVERGED
-    next_frame = scene.frame_spacing
-    while depth < scene.depth - SAME:
-        wanted = min(next_frame, scene.depth)
-        target = min(depth + step, wanted)
-        if SAME < wanted - target < 0.2 * step:
-            target = 0.5 * (depth + wanted)
-        system.move_to(target)
-        guess = _predict(system, x, velocity * (target - depth))
-        system.touch(guess)
-        frame = target >= wanted - SAME
-        outcome = block.solve(
-            guess,
-            tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
-            # what stops most steps is a snap, which no smaller step goes round: it takes iterations
-            max_iterations=scene.solver.max_iterations * (1 + refused),
-            kept=frame,
-        )
-        steps += 1
-        overlap = -float(system.report[3])
-        failed: Status | None = None if outcome.status is Status.CONVERGED else outcome.status
-        if failed is None and overlap > REFUSE_AT * system.edge:
-            failed = Status.PENETRATION
-        if trace is not None:
-            trace(
-                f"{target * 1e3:7.3f} step {step * 1e3:.3f} it {outcome.iterations:2d}"
-                f" {outcome.status.value:14s} F {system.report[:3] @ -system.axis:8.4f}"
-                f" overlap {overlap * 1e3:.3f}"
-                f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} solves {block.linear_iterations}"
-                f" fac {block.factorisations} rounds {block.rounds} far {block.condensations}"
+    for goal in (scene.depth,) if scene.back is None else (scene.depth, scene.back):
+        way = 1.0 if goal > depth else -1.0
+        system.turn(way)
+        step, next_frame = FIRST_STEP, depth + way * scene.frame_spacing
+        while way * (goal - depth) > SAME:
+            wanted = way * min(way * next_frame, way * goal)
+            target = way * min(way * depth + step, way * wanted)
+            if SAME < way * (wanted - target) < 0.2 * step:
+                target = 0.5 * (depth + wanted)
+            system.move_to(target)
+            guess = _predict(system, x, velocity * (target - depth))
+            system.touch(guess)
+            frame = way * (target - wanted) >= -SAME
+            outcome = block.solve(
+                guess,
+                tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
+                # what stops most steps is a snap, which no smaller step goes round: it takes iterations
+                max_iterations=scene.solver.max_iterations * (1 + refused),
+                kept=frame,
             )
-        if failed is not None:
-            status = failed
-            cuts += 1
-            refused += 1
-            if frame and target < scene.depth - SAME:
-                next_frame = min(target + LATER * scene.frame_spacing, scene.depth)
-                if refused == 1:
-                    continue
-            step *= 0.4
-            if step < SMALLEST_STEP:
-                return frames, status, steps, cuts
-            continue
-        refused = 0
-        velocity = (outcome.x - x) / (target - depth)
-        x, depth = outcome.x, target
-        system.accept(x)
-        if overlap > STIFFEN_AT * system.edge:
-            system.stiffen()
-        if outcome.iterations <= 6:
-            step = min(step * 2.0, LARGEST_STEP)
-        elif outcome.iterations > 12:
-            step *= 0.7
-        if frame:
-            frames.append(
-                Frame(
-                    depth, x, system.report[:3].copy(), system.base_force(), system.tip, max(overlap, 0.0),
-                    system.min_jacobian, outcome.residual,
-                )
-            )  # fmt: skip
-            next_frame = depth + scene.frame_spacing
+            steps += 1
+            overlap = -float(system.report[3])
+            failed: Status | None = None if outcome.status is Status.CONVERGED else outcome.status
+            if failed is None and overlap > REFUSE_AT * system.edge:
+                failed = Status.PENETRATION
+            if trace is not None:
+                trace(f"{target * 1e3:7.3f} step {step * 1e3:.3f} {_said(outcome, system, block)}")
+            if failed is not None:
+                status = failed
+                cuts += 1
+                refused += 1
+                if frame and way * (goal - target) > SAME:
+                    next_frame = way * min(way * target + LATER * scene.frame_spacing, way * goal)
+                    if refused == 1:
+                        continue
+                step *= 0.4
+                if step < SMALLEST_STEP:
+                    return frames, status, steps, cuts
+                continue
+            refused = 0
+            velocity = (outcome.x - x) / (target - depth)
+            x, depth = outcome.x, target
+            system.accept(x)
+            if overlap > STIFFEN_AT * system.edge:
+                system.stiffen()
+            if outcome.iterations <= 6:
+                step = min(step * 2.0, LARGEST_STEP)
+            elif outcome.iterations > 12:
+                step *= 0.7
+            if frame:
+                frames.append(_frame(outcome, system))
+                next_frame = depth + way * scene.frame_spacing
     return frames, Status.CONVERGED, steps, cuts
+
+
+def _frame(outcome: Outcome, system: PokeSystem) -> Frame:
+    """Of an accepted equilibrium."""
+    return Frame(
+        depth=system.depth,
+        x=outcome.x,
+        rod_force=system.report[:3].copy(),
+        base_force=system.base_force(),
+        tip=system.tip,
+        penetration=max(-float(system.report[3]), 0.0),
+        min_jacobian=system.min_jacobian,
+        residual=outcome.residual,
+    )
+
+
+def _said(outcome: Outcome, system: PokeSystem, block: CondensedBlock) -> str:
+    return (
+        f"it {outcome.iterations:2d} {outcome.status.value:14s}"
+        f" F {system.report[:3] @ -system.axis:8.4f} overlap {-1e3 * float(system.report[3]):.3f}"
+        f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} solves {block.linear_iterations}"
+        f" fac {block.factorisations} rounds {block.rounds} far {block.condensations}"
+    )
 
 
 def _predict(system: PokeSystem, x: Array, move: Array) -> Array:

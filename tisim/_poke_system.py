@@ -123,6 +123,11 @@ class PokeSystem:
         """Put the rod at this depth; slip counts from the last accepted state."""
         self._pose(depth)
 
+    def turn(self, way: float) -> None:
+        """Go on down (way above 0) or back up: elements that the rod sets free may get their shape back."""
+        if self._parts is not None:
+            self._parts.mends = way < 0.0
+
     def touch(self, guess: Array) -> None:
         """Set the part of the step in which each point touches, by the step's start value."""
         distance = np.empty_like(self._gap)

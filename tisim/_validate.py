@@ -238,6 +238,9 @@ def _poke(scene: Poke) -> None:
     _length("depth", scene.depth)
     if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
         raise _FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+    if scene.back is not None:
+        what = f"a depth [m] from 0 to less than the {scene.depth:g} m asked for, or None"
+        _number("back", scene.back, what, lambda v: 0.0 <= v < scene.depth)
     _not_negative("friction", scene.friction)
     _length("frame_spacing", scene.frame_spacing)
     _one_of("element", scene.element, ("default", "tet4", "tet10", "hex8"))

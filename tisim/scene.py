@@ -151,6 +151,8 @@ class Poke:
     site: where the rod's axis meets the rest surface, (x, y) [m].
     direction: of the push, unit length on use; up to 45 degrees from -z.
     depth: travel asked for [m], counted from first touch of the undeformed surface.
+    back: depth that the rod is then drawn back to [m], frames kept on the way as well; None: not at all. The
+        surface does not pull at the rod.
     friction: Coulomb coefficient (0 slides freely).
     frame_spacing: a frame is kept each time the tip has moved this far [m].
     element: "default" is the 8-node hexahedron with element pressure on a mesh made for the rod.
@@ -165,6 +167,7 @@ class Poke:
     site: tuple[float, float] = (0.0, 0.0)
     direction: Vector = (0.0, 0.0, -1.0)
     depth: float = 0.030
+    back: float | None = None
     block: Block = field(default_factory=Block)
     rod: Rod = field(default_factory=Rod)
     friction: float = 0.6

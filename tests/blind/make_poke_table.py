@@ -31,6 +31,9 @@ FILE = Path(__file__).with_name("blind_pokes.json")
 MU, RATIO, PENALTY, SIDE = 30e3, 300.0, 6e9, 0.050
 SOFT = 1e-5  # of penetration, over which the contact sets in [m]
 STIFFER = 2.0  # the contact of the runs that the rigid one is estimated from
+# Steps to try, the next where the one before does not get to the end: first, longest, shortest [m], and
+# iterations.
+STEPS = ((1e-4, 3e-4, 2e-6, 14), (2e-5, 5e-5, 1e-7, 30))
 FRAMES = 16  # depths on the way in, and as many on the way out (the same, where nothing slides under the rod)
 
 
@@ -122,7 +125,16 @@ def layer(s: Setup) -> fe.Mesh:
 
 
 def push(s: Setup, *, stiffer: float = 1.0) -> dict[str, list[float]]:
-    """depth [mm], force over G [mm2] in and out, on one list of depths; out ends where the rod leaves."""
+    """depth [mm], force over G [mm2] in and out, on one list of depths; out ends where the rod leaves. By the
+    longest steps that get to the end, or as far as the shortest do."""
+    for steps in STEPS:
+        found = _push(s, stiffer, steps)
+        if len(found["in"]) + len(found["out"]) == 2 * FRAMES - 1:
+            break
+    return found
+
+
+def _push(s: Setup, stiffer: float, steps: tuple[float, float, float, int]) -> dict[str, list[float]]:
     mesh = layer(s)
     field = mixed_fields(fe.RegionBiQuadraticQuad(mesh), axisymmetric=True)
     dof = np.arange(2 * mesh.npoints).reshape(-1, 2)
@@ -151,8 +163,8 @@ def push(s: Setup, *, stiffer: float = 1.0) -> dict[str, list[float]]:
     law = mixed_law("neo_hookean", RATIO * mu, mu=mu)
     model = MixedModel(field, law, fixed, lambda _: zero, tolerance=1e-6, contact=rod)
     depths = 1e-3 * s.depth * (np.arange(1, FRAMES + 1) / FRAMES) ** 1.3
-    there = _follow(model, rod, 0.0, depths)
-    back = _follow(model, rod, depths[-1], depths[-2::-1]) if len(there) == FRAMES else []
+    there, deepest = _follow(model, rod, 0.0, depths, steps)
+    back, _ = _follow(model, rod, deepest, depths[: len(there) - 1][::-1], steps)
     done = f"{len(there)} + {len(back)} of {FRAMES} + {FRAMES - 1} depths"
     print(f"  {done}, {model.solves} solves, {clock():.0f} s", flush=True)
     scale = 1e6 / MU
@@ -163,11 +175,13 @@ def push(s: Setup, *, stiffer: float = 1.0) -> dict[str, list[float]]:
     }
 
 
-def _follow(model: MixedModel, rod: FlatRod, at: float, targets: Array) -> list[float]:
-    """Force at each target, in turn, with a secant predictor; ends where Newton does."""
+def _follow(
+    model: MixedModel, rod: FlatRod, at: float, targets: Array, steps: tuple[float, float, float, int]
+) -> tuple[list[float], float]:
+    """Force at each target, in turn, with a secant predictor, and where it ended: where Newton does."""
     forces: list[float] = []
     last: tuple[float, list[Array]] | None = None
-    step = 1e-4
+    step, longest, shortest, iterations = steps
     for target in targets:
         while abs(target - at) > 1e-12:
             move = float(np.clip(target - at, -step, step))
@@ -178,18 +192,18 @@ def _follow(model: MixedModel, rod: FlatRod, at: float, targets: Array) -> list[
                 ratio = move / (at - last[0])
                 model.restore([h + ratio * (h - p) for h, p in zip(here, last[1], strict=True)])
             before = model.solves
-            if model.newton(at + move):
+            if model.newton(at + move, iterations):
                 last, at = (at, here), at + move
                 rod.accept(model.field[0].values, at)
-                step = min(step * 1.6, 3e-4) if model.solves - before < 7 else step
+                step = min(step * 1.6, longest) if model.solves - before < 7 else step
             else:
                 model.restore(here)
                 last = None
                 step = 0.5 * abs(move)
-                if step < 2e-6:
-                    return forces
+                if step < shortest:
+                    return forces, at
         forces.append(rod.force)
-    return forces
+    return forces, at
 
 
 def rigid(s: Setup, soft: list[float]) -> list[float]:
