@@ -53,7 +53,11 @@ def elastic(t: Trial, depth: Array, stroke: NDArray[np.int64], ending: str = "")
     back = _curve(name, "out")
     x = np.clip(depth, 0.0, top)
     steep = max(float(there.derivative()(top)), 0.0)
-    root = np.where(stroke % 2 == 1, back(x), there(x)) + steep * np.maximum(depth - top, 0.0)
+    # what sliding takes from the force on the way back was tabled for a turn at its end: the same part
+    # of it is taken at the same part of the way from another
+    part = top * np.clip(depth / max(float(depth.max()), 1e-9), 1e-6, 1.0)
+    root = there(x) * np.where(stroke % 2 == 1, back(part) / there(part), 1.0)
+    root = root + steep * np.maximum(depth - top, 0.0)
     return np.asarray(t.G * np.maximum(root, 0.0) ** power)
 
 

@@ -7,7 +7,7 @@ shear modulus: one curve serves all moduli. Curves stay in memory for as long as
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 
 BEYOND = 0.3e-3  # simulated further than the record's depth [m]
 STEP = 0.5e-3  # depths are rounded up to this [m], so that more pokes share a simulation
+TURN = 0.1e-3  # depths that a rod is drawn back from, likewise
+HIGHEST = 0.05  # part of its depth to which it is drawn back
 # Powers of the depth that the force begins with: Hertz's under a round tip; under a flat one with a round
 # edge, which the surface wraps as it goes down, what an axisymmetric reference gave between 0.03 and 0.2
 # radii.
@@ -38,20 +40,24 @@ Change = Callable[[Poke, Mesh | None], Poke]
 class Wanted:
     """A poke to simulate: a geometry, and a change of it by name ("" for none), to at least `depth` [m].
 
-    change: of the scene, given the unchanged poke's mesh, so that no remeshing hides a small change.
+    change: of the scene, given the unchanged poke's mesh, so that no remeshing hides a small change. finer:
+    the change is simulated on the finer mesh too. back: the rod is drawn back from that depth.
     """
 
     geometry: Geometry
     depth: float
     name: str = ""
     change: Change | None = None
+    finer: bool = False
+    back: bool = False
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Curve:
     """Force along the rod, and across it (2), over the shear modulus [m2], against depth [m]: none at or
     above the surface, straight on beyond `reached`; from the finer mesh to the depth `finer`. status: of the
-    simulation."""
+    simulation. lost (n, 2): on the way back, parts of the deepest depth, from small to 1, and the part of the
+    force that is missing there."""
 
     depth: Array
     along: Array
@@ -62,6 +68,13 @@ class Curve:
     status: str
     core_seconds: float
     mesh: Mesh | None = None
+    lost: Array = field(default_factory=lambda: np.array([[0.0, 0.0], [1.0, 0.0]]))
+
+    def back(self, depth: Array, deepest: Array) -> Array:
+        """Along the rod on the way back from a depth (k,): the same part of it is missing at the same part of
+        the way, however deep it went."""
+        part = np.clip(depth / np.maximum(deepest, 1e-9), 0.0, 1.0)
+        return np.asarray(self.at(depth) * (1.0 - np.interp(part, *self.lost.T)))
 
     def at(self, depth: Array) -> Array:
         """Along the rod (k,)."""
@@ -94,7 +107,8 @@ class Curves:
     """Simulates what is asked for and not known yet. simulated: how many pokes; core_seconds: of these.
 
     Curves without a change are those of a finer mesh, since what a record departs by is compared with the
-    mesh's error; changes are simulated on the coarser one, and count in proportion to it.
+    mesh's error; changes are simulated on the coarser one, and count in proportion to it, unless asked for on
+    the finer one.
     """
 
     def __init__(self, workers: int | None = None) -> None:
@@ -107,19 +121,23 @@ class Curves:
         all."""
         bases = [replace(w, name="", change=None) for w in wanted]
         self._simulate([replace(w, depth=min(w.depth, finer_to(w.geometry))) for w in bases], FINE)
-        coarse = [b for b, w in zip(bases, wanted, strict=True) if w.name or not self._fine_suffices(b)]
-        self._simulate(coarse, COARSE)
-        self._simulate([w for w in wanted if w.name], COARSE)
+        finer = [w for w in wanted if w.finer]
+        self._simulate([replace(w, depth=min(w.depth, finer_to(w.geometry))) for w in finer], FINE)
+        short = [w for w in wanted if not self._fine_suffices(w)]
+        self._simulate([replace(w, name="", change=None, back=False) for w in short], COARSE)
+        self._simulate([w for w in short if w.name], COARSE)
         return [self._of(w) for w in wanted]
 
     def _fine_suffices(self, w: Wanted) -> bool:
-        fine = _KNOWN[(w.geometry, "", FINE)]
-        return fine.reached >= w.depth and len(fine.depth) >= LEAST
+        """Whether the finer mesh gives all that is wanted."""
+        fine = _KNOWN.get((w.geometry, w.name, FINE))
+        return fine is not None and fine.reached >= w.depth and len(fine.depth) >= LEAST
 
     def _of(self, w: Wanted) -> Curve:
+        own = _KNOWN.get((w.geometry, w.name, FINE))
+        if own is not None and len(own.depth) >= LEAST:
+            return own if self._fine_suffices(w) else refined(own, _KNOWN[(w.geometry, w.name, COARSE)], None)
         fine = _KNOWN[(w.geometry, "", FINE)]
-        if not w.name and self._fine_suffices(w):
-            return fine
         coarse = _KNOWN[(w.geometry, "", COARSE)]
         change = _KNOWN[(w.geometry, w.name, COARSE)] if w.name else None
         return refined(fine, coarse, change) if len(fine.depth) >= LEAST else change or coarse
@@ -138,8 +156,12 @@ class Curves:
         scenes = []
         for w, depth in missing.values():
             highest = 0.9 * w.geometry.block.size[2] / abs(float(w.geometry.axis[2]))
-            to = min(STEP * np.ceil((depth + BEYOND) / STEP), highest)
+            # what is lost on the way back goes with the depth that the rod turns at
+            to = TURN * np.ceil(depth / TURN) if w.back else STEP * np.ceil((depth + BEYOND) / STEP)
+            to = min(float(to), highest)
             scene = w.geometry.scene(to, refinement=refinement)
+            if w.back:
+                scene = replace(scene, back=HIGHEST * to)
             if w.change is not None:
                 scene = w.change(scene, _KNOWN[(w.geometry, "", refinement)].mesh)
             scenes.append(scene)
@@ -187,14 +209,22 @@ def _curve(result: Result, geometry: Geometry) -> Curve:
     assert isinstance(scene, Poke)
     push = np.asarray(scene.direction, dtype=float)
     own = push / np.linalg.norm(push)  # a load cell sits on the rod, and tilts with it
-    return Curve(
-        depth=result.load,
-        along=-(result.rod_force @ own) / SHEAR,
-        across=-(result.rod_force @ geometry.across.T) / SHEAR,
-        reached=float(result.load[-1]) if len(result.load) else 0.0,
-        finer=float(result.load[-1]) if len(result.load) and scene.refinement == FINE else 0.0,
+    along = -(result.rod_force @ own) / SHEAR
+    there = int(np.argmax(result.load)) + 1 if len(result.load) else 0
+    reached = float(result.load[there - 1]) if there else 0.0
+    found = Curve(
+        depth=result.load[:there],
+        along=along[:there],
+        across=-(result.rod_force[:there] @ geometry.across.T) / SHEAR,
+        reached=reached,
+        finer=reached if scene.refinement == FINE else 0.0,
         round_tip=scene.rod.tip == "hemisphere",
         status=str(result.status),
         core_seconds=result.cost.core_seconds + result.cost.mesh_seconds,
         mesh=result.mesh,
     )
+    if len(result.load) - there < LEAST:
+        return found
+    depth, force = result.load[there:][::-1], along[there:][::-1]
+    missing = 1.0 - force / found.at(depth)
+    return replace(found, lost=np.column_stack([np.r_[depth / reached, 1.0], np.r_[missing, 0.0]]))

@@ -30,6 +30,7 @@ _ARRAYS = (
     "phase",
     "kind",
     "peak",
+    "turn",
     "cycle",
     "begun",
 )
@@ -44,8 +45,8 @@ class Record:
     without what the depth's error adds; count: of samples in each point. depth_sd [m]: of one sample, and of
     the touch. phase: number of the phase, labels name them; kind: +1 loading, 0 hold, -1 unloading. cycle:
     which loading, from 1. peak [m]: the deepest that this specimen was poked at this site before and up to
-    the point; begun: whether an unloading has happened there before. time [s]. estimated: the lab states no
-    error of the force.
+    the point; turn [m]: the deepest of its cycle up to there; begun: whether an unloading has happened there
+    before. time [s]. estimated: the lab states no error of the force.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Record:
     kind: Array
     cycle: Array
     peak: Array
+    turn: Array
     begun: Array
     estimated: bool
 
@@ -105,6 +107,10 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
     depth = depth - approach(trial)
     peak = np.maximum.accumulate(np.maximum(depth, before))
     begun = np.full(depth.size, float(before > 0.0))
+    turn = np.empty(depth.size)
+    for c in {p.cycle for p in phases}:
+        mine = np.concatenate([np.arange(p.points.start, p.points.stop) for p in phases if p.cycle == c])
+        turn[mine] = np.maximum.accumulate(np.maximum(depth[mine], 0.0))
     unloading = [p for p in phases if p.kind == "unloading"]
     if unloading:
         begun[unloading[0].points.start :] = 1.0
@@ -133,6 +139,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
             ("phase", np.full(count.size, float(n))),
             ("kind", np.full(count.size, kind)),
             ("peak", mean(peak)),
+            ("turn", mean(turn)),
             ("depth_error", (trial.depth_sd if degrees[n] < 0 else 0.0) / np.sqrt(count)),
             ("cycle", np.full(count.size, float(p.cycle))),
             ("begun", (mean(begun) > 0.5).astype(float)),

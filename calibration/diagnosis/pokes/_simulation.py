@@ -103,9 +103,11 @@ class Simulation:
         for node, part in _between(self._nodes(record, self.effects[name]), a):
             if node != 0.0 and part != 0.0:
                 curve = self.curves.fetch([self._wanted(record, name, kind, node)])[0]
-                change = (
-                    curve.sides(depth) - base.sides(depth) if across else curve.at(depth) - base.at(depth)
-                )
+                if across:
+                    change = curve.sides(depth) - base.sides(depth)
+                else:
+                    force = np.where(record.kind > 0, curve.at(depth), curve.back(depth, record.turn))
+                    change = force - base.at(depth)
                 found = found + part * change
         return found
 
@@ -116,13 +118,17 @@ class Simulation:
         return tuple(n for n in effect.nodes if n == 0.0 or effect.fits(make(scene, None, n, kinds[0])))
 
     def _wanted(self, record: Record, name: str, kind: float | None, node: float) -> Wanted:
-        make = self.effects[name].scene
+        effect = self.effects[name]
+        make = effect.scene
         assert make is not None
+        back = effect.back and bool((record.kind < 0).any())
         return Wanted(
             geometry=record.geometry,
             depth=_deepest(record),
-            name=f"{name} {kind} {node:.9g}",
+            name=f"{name} {kind} {node:.9g}{' back' if back else ''}",
             change=lambda poke, mesh: make(poke, mesh, node, kind),
+            finer=effect.finer,
+            back=back,
         )
 
     def _acting(self, state: State, record: Record) -> dict[tuple[str, float | None], float]:

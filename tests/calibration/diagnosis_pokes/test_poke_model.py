@@ -32,7 +32,7 @@ def made_curves(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         found = []
         for w in wanted:
             asked.append(w.name)
-            change = 0.3 * float(w.name.split()[-1]) if w.name else 0.0
+            change = 0.3 * float(w.name.split()[2]) if w.name else 0.0
             depth = np.linspace(0.1e-3, 4e-3, 40)
             force = K * (w.geometry.rod.radius / 2.5e-3) * depth * (1.0 + (100.0 + 400.0 * change) * depth)
             found.append(

@@ -44,6 +44,7 @@ EFFECT = PokeEffect(
     scene=_scene,
     nodes=(-3.0 * STEP, -2.0 * STEP, -STEP, 0.0, STEP, 2.0 * STEP, 3.0 * STEP),
     chord=STEP,
+    finer=True,
     kinds=_kinds,
     kind_label=lambda kind: f"along {'xyz'[int(kind)]}",
     touches=lambda record: record.geometry.block.inclusion is not None,

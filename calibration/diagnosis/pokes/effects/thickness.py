@@ -35,6 +35,7 @@ EFFECT = PokeEffect(
     scene=_scene,
     nodes=(-2.0 * PART, -PART, 0.0, PART, 2.0 * PART),
     chord=PART,
+    finer=True,
     touches=lambda record: record.geometry.block.inclusion is None,
     reach="material",
 )
