@@ -15,8 +15,8 @@ SHEAR = 1e4
 
 
 def test_a_squeezed_cover_is_as_stiff_as_axisymmetric_elements_have_it() -> None:
-    """FElupe, bonded cylinder under 7 mm (`python tests/blind/make_poke_table.py --only "core up 3"`): to 3.5 %
-    at 1.5 times the default refinement; hexahedra stiffened early were 7 % off at 3.1 mm."""
+    """FElupe, bonded cylinder under 7 mm (`python tests/blind/make_poke_table.py --only "core up 3"`): to
+    3.5 % at 1.5 times the default refinement; hexahedra stiffened early were 7 % off at 3.1 mm."""
     table = TABLE["core up 3"]
     low, high = 11e-3, 23e-3
     cylinder = tisim.CylinderInclusion(radius=9e-3, height=high - low, centre=(0.0, 0.0, 0.5 * (low + high)))
