@@ -93,13 +93,13 @@ def test_a_layout_is_left_as_it_was() -> None:
     before = layout.reference.weights.copy()
     it = PokeSystem(scene, layout)
     bent = mesh.nodes.copy()
-    bent[:, 2] -= 0.004 * np.exp(-1e5 * (bent[:, :2] ** 2).sum(axis=1)) * (bent[:, 2] / 0.032) ** 8
+    bent[:, 2] -= 0.008 * np.exp(-1e5 * (bent[:, :2] ** 2).sum(axis=1)) * (bent[:, 2] / 0.032) ** 8
     it.accept(bent)
-    assert (it.layout.reference.weights != before).any()
+    assert np.abs(it.layout.reference.weights / before - 1.0).max() > 0.1
     assert np.array_equal(layout.reference.weights, before)
     # a rod on its way down does not give them their shape back, one that is drawn back does
     it.accept(mesh.nodes)
-    assert (it.layout.reference.weights != before).any()
+    assert np.abs(it.layout.reference.weights / before - 1.0).max() > 0.1
     it.turn(-1.0)
     it.accept(mesh.nodes)
-    assert np.allclose(it.layout.reference.weights, before, rtol=1e-12)
+    assert it.layout.reference.weights / before == pytest.approx(1.0, rel=1e-9)
