@@ -3,7 +3,7 @@
 Measured on flat and round rods to 5 mm (docs/pokes.md): at refinement 1 the force is too high by up to 3 %,
 one sign at all depths, and on top wanders by about 1 %, more at depths below 0.4 rod radii, where few cells
 touch. It wanders as more cells come to touch, so with the width of the contact, which grows as the square
-root of rod radius times depth. Both fall with the cell's square.
+root of rod radius times depth, up and down once a cell. Both fall with the cell's square.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 # (contact points that come and go, the curve between its frames).
 TOGETHER, WANDERING, SCATTER = 0.025, 0.01, 0.002
 # Over the rod's radius: the depth below which the last two grow, and the width of contact over which the
-# wandering forgets itself (most of a cell at refinement 1).
-SHALLOW, WIDTH = 0.4, 0.15
+# wandering forgets itself (a quarter of a cell, at refinement 1).
+SHALLOW, WIDTH = 0.4, 0.04
 # Modes that hold less than this part of the largest one's variance are left out.
 NEGLIGIBLE = 1e-6
 
@@ -30,9 +30,10 @@ def scatter(depth: Array, radius: float, refinement: float | Array) -> Array:
 
 
 def wandering_modes(depth: Array, radius: float, refinement: float | Array) -> Array:
-    """(k, m): what one sd of each of m independent modes adds to the force, relative, at depths (k,)."""
+    """(k, m): what one sd of each of m independent modes adds to the force, relative, at depths (k,);
+    refinement: one, or of each."""
     sd = WANDERING / refinement**2 * _shallow(depth, radius)
-    width = np.sqrt(depth / radius)
+    width = refinement * np.sqrt(depth / radius)
     apart = (width[:, None] - width[None, :]) / WIDTH
     values, vectors = np.linalg.eigh(np.outer(sd, sd) * np.exp(-0.5 * apart**2))
     kept = values > NEGLIGIBLE * values[-1]

@@ -15,7 +15,8 @@ from scipy.linalg import solve_triangular
 
 Array = NDArray[np.float64]
 # what the finder's simulation may be off by, as docs/pokes.md states it: together, wandering, rod radii
-MESH, WANDER, WIDTH, SHALLOW = 0.025, 0.01, 0.15, 0.4
+REFINED = 1.5
+MESH, WANDER, WIDTH, SHALLOW = 0.025 / REFINED**2, 0.01 / REFINED**2, 0.04 / REFINED, 0.4
 
 
 @lru_cache(maxsize=4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeGuard
 
 import numpy as np
@@ -29,6 +29,17 @@ class Bank:
     simulator: Simulator
     workers: int | None
 
+    @property
+    def guide(self) -> Bank:
+        """By whose differences a search finds its way: this one, unless its simulator names another."""
+        return self if self.simulator.guide is None else replace(self, simulator=self.simulator.guiding)
+
+    def mends(self, name: str) -> Bank:
+        """The one in whose beams mending a fault of the simulator is seen: this one if they are then at rest,
+        else that which guides."""
+        beam = self.scenes.beam(0, self._any, time=1.0, fidelity=self.simulator.fidelity)
+        return self if self._mended(beam, name).solver.method == "static" else self.guide
+
     def values(self, wanted: Sequence[Wanted]) -> list[Array]:
         """Smooth coefficients of the distances of all photographs [m], (points,) for each state; NaN where a
         photograph's beam has no equilibrium."""
@@ -38,10 +49,18 @@ class Bank:
         plain = [values.copy() for values in found]
         for name in dict.fromkeys(n for one in wanted for n in self._faults(*one)):
             some = [k for k, one in enumerate(wanted) if name in self._faults(*one)]
-            better = self.solve([wanted[k] for k in some], instead=name)
-            for k, results in zip(some, better, strict=True):
-                part = self._faults(*wanted[k])[name]
-                found[k] += part * (self.values_of(results, *wanted[k]) - plain[k])
+            there = [wanted[k] for k in some]
+            bank = self.mends(name)
+            better = [
+                self.values_of(r, *one) for one, r in zip(there, bank.solve(there, instead=name), strict=True)
+            ]
+            worse = (
+                [plain[k] for k in some]
+                if bank is self
+                else [self.values_of(r, *one) for one, r in zip(there, bank.solve(there), strict=True)]
+            )
+            for k, good, bad in zip(some, better, worse, strict=True):
+                found[k] += self._faults(*wanted[k])[name] * (good - bad)
         return found
 
     def values_of(self, results: Sequence[Result | None], state: State, nudge: Nudge | None = None) -> Array:
@@ -81,7 +100,8 @@ class Bank:
         """One result a photograph, without those faults of the simulator that the state names. ValueError
         where a beam has no equilibrium."""
         mended = [n for n, part in self._faults(state, None).items() if part > 0.5]
-        found = self.solve([(state, None)], instead=mended[0] if mended else None)[0]
+        bank = self.mends(mended[0]) if mended else self
+        found = bank.solve([(state, None)], instead=mended[0] if mended else None)[0]
         if not complete(found):
             raise ValueError("no equilibrium at this state")
         return found
@@ -102,6 +122,10 @@ class Bank:
         if nudge is not None:
             parts[nudge.kind[0]] = parts.get(nudge.kind[0], 0.0) + nudge.step
         return {n: a for n, a in parts.items() if a != 0.0 and self.scenes.effects[n].instead is not None}
+
+    @property
+    def _any(self) -> State:
+        return State(u=np.full(max(self.scenes.specimen) + 1, np.log(1e4)))
 
     def _mended(self, beam: Beam, name: str) -> Beam:
         instead = self.scenes.effects[name].instead

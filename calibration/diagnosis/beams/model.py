@@ -107,7 +107,7 @@ class BeamModel:
         for shear in SCAN:
             state = State(u=np.full(len(self.names), np.log(shear)))
             cost = np.zeros(len(self.names))
-            for p, r in zip(self.pictures, self.bank.solve([(state, None)])[0], strict=True):
+            for p, r in zip(self.pictures, self.bank.guide.solve([(state, None)])[0], strict=True):
                 cost[self.specimen[p.trial]] += np.inf if r is None else np.sum(distances(feet_of(p, r)) ** 2)
             better = cost < best
             best, u = np.where(better, cost, best), np.where(better, state.u, u)
@@ -162,19 +162,16 @@ class BeamModel:
     def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linear:
         kinds = list(dict.fromkeys((c.effect, c.place) for c in candidates))
         nudges = [Nudge(kind=k, step=self._step(k, state)) for k in kinds]
-        stiffer = replace(state, u=state.u + STEP)
-        at, by_modulus, *moved = self.bank.values(
-            [(state, None), (stiffer, None), *((state, nudge) for nudge in nudges)]
-        )
+        at, still, by_modulus, moved = self._beside(state, replace(state, u=state.u + STEP), nudges)
         if not (np.isfinite(at).all() and np.isfinite(by_modulus).all()):
             raise ValueError("no equilibrium at this state")
-        slope = (by_modulus - at) / STEP
+        slope = (by_modulus - still) / STEP
         of_trial, of_specimen = self._of_trial(), np.array(self.specimen)[self._of_trial()]
         by_u = np.zeros((self.points + len(self._prior), len(self.names)))
         for k in range(len(self.names)):
             by_u[: self.points, k] = self._whiten(np.where(of_specimen == k, slope, 0.0))
         by_u[self.points :] = self._prior
-        change = {n.kind: (there - at) / n.step for n, there in zip(nudges, moved, strict=True)}
+        change = {n.kind: moved[n.kind] / n.step for n in nudges}
         columns = np.zeros((len(by_u), len(candidates)))
         for k, c in enumerate(candidates):
             hit = np.array([reaches(c, t, self.effects[c.effect]) for t in self.trials])
@@ -183,6 +180,26 @@ class BeamModel:
             )
         z = self._whole(at, state.u)
         return Linear(state=state, z=z, by_u=by_u, columns=columns, candidates=tuple(candidates))
+
+    def _beside(
+        self, state: State, stiffer: State, nudges: Sequence[Nudge]
+    ) -> tuple[Array, Array, Array, dict[Kind, Array]]:
+        """Values at a state, there and with stiffer beams by what guides, and the nudges' changes."""
+        guide, ways = self.bank.guide, [(state, None), (stiffer, None)]
+        if guide is self.bank:
+            at, by_modulus, *moved = guide.values([*ways, *((state, n) for n in nudges)])
+            return at, at, by_modulus, {n.kind: v - at for n, v in zip(nudges, moved, strict=True)}
+        own = [n for n in nudges if self._own(n)]
+        others = [n for n in nudges if n not in own]
+        at, *moved = self.bank.values([(state, None), *((state, n) for n in own)])
+        still, by_modulus, *rest = guide.values([*ways, *((state, n) for n in others)])
+        change = {n.kind: v - at for n, v in zip(own, moved, strict=True)}
+        return at, still, by_modulus, change | {n.kind: v - still for n, v in zip(others, rest, strict=True)}
+
+    def _own(self, nudge: Nudge) -> bool:
+        """Whether it mends what the simulator lacks beside the one that guides."""
+        name = nudge.kind[0]
+        return self.effects[name].instead is not None and self.bank.mends(name) is self.bank
 
     def patterns(self) -> Mapping[str, Array]:
         found = {}

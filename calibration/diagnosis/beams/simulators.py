@@ -29,13 +29,21 @@ class Run(Protocol):
 @dataclass(frozen=True, kw_only=True)
 class Simulator:
     """fidelity: of the beams that a search solves; reference: of those that correct their mesh's error, with
-    fewer and with more rings (None: they are taken as they are). run: as `tisim.simulate`."""
+    fewer and with more rings (None: they are taken as they are). run: as `tisim.simulate`. guide: beams in
+    equilibrium by whose differences a search finds its way, where its own are dear and their differences jump
+    (None: by its own)."""
 
     name: str
     sentence: str
     fidelity: Fidelity
     reference: tuple[Fidelity, Fidelity] | None = None
     run: Run = simulate
+    guide: Fidelity | None = None
+
+    @property
+    def guiding(self) -> Simulator:
+        """The simulator whose differences guide a search."""
+        return self if self.guide is None else replace(self, fidelity=self.guide, run=simulate, guide=None)
 
 
 def _stopped(scenes: Sequence[Beam], *, workers: int | None) -> list[Result]:
@@ -114,6 +122,7 @@ SIMULATORS = {
             sentence="released beams, stopped by the paper's rule",
             fidelity=Fidelity(rings=1, solver=_DYNAMIC),
             run=_stopped,
+            guide=Fidelity(rings=1, solver=COARSE.solver),
         ),
         Simulator(
             name="coarse-mesh",

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 FRICTION = 0.6  # the belief, as in `calibration.pokes`
 BULK_RATIO = 300.0  # K/G: held, since no poke of one rod tells it from the modulus
+SPACING = 0.125e-3  # of frames [m]: some five a wave of the mesh's error
 SHEAR = 1e4  # at which pokes are simulated [Pa]; the force is in proportion
 
 
@@ -53,7 +54,7 @@ class Geometry:
             block=self.block,
             rod=self.rod,
             friction=FRICTION,
-            frame_spacing=max(min(0.25e-3, depth / 6.0), 1e-5),
+            frame_spacing=max(min(SPACING, depth / 6.0), 1e-5),
             refinement=refinement,
         )
 

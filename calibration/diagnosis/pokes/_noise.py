@@ -60,7 +60,7 @@ def noise_of(
 ) -> Noise:
     """Of all forces along the rod, then of all across it; forces [N] and slopes [N/m]: as simulated, by the
     curve of each record."""
-    along = [point_sd(r, f, s) for r, f, s in zip(records, forces, slopes, strict=True)]
+    along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
     across = [
         np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
     ]

@@ -15,11 +15,8 @@ from calibration.pokes import TOGETHER, scatter, wandering_modes
 
 Array = NDArray[np.float64]
 
+GRID = 120  # depths at which wandering is taken
 TOUCH = 3.0  # standard deviations of the depth that a point is close to the touch by
-# What comes and goes as cells come to touch is not claimed to be less on the finer mesh: it falls with the
-# cell's size at best (a flat rod at a tenth of its radius: 5.9 and 3.6 % at refinements 1 and 1.5), and where
-# stated as less it was named as a cause in clean records.
-WAVERING = COARSE
 # Where the rod's path across the surface bends, its mesh error is not known better than this part of the
 # force along.
 ACROSS = 0.01
@@ -30,14 +27,16 @@ def refinement(depth: Array, curve: Curve) -> Array:
     return np.where(depth <= curve.finer, FINE, COARSE)
 
 
-def point_sd(record: Record, force: Array, slope: Array) -> Array:
+def point_sd(record: Record, curve: Curve, force: Array, slope: Array) -> Array:
     """Standard deviation [N] of each point by itself, (k,): the load cell, the depth's reading through the
     slope [N/m], and what the simulation scatters by."""
     through_depth = slope * record.depth_error
     # close to the touch a record may touch or not, which no slope tells
     near = np.abs(record.depth) < TOUCH * record.depth_sd
     kink = np.where(near, 2.0 * record.depth_sd * float(slope[near].max(initial=0.0)), 0.0)
-    own = np.abs(force) * scatter(np.maximum(record.depth, 0.0), record.geometry.rod.radius, WAVERING)
+    own = np.abs(force) * scatter(
+        np.maximum(record.depth, 0.0), record.geometry.rod.radius, refinement(record.depth, curve)
+    )
     return np.sqrt(record.own_sd**2 + through_depth**2 + own**2 + kink**2)
 
 
@@ -59,9 +58,11 @@ def columns_of(
     found = [TOGETHER / np.concatenate(meshes) ** 2 * whole]
     for geometry in dict.fromkeys(r.geometry for r in records):
         mine = [k for k, r in enumerate(records) if r.geometry == geometry]
+        # pokes of one geometry are of one curve, but for what a deeper one was carried on by
+        curve = max((curves[k] for k in mine), key=lambda c: c.finer)
         where = np.concatenate([rows[k] for k in mine])
         depth = np.maximum(np.concatenate([records[k].depth for k in mine]), 0.0)
-        for mode in _modes(depth, geometry.rod.radius).T:
+        for mode in _modes(depth, geometry.rod.radius, curve).T:
             column = np.zeros(whole.size)
             column[where] = mode * whole[where]
             found.append(column)
@@ -82,8 +83,8 @@ def columns_of(
     return np.column_stack(found)
 
 
-def _modes(depth: Array, radius: float) -> Array:
+def _modes(depth: Array, radius: float, curve: Curve) -> Array:
     """Wandering modes at depths (k,), taken on a grid of depths: records are long."""
-    grid = np.linspace(0.0, float(np.sqrt(depth.max())), 80)[1:] ** 2
-    modes = wandering_modes(grid, radius, WAVERING)
+    grid = np.linspace(0.0, float(np.sqrt(depth.max())), GRID)[1:] ** 2
+    modes = wandering_modes(grid, radius, refinement(grid, curve))
     return np.column_stack([np.interp(depth, grid, mode) for mode in modes.T])
