@@ -110,6 +110,10 @@ def _advice(model: Diagnosable, finding: Finding, tell: Tell) -> str:
     assert chosen is not None
     if finding.verdict == "found":
         return "; ".join(f"to confirm: {model.effects[name].remedy}" for name in chosen.names)
+    named = dict.fromkeys(name for names in finding.rivals for name in names)
+    own = [e for e in (model.effects[name] for name in named) if e.belongs_to == "simulator"]
+    if own:  # what a specimen is asked would be answered by a simulator that is wrong
+        return "; ".join(f"before another experiment: {e.remedy} ({e.name})" for e in own)
     tell("looking for the experiment that would tell the rivals apart")
     one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.rivals]
     return model.advice(one_each)

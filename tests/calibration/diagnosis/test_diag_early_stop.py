@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diag_beams import SHEAR, tiny
 
-from calibration.diagnosis.beams import simulators
+from calibration.diagnosis.beams import BeamModel, simulators
 from calibration.diagnosis.beams.simulators import SIMULATORS
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.nested import Linear, State
 from tisim import Beam, Status, material_from_moduli, simulate
 from tisim.paper_stop import paper_stop
 
@@ -44,3 +47,43 @@ def test_a_beam_that_the_rule_never_stops_says_so(beams: list[Beam], monkeypatch
     monkeypatch.setattr(simulators, "_SHORTEST", 0.1)
     found = EARLY.run(beams[:1], workers=1)
     assert [r.status for r in found] == [Status.UNFINISHED]
+
+
+# -- the model: beams at rest guide a search, and mend what they are --
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory: pytest.TempPathFactory) -> BeamModel:
+    """Two short beams, as they hang at rest."""
+    experiment = tiny(tmp_path_factory.mktemp("rest"), lengths_mm=(50.0, 60.0))
+    model = BeamModel(experiment, simulator=EARLY, workers=1)
+    model.retake(State(u=np.full(1, np.log(SHEAR))))
+    return model
+
+
+def columns(model: BeamModel, names: list[str]) -> tuple[Linear, list[Candidate]]:
+    some = [next(c for c in model.candidates if c.effect == n and c.at == "all") for n in names]
+    return model.linearise(State(u=np.full(1, np.log(SHEAR))), some), some
+
+
+def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: BeamModel) -> None:
+    """All of the way from the stop to equilibrium ends where the experiment was photographed, which the
+    stopped beams are far from; it is the column of the fault, in the residuals themselves."""
+    linear, (fault,) = columns(early, ["not-at-equilibrium"])
+    state = replace(linear.state, amplitudes={fault: 1.0})
+    stopped, rested = early.residuals([linear.state, state])
+    np.testing.assert_allclose(linear.z, stopped, atol=1e-9)
+    np.testing.assert_allclose(rested - stopped, linear.columns[:, 0], atol=1e-6 * np.abs(stopped).max())
+    assert rested @ rested < 0.05 * (stopped @ stopped)
+
+
+def test_what_else_may_be_is_seen_in_beams_at_rest(early: BeamModel) -> None:
+    """Columns by moduli and effects are those of a simulator that solves for rest on the same mesh."""
+    names = ["residual-curvature", "coarse-mesh"]
+    guided, some = columns(early, names)
+    still = BeamModel(early.experiment, simulator=replace(EARLY.guiding, name="still"), workers=1)
+    still._known, still._root = early._known, early._root
+    plain = still.linearise(guided.state, some)
+    np.testing.assert_allclose(guided.columns, plain.columns, atol=1e-6 * np.abs(plain.columns).max())
+    np.testing.assert_allclose(guided.by_u, plain.by_u, atol=1e-6 * np.abs(plain.by_u).max())
+    assert np.abs(guided.z - plain.z).max() > 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -119,6 +120,17 @@ def test_ambiguous() -> None:
     first, second = data["alternatives"]
     assert data["next_experiment"] == f"part {first[0]} and {second[0]}"
     assert diagnosis.sentence().endswith(f"({first[0]}); or {second[0]}.")
+
+
+def test_where_a_rival_is_the_simulators_own_fault_that_is_mended_first() -> None:
+    """No specimen is measured for it: a simulator that is wrong would answer."""
+    shapes = library()
+    shapes["twin"] = shapes["bend"] + 0.03 * shapes["ripple"]
+    model = FakeNested(shapes=shapes, hidden=hidden("bend", 9.0), noise=noise(3))
+    model.effects = {**model.effects, "twin": replace(model.effects["twin"], belongs_to="simulator")}
+    data = written(diagnose(model, gain=False))
+    assert data["verdict"] == "ambiguous"
+    assert data["next_experiment"] == "before another experiment: measure twin (twin)"
 
 
 def test_unexplained() -> None:
