@@ -1,4 +1,4 @@
-"""Simulated pokes as curves: force over shear modulus against depth, a simulation a geometry and change.
+"""Simulated pokes, a simulation a geometry and change, on two meshes.
 
 The material is neo-Hookean without gravity at a held K/G, so that the force is in exact proportion to its
 shear modulus: one curve serves all moduli. Curves stay in memory for as long as the process runs.
@@ -7,15 +7,16 @@ shear modulus: one curve serves all moduli. Curves stay in memory for as long as
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
-from calibration.diagnosis.pokes._geometry import SHEAR, Geometry
+from calibration.diagnosis.pokes._changes import changed, deepened
+from calibration.diagnosis.pokes._curve import COARSE, FINE, LEAST, Curve, curve_of
+from calibration.diagnosis.pokes._geometry import Geometry
 from calibration.errors import InputError
-from tisim import Mesh, Poke, Result, simulate
+from tisim import Mesh, Poke, simulate
 
 Array = NDArray[np.float64]
 
@@ -23,14 +24,8 @@ BEYOND = 0.3e-3  # simulated further than the record's depth [m]
 STEP = 0.5e-3  # depths are rounded up to this [m], so that more pokes share a simulation
 TURN = 0.1e-3  # depths that a rod is drawn back from, likewise
 HIGHEST = 0.05  # part of its depth to which it is drawn back
-# Powers of the depth that the force begins with: Hertz's under a round tip; under a flat one with a round
-# edge, which the surface wraps as it goes down, what an axisymmetric reference gave between 0.03 and 0.2
-# radii.
-ROUND, FLAT = 1.5, 1.08
-LEAST = 3  # frames that a curve needs
-# Refinements of the two meshes, and how deep the finer one is followed, in radii of the rod. On flat rods of
-# 2.5 to 4 mm and a ball the coarser one is 1 to 3 % off, in waves as cells come to touch, the finer 0.5 %.
-COARSE, FINE = 1.0, 1.5
+# How deep the finer mesh is followed, in radii of the rod. On flat rods of 2.5 to 4 mm and a ball the coarser
+# one is 1 to 3 % off, in waves as cells come to touch, the finer 0.5 %.
 FINER_TO = 1.5
 
 Change = Callable[[Poke, Mesh | None], Poke]
@@ -52,54 +47,6 @@ class Wanted:
     back: bool = False
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Curve:
-    """Force along the rod, and across it (2), over the shear modulus [m2], against depth [m]: none at or
-    above the surface, straight on beyond `reached`; from the finer mesh to the depth `finer`. status: of the
-    simulation. lost (n, 2): on the way back, parts of the deepest depth, from small to 1, and the part of the
-    force that is missing there."""
-
-    depth: Array
-    along: Array
-    across: Array
-    reached: float
-    finer: float
-    round_tip: bool
-    status: str
-    core_seconds: float
-    mesh: Mesh | None = None
-    lost: Array = field(default_factory=lambda: np.array([[0.0, 0.0], [1.0, 0.0]]))
-
-    def back(self, depth: Array, deepest: Array) -> Array:
-        """Along the rod on the way back from a depth (k,): the same part of it is missing at the same part of
-        the way, however deep it went."""
-        part = np.clip(depth / np.maximum(deepest, 1e-9), 0.0, 1.0)
-        return np.asarray(self.at(depth) * (1.0 - np.interp(part, *self.lost.T)))
-
-    def at(self, depth: Array) -> Array:
-        """Along the rod (k,)."""
-        power = ROUND if self.round_tip else FLAT
-        root = _interpolated(self.depth, np.maximum(self.along, 0.0) ** (1.0 / power), depth)
-        return np.asarray(np.maximum(root, 0.0) ** power)
-
-    def slope(self, depth: Array, over: float = 1e-6) -> Array:
-        """[m] (k,): chord over a depth to either side, so that the touch is seen by points close to it."""
-        return np.asarray((self.at(depth + over) - self.at(depth - over)) / (2.0 * over))
-
-    def sides(self, depth: Array) -> Array:
-        """Across it (k, 2)."""
-        parts = [_interpolated(self.depth, side, depth) for side in self.across.T]
-        return np.column_stack(parts)
-
-
-def _interpolated(depth: Array, values: Array, wanted: Array) -> Array:
-    x, y = np.r_[0.0, depth], np.r_[0.0, values]
-    curve = PchipInterpolator(x, y)
-    inside = curve(np.clip(wanted, 0.0, x[-1]))
-    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
-    return np.asarray(inside + slope * np.maximum(wanted - x[-1], 0.0))
-
-
 _KNOWN: dict[tuple[Geometry, str, float], Curve] = {}
 
 
@@ -119,28 +66,43 @@ class Curves:
     def fetch(self, wanted: Sequence[Wanted]) -> list[Curve]:
         """Their curves. InputError where a poke cannot be set up; ValueError where one has no answer at
         all."""
-        bases = [replace(w, name="", change=None) for w in wanted]
-        self._simulate([replace(w, depth=min(w.depth, finer_to(w.geometry))) for w in bases], FINE)
+        bases = [replace(w, name="", change=None, back=False) for w in wanted]
         finer = [w for w in wanted if w.finer]
-        self._simulate([replace(w, depth=min(w.depth, finer_to(w.geometry))) for w in finer], FINE)
+        for some in (bases, finer):
+            self._simulate([replace(w, depth=min(w.depth, finer_to(w.geometry))) for w in some], FINE)
         short = [w for w in wanted if not self._fine_suffices(w)]
-        self._simulate([replace(w, name="", change=None, back=False) for w in short], COARSE)
+        plain = [b for b, w in zip(bases, wanted, strict=True) if w in short or not self._fine_suffices(b)]
+        self._simulate(plain, COARSE)
         self._simulate([w for w in short if w.name], COARSE)
         return [self._of(w) for w in wanted]
 
     def _fine_suffices(self, w: Wanted) -> bool:
         """Whether the finer mesh gives all that is wanted."""
-        fine = _KNOWN.get((w.geometry, w.name, FINE))
-        return fine is not None and fine.reached >= w.depth and len(fine.depth) >= LEAST
+        fine = self._fine(w)
+        return fine is not None and fine.reached >= w.depth
+
+    def _fine(self, w: Wanted) -> Curve | None:
+        found = _KNOWN.get((w.geometry, w.name, FINE))
+        return found if found is not None and len(found.depth) >= LEAST else None
 
     def _of(self, w: Wanted) -> Curve:
-        own = _KNOWN.get((w.geometry, w.name, FINE))
-        if own is not None and len(own.depth) >= LEAST:
-            return own if self._fine_suffices(w) else refined(own, _KNOWN[(w.geometry, w.name, COARSE)], None)
-        fine = _KNOWN[(w.geometry, "", FINE)]
-        coarse = _KNOWN[(w.geometry, "", COARSE)]
-        change = _KNOWN[(w.geometry, w.name, COARSE)] if w.name else None
-        return refined(fine, coarse, change) if len(fine.depth) >= LEAST else change or coarse
+        plain = replace(w, name="", change=None, back=False)
+        fine, coarse = self._fine(plain), _KNOWN.get((w.geometry, "", COARSE))
+        if fine is not None and (coarse is None or self._fine_suffices(plain)):
+            base = fine
+        else:
+            assert coarse is not None
+            base = coarse if fine is None else deepened(fine, coarse)
+        if not w.name:
+            return base
+        pairs: list[tuple[Curve, Curve, float]] = []
+        own = self._fine(w)
+        if own is not None and fine is not None:
+            pairs.append((own, fine, FINE))
+        if not (pairs and self._fine_suffices(w)):
+            assert coarse is not None
+            pairs.append((_KNOWN[(w.geometry, w.name, COARSE)], coarse, COARSE))
+        return changed(base, pairs, w.geometry.rod.radius)
 
     def _simulate(self, wanted: Sequence[Wanted], refinement: float) -> None:
         missing: dict[tuple[Geometry, str, float], tuple[Wanted, float]] = {}
@@ -173,7 +135,7 @@ class Curves:
             # a finer mesh that has no answer is no obstacle: there is the coarser one
             if refinement == COARSE and len(result.load) < LEAST:
                 raise ValueError(f"a poke at {key[0].site} has no equilibrium ({result.message})")
-            _KNOWN[key] = _curve(result, key[0])
+            _KNOWN[key] = curve_of(result, key[0])
             self.simulated += 1
             self.core_seconds += result.cost.core_seconds + result.cost.mesh_seconds
 
@@ -182,49 +144,3 @@ def finer_to(geometry: Geometry) -> float:
     """Depth [m] to which a poke is simulated on the finer mesh: further down more cells touch, and each new
     one matters less."""
     return FINER_TO * geometry.rod.radius
-
-
-def refined(fine: Curve, coarse: Curve, change: Curve | None) -> Curve:
-    """What a change would be on the finer mesh, or without one what is deeper than it was followed: the
-    coarser mesh's by the ratio of the forces of both meshes, at its end below that."""
-    if change is None:
-        below = coarse.depth > fine.reached
-        depth = np.concatenate([fine.depth, coarse.depth[below]])
-        source = coarse
-    else:
-        depth, source = change.depth, change
-    inside = np.clip(depth, fine.depth[0], fine.reached)
-    ratio = fine.at(inside) / coarse.at(inside)
-    along, across = source.at(depth) * ratio, source.sides(depth) * ratio[:, None]
-    # forces across the rod start from none where nothing tilts: what they are off by is no ratio
-    across += fine.sides(inside) - coarse.sides(inside) * ratio[:, None]
-    if change is None:
-        above = len(fine.depth)
-        along[:above], across[:above] = fine.along, fine.across
-    return replace(source, depth=depth, along=along, across=across, finer=fine.reached)
-
-
-def _curve(result: Result, geometry: Geometry) -> Curve:
-    scene = result.scene
-    assert isinstance(scene, Poke)
-    push = np.asarray(scene.direction, dtype=float)
-    own = push / np.linalg.norm(push)  # a load cell sits on the rod, and tilts with it
-    along = -(result.rod_force @ own) / SHEAR
-    there = int(np.argmax(result.load)) + 1 if len(result.load) else 0
-    reached = float(result.load[there - 1]) if there else 0.0
-    found = Curve(
-        depth=result.load[:there],
-        along=along[:there],
-        across=-(result.rod_force[:there] @ geometry.across.T) / SHEAR,
-        reached=reached,
-        finer=reached if scene.refinement == FINE else 0.0,
-        round_tip=scene.rod.tip == "hemisphere",
-        status=str(result.status),
-        core_seconds=result.cost.core_seconds + result.cost.mesh_seconds,
-        mesh=result.mesh,
-    )
-    if len(result.load) - there < LEAST:
-        return found
-    depth, force = result.load[there:][::-1], along[there:][::-1]
-    missing = 1.0 - force / found.at(depth)
-    return replace(found, lost=np.column_stack([np.r_[depth / reached, 1.0], np.r_[missing, 0.0]]))

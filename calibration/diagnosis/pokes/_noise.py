@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
-from calibration.diagnosis.pokes._curves import Curve
+from calibration.diagnosis.pokes._curve import Curve
 from calibration.diagnosis.pokes._nuisances import columns_of, point_sd, side_sd
 from calibration.diagnosis.pokes._record import Record
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.pokes._curves import COARSE, FINE, Curve
+from calibration.diagnosis.pokes._curve import COARSE, FINE, Curve
 from calibration.diagnosis.pokes._record import Record
 from calibration.diagnosis.pokes._smooth import left_over
 from calibration.pokes import TOGETHER, scatter, wandering_modes

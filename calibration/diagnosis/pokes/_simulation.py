@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.pokes._candidates import kind_of, reaches
-from calibration.diagnosis.pokes._curves import Curve, Curves, Wanted
+from calibration.diagnosis.pokes._curve import Curve
+from calibration.diagnosis.pokes._curves import Curves, Wanted
 from calibration.diagnosis.pokes._record import Record
 from calibration.diagnosis.pokes.effects import PokeEffect
 

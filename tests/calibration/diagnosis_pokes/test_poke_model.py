@@ -11,7 +11,8 @@ from poke_records import experiment, path, trial
 
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.pokes import PokeModel
-from calibration.diagnosis.pokes._curves import Curve, Curves, Wanted
+from calibration.diagnosis.pokes._curve import Curve
+from calibration.diagnosis.pokes._curves import Curves, Wanted
 from calibration.diagnosis.pokes._phases import phases_of
 from calibration.diagnosis.pokes.effects.relaxation import _faded
 from calibration.diagnosis.screening import screen
