@@ -73,7 +73,7 @@ class Simulation:
                     effect = self.effects[name]
                     if effect.scene is None:
                         continue
-                    for node, part in _between(self._nodes(r, effect), a):
+                    for node, part in _between(self._nodes(r, effect), a, straight=effect.straight):
                         if node != 0.0 and part != 0.0:
                             wanted.append(self._wanted(r, name, kind, node))
         if wanted:
@@ -97,11 +97,11 @@ class Simulation:
     def _changed(
         self, record: Record, name: str, kind: float | None, a: float, depth: Array, *, across: bool
     ) -> Array:
-        """What an effect of the scene adds, over the shear modulus: straight between its simulated
-        amplitudes."""
+        """What an effect of the scene adds, over the shear modulus, between its simulated amplitudes."""
         base = self.base(record)
         found = np.zeros((depth.size, 2) if across else depth.size)
-        for node, part in _between(self._nodes(record, self.effects[name]), a):
+        effect = self.effects[name]
+        for node, part in _between(self._nodes(record, effect), a, straight=effect.straight):
             if node != 0.0 and part != 0.0:
                 curve = self.curves.fetch([self._wanted(record, name, kind, node)])[0]
                 if across:
@@ -173,12 +173,26 @@ def _deepest(record: Record) -> float:
     return max(float(record.depth.max()), 1e-4)
 
 
-def _between(nodes: Sequence[float], a: float) -> list[tuple[float, float]]:
-    """Nodes with their parts that make up an amplitude: between neighbours, straight on beyond the last."""
+def _between(nodes: Sequence[float], a: float, *, straight: bool) -> list[tuple[float, float]]:
+    """Nodes with their parts that make up an amplitude: by the two parabolas through its neighbours and the
+    next node on either side, the nearer side counting more, or straight; straight on beyond the last."""
     ordered = sorted(nodes)
     if len(ordered) == 1:
         return [(ordered[0], 1.0)]
-    upper = min(max(int(np.searchsorted(ordered, a)), 1), len(ordered) - 1)
-    low, high = ordered[upper - 1], ordered[upper]
-    part = (a - low) / (high - low)
-    return [(low, 1.0 - part), (high, part)]
+    k = min(max(int(np.searchsorted(ordered, a)), 1), len(ordered) - 1)
+    low, high = ordered[k - 1], ordered[k]
+    t = (a - low) / (high - low)
+    parts = {low: 1.0 - t, high: t}
+    if straight or not 0.0 < t < 1.0:
+        return list(parts.items())
+    # what a parabola adds to the line, for a node further on: zero at both neighbours
+    sides = [(n, w) for n, w in ((k - 2, 1.0 - t), (k + 1, t)) if 0 <= n < len(ordered)]
+    whole = sum(w for _, w in sides)
+    for n, w in sides:
+        node = ordered[n]
+        bend = w / whole * (a - low) * (a - high) / ((node - low) * (node - high))
+        parts[node] = bend
+        line = (node - low) / (high - low)
+        parts[low] -= bend * (1.0 - line)
+        parts[high] -= bend * line
+    return list(parts.items())

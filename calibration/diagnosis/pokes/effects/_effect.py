@@ -35,10 +35,11 @@ class PokeEffect(Effect):
     """One of these three, with the amplitude and the kind (below):
 
     scene: the simulated poke with the effect in it; `nodes`: amplitudes at which it is simulated, 0 among
-    them, straight lines between; chord: the node towards which the first column is taken. fits: whether a
-    poke can be so simulated. finer: it is simulated on the finer mesh, since what it changes is where cells
-    come to touch; back: the rod's way back is simulated, since the force there is another. shift: of the
-    depth [m]. force: what becomes of the force [N] (k,) of a record, in the order of `stage`.
+    them, parabolas between, or lines where it is `straight`; chord: the node towards which the first column
+    is taken. fits: whether a poke can be so simulated. finer: it is simulated on the finer mesh, since what
+    it changes is where cells come to touch; back: the rod's way back is simulated, since the force there is
+    another. shift: of the depth [m]. force: what becomes of the force [N] (k,) of a record, in the order of
+    `stage`.
 
     kinds: variants of the effect (a time constant, a direction); what it is called: see `kind_label`.
     touches: whether a record can have it. shows: whether the records that a candidate reaches, among all, let
@@ -51,6 +52,7 @@ class PokeEffect(Effect):
     nodes: tuple[float, ...] = ()
     chord: float = 0.0
     fits: Callable[[Poke], bool] = lambda _: True
+    straight: bool = False
     finer: bool = False
     back: bool = False
     shift: Callable[[float, Record], float] | None = None

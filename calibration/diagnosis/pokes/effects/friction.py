@@ -28,6 +28,7 @@ EFFECT = PokeEffect(
     # from 0.4 on hardly anything slides
     nodes=(-0.6, -0.5, -0.35, 0.0, 0.4),
     chord=-0.5,
+    straight=True,
     finer=True,
     back=True,
     reach="rig",
