@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
 Array = NDArray[np.float64]
-# what the finder's simulation may be off by, as docs/pokes.md states it: together, wandering, rod radii
+# what the finder's simulation may be off by, as docs/pokes.md states it: together, and what wanders
+# (sd, width of contact)
 REFINED = 1.5
-MESH, WANDER, WIDTH, SHALLOW = 0.025 / REFINED**2, 0.01 / REFINED**2, 0.04 / REFINED, 0.4
+MESH, SHALLOW = 0.025 / REFINED**2, 0.4
+WANDER = ((0.008 / REFINED**2, 0.04 / REFINED), (0.006 / REFINED**2, 0.5 / REFINED))
 
 
 @lru_cache(maxsize=4)
@@ -33,11 +35,12 @@ def _root(trials: tuple[Trial, ...]) -> Array:
         parts.append((white, slope * t.depth_sd))
         shallow = np.sqrt(1 + (SHALLOW * radius / np.maximum(depth, 0.1 * SHALLOW * radius)) ** 2)
         width.append(np.sqrt(np.maximum(depth, 0.0) / radius))
-        relative.append(WANDER * shallow * f)
+        relative.append(shallow * f)
         radii.append(np.full(len(depth), BASES.index(t.base), dtype=float))
     w, g, r, f = (np.concatenate(x) for x in (width, radii, relative, base))
     same = g[:, None] == g[None, :]
-    total = same * np.outer(r, r) * np.exp(-0.5 * ((w[:, None] - w) / WIDTH) ** 2) + MESH**2 * np.outer(f, f)
+    alike = sum(sd**2 * np.exp(-0.5 * ((w[:, None] - w) / over) ** 2) for sd, over in WANDER)
+    total = same * np.outer(r, r) * alike + MESH**2 * np.outer(f, f)
     first = 0
     for white, touch in parts:
         mine = slice(first, first + len(white))
