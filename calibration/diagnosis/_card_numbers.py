@@ -13,6 +13,7 @@ from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.fitting import Fit
 from calibration.diagnosis.verdict import Diagnosis
 from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial, Trial
+from calibration.pokes import block_names
 
 Array = NDArray[np.float64]
 
@@ -85,7 +86,7 @@ def valid_range(candidate: Candidate, diagnosis: Diagnosis, experiment: Experime
     """Between what the effect was measured: lengths and times of beams, stretches, depths."""
     values: dict[str, list[float]] = {}
     for t in _used(diagnosis, experiment):
-        if candidate.at not in ("all", t.material, t.specimen, t.id):
+        if not reaches(candidate, t):
             continue
         if isinstance(t, BeamTrial):
             values.setdefault("free_length_mm", []).append(1e3 * t.free_length)
@@ -126,3 +127,9 @@ def _used(diagnosis: Diagnosis, experiment: Experiment) -> Sequence[Trial]:
 def _let_go(diagnosis: Diagnosis) -> bool:
     """Whether bars with markers were diagnosed, and not traced beams."""
     return any(isinstance(e, BarEffect) for e in diagnosis.effects.values())
+
+
+def reaches(candidate: Candidate, trial: Trial) -> bool:
+    """Whether an effect is in a trial: in all, or where its material, specimen, block or id is named."""
+    blocks = block_names(trial) if isinstance(trial, PokeTrial) else ()
+    return candidate.at in ("all", trial.material, trial.specimen, trial.id, *blocks)

@@ -18,6 +18,7 @@ from calibration.diagnosis._card_numbers import (
     file_covariance,
     gain,
     moduli,
+    reaches,
     rounded,
     valid_range,
 )
@@ -164,6 +165,6 @@ def _of_specimen(candidate: Candidate, diagnosis: Diagnosis) -> bool:
 
 
 def _reaches(candidate: Candidate, material: str, experiment: Experiment) -> bool:
-    """Whether an effect concerns a material: all of it, or a specimen or trial of it."""
+    """Whether an effect concerns a material: all of it, or a specimen, block or trial of it."""
     mine = [t for t in experiment.trials if t.material == material]
-    return any(candidate.at in ("all", material, t.specimen, t.id) for t in mine)
+    return any(reaches(candidate, t) for t in mine)

@@ -3,7 +3,7 @@
 from calibration.pokes._branch import LoadingBranch, loading_branch
 from calibration.pokes._errors import TOGETHER, scatter, wandering_modes
 from calibration.pokes._run import PokeRun
-from calibration.pokes._scene import approach, poke_scene
+from calibration.pokes._scene import approach, block_names, poke_scene
 from calibration.pokes.objective import PokeObjective
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "PokeObjective",
     "PokeRun",
     "approach",
+    "block_names",
     "loading_branch",
     "poke_scene",
     "scatter",

@@ -55,3 +55,9 @@ def poke_scene(
         frame_spacing=max(min(0.5e-3, depth / 6.0), 1e-5),
         refinement=refinement,
     )
+
+
+def block_names(trial: PokeTrial) -> tuple[str, str]:
+    """What people call the block of a trial: by its size, and with its material."""
+    size = " x ".join(f"{1e3 * x:g}" for x in trial.block.size)
+    return f"block {size} mm", f"{trial.material} block {size} mm"

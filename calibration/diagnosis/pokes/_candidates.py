@@ -26,8 +26,8 @@ class PokeCandidate(Candidate):
 
 def candidates_of(records: Sequence[Record], effects: Mapping[str, PokeEffect]) -> tuple[PokeCandidate, ...]:
     """Each effect, in each of its kinds, in all records that it touches; what belongs to a material also in
-    one material or one specimen, what belongs to a rig also in one rod's or one record, where these
-    differ."""
+    one material or one specimen, what belongs to a block also in blocks of one size, what belongs to a rig
+    also in one rod's or one record, where these differ."""
     found: list[PokeCandidate] = []
     for effect in effects.values():
         touched = [r for r in records if effect.touches(r)]
@@ -49,12 +49,17 @@ def candidates_of(records: Sequence[Record], effects: Mapping[str, PokeEffect]) 
 
 
 def _scopes(touched: Sequence[Record], effect: PokeEffect) -> list[tuple[str, int]]:
-    labels = (
-        ([r.material for r in touched], [r.specimen for r in touched])
-        if effect.reach == "material"
-        else ([r.rod for r in touched], [r.name for r in touched])
-    )
+    kinds = len(_places(touched[0], effect))
+    labels = [[_places(r, effect)[k] for r in touched] for k in range(kinds)]
     return scopes([r.name for r in touched], labels)
+
+
+def _places(record: Record, effect: PokeEffect) -> tuple[str, ...]:
+    """What holds a record and may carry an effect, the wider first."""
+    if effect.reach == "rig":
+        return (record.rod, record.name)
+    blocks = record.blocks if effect.reach == "block" else ()
+    return (record.material, *blocks, record.specimen)
 
 
 def kind_of(candidate: Candidate) -> float | None:
@@ -63,9 +68,4 @@ def kind_of(candidate: Candidate) -> float | None:
 
 def reaches(candidate: Candidate, record: Record, effect: PokeEffect) -> bool:
     """Whether a candidate is in a record."""
-    places = (
-        ("all", record.material, record.specimen)
-        if effect.reach == "material"
-        else ("all", record.rod, record.name)
-    )
-    return candidate.at in places and effect.touches(record)
+    return candidate.at in ("all", *_places(record, effect)) and effect.touches(record)

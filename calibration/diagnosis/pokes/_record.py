@@ -14,7 +14,7 @@ from calibration.diagnosis.pokes._phases import Phase, phases_of
 from calibration.diagnosis.pokes._smooth import smooth_depth
 from calibration.diagnosis.records import bins
 from calibration.experiment.model import PokeTrial
-from calibration.pokes import approach
+from calibration.pokes import approach, block_names
 
 Array = NDArray[np.float64]
 
@@ -40,8 +40,9 @@ _ARRAYS = (
 class Record:
     """The points of one trial, in the order in which they were measured; all arrays (k,).
 
-    depth [m]: from first touch, negative above the surface. force [N] along the rod. across (k, 2) [N]: the
-    force across it, along `Geometry.across`; None where the lab has no vectors. own_sd [N]: of the force,
+    blocks: names of its block, by size and with its material. depth [m]: from first touch, negative above the
+    surface. force [N] along the rod. across (k, 2) [N]: the force across it, along `Geometry.across`; None
+    where the lab has no vectors. own_sd [N]: of the force,
     without what the depth's error adds; count: of samples in each point. depth_sd [m]: of one sample, and of
     the touch. phase: number of the phase, labels name them; kind: +1 loading, 0 hold, -1 unloading. cycle:
     which loading, from 1. peak [m]: the deepest that this specimen was poked at this site before and up to
@@ -52,6 +53,7 @@ class Record:
     name: str
     material: str
     specimen: str
+    blocks: tuple[str, str]
     geometry: Geometry
     time: Array
     depth: Array
@@ -152,6 +154,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
         name=trial.id,
         material=trial.material,
         specimen=trial.specimen or trial.material,
+        blocks=block_names(trial),
         geometry=geometry,
         across=None if across is None else sides,
         depth_sd=trial.depth_sd,

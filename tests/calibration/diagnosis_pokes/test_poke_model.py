@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from dataclasses import replace
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from poke_records import experiment, path, trial
 
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.pokes import PokeModel
+from calibration.diagnosis.pokes._candidates import reaches
 from calibration.diagnosis.pokes._curve import Curve
 from calibration.diagnosis.pokes._curves import Curves, Wanted
 from calibration.diagnosis.pokes._phases import phases_of
@@ -18,6 +20,7 @@ from calibration.diagnosis.pokes.effects.relaxation import _faded
 from calibration.diagnosis.screening import screen
 from calibration.diagnosis.search import calibrated, search
 from calibration.errors import InputError
+from tisim import Block
 
 SHEAR = 2e4
 K = 1e-2  # of the made curves: force over G and depth [m]
@@ -216,3 +219,25 @@ def test_specimens_of_one_material_have_moduli_of_their_own() -> None:
 def test_without_pokes_is_refused() -> None:
     with pytest.raises(InputError, match="expected a poke"):
         PokeModel(experiment())
+
+
+def test_a_wrong_thickness_may_be_in_blocks_of_one_size() -> None:
+    """Two materials, a thin and a thick block of each: the thin mould may be off, or that of one material."""
+    time, depth = path()
+    trials = []
+    for m, height in product(("S", "T"), (0.012, 0.032)):
+        t = trial(f"{m}-{height:g}", time, depth, noisy(curve(depth)), material=m)
+        trials.append(replace(t, block=Block(size=(0.1, 0.1, height)), start=(0.0, 0.0, height)))
+    model = PokeModel(experiment(*trials))
+    effect = model.effects["thickness"]
+    found = {
+        c.at: [r.name for r in model.records if reaches(c, r, effect)]
+        for c in model.candidates
+        if c.effect == "thickness"
+    }
+    assert found["block 100 x 100 x 12 mm"] == ["S-0.012", "T-0.012"]
+    assert found["T block 100 x 100 x 32 mm"] == ["T-0.032"]
+    assert found["S"] == ["S-0.012", "S-0.032"]
+    assert found["all"] == [t.id for t in trials]
+    assert len(found) == 1 + 2 + 2 + 4
+    assert {c.at for c in model.candidates if c.effect == "mullins"} <= {"all", "S", "T"}

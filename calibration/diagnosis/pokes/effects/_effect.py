@@ -15,7 +15,7 @@ from tisim import Mesh, Poke
 
 Array = NDArray[np.float64]
 
-Reach = Literal["material", "rig"]
+Reach = Literal["material", "block", "rig"]
 Scene = Callable[[Poke, Mesh | None, float, float | None], Poke]
 Force = Callable[[Array, float, Record, float | None], Array]
 
@@ -44,8 +44,8 @@ class PokeEffect(Effect):
     kinds: variants of the effect (a time constant, a direction); what it is called: see `kind_label`.
     touches: whether a record can have it. shows: whether the records that a candidate reaches, among all, let
     its amplitude be seen at all: a candidate that no protocol shows has no column. reach: where it may sit:
-    "material": in all trials, one material or one specimen; "rig": in all trials, those of one rod or one of
-    them.
+    "material": in all trials, one material or one specimen; "block": also in blocks of one size; "rig": in
+    all trials, those of one rod or one of them.
     """
 
     scene: Scene | None = None

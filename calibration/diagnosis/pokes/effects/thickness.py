@@ -37,5 +37,5 @@ EFFECT = PokeEffect(
     chord=PART,
     finer=True,
     touches=lambda record: record.geometry.block.inclusion is None,
-    reach="material",
+    reach="block",
 )
