@@ -53,8 +53,9 @@ def explain(
     simulator has no answer with them."""
     known = dict(start.state.amplitudes)
     for c, a in zip(candidates, amplitudes, strict=True):
-        low, high = model.effects[c.effect].bounds
-        known.setdefault(c, float(np.clip(a, 0.6 * low, 0.6 * high)))
+        effect = model.effects[c.effect]
+        low, high = effect.bounds
+        known.setdefault(c, float(np.clip(a, effect.starts * low, effect.starts * high)))
     for part in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
         inside = {c: part * known[c] for c in candidates}
         try:

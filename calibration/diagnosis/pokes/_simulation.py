@@ -88,7 +88,8 @@ class Simulation:
             return effect.step if now + effect.step <= effect.bounds[1] else -effect.step
         if now == 0.0:
             nodes = self._nodes(next(r for r in records if reaches(candidate, r, effect)), effect)
-            return effect.chord if effect.chord in nodes else min(nodes, key=lambda n: (n == 0.0, abs(n)))
+            chord = kind_of(candidate) if effect.chords else effect.chord
+            return chord if chord in nodes else min(nodes, key=lambda n: (n == 0.0, abs(n)))
         inside = [n for n in effect.nodes if n != 0.0 and np.sign(n) == np.sign(now)]
         further = max((abs(n) for n in inside), default=abs(now))
         step = effect.step * float(np.sign(now))
@@ -137,7 +138,7 @@ class Simulation:
         total: dict[tuple[str, float | None], float] = {}
         for c, a in state.amplitudes.items():
             if self.visible[c] and reaches(c, record, self.effects[c.effect]):
-                key = (c.effect, kind_of(c))
+                key = (c.effect, None if self.effects[c.effect].chords else kind_of(c))
                 total[key] = total.get(key, 0.0) + a
         return total
 

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from poke_records import experiment, path, trial
 
+from calibration.diagnosis import explanation
 from calibration.diagnosis.nested import State
+from calibration.diagnosis.null import Null
 from calibration.diagnosis.pokes import PokeModel
 from calibration.diagnosis.pokes._candidates import reaches
 from calibration.diagnosis.pokes._curve import Curve
@@ -241,3 +243,26 @@ def test_a_wrong_thickness_may_be_in_blocks_of_one_size() -> None:
     assert found["all"] == [t.id for t in trials]
     assert len(found) == 1 + 2 + 2 + 4
     assert {c.at for c in model.candidates if c.effect == "mullins"} <= {"all", "S", "T"}
+
+
+def test_a_fit_of_friction_begins_where_its_column_leads() -> None:
+    """Towards each of its chords, the furthest at its bound: what slides freely loses no force on the way
+    back, what rubs a little does, and from between a fit of the one may end at the other."""
+    time, depth = path()
+    model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)))))
+    base = calibrated(model)
+    both = [c for c in model.candidates if c.effect == "friction" and c.at == "all"]
+    assert [model.simulation.step(c, base.state, model.records) for c in both] == [-0.5, -0.6]
+    linear = model.linearise(base.state, both)
+    assert np.abs(linear.columns[:, 0] - linear.columns[:, 1]).max() < 0.1  # made curves are straight in it
+    null = Null(len(base.z), model.patterns())
+    started = []
+
+    def at(_: PokeModel, state: State, __: object) -> None:
+        started.append(state.amplitudes[both[1]])
+        raise ValueError
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(explanation, "fit", at)
+        explanation.explain(model, base, (both[1],), [-0.7], null)
+    assert started[0] == pytest.approx(-0.6)

@@ -41,7 +41,8 @@ class PokeEffect(Effect):
     another. shift: of the depth [m]. force: what becomes of the force [N] (k,) of a record, in the order of
     `stage`.
 
-    kinds: variants of the effect (a time constant, a direction); what it is called: see `kind_label`.
+    kinds: variants of the effect (a time constant, a direction); what it is called: see `kind_label`. chords:
+    they are no variants but nodes that the first column may be taken towards, where these are unlike.
     touches: whether a record can have it. shows: whether the records that a candidate reaches, among all, let
     its amplitude be seen at all: a candidate that no protocol shows has no column. reach: where it may sit:
     "material": in all trials, one material or one specimen; "block": also in blocks of one size; "rig": in
@@ -60,6 +61,7 @@ class PokeEffect(Effect):
     stage: int = 0
     kinds: Callable[[Sequence[Record]], tuple[float | None, ...]] = one_kind
     kind_label: Callable[[float], str] = lambda kind: f"{kind:g}"
+    chords: bool = False
     touches: Callable[[Record], bool] = lambda _: True
     shows: Callable[[Sequence[Record], Sequence[Record]], bool] = always
     reach: Reach = "rig"

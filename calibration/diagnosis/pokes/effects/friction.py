@@ -8,6 +8,8 @@ from calibration.diagnosis.pokes._geometry import FRICTION
 from calibration.diagnosis.pokes.effects._effect import PokeEffect
 from tisim import Mesh, Poke
 
+NONE, LITTLE = -FRICTION, -0.5
+
 
 def _scene(poke: Poke, mesh: Mesh | None, amplitude: float, kind: float | None) -> Poke:
     del kind
@@ -22,12 +24,16 @@ EFFECT = PokeEffect(
     step=0.01,
     bounds=(-FRICTION, 0.4),
     plausible=FRICTION,
+    starts=1.0,  # most of what it does it does near its bound
     sentence="rod and block rub less, or more, than believed",
     remedy="powder the rod, or glue sandpaper on it, and poke the same place again",
     scene=_scene,
     # from 0.4 on hardly anything slides
-    nodes=(-0.6, -0.5, -0.35, 0.0, 0.4),
-    chord=-0.5,
+    nodes=(NONE, LITTLE, -0.35, 0.0, 0.4),
+    # free of friction a rod loses no force on the way back, with a little it does
+    kinds=lambda _: (LITTLE, NONE),
+    kind_label=lambda kind: "some slip" if kind == LITTLE else "free slip",
+    chords=True,
     straight=True,
     finer=True,
     back=True,
