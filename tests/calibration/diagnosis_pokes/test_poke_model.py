@@ -11,6 +11,8 @@ import pytest
 from poke_records import experiment, path, trial
 
 from calibration.diagnosis import explanation
+from calibration.diagnosis._card_numbers import reaches as of_trial
+from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.null import Null
 from calibration.diagnosis.pokes import PokeModel
@@ -266,3 +268,40 @@ def test_a_fit_of_friction_begins_where_its_column_leads() -> None:
         patch.setattr(explanation, "fit", at)
         explanation.explain(model, base, (both[1],), [-0.7], null)
     assert started[0] == pytest.approx(-0.6)
+
+
+def test_friction_takes_force_on_the_way_back_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth at half the way; the rod is drawn back in the simulation where the record has a way back."""
+    time, depth = path()
+    made, backs = Curves.fetch, []
+
+    def fetch(self: Curves, wanted: Sequence[Wanted]) -> list[Curve]:
+        backs.extend(w.back for w in wanted if w.name)
+        lost = np.array([[0.0, 0.0], [0.5, 0.1], [1.0, 0.0]])
+        return [
+            replace(c, lost=lost) if w.back else c for c, w in zip(made(self, wanted), wanted, strict=True)
+        ]
+
+    monkeypatch.setattr(Curves, "fetch", fetch)
+    model = PokeModel(experiment(trial("p", time, depth, noisy(curve(depth)))))
+    (record,) = model.records
+    friction = next(c for c in model.candidates if c.effect == "friction")
+    force = model.simulation.along(State(u=model.start(), amplitudes={friction: -0.5}), record)
+    there, back = record.kind > 0, record.kind < 0
+    into = np.interp(record.depth[back], record.depth[there], force[there])
+    part = record.depth[back] / record.depth.max()
+    inside = (part > 0.2) & (part < 0.95)
+    expected = np.interp(part, [0.0, 0.5, 1.0], [0.0, 0.1, 0.0])
+    assert 1.0 - force[back][inside] / into[inside] == pytest.approx(expected[inside], abs=5e-3)
+    assert backs
+    assert all(backs)
+
+
+@pytest.mark.parametrize(
+    ("at", "there"),
+    [("all", True), ("S", True), ("block 100 x 100 x 30 mm", True), ("S block 100 x 100 x 30 mm", True)]
+    + [("p", True), ("T", False), ("block 100 x 100 x 12 mm", False), ("T block 100 x 100 x 30 mm", False)],
+)
+def test_a_card_takes_over_what_is_in_its_materials_blocks(at: str, there: bool) -> None:
+    time, depth = path()
+    assert of_trial(Candidate(effect="thickness", at=at), trial("p", time, depth, curve(depth))) == there
