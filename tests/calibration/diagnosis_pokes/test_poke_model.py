@@ -299,8 +299,11 @@ def test_friction_takes_force_on_the_way_back_only(monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.parametrize(
     ("at", "there"),
-    [("all", True), ("S", True), ("block 100 x 100 x 30 mm", True), ("S block 100 x 100 x 30 mm", True)]
-    + [("p", True), ("T", False), ("block 100 x 100 x 12 mm", False), ("T block 100 x 100 x 30 mm", False)],
+    [
+        *(("all", True), ("S", True), ("p", True), ("T", False)),
+        *(("block 100 x 100 x 30 mm", True), ("S block 100 x 100 x 30 mm", True)),
+        *(("block 100 x 100 x 12 mm", False), ("T block 100 x 100 x 30 mm", False)),
+    ],
 )
 def test_a_card_takes_over_what_is_in_its_materials_blocks(at: str, there: bool) -> None:
     time, depth = path()
