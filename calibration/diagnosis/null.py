@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from calibration.diagnosis.screening import Screen, basis_of
+from calibration.diagnosis.specimens import ALLOWED, SPECIMENS
 
 Array = NDArray[np.float64]
 
 DRAWS = 4000
 EVERYTHING = "everything"
+ROUNDING = 1e-7  # part of a pattern that is not its own where the rest is fitted
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,9 +43,12 @@ class Null:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).
 
         The tests: the whole squared sum, and the squared sum in each set of patterns. Their smallest p-value
-        is judged by its own distribution, which accounts for their number and for what they share.
+        is judged by its own distribution, which accounts for their number and for what they share. By what
+        the moduli of specimens differ is a set of its own, and part of no other.
         """
         free = basis_of(jacobian)
+        scatter = self.patterns.get(SPECIMENS)
+        known = free if scatter is None else basis_of(np.hstack([jacobian, scatter]))
         drawn = self.noise - (self.noise @ free) @ free.T
         smallest = np.ones(DRAWS)
         each: dict[str, float] = {}
@@ -51,9 +56,12 @@ class Null:
             if name == EVERYTHING:
                 squares, here = (drawn**2).sum(axis=1), float(z @ z)
             else:
-                columns = self.patterns[name]
-                span = basis_of(columns - free @ (free.T @ columns))
+                columns, off = self.patterns[name], free if name == SPECIMENS else known
+                left = columns - off @ (off.T @ columns)
+                own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
+                span = basis_of(left[:, own])
                 squares, here = ((drawn @ span) ** 2).sum(axis=1), float(((z @ span) ** 2).sum())
+                here *= ALLOWED.get(name, 1.0)
             order = np.sort(squares)
             smallest = np.minimum(smallest, _exceeding(squares, order))
             each[name] = float(_exceeding(np.array([here]), order)[0])

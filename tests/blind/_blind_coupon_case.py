@@ -51,7 +51,10 @@ LARGEST = {
 
 @dataclass(frozen=True, kw_only=True)
 class Protocol:
-    """One trial: driven from rest to `top` and back `turns` times at `rate` [1/s]; points a ramp."""
+    """One trial: driven from rest to `top` and back `turns` times at `rate` [1/s]; points a ramp.
+
+    before: the farthest stretch of this mode that the same piece saw in trials before.
+    """
 
     id: str
     material: str
@@ -64,11 +67,12 @@ class Protocol:
     G: float
     stress_sd: float = 0.0
     stretch_sd: float = 0.0
+    before: float = 1.0
 
     def again(self, name: str) -> Protocol | None:
         """The same specimen in the test of this name that a diagnosis advises; None where the name is no
         test, or says nothing new of this one."""
-        made = replace(self, id=f"{self.id}-{name}")
+        made = replace(self, id=f"{self.id}-{name}", before=self.top if self.specimen else 1.0)
         beyond = {"further": 1.5, "twice": 2.25, "to-the-end": 4.0}.get(name)
         if beyond:
             top = 1.0 + beyond * (self.top - 1.0) if self.top > 1.0 else self.top**beyond
@@ -80,6 +84,7 @@ class Protocol:
         mode = {"pull": "uniaxial", "press": "uniaxial", "shear": "simple-shear"}.get(name, name)
         if mode not in ("uniaxial", "simple-shear", "planar", "equibiaxial"):
             return None
+        made = replace(made, before=1.0)
         tops = np.linspace(1.0, 0.3, 2000) if name == "press" else np.linspace(1.0, 6.0, 6000)
         new = [replace(made, mode=mode, top=float(t), turns=0) for t in tops]
         reach = first_invariant(self)

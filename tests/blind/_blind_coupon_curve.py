@@ -29,17 +29,22 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
         fibre=a.get("anisotropy", 0.0),
     )
     recorded, time, ramp = p.path()
-    top_energy = float(solid.energy(p.mode, np.array([p.top]))[0])
+    top_energy, worn_energy = solid.energy(p.mode, np.array([p.top, p.before]))
+    # a piece remembers the trials before: its first ramp here is virgin only beyond them
+    peak = np.where(ramp >= 1, max(top_energy, worn_energy), worn_energy)
+    virgin = peak <= 1e-9 * top_energy
 
     def stress(true: Array) -> Array:
         found = solid.stress(p.mode, true)
-        left = np.clip(1.0 - solid.energy(p.mode, true) / top_energy, 0.0, 1.0)
+        energy = solid.energy(p.mode, true)
+        left = np.clip(1.0 - energy / top_energy, 0.0, 1.0)
         if "hysteresis" in a:
             lost = 1.0 - (1.0 - left) ** shape["hysteresis"]
             found = found * np.where(ramp % 2 == 1, 1.0 - a["hysteresis"] * lost, 1.0)
         if "mullins" in a:
-            worn = np.array([math.erf(x / shape["mullins"]) for x in left]) / math.erf(1.0 / shape["mullins"])
-            found = found * np.where(ramp >= 1, 1.0 - a["mullins"] * worn, 1.0)
+            unused = np.clip(1.0 - energy / np.where(virgin, top_energy, peak), 0.0, 1.0)
+            worn = [math.erf(x / shape["mullins"]) / math.erf(1.0 / shape["mullins"]) for x in unused]
+            found = found * np.where(virgin, 1.0, 1.0 - a["mullins"] * np.array(worn))
         if "rate-dependence" in a:
             # a power of the rate, whose slope a decade at the reference is the amplitude
             found = found * (p.rate / REFERENCE_RATE) ** (a["rate-dependence"] / math.log(10.0))

@@ -72,6 +72,7 @@ def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ..
         reach = rng.uniform(0.35, 1.0)
         for mode in chosen:
             drawn = G * float(np.exp(scatter * rng.standard_normal())) if own else G
+            top = _top(mode, reach, "limited-extensibility" in names)
             for k, rate in enumerate(rates):
                 found.append(
                     Protocol(
@@ -79,11 +80,12 @@ def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ..
                         material=f"M{m}",
                         specimen=f"M{m}-{mode}-piece" if own else None,
                         mode="uniaxial" if mode in ("tension", "compression") else mode,
-                        top=_top(mode, reach, "limited-extensibility" in names),
+                        top=top,
                         turns=turns,
                         rate=rate,
                         points=int(rng.integers(30, 70)),
                         G=drawn,
+                        before=top if own and k > 0 else 1.0,
                     )
                 )
     if "wrong-area" in names and len(found) < 3:

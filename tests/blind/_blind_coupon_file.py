@@ -11,16 +11,16 @@ from _blind_coupon_curve import curve
 from _blind_record_case import write_yaml
 
 
-def write(case: Case, folder: Path) -> None:
-    """experiment.yaml and its CSVs, without the truth."""
+def write(case: Case, folder: Path, *, noise: float = 1.0) -> None:
+    """experiment.yaml and its CSVs, without the truth. noise: part of the stated noise that is in them."""
     rng = np.random.default_rng([case.seed, 1])
     (folder / "coupons").mkdir(parents=True)
     trials: list[dict[str, Any]] = []
     for p in case.protocols:
         recorded, time, _ = p.path()
         # the lab reads the stretch with an error of its own: the stress is that of the true one
-        stress = curve(p, case.hidden) + p.stress_sd * rng.standard_normal(len(recorded))
-        shown = recorded + p.stretch_sd * rng.standard_normal(len(recorded))
+        stress = curve(p, case.hidden) + noise * p.stress_sd * rng.standard_normal(len(recorded))
+        shown = recorded + noise * p.stretch_sd * rng.standard_normal(len(recorded))
         rows = ["stretch,nominal_stress_kPa,time_s"]
         rows += [f"{s:.7g},{1e-3 * q:.7g},{t:.7g}" for s, q, t in zip(shown, stress, time, strict=True)]
         (folder / "coupons" / f"{p.id}.csv").write_text("\n".join(rows) + "\n")

@@ -66,19 +66,33 @@ def _squared_stretches(mode: str, s: Complex) -> tuple[Complex, ...]:
 
 
 def _chains(i1: Complex, inverse: float) -> Complex:
-    """2 W / G of eight Langevin chains with 1/inverse links (Cohen's Pade form of the inverse Langevin
-    function, integrated), scaled so that the modulus at rest is G; I1 - 3 where the chains are Gaussian."""
+    """2 W / G of eight Langevin chains with 1/inverse links, scaled so that the modulus at rest is G; I1 - 3
+    where the chains are Gaussian."""
     if inverse == 0.0:
         return i1 - 3.0
+    at_rest = _chain_energy(np.array([inverse**0.5 + 0j]))[0]
+    force = _chain_tension(np.array([inverse**0.5 + 0j]))[0]
+    slope_at_rest = force * inverse**0.5 / 6.0  # d energy / d I1 where I1 is 3: x is (inverse I1 / 3)^(1/2)
+    return (_chain_energy(np.sqrt(i1 * inverse / 3.0)) - at_rest) / slope_at_rest
 
-    def integral(x2: Complex) -> Complex:
-        # of x (3 - x^2) / (1 - x^2) dx = x^2/2 - ln(1 - x^2)
-        return x2 / 2.0 - np.log(1.0 - x2)
 
-    rest = inverse
-    slope_at_rest = 0.5 * (3.0 - rest) / (1.0 - rest)  # d integral / d x2
-    part = (integral(i1 * inverse / 3.0) - integral(np.full_like(i1, rest))) / slope_at_rest
-    return part * 3.0 / inverse
+def _chain_energy(x: Complex) -> Complex:
+    """Of a Langevin chain, a link, over kT, at the part x of its length (Kuhn and Gruen, 1942)."""
+    b = _chain_tension(x)
+    # ln(b / sinh b), which does not overflow for long b
+    return x * b + np.log(2.0 * b) - b - np.log(1.0 - np.exp(-2.0 * b))
+
+
+def _chain_tension(x: Complex) -> Complex:
+    """b with coth b - 1/b = x, by Newton's steps, which rise to it from 3 x."""
+    b = 3.0 * x
+    for _ in range(100):
+        coth = (1.0 + np.exp(-2.0 * b)) / (1.0 - np.exp(-2.0 * b))
+        step = (coth - 1.0 / b - x) / (1.0 - coth**2 + 1.0 / b**2)
+        b = b - step
+        if np.abs(step / b).max(initial=0.0) < 1e-12:
+            return b
+    raise RuntimeError("no tension of a Langevin chain")
 
 
 def inverse_of(measured: Callable[[Array], Array], wanted: Array) -> Array:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from _blind_coupon_case import Hidden, Protocol
+from _blind_coupon_curve import curve
 from _blind_coupon_draw import make_coupon
 from _blind_coupon_file import write
 from _blind_coupon_law import Solid
 from _blind_coupon_verdict import verdict_on
 from _blind_record_score import Pair, named, named_set, part, sigma, true_names
+from limit_coupons import chance, distances
 from run_coupons import run
 from scipy.stats import binom
 
@@ -73,6 +77,48 @@ def test_made_stresses_are_those_of_the_textbook() -> None:
         assert solid.stress("planar", np.array([1.8]))[0] != pytest.approx(
             plain.stress("planar", np.array([1.8]))[0], rel=0.02
         )
+
+
+def test_made_chains_are_langevin_chains() -> None:
+    """The series of Arruda and Boyce, J. Mech. Phys. Solids 41 (1993), where the chains are short of their
+    ends: 2 k C_k."""
+    s, locking = np.linspace(1.1, 3.0, 9), 0.02
+    i1 = s**2 + 2.0 / s
+    terms = [1.0, 2 / 10, 3 * 22 / 1050, 4 * 38 / 7000, 5 * 1038 / 673750]
+    slope = np.polynomial.polynomial.polyval(locking * i1, terms)
+    wanted = 3.0 * slope / np.polynomial.polynomial.polyval(3.0 * locking, terms) * (s - s**-2)
+    assert Solid(G=3.0, locking=locking).stress("uniaxial", s) == pytest.approx(wanted, rel=1e-5)
+    # at 98 % of their length L^-1 is 1 / (1 - 0.98) but for an exponentially small part
+    end = np.array([np.max(np.roots([1.0, 0.0, -3.0 * 0.98**2 / 0.1, 2.0]).real)])
+    at_rest = np.polynomial.polynomial.polyval(0.3, terms)
+    assert Solid(G=1.0, locking=0.1).stress("uniaxial", end) / (end - end**-2) == pytest.approx(
+        50.0 / (3.0 * 0.98) / at_rest, rel=1e-4
+    )
+
+
+def test_a_made_piece_remembers_its_trials_before() -> None:
+    plain = Protocol(
+        id="a", material="m", specimen="p", mode="planar", top=1.6, turns=3, rate=0.01, points=9, G=1.0
+    )
+    damage = (Hidden(name="mullins", amplitude=0.3),)
+    virgin, again = curve(plain, damage), curve(replace(plain, before=1.6), damage)
+    assert virgin[:9] == pytest.approx(curve(plain, ())[:9])
+    assert again[:9] == pytest.approx(virgin[16:25])
+    assert (again[1:8] < 0.95 * virgin[1:8]).any()
+    assert again[8] == pytest.approx(virgin[8])
+    less = curve(replace(plain, before=1.3), damage)
+    far = plain.path()[0][:9] >= 1.3
+    assert less[:9][far] == pytest.approx(virgin[:9][far])
+    assert (less[1:3] < virgin[1:3]).all()
+
+
+def test_how_often_any_finder_ranks_the_truth_first() -> None:
+    assert chance(0.0) == 0.5
+    assert chance(4.0) == pytest.approx(0.841345, abs=1e-5)  # one standard deviation
+    clear = make_coupon(13, "one", "rate-dependence", target=15.0)
+    assert min(distances(clear).values()) > 9.0
+    alike = make_coupon(13, "one", "strain-stiffening", target=6.0)
+    assert 0.0 <= distances(alike)["limited-extensibility"] < 1.0
 
 
 @pytest.mark.slow

@@ -28,8 +28,8 @@ class Baseline:
     """Coordinates u: ln(G / 1 Pa) of each specimen (trials that name none share one a material), then
     the law's other coordinates of each material, as `calibration.parameters` has them, without bulk_ratio.
 
-    names (n,), prior rows (k, n) and their centres (k,): specimens of one material lie together, and the
-    law's coordinates have the priors that they have in a fit.
+    names (n,), prior rows (k, n) and their centres (k,): specimens of one material lie together (the first
+    `held` rows), and the law's coordinates have the priors that they have in a fit.
     """
 
     def __init__(self, records: Sequence[Record], law: str, terms: int = 1) -> None:
@@ -119,6 +119,7 @@ class Baseline:
 
     def _priors(self) -> tuple[Array, Array]:
         held = scatter_rows(self.owners)
+        self.held = len(held)
         rows = list(np.pad(held, ((0, 0), (0, len(self.names) - held.shape[1]))))
         centres = [0.0] * len(rows)
         for n in range(len(self.materials)):

@@ -26,7 +26,7 @@ from calibration.diagnosis.coupons.effects import EFFECTS, CouponEffect
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
-from calibration.diagnosis.specimens import mean_moduli
+from calibration.diagnosis.specimens import apart, mean_moduli
 from calibration.errors import InputError
 from calibration.experiment.model import CouponTrial, Experiment
 
@@ -110,10 +110,11 @@ class CouponModel:
 
     def patterns(self) -> Mapping[str, Array]:
         rows = len(self.baseline.prior)
-        return {
+        found = {
             name: np.vstack([columns, np.zeros((rows, columns.shape[1]))])
             for name, columns in patterns_of(self.records).items()
         }
+        return {**found, **apart(self.points + rows, self.points, self.baseline.held)}
 
     # -- what folds ask for --
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from calibration.diagnosis._rig_file import corrects
 from calibration.diagnosis.effect import Effect, Scope
 from calibration.diagnosis.null import EVERYTHING
+from calibration.diagnosis.specimens import SPECIMENS
 from calibration.report import significant
 
 SUSPECT = 0.005  # a chance below is no accident
@@ -34,6 +35,7 @@ _PATTERNS = {
     "trial bends": "bends of the whole beam that all photographs of a trial share",
     "support bends": "bends that beams of one length and support share",
     "drifts": "bends that grow with the logarithm of time",
+    SPECIMENS: "moduli that differ between specimens of one material by more than a lab's scatter",
 }
 
 

@@ -103,3 +103,24 @@ def test_pictures_without_a_cause() -> None:
     assert found.finding.verdict == "none"
     for p in pictures_of(model, found):
         p.figure.savefig(io.BytesIO(), format="png")
+
+
+@pytest.mark.parametrize(("times", "verdict"), [(1.3, "none"), (2.2, "unexplained")])
+def test_specimens_of_one_material_that_differ_too_much_are_unexplained(times: float, verdict: str) -> None:
+    """Say, that a file was handed to another material."""
+    trials = [
+        trial(
+            f"t{k}{n}",
+            mode,
+            ramps(1.4, 2),
+            lambda m, s, k=k: times ** (k - 1) * neo_hookean(m, s),  # type: ignore[misc]
+            specimen=f"piece {k}",
+            seed=10 * k + n,
+        )
+        for k in range(3)
+        for n, mode in enumerate(("uniaxial", "planar"))
+    ]
+    finding = search(CouponModel(experiment(*trials)))
+    assert finding.verdict == verdict
+    seen = {name for name, p in finding.departure.each.items() if p < 0.005}
+    assert seen == ({"specimens"} if verdict == "unexplained" else set())
