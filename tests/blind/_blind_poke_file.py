@@ -12,16 +12,16 @@ from _blind_poke_curve import force, table
 from _blind_record_case import write_yaml
 
 
-def write(case: Case, folder: Path) -> None:
-    """experiment.yaml and its records, with noise; no truth."""
+def write(case: Case, folder: Path, *, noise: float = 1.0) -> None:
+    """experiment.yaml and its records, without the truth. noise: part of the stated noise that is in them."""
     rng = np.random.default_rng([case.seed, 1])
     (folder / "pokes").mkdir(parents=True)
     trials: list[dict[str, Any]] = []
     for t in case.trials:
-        moved = replace(t, touch=t.depth_sd * float(rng.standard_normal()))
+        moved = replace(t, touch=noise * t.depth_sd * float(rng.standard_normal()))
         time, depth, _ = t.path()
-        shown = depth + t.depth_sd * rng.standard_normal(len(depth))
-        f = force(moved, case.hidden) + t.force_sd * rng.standard_normal(len(depth))
+        shown = depth + noise * t.depth_sd * rng.standard_normal(len(depth))
+        f = force(moved, case.hidden) + noise * t.force_sd * rng.standard_normal(len(depth))
         rows = "\n".join(
             f"{a:.6g},{1e3 * b:.6g},{c:.6g}" for a, b, c in zip(time + 1.0, shown, f, strict=True)
         )

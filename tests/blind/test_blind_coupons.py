@@ -14,7 +14,7 @@ from _blind_coupon_file import write
 from _blind_coupon_law import Solid
 from _blind_coupon_verdict import verdict_on
 from _blind_record_score import Pair, named, named_set, part, sigma, true_names
-from limit_coupons import chance, distances
+from limit_records import chance, fits
 from run_coupons import run
 from scipy.stats import binom
 
@@ -115,10 +115,11 @@ def test_a_made_piece_remembers_its_trials_before() -> None:
 def test_how_often_any_finder_ranks_the_truth_first() -> None:
     assert chance(0.0) == 0.5
     assert chance(4.0) == pytest.approx(0.841345, abs=1e-5)  # one standard deviation
-    clear = make_coupon(13, "one", "rate-dependence", target=15.0)
-    assert min(distances(clear).values()) > 9.0
-    alike = make_coupon(13, "one", "strain-stiffening", target=6.0)
-    assert 0.0 <= distances(alike)["limited-extensibility"] < 1.0
+    clear = fits("coupons", make_coupon(13, "one", "rate-dependence", target=15.0))
+    assert sorted(clear, key=lambda name: clear[name])[0] == "rate-dependence"
+    assert sorted(clear.values())[1] - clear["rate-dependence"] > 9.0
+    alike = fits("coupons", make_coupon(13, "one", "strain-stiffening", target=6.0))
+    assert 0.0 <= alike["limited-extensibility"] - alike["strain-stiffening"] < 1.0
 
 
 @pytest.mark.slow

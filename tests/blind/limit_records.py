@@ -1,9 +1,10 @@
-"""How often any finder could rank the truth first: `python tests/blind/limit_coupons.py --seed 9`.
+"""How often any finder could rank the truth first: `python tests/blind/limit_records.py coupons --seed 9`.
 
 Each case of one effect is written once more without noise. How much worse the nearest rival then fits than
 the truth is the squared distance d^2 between what the two predict, in standard deviations of the noise.
 Where both were as likely before, no rule picks the right one of them more often than in a part Phi(d/2) of
-experiments (Neyman and Pearson); further rivals make it fewer. Distances are those of the finder's model.
+experiments (Neyman and Pearson); further rivals make it fewer. Distances are those of the finder's model:
+of pokes they hold what the two solvers differ by, which is printed as the chi-square of the truth.
 """
 
 from __future__ import annotations
@@ -11,28 +12,48 @@ from __future__ import annotations
 import argparse
 import math
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from _blind_coupon_case import Case
-from _blind_coupon_draw import draw_cases
-from _blind_coupon_file import write
+import _blind_coupon_draw
+import _blind_coupon_file
+import _blind_poke_draw
+import _blind_poke_file
 
+from calibration.diagnosis import Diagnosable
 from calibration.diagnosis.coupons import CouponModel
 from calibration.diagnosis.explanation import explain
 from calibration.diagnosis.null import Null
+from calibration.diagnosis.pokes import PokeModel
 from calibration.diagnosis.screening import screen
 from calibration.diagnosis.search import calibrated
 from calibration.experiment import read
 
 PROMISING = 12  # candidates of each case that are fitted, those of the truth beside
 
+# cases of a count and a seed; what writes one; what is calibrated
+KINDS: dict[str, tuple[Callable[[int, int], Any], Callable[..., None], Callable[[Path], Diagnosable]]] = {
+    "coupons": (
+        _blind_coupon_draw.draw_cases,
+        _blind_coupon_file.write,
+        lambda folder: CouponModel(read(folder)),
+    ),
+    "pokes": (
+        _blind_poke_draw.draw_cases,
+        _blind_poke_file.write,
+        lambda folder: PokeModel(read(folder), workers=1),
+    ),
+}
 
-def distances(case: Case) -> dict[str, float]:
-    """Least chi-square of each effect's fits on the case's data without noise, less that of the truth."""
+
+def fits(kind: str, case: Any) -> dict[str, float]:
+    """Least chi-square of each effect on the case's data without noise."""
+    _, write, model_of = KINDS[kind]
     truth = case.hidden[0].name
     with tempfile.TemporaryDirectory() as place:
         write(case, Path(place) / "experiment", noise=0.0)
-        model = CouponModel(read(Path(place) / "experiment"))
+        model = model_of(Path(place) / "experiment")
     baseline = calibrated(model)
     linear = model.linearise(baseline.state, model.candidates)
     screened = screen(linear, model.effects)
@@ -46,7 +67,7 @@ def distances(case: Case) -> dict[str, float]:
         found = explain(model, baseline, (candidate,), [float(amplitudes[k])], null)
         if found is not None:
             least[candidate.effect] = min(found.fit.chi2, least.get(candidate.effect, math.inf))
-    return {name: chi2 - least[truth] for name, chi2 in least.items() if name != truth}
+    return least
 
 
 def chance(nearest: float) -> float:
@@ -57,19 +78,26 @@ def chance(nearest: float) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("kind", choices=list(KINDS))
     parser.add_argument("--cases", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--least", type=float, default=5.0, help="sigmas")
     given = parser.parse_args()
     chances = []
-    for n, case in enumerate(draw_cases(given.cases, given.seed)):
+    for n, case in enumerate(KINDS[given.kind][0](given.cases, given.seed)):
         if case.kind != "one" or case.hidden[0].sigma < given.least:
             continue
-        near = sorted(distances(case).items(), key=lambda pair: pair[1])[:3]
-        chances.append(chance(near[0][1]) if near else 1.0)
-        rivals = ", ".join(f"{name} {d2:.2f}" for name, d2 in near)
         hidden = case.hidden[0]
-        print(f"{n:3d} {hidden.name} [{hidden.sigma:.1f}]: {rivals}; first in {chances[-1]:.0%}", flush=True)
+        least = fits(given.kind, case)
+        own = least.pop(hidden.name)
+        near = sorted((chi2 - own, name) for name, chi2 in least.items())[:3]
+        chances.append(chance(near[0][0]) if near else 1.0)
+        rivals = ", ".join(f"{name} {d2:.2f}" for d2, name in near)
+        print(
+            f"{n:3d} {hidden.name} [{hidden.sigma:.1f}] chi-square {own:.1f}: {rivals};"
+            f" first in {chances[-1]:.0%}",
+            flush=True,
+        )
     print(f"any finder: at most {sum(chances):.1f} of {len(chances)} first")
 
 
