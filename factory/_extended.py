@@ -72,9 +72,7 @@ def _in_law(material: Material, effect: str, value: float) -> Material:
         return Material(law="mooney-rivlin", parameters={**constants, "bulk": k})
     if not 0.0 < value < 1.0:
         raise ValueError(f"expected a value between 0 and 1, got {value:g}")
-    chains = laws.get("arruda-boyce")
-    unit = {"mu": 1.0, "locking": value**-0.5, "bulk": k}
-    return Material(law="arruda-boyce", parameters={**unit, "mu": g / chains.moduli(unit).shear})
+    return Material(law="eight-chain", parameters={"mu": g, "locking": value**-0.5, "bulk": k})
 
 
 def in_one_law(materials: Mapping[str, Material]) -> dict[str, Material]:

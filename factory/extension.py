@@ -17,7 +17,7 @@ TAKEN = {
     "density": ("excess", "as the density"),
     "strain-stiffening": ("c2_over_c1", "as the law yeoh"),
     "second-invariant": ("c01_share", "as the law mooney-rivlin"),
-    "limited-extensibility": ("one_over_locking_stretch_squared", "as the law arruda-boyce"),
+    "limited-extensibility": ("one_over_locking_stretch_squared", "as the law eight-chain"),
 }
 
 

@@ -22,7 +22,7 @@ LAWS = (
     "ogden",
     "arruda-boyce",
 )
-STORED_LAWS = (*LAWS, "yeoh")  # that a dataset may be of: an extension of neo-Hookean is one of yeoh
+STORED_LAWS = (*LAWS, "yeoh", "eight-chain")  # that a dataset may be of: neo-Hookean is extended by the last
 
 Modulus = Annotated[float, Field(gt=0, lt=1e12)]
 Real = Annotated[float, Field(gt=-1e12, lt=1e12)]

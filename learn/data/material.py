@@ -18,7 +18,7 @@ def shear_modulus(law: str, parameters: Mapping[str, float]) -> float:
     positive.
     """
     try:
-        if law in ("neo-hookean", "stable-neo-hookean", "st-venant-kirchhoff", "yeoh"):
+        if law in ("neo-hookean", "stable-neo-hookean", "st-venant-kirchhoff", "yeoh", "eight-chain"):
             value = parameters["mu"]
         elif law == "mooney-rivlin":
             value = 2 * (parameters["c10"] + parameters["c01"])

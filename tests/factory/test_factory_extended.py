@@ -105,6 +105,7 @@ def test_other_extensions_keep_the_small_strain_moduli(tmp_path: Path) -> None:
     assert shared.parameters["c01"] == pytest.approx(0.3 * G / 2)
     locked = material(tmp_path, effect("limited-extensibility", "one_over_locking_stretch_squared", 0.16))
     assert moduli(locked) == pytest.approx((G, K))
+    assert locked.law == "eight-chain"
     assert locked.parameters["locking"] == pytest.approx(2.5)
 
 

@@ -9,6 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
 from tisim.scene import Material
 
@@ -20,6 +22,7 @@ LAWS = (
     "ogden",
     "arruda-boyce",
     "yeoh",
+    "eight-chain",
 )
 AB = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 _shear = st.floats(1e3, 1e5)
@@ -44,6 +47,8 @@ def materials(draw: st.DrawFn, law: str) -> Material:
         parameters = {"mu": G, "locking": draw(st.floats(1.5, 6.0)), "bulk": ratio * G}
     elif law == "yeoh":
         parameters = {"mu": G, "stiffening": draw(st.floats(0.0, 1.5)), "bulk": ratio * G}
+    elif law == "eight-chain":
+        parameters = {"mu": G, "locking": draw(st.floats(2.5, 8.0)), "bulk": ratio * G}
     else:
         parameters = {"mu": G, "lam": (ratio - 2 / 3) * G}
     return Material(law=law, parameters=parameters)
@@ -110,8 +115,24 @@ def energy(material: Material, F: np.ndarray, *, printed: bool = False) -> np.nd
         "yeoh": lambda: (
             p["mu"] / 2 * ((i1 - 3) + p["stiffening"] * (i1 - 3) ** 2) + p["bulk"] / 2 * np.log(J) ** 2
         ),
+        "eight-chain": lambda: (
+            p["mu"] * langevin_chains(i1, float(p["locking"])) + p["bulk"] / 2 * np.log(J) ** 2
+        ),
     }
     return forms[material.law]()
+
+
+def langevin_chains(i1: np.ndarray, locking: float) -> np.ndarray:
+    """Energy of eight chains over their modulus at rest, by quadrature of the inverse Langevin function."""
+
+    def tension(x: float) -> float:
+        return float(brentq(lambda b: 1 / np.tanh(b) - 1 / b - x, 2.9 * x, 3 * x / (1 - x), xtol=1e-14))
+
+    start = 1 / locking
+    scale = 3 * locking / tension(start)
+    ends = np.sqrt(np.atleast_1d(i1) / 3) / locking
+    found = [scale * quad(tension, start, x, epsabs=1e-14, epsrel=1e-12)[0] for x in ends.ravel()]
+    return np.reshape(found, np.shape(i1))
 
 
 def slope(function: Callable[[np.ndarray], np.ndarray], F: np.ndarray, h: float = 1e-3) -> np.ndarray:

@@ -28,6 +28,7 @@ BAD = [
     ("ogden", OGDEN | {"alpha": (-2.0, -3.0)}, "shear and bulk modulus must be positive"),
     ("arruda-boyce", {"mu": 1e3, "locking": 0.0, "bulk": 1e5}, "locking .*: expected a stretch above 1"),
     ("arruda-boyce", {"mu": 1e3, "locking": 2.0, "bulk": 0.0}, "shear and bulk modulus must be positive"),
+    ("eight-chain", {"mu": 1e3, "locking": 1.0, "bulk": 1e5}, "locking .*: expected a stretch above 1, to"),
     ("yeoh", {"mu": 1e3, "stiffening": -0.1, "bulk": 1e5}, "stiffening must not be negative, got -0.1"),
 ]
 
@@ -52,5 +53,5 @@ def test_one_term_may_be_a_plain_number():
 
 
 def test_unknown_law_names_the_ones_there_are():
-    with pytest.raises(ValueError, match=r"expected one of st-venant-kirchhoff, .*yeoh, got 'hooke'"):
+    with pytest.raises(ValueError, match=r"expected one of st-venant-kirchhoff, .*eight-chain, got 'hooke'"):
         laws.get("hooke")

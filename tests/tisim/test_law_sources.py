@@ -91,3 +91,27 @@ def test_sofas_parameter_set_maps_as_the_docstrings_say(law, values, parameters,
     assert ours == pytest.approx(theirs - constant, rel=1e-10)
     found = laws.get(law).moduli(Material(law=law, parameters=parameters).parameters)
     assert (found.shear, found.bulk) == pytest.approx(moduli, rel=5e-5)
+
+
+def test_eight_chains_are_their_series_far_from_the_ends_and_lock_at_them():
+    chains = {"mu": 7e3, "locking": 6.0, "bulk": 9e4}
+    of_series = laws.get("arruda-boyce").moduli({"mu": 1.0, "locking": 6.0, "bulk": 1.0}).shear
+    series = {**chains, "mu": 7e3 / of_series}
+    F = np.eye(3) + 0.4 * np.random.default_rng(6).uniform(-1, 1, (20, 3, 3))
+    ours, theirs = (evaluate(n, p, F)[1] for n, p in (("eight-chain", chains), ("arruda-boyce", series)))
+    assert ours == pytest.approx(theirs, rel=1e-5, abs=1e-3)
+    # at 98 % of their length the force is 1 / (1 - 0.98) over 3 x, in that at rest; past the end straight
+    x = np.array([0.98, 0.999, 1.0, 1.001])
+    pulled = [np.max(np.roots([1.0, 0.0, -3.0 * (6.0 * y) ** 2, 2.0]).real) for y in x]
+    F = np.array([np.diag([s, s**-0.5, s**-0.5]) for s in pulled])
+    deviator = np.array(
+        [
+            P[0, 0] - P[1, 1] * s**-1.5
+            for P, s in zip(evaluate("eight-chain", chains, F)[1], pulled, strict=True)
+        ]
+    )
+    slopes = deviator / (7e3 * (np.array(pulled) - np.array(pulled) ** -2))
+    at_rest = np.polynomial.polynomial.polyval(3.0 / 36.0, [1.0, 0.2, 33 / 525, 152 / 7000, 5190 / 673750])
+    assert slopes[0] == pytest.approx(50.0 / (3.0 * 0.98) / at_rest, rel=1e-4)
+    steps = np.diff(slopes[1:] * x[1:])
+    assert steps[1] == pytest.approx(steps[0], rel=1e-6)

@@ -22,7 +22,7 @@ def moduli(material):
     return laws.get(material.law).moduli(material.parameters)
 
 
-def test_registry_holds_the_six_laws_of_the_paper_in_its_order_and_yeohs():
+def test_registry_holds_the_six_laws_of_the_paper_in_its_order_and_two_more():
     assert laws.names() == LAWS[:6]
     assert laws.all_names() == LAWS
     assert all(laws.get(name).name == name for name in LAWS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tisim.laws import (
     arruda_boyce,
+    eight_chain,
     mooney_rivlin,
     neo_hookean,
     ogden,
@@ -26,6 +27,7 @@ _LAWS: dict[str, Law] = {
     for law in (
         *_PAPER,
         yeoh.LAW,
+        eight_chain.LAW,
     )
 }
 

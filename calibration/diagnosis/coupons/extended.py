@@ -5,7 +5,7 @@ from __future__ import annotations
 from calibration.diagnosis.coupons._candidates import reaches
 from calibration.diagnosis.coupons.model import CouponModel
 from calibration.diagnosis.nested import State
-from tisim import Material, laws
+from tisim import Material
 
 BULK_RATIO = 300.0  # K/G, with which meshes cope: a coupon does not tell it
 
@@ -41,7 +41,5 @@ def extended_material(
         return Material(law="mooney-rivlin", parameters=parameters, density=density)
     if name == "limited-extensibility" and a > 0.0:
         chains = {"mu": shear, "locking": a**-0.5, "bulk": bulk}
-        # mu is the chain network's modulus; the small-strain one is that times a function of locking
-        chains["mu"] *= shear / laws.get("arruda-boyce").moduli(chains).shear
-        return Material(law="arruda-boyce", parameters=chains, density=density)
+        return Material(law="eight-chain", parameters=chains, density=density)
     raise ValueError(f"{material}: there is no law for {names}")

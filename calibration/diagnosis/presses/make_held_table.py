@@ -55,8 +55,7 @@ def material(effect: str | None, amplitude: float) -> tisim.Material:
         return tisim.Material(law="mooney-rivlin", parameters=parameters)
     if effect == "limited-extensibility":
         chains = {"mu": SHEAR, "locking": amplitude**-0.5, "bulk": bulk}
-        chains["mu"] *= SHEAR / tisim.laws.get("arruda-boyce").moduli(chains).shear
-        return tisim.Material(law="arruda-boyce", parameters=chains)
+        return tisim.Material(law="eight-chain", parameters=chains)
     return tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=bulk)
 
 
