@@ -19,7 +19,7 @@ class Effect:
     step: of a finite difference; bounds: where it makes sense; plausible: what a careful lab may still have
     overlooked (all SI). Where the data would need more than that, they cannot see the effect.
     sentence: what it is, for people. remedy: what to do about it on the bench.
-    starts: part of the way to its bounds that a fit may start at.
+    starts: part of the way to its bounds that a fit may start at. simulated: its fit costs simulations.
     """
 
     name: str
@@ -32,6 +32,10 @@ class Effect:
     sentence: str
     remedy: str
     starts: float = 0.6
+
+    @property
+    def simulated(self) -> bool:
+        return True
 
     def in_file(self, amplitude: float) -> float:
         """The amplitude in the file's unit."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.effect import Candidate, Effect
 from calibration.diagnosis.explanation import Explanation, Names, confidence, explain, rivals
 from calibration.diagnosis.fitting import Fit, fit
 from calibration.diagnosis.nested import Linear, Nested, State
@@ -84,7 +84,9 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
     departure = null.departure(linear.z, linear.by_u)
     gains = null.gains(screened)
     singles: list[Explanation] = []
-    likely = _shortlist(screened, linear.z, rules.shortlist, at_least=0.5 * gains.threshold(0.05))
+    likely = _shortlist(
+        screened, model.effects, linear.z, rules.shortlist, at_least=0.5 * gains.threshold(0.05)
+    )
     for n, k in enumerate(likely):
         c = screened.candidates[k]
         tell(f"confirming {n + 1} of {len(likely)}: {c.label}")
@@ -161,17 +163,21 @@ def _placed(
     return sorted(found, key=lambda e: e.score), moved
 
 
-def _shortlist(screened: Screen, z: Array, count: int, *, at_least: float) -> list[int]:
-    """Candidates worth a fit, best first: of each effect the best one, and one more that comes near it; none
-    that promises far less than the best, more than what is not linear could mend."""
+def _shortlist(
+    screened: Screen, effects: Mapping[str, Effect], z: Array, count: int, *, at_least: float
+) -> list[int]:
+    """Candidates worth a fit, best first: of each effect the best one, and one more that comes near it; of
+    those whose fit costs simulations none that promises far less than the best, more than what is not linear
+    could mend."""
     gains = screened.promises(z)
-    at_least = max(at_least, min(HOPELESS * gains.max(initial=0.0), gains.max(initial=0.0) - 40.0))
+    hopeless = min(HOPELESS * gains.max(initial=0.0), gains.max(initial=0.0) - 40.0)
     found: list[int] = []
     for k in np.argsort(-gains):
         name = screened.candidates[k].effect
         same = [j for j in found if screened.candidates[j].effect == name]
         near = len(same) < 2 and gains[k] > gains[same[0]] - 8.0 if same else True
-        if gains[k] >= at_least and near and len(found) < count:
+        least = max(at_least, hopeless) if effects[name].simulated else at_least
+        if gains[k] >= least and near and len(found) < count:
             found.append(int(k))
     return found
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
+
 import numpy as np
 import pytest
 from fake_nested import MATERIALS, FakeNested, by_modulus, library, noise, of_material, sigmas, waves
 from scipy.stats import binom
 
-from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.effect import Candidate, Effect
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.search import Finding, Rules, calibrated, search
 
@@ -53,6 +55,23 @@ def test_a_curved_response_hides_nothing() -> None:
     found = search(model)
     assert found.verdict == "found"
     assert found.rivals == (("ripple",),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Instant(Effect):
+    simulated = False  # type: ignore[assignment]
+
+
+def test_what_costs_no_simulation_is_fitted_however_little_it_promises() -> None:
+    """A column says little of an effect that is far from linear: one with a promise of 49 beside one of 400."""
+    both = at_sigmas("bend", 20.0) + at_sigmas("ripple", 7.0)
+    plain = FakeNested(hidden=both, noise=noise(51))
+    instant = Instant(**{f.name: getattr(plain.effects["ripple"], f.name) for f in fields(Effect)})
+    other = FakeNested(hidden=both, noise=noise(51), effects={"ripple": instant})
+    for model, fitted in ((plain, False), (other, True)):
+        alone = {e.names for e in search(model).explanations if len(e.names) == 1}
+        assert ("bend",) in alone
+        assert (("ripple",) in alone) == fitted
 
 
 def test_causes_that_look_alike_are_both_named() -> None:

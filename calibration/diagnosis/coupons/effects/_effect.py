@@ -48,3 +48,7 @@ class CouponEffect(Effect):
     touches: Callable[[Record], bool] = any_record
     shows: Callable[[Sequence[Record], Sequence[Record]], bool] = always
     reach: Reach = "material"
+
+    @property
+    def simulated(self) -> bool:
+        return False

@@ -65,3 +65,7 @@ class PokeEffect(Effect):
     touches: Callable[[Record], bool] = lambda _: True
     shows: Callable[[Sequence[Record], Sequence[Record]], bool] = always
     reach: Reach = "rig"
+
+    @property
+    def simulated(self) -> bool:
+        return self.scene is not None
