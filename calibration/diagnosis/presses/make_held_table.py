@@ -23,10 +23,11 @@ BULK_RATIO = 1000.0  # K/G of 3000 changes the logarithm by less than 0.005 to 6
 HEIGHT = 0.03
 REFERENCE = 5.0 / 3.0  # diameter over height
 SLENDER = (0.8, 1.2, REFERENCE, 2.3)
+LONGEST = 0.75  # of the chains' length
 AMPLITUDES = {
     "strain-stiffening": (0.03, 0.08, 0.15, 0.3, 0.6, 1.2),
     "second-invariant": (-0.2, -0.1, 0.2, 0.4, 0.7, 1.0),
-    "limited-extensibility": (0.02, 0.05, 0.1, 0.2, 0.35, 0.6),
+    "limited-extensibility": (0.02, 0.05, 0.1, 0.2, 0.35),
 }
 HEADING = '''"""Logarithm of bonded over free force, made by `make_held_table.py`; nan: no equilibrium."""
 
@@ -74,10 +75,20 @@ def held(law: tisim.Material, slender: float) -> NDArray[np.float64]:
     return found
 
 
+def short_of_ends(effect: str, amplitude: float, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """NaN where chains of the free cylinder are past LONGEST: at the bonded ends they then are past what the
+    law is made for."""
+    if effect != "limited-extensibility":
+        return values
+    stretches = 1.0 - np.array(STRAINS)
+    first_invariant = stretches**2 + 2.0 / stretches
+    return np.where(amplitude * first_invariant / 3.0 <= LONGEST**2, values, np.nan)
+
+
 def main() -> None:
     slender = {x: held(material(None, 0.0), x) for x in SLENDER}
     laws = {
-        name: {a: held(material(name, a), REFERENCE) for a in amplitudes}
+        name: {a: short_of_ends(name, a, held(material(name, a), REFERENCE)) for a in amplitudes}
         for name, amplitudes in AMPLITUDES.items()
     }
     text = HEADING.format(

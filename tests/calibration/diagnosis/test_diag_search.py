@@ -62,8 +62,8 @@ class Instant(Effect):
     simulated = False  # type: ignore[assignment]
 
 
-def test_what_costs_no_simulation_is_fitted_however_little_it_promises() -> None:
-    """A column says little of an effect that is far from linear: one with a promise of 49 beside one of 400."""
+def test_what_costs_no_simulation_is_fitted_whatever_it_promises() -> None:
+    """A column says little of an effect that is far from linear. Promises of 49 and 400."""
     both = at_sigmas("bend", 20.0) + at_sigmas("ripple", 7.0)
     plain = FakeNested(hidden=both, noise=noise(51))
     instant = Instant(**{f.name: getattr(plain.effects["ripple"], f.name) for f in fields(Effect)})
