@@ -13,6 +13,7 @@ from calibration.diagnosis.heldout import Foldable, Gain, held_out_gain
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.null import Null
 from calibration.diagnosis.search import Finding, Rules, Tell, search
+from calibration.diagnosis.specimens import SPECIMENS
 from calibration.diagnosis.verdict import Diagnosis, Numbers, invisible, reduced
 
 # Nuisances and the mesh's error are taken where an explanation is, as often as it moves by more than this
@@ -121,6 +122,12 @@ def _advice(model: Diagnosable, finding: Finding, tell: Tell) -> str:
 
 def _no_cause(model: Diagnosable, finding: Finding) -> str:
     if finding.verdict == "unexplained":
+        left = finding.explanations[0].departure if finding.explanations else finding.departure
+        if left.worst == SPECIMENS:
+            return (
+                "see whether each measurement is filed under its own specimen and material: moduli within a"
+                " material differ by more than its specimens do"
+            )
         return "look at the residuals; repeat the measurements that depart most, in another pose"
     never = [e for name, e in model.effects.items() if _never(finding, name)]
     return "; ".join(dict.fromkeys(f"{e.remedy} ({e.name} cannot be seen)" for e in never))

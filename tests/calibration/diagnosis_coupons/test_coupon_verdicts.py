@@ -120,7 +120,9 @@ def test_specimens_of_one_material_that_differ_too_much_are_unexplained(times: f
         for k in range(3)
         for n, mode in enumerate(("uniaxial", "planar"))
     ]
-    finding = search(CouponModel(experiment(*trials)))
+    found = diagnose(CouponModel(experiment(*trials)))
+    finding = found.finding
     assert finding.verdict == verdict
+    assert ("filed under its own specimen" in found.next_experiment) == (verdict == "unexplained")
     seen = {name for name, p in finding.departure.each.items() if p < 0.005}
     assert seen == ({"specimens"} if verdict == "unexplained" else set())
