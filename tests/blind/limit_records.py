@@ -10,7 +10,6 @@ of pokes they hold what the two solvers differ by, which is printed as the chi-s
 from __future__ import annotations
 
 import argparse
-import math
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -20,17 +19,12 @@ import _blind_coupon_draw
 import _blind_coupon_file
 import _blind_poke_draw
 import _blind_poke_file
+from _blind_limit import least_fits, told
 
 from calibration.diagnosis import Diagnosable
 from calibration.diagnosis.coupons import CouponModel
-from calibration.diagnosis.explanation import explain
-from calibration.diagnosis.null import Null
 from calibration.diagnosis.pokes import PokeModel
-from calibration.diagnosis.screening import screen
-from calibration.diagnosis.search import calibrated
 from calibration.experiment import read
-
-PROMISING = 12  # candidates of each case that are fitted, those of the truth beside
 
 # cases of a count and a seed; what writes one; what is calibrated
 KINDS: dict[str, tuple[Callable[[int, int], Any], Callable[..., None], Callable[[Path], Diagnosable]]] = {
@@ -50,30 +44,10 @@ KINDS: dict[str, tuple[Callable[[int, int], Any], Callable[..., None], Callable[
 def fits(kind: str, case: Any) -> dict[str, float]:
     """Least chi-square of each effect on the case's data without noise."""
     _, write, model_of = KINDS[kind]
-    truth = case.hidden[0].name
     with tempfile.TemporaryDirectory() as place:
         write(case, Path(place) / "experiment", noise=0.0)
         model = model_of(Path(place) / "experiment")
-    baseline = calibrated(model)
-    linear = model.linearise(baseline.state, model.candidates)
-    screened = screen(linear, model.effects)
-    null = Null(len(linear.z), model.patterns(), seed=0)
-    gains, amplitudes = screened.gains(linear.z), screened.amplitudes(linear.z)
-    least: dict[str, float] = {}
-    for rank, k in enumerate(sorted(range(len(gains)), key=lambda k: -gains[k])):
-        candidate = model.candidates[k]
-        if rank >= PROMISING and candidate.effect != truth:
-            continue
-        found = explain(model, baseline, (candidate,), [float(amplitudes[k])], null)
-        if found is not None:
-            least[candidate.effect] = min(found.fit.chi2, least.get(candidate.effect, math.inf))
-    return least
-
-
-def chance(nearest: float) -> float:
-    """Part of experiments in which the truth outdoes a rival whose chi-square without noise is this much
-    larger."""
-    return 0.5 * (1.0 + math.erf(math.sqrt(max(nearest, 0.0) / 8.0)))
+    return least_fits(model, case.hidden[0].name)
 
 
 def main() -> None:
@@ -88,16 +62,9 @@ def main() -> None:
         if case.kind != "one" or case.hidden[0].sigma < given.least:
             continue
         hidden = case.hidden[0]
-        least = fits(given.kind, case)
-        own = least.pop(hidden.name)
-        near = sorted((chi2 - own, name) for name, chi2 in least.items())[:3]
-        chances.append(chance(near[0][0]) if near else 1.0)
-        rivals = ", ".join(f"{name} {d2:.2f}" for d2, name in near)
-        print(
-            f"{n:3d} {hidden.name} [{hidden.sigma:.1f}] chi-square {own:.1f}: {rivals};"
-            f" first in {chances[-1]:.0%}",
-            flush=True,
-        )
+        text, most = told(fits(given.kind, case), hidden.name)
+        chances.append(most)
+        print(f"{n:3d} {hidden.name} [{hidden.sigma:.1f}] {text}", flush=True)
     print(f"any finder: at most {sum(chances):.1f} of {len(chances)} first")
 
 

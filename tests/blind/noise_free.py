@@ -1,6 +1,7 @@
 """How large the finder sees what is hidden, beside the blind count, where the photographs have no noise.
 
     python tests/blind/noise_free.py --only 1,4,8,40     # some 10 core-s a case
+    python tests/blind/noise_free.py --rivals --only 82  # how near the rivals of its effect are, 60 core-s
 
 Contour and registration noise are left out of the photographs, but not out of the finder's expectations: what
 is printed is the effect itself and how the two solvers differ, in the finder's standard deviations.
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import _blind_lab as lab
 import numpy as np
+from _blind_limit import least_fits, told
 from _blind_store import load_case, load_truth
 
 from calibration.diagnosis.beams import BeamModel
@@ -26,6 +28,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--cases", type=Path, default=Path(__file__).parent / "beams")
     parser.add_argument("--only", required=True, help="indices of cases, by commas")
+    parser.add_argument("--rivals", action="store_true", help="fit what comes near, as limit_records.py does")
     given = parser.parse_args()
     lab._noisy = lab._registered = lambda edges, _: edges
     truth = load_truth(given.cases)["cases"]
@@ -33,6 +36,10 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as place:
             lab.write_experiment(*load_case(given.cases, index), Path(place) / "experiment")
             model = BeamModel(read(Path(place) / "experiment"), workers=1)
+        if given.rivals:
+            effect = truth[f"{index:03d}"]["hidden"][0]["effect"]
+            print(f"{index:03d} {effect} {told(least_fits(model, effect), effect)[0]}", flush=True)
+            continue
         baseline = calibrated(model)
         linear = model.linearise(baseline.state, model.candidates)
         screened = screen(linear, model.effects)

@@ -13,8 +13,9 @@ from _blind_coupon_draw import make_coupon
 from _blind_coupon_file import write
 from _blind_coupon_law import Solid
 from _blind_coupon_verdict import verdict_on
+from _blind_limit import chance
 from _blind_record_score import Pair, named, named_set, part, sigma, true_names
-from limit_records import chance, fits
+from limit_records import fits
 from run_coupons import run
 from scipy.stats import binom
 
