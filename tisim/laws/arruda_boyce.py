@@ -17,6 +17,7 @@ SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.085
 import numpy as np
 
 from tisim._ti import ti
+from tisim.laws._isochoric import by_invariants, first_isochoric
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 C = (1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673750.0)
@@ -27,8 +28,7 @@ SOFA_LOCKING = 8.0**0.5
 def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
     r = 1.0 / (prm[1] * prm[1])
-    a = ti.exp(-2.0 / 3.0 * ti.log(J))
-    i1 = a * I1
+    i1, a = first_isochoric(I1, J)
     w = 0.0
     d = 0.0
     dd = 0.0
@@ -39,21 +39,7 @@ def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for a
         d += c * n * i1**k
         if ti.static(k > 0):
             dd += c * n * k * i1 ** (k - 1)
-    jac = -2.0 / 3.0 * i1 / J
-    return ti.Vector(
-        [
-            w,
-            d * a,
-            0.0,
-            d * jac,
-            dd * a * a,
-            0.0,
-            dd * jac * jac + d * 10.0 / 9.0 * i1 / (J * J),
-            0.0,
-            dd * a * jac - d * 2.0 / 3.0 * a / J,
-            0.0,
-        ]
-    )
+    return by_invariants(w, d, dd, i1, a, J)
 
 
 def _shear_factor(locking: float) -> float:

@@ -17,6 +17,7 @@ paper's laws.
 import numpy as np
 
 from tisim._ti import ti
+from tisim.laws._isochoric import by_invariants, first_isochoric
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 ENDS = 0.995  # of the chains' length
@@ -51,29 +52,14 @@ def _chain(x):
 def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     x0 = 1.0 / prm[1]
     at_rest, b0, _ = _chain(x0)
-    a = ti.exp(-2.0 / 3.0 * ti.log(J))
-    i1 = a * I1
+    i1, a = first_isochoric(I1, J)
     x = ti.sqrt(i1 / 3.0) * x0
     w, b, steep = _chain(x)
     half = 0.5 * prm[0] * x0 / b0
     d = half * b / x
     # of b / x by I1bar: dx/dI1bar is x0^2 / (6 x)
     dd = half * (steep * x - b) / (x * x) * x0 * x0 / (6.0 * x)
-    jac = -2.0 / 3.0 * i1 / J
-    return ti.Vector(
-        [
-            6.0 * half / (x0 * x0) * (w - at_rest),
-            d * a,
-            0.0,
-            d * jac,
-            dd * a * a,
-            0.0,
-            dd * jac * jac + d * 10.0 / 9.0 * i1 / (J * J),
-            0.0,
-            dd * a * jac - d * 2.0 / 3.0 * a / J,
-            0.0,
-        ]
-    )
+    return by_invariants(6.0 * half / (x0 * x0) * (w - at_rest), d, dd, i1, a, J)
 
 
 def _fault(parameters: Parameters) -> str:

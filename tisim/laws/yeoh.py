@@ -13,6 +13,7 @@ Stress-free at rest. Not among the paper's laws.
 import numpy as np
 
 from tisim._ti import ti
+from tisim.laws._isochoric import by_invariants, first_isochoric
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 
@@ -20,25 +21,11 @@ from tisim.laws._law import Law, Moduli, Parameters, scalar
 def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     mu = prm[0]
     stiffening = prm[1]
-    a = ti.exp(-2.0 / 3.0 * ti.log(J))
-    i1 = a * I1
+    i1, a = first_isochoric(I1, J)
     excess = i1 - 3.0
     slope = 0.5 * mu * (1.0 + 2.0 * stiffening * excess)
-    second = mu * stiffening
-    return ti.Vector(
-        [
-            0.5 * mu * excess * (1.0 + stiffening * excess),
-            slope * a,
-            0.0,
-            -2.0 / 3.0 * slope * i1 / J,
-            second * a * a,
-            0.0,
-            (4.0 / 9.0 * second * i1 * i1 + 10.0 / 9.0 * slope * i1) / (J * J),
-            0.0,
-            -2.0 / 3.0 * a * (second * i1 + slope) / J,
-            0.0,
-        ]
-    )
+    w = 0.5 * mu * excess * (1.0 + stiffening * excess)
+    return by_invariants(w, slope, mu * stiffening, i1, a, J)
 
 
 def _fault(parameters: Parameters) -> str:
