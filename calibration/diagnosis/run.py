@@ -73,7 +73,7 @@ def diagnose(
         unit=model.unit,
         next_experiment=advice,
         invisible=invisible(model, finding),
-        notes=tuple(_notes(model, finding)),
+        notes=tuple(_notes(model, finding, rules or Rules())),
         seconds=time.monotonic() - begun,
     )
 
@@ -142,9 +142,35 @@ def _never(finding: Finding, name: str) -> bool:
     return bool(sizes) and max(sizes) == 0.0
 
 
-def _notes(model: Diagnosable, finding: Finding) -> list[str]:
-    found = model.remarks()
+def _notes(model: Diagnosable, finding: Finding, rules: Rules) -> list[str]:
+    found = model.remarks() + _other_places(model, finding, rules)
     for e in (finding.baseline, *(x.fit for x in finding.explanations)):
         if not e.converged:
             found.append(f"fit of {e.reports()}: {e.message}")
     return found
+
+
+def _other_places(model: Diagnosable, finding: Finding, rules: Rules) -> list[str]:
+    """Where else the same causes may sit, for all that the data say, with what amplitudes and moduli."""
+    chosen = finding.chosen
+    found: list[str] = []
+    for e in finding.explanations[1:] if chosen is not None else ():
+        assert chosen is not None
+        if e.names == chosen.names and e.score <= chosen.score + rules.within:
+            moduli = ", ".join(
+                f"{name} {1e-3 * shear:.4g} kPa" for name, shear in model.shear_moduli(e.fit.state.u).items()
+            )
+            found.append(
+                f"the data do not tell {chosen.fit.reports()} from {e.fit.reports()}, where it would be"
+                f" {_amplitudes(model, e)} with shear moduli of {moduli}"
+            )
+    return found
+
+
+def _amplitudes(model: Diagnosable, e: Explanation) -> str:
+    told = []
+    for c in e.candidates:
+        effect = model.effects[c.effect]
+        value, sd = (effect.in_file(x) for x in e.fit.amplitude(c))
+        told.append(f"{value:.3g} +- {sd:.2g} {effect.parameter}")
+    return " and ".join(told)

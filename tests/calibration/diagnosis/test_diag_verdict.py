@@ -96,6 +96,20 @@ def test_found() -> None:
     assert diagnosis.sentence() == "Found: there is bend (bend)."
 
 
+def test_where_else_a_cause_may_sit_is_a_note() -> None:
+    """A bend in the beams of S0 alone is a candidate everywhere, and one of S0."""
+    shapes = library()
+    one = {"bend": np.where(of_material("S0"), shapes["bend"], 0.0), "kink": shapes["kink"]}
+    model = FakeNested(shapes=one, scoped=("bend",), hidden=20.0 * one["bend"], noise=noise(2))
+    found = diagnose(model)
+    assert found.finding.verdict == "found"
+    (note,) = [n for n in found.notes if "do not tell" in n]
+    assert note.startswith("the data do not tell bend from bend of S0, where it would be ")
+    assert "size_mm with shear moduli of S0 " in note
+    apart = diagnose(FakeNested(scoped=("bend",), hidden=hidden("bend", 12.0), noise=noise(2)))
+    assert not [n for n in apart.notes if "do not tell" in n]
+
+
 def test_reduced_chi_square_is_over_the_degrees_of_freedom() -> None:
     model = FakeNested(hidden=hidden("bend", 12.0), noise=noise(2))
     data = written(diagnose(model, gain=False))
