@@ -30,7 +30,7 @@ def scatter_rows(materials: Sequence[str]) -> Array:
     return np.array(rows).reshape(len(rows), len(materials))
 
 
-def apart(size: int, first: int, held: int) -> Mapping[str, Array]:
+def scatter_patterns(size: int, first: int, held: int) -> Mapping[str, Array]:
     """The set of patterns in which specimens of one material differ: columns (size, held), where the rows
     of `scatter_rows` are those from `first`. None where no material has two specimens."""
     return {SPECIMENS: np.eye(size)[:, first : first + held]} if held else {}

@@ -229,5 +229,6 @@ def test_small_strain_moduli() -> None:
     assert shear_modulus("mooney-rivlin", {"c10": 1.0, "c01": -0.25, "bulk": 9}) == 1.5
     # a locking stretch of sqrt(8) stiffens by 8.51 % (SOFA's value, ibid.)
     assert shear_modulus("arruda-boyce", {"mu": 1.0, "locking": 8**0.5}) == pytest.approx(1.0851, abs=1e-4)
+    assert shear_modulus("eight-chain", {"mu": 3.0, "locking": 2.0, "bulk": 9}) == 3.0
     with pytest.raises(InputError, match="positive shear modulus"):
         shear_modulus("mooney-rivlin", {"c10": 1.0, "c01": -1.25})

@@ -29,7 +29,7 @@ from calibration.diagnosis.beams.simulators import OURS, Simulator
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
-from calibration.diagnosis.specimens import apart, mean_moduli, scatter_rows
+from calibration.diagnosis.specimens import mean_moduli, scatter_patterns, scatter_rows
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.outlines import Fidelity
@@ -207,7 +207,7 @@ class BeamModel:
             none = np.zeros((len(self._prior), raw.shape[1]))
             found[name] = np.vstack([self._whiten(raw), none])
         size = self.points + len(self._prior)
-        return {**found, **apart(size, self.points, len(self._prior))}
+        return {**found, **scatter_patterns(size, self.points, len(self._prior))}
 
     # -- what folds ask for (see `calibration.diagnosis.heldout.Foldable`) --
 

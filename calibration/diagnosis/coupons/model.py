@@ -26,7 +26,7 @@ from calibration.diagnosis.coupons.effects import EFFECTS, CouponEffect
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.nested import Linear, State
-from calibration.diagnosis.specimens import apart, mean_moduli
+from calibration.diagnosis.specimens import mean_moduli, scatter_patterns
 from calibration.errors import InputError
 from calibration.experiment.model import CouponTrial, Experiment
 
@@ -114,7 +114,7 @@ class CouponModel:
             name: np.vstack([columns, np.zeros((rows, columns.shape[1]))])
             for name, columns in patterns_of(self.records).items()
         }
-        return {**found, **apart(self.points + rows, self.points, self.baseline.held)}
+        return {**found, **scatter_patterns(self.points + rows, self.points, self.baseline.held)}
 
     # -- what folds ask for --
 

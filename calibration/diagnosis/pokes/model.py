@@ -34,7 +34,7 @@ from calibration.diagnosis.pokes._remarks import remarks_on
 from calibration.diagnosis.pokes._simulation import Simulation, reached
 from calibration.diagnosis.pokes.advice import advise
 from calibration.diagnosis.pokes.effects import EFFECTS, PokeEffect
-from calibration.diagnosis.specimens import apart, mean_moduli, scatter_rows
+from calibration.diagnosis.specimens import mean_moduli, scatter_patterns, scatter_rows
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, PokeTrial
 
@@ -155,7 +155,7 @@ class PokeModel:
             raw = np.vstack([columns, np.zeros((more, columns.shape[1]))])
             found[name] = np.vstack([self.noise.whiten(raw), np.zeros((len(self._prior), raw.shape[1]))])
         size = self.points + len(self._prior)
-        return {**found, **apart(size, self.points, len(self._prior))}
+        return {**found, **scatter_patterns(size, self.points, len(self._prior))}
 
     # -- what folds ask for --
 

@@ -11,7 +11,7 @@ from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.nested import State
 from calibration.diagnosis.null import DRAWS, EVERYTHING, Gains, Null
 from calibration.diagnosis.screening import Screen, screen
-from calibration.diagnosis.specimens import LARGEST, SCATTER, SPECIMENS, apart
+from calibration.diagnosis.specimens import LARGEST, SCATTER, SPECIMENS, scatter_patterns
 
 ROWS = 72
 
@@ -53,13 +53,13 @@ def test_each_test_alone_is_that_of_the_chi_square(null: Null, jacobian: np.ndar
 
 def test_specimens_may_differ_by_a_bad_lab_s_scatter(jacobian: np.ndarray) -> None:
     """LARGEST instead of SCATTER is noise; what goes beyond is seen."""
-    null = Null(ROWS, apart(ROWS, ROWS - 6, 6), seed=4)
+    null = Null(ROWS, scatter_patterns(ROWS, ROWS - 6, 6), seed=4)
     spread = np.zeros(ROWS)
     spread[-6:] = np.sqrt(chi2.ppf(0.5, 6) / 6) * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     p = [null.departure(part * spread, jacobian).each[SPECIMENS] for part in (LARGEST / SCATTER, 3.0)]
     assert p[0] == pytest.approx(0.5, abs=0.05)
     assert p[1] < 1e-3
-    assert apart(ROWS, ROWS, 0) == {}
+    assert scatter_patterns(ROWS, ROWS, 0) == {}
 
 
 def test_a_pattern_is_seen_where_the_whole_sum_sees_nothing(null: Null, jacobian: np.ndarray) -> None:
