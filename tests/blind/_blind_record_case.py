@@ -66,7 +66,7 @@ def in_turn(
     return found
 
 
-def scatter_patterns(size: Callable[[T, H, tuple[H, ...]], float], trials: T, hidden: tuple[H, ...]) -> bool:
+def apart(size: Callable[[T, H, tuple[H, ...]], float], trials: T, hidden: tuple[H, ...]) -> bool:
     """Whether each of two causes is still seen beside the other; size: in sigmas, of one beside others."""
     return all(size(trials, h, tuple(o for o in hidden if o is not h)) > 3.0 for h in hidden)
 
