@@ -11,6 +11,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -274,6 +275,27 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
         time.sleep(0.05)
     assert standin_build(quick, target).fresh == 12 - kept
     assert digest(target) == digest(reference)
+
+
+_FIRST_WORKER = """
+from pathlib import Path
+from factory import _pool
+if __name__ == "__main__":
+    workers = [_pool._start("math:sqrt") for _ in range(2)]
+    for worker in workers:
+        status = Path(f"/proc/{worker.process.pid}/status").read_text()
+        fields = dict(line.split(":", 1) for line in status.splitlines())
+        print(int(fields["SigBlk"], 16) >> 1 & 1)  # bit 1: SIGINT
+        _pool._stop(worker)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads the signals of Linux")
+def test_no_worker_sees_ctrl_c_not_even_the_first(tmp_path: Path) -> None:
+    script = tmp_path / "first_worker.py"  # in a process of its own: only a first start is in danger
+    script.write_text(_FIRST_WORKER)
+    run = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
+    assert run.stdout.split() == ["1", "1"], run.stderr
 
 
 @pytest.mark.parametrize("simulator", ["math:sqrt", "math:nothing"])
