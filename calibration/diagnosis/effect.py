@@ -19,6 +19,7 @@ class Effect:
     step: of a finite difference; bounds: where it makes sense; plausible: what a careful lab may still have
     overlooked (all SI). Where the data would need more than that, they cannot see the effect.
     sentence: what it is, for people. remedy: what to do about it on the bench.
+    ends: bounds where the physics itself ends (a surface that slides freely): an amplitude may stop there.
     starts: part of the way to its bounds that a fit may start at. simulated: its fit costs simulations.
     """
 
@@ -31,6 +32,7 @@ class Effect:
     plausible: float
     sentence: str
     remedy: str
+    ends: tuple[float, ...] = ()
     starts: float = 0.6
 
     @property

@@ -2,48 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from calibration.diagnosis.effect import Candidate, Effect
 from calibration.diagnosis.explanation import Explanation, Names, confidence, explain, rivals
 from calibration.diagnosis.fitting import Fit, fit
-from calibration.diagnosis.nested import Linear, Nested, State
+from calibration.diagnosis.nested import Nested, State
 from calibration.diagnosis.null import Departure, Null
-from calibration.diagnosis.pairs import best_pairs
 from calibration.diagnosis.places import settled
+from calibration.diagnosis.rules import Rules, Tell
 from calibration.diagnosis.screening import Screen, screen
+from calibration.diagnosis.several import hidden, with_second
+from calibration.diagnosis.thirds import with_third
 
 Array = NDArray[np.float64]
-PERHAPS = 0.1  # chance of a second cause by the baseline's columns, below which it is looked for properly
 HOPELESS = 0.35  # of the best promise: a candidate that promises less is not fitted
-PLACED = 3  # pairs of which a cause is moved to where it sits: the best
+PLACED = 3  # pairs, and threes, of which a cause is moved to where it sits: the best
 FAR = 0.05  # of ln G: what was taken so far from the fit's end is taken anew
 Verdict = Literal["none", "found", "ambiguous", "unexplained"]
-Tell = Callable[[str], None]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rules:
-    """alarm: chance of naming a cause where there is none; second: of one cause too many.
-    unlike: chance below which what a fit leaves of the residuals counts as unexplained.
-    within: of chi-square: what explains the data nearly as well as the best is a rival.
-    shortlist: effects that are confirmed in the simulator; pairs: pairs of them.
-    seed: of the bootstrap.
-    """
-
-    alarm: float = 0.02
-    second: float = 0.003
-    unlike: float = 0.005
-    within: float = 6.0
-    shortlist: int = 7
-    pairs: int = 5
-    seed: int = 0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,14 +98,17 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
         return finding("none", singles, False)
     if chance <= rules.alarm:
         tell(f"looking for a second cause beside {singles[0].fit.reports()}")
-        pairs = _with_second(model, singles[0], screened, linear.columns, null, rules, tell)
+        pairs = with_second(model, singles[0], screened, linear.columns, null, rules, tell)
     else:
         tell("looking for two causes that hide each other")
-        pairs = _hidden(model, baseline, screened, linear, null, rules, tell)
+        pairs = hidden(model, baseline, screened, linear, null, rules, tell)
     where = set(moved.values())
-    loose = [e for e in pairs if any(c.place is not None and c not in where for c in e.candidates)]
-    pairs, _ = _placed(model, pairs, sorted(loose, key=lambda e: e.score)[:PLACED], null, tell)
+    pairs, again = _placed(model, pairs, _loose(pairs, where)[:PLACED], null, tell)
     both = sorted(singles + pairs, key=lambda e: e.score)
+    if rules.most > 2 and pairs and both[0] in pairs:
+        three = with_third(model, pairs, null, rules, tell)
+        three, _ = _placed(model, three, _loose(three, where | set(again.values()))[:PLACED], null, tell)
+        both = sorted(both + three, key=lambda e: e.score)
     if (chance > rules.alarm and not pairs) or both[0].departure.p < rules.unlike:
         return finding("unexplained", both, False)
     sets = rivals(both, rules.within)
@@ -144,6 +128,12 @@ def calibrated(model: Nested) -> Fit:
         if moved < FAR:
             break
     return found
+
+
+def _loose(explanations: Sequence[Explanation], where: Collection[Candidate]) -> list[Explanation]:
+    """Those with a cause that has not been moved to where it sits, best first."""
+    some = [e for e in explanations if any(c.place is not None and c not in where for c in e.candidates)]
+    return sorted(some, key=lambda e: e.score)
 
 
 def _placed(
@@ -179,83 +169,4 @@ def _shortlist(
         least = max(at_least, hopeless) if effects[name].simulated else at_least
         if gains[k] >= least and near and len(found) < count:
             found.append(int(k))
-    return found
-
-
-def _with_second(
-    model: Nested,
-    best: Explanation,
-    screened: Screen,
-    columns: Array,
-    null: Null,
-    rules: Rules,
-    tell: Tell,
-) -> list[Explanation]:
-    """Pairs of causes, where one more than the best one gains what noise alone would not.
-
-    columns: the candidates' at the baseline; where even these promise nothing, none is linearised anew.
-    """
-    # another place of an effect that has one cannot be added to it: the scene holds one
-    placed = {c.effect for c in best.candidates if c.place is not None}
-    seen = [
-        k
-        for k, c in enumerate(screened.candidates)
-        if screened.sizes[k] > 0.0 and (c.effect not in placed or c in best.candidates)
-    ]
-    candidates = tuple(screened.candidates[k] for k in seen)
-    held = best.fit.linear
-    roughly = screen(
-        replace(held, columns=columns[:, seen], candidates=candidates), model.effects, held=best.fit
-    )
-    if null.gains(roughly).chance(float(roughly.promises(held.z).max(initial=0.0))) > PERHAPS:
-        return []
-    linear = model.linearise(best.fit.state, candidates)
-    beside = screen(linear, model.effects, held=best.fit)
-    gained = beside.promises(linear.z)
-    if null.gains(beside).chance(float(gained.max(initial=0.0))) > rules.second:
-        return []
-    # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
-    target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
-    return _pairs(model, best.fit, screen(linear, model.effects), linear.columns, target, null, rules, tell)
-
-
-def _hidden(
-    model: Nested,
-    baseline: Fit,
-    screened: Screen,
-    linear: Linear,
-    null: Null,
-    rules: Rules,
-    tell: Tell,
-) -> list[Explanation]:
-    """Pairs of causes of which neither alone gains what noise would not, but both do."""
-    found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, tell)
-    tries = 0.5 * np.count_nonzero(screened.sizes) ** 2
-    return [e for e in found if tries * chi2.sf(baseline.chi2 - e.fit.chi2, 2) < rules.alarm]
-
-
-def _pairs(
-    model: Nested,
-    start: Fit,
-    screened: Screen,
-    columns: Array,
-    target: Array,
-    null: Null,
-    rules: Rules,
-    tell: Tell,
-) -> list[Explanation]:
-    """The pairs that promise most for the residuals `target`, confirmed; none of which one amplitude ended at
-    a bound, since that is no pair."""
-    found = []
-    pairs = best_pairs(screened, target, count=rules.pairs)
-    for n, (a, b) in enumerate(pairs):
-        both = (screened.candidates[a], screened.candidates[b])
-        tell(f"confirming pair {n + 1} of {len(pairs)}: {both[0].label} + {both[1].label}")
-        left = columns[:, [a, b]] - screened.free @ (screened.free.T @ columns[:, [a, b]])
-        guess = [float(x) for x in -np.linalg.lstsq(left, target, rcond=None)[0]]
-        pair = explain(model, start, both, guess, null)
-        if pair is not None and not any(
-            x in model.effects[c.effect].bounds for c, x in pair.fit.state.amplitudes.items()
-        ):
-            found.append(pair)
     return found

@@ -8,25 +8,25 @@ import numpy as np
 from _blind_coupon_case import LIBRARY, OUTSIDE, Case, Hidden, Protocol
 from _blind_coupon_law import Solid
 from _blind_coupon_sigma import sigmas, sized
-from _blind_record_case import apart, in_turn
+from _blind_record_case import SEVERAL, apart, in_turn
 
 NEEDS_TWO_MODES = ("anisotropy", "second-invariant")
 
 
 def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = None) -> Case:
-    """kind: clean, one (of LIBRARY), two, or outside (one of OUTSIDE); name: of the cause, drawn where empty.
-    target: its size in sigmas, drawn from 4 to 40 where None."""
+    """kind: clean, one (of LIBRARY), two or three at once, or outside (one of OUTSIDE); name: of the cause,
+    drawn where empty. target: its size in sigmas, drawn from 4 to 40 where None."""
     rng = np.random.default_rng([seed, 0])
     for _ in range(200):
         if kind == "clean":
             names: list[str] = []
-        elif kind == "two":
-            names = [str(n) for n in rng.choice(LIBRARY, 2, replace=False)]
+        elif kind in SEVERAL:
+            names = [str(n) for n in rng.choice(LIBRARY, SEVERAL[kind], replace=False)]
         else:
             names = [name or str(rng.choice(LIBRARY if kind == "one" else OUTSIDE))]
         protocols = _protocols(rng, names)
         wanted = target or float(np.exp(rng.uniform(np.log(4.0), np.log(40.0))))
-        if kind == "two":
+        if kind in SEVERAL:
             wanted = max(wanted, 8.0)
         hidden = tuple(_hidden(rng, n, protocols, wanted) for n in names)
         if all(h.sigma > 0.8 * wanted for h in hidden) and apart(sigmas, protocols, hidden):

@@ -6,27 +6,29 @@ import numpy as np
 from _blind_poke_case import LIBRARY, OUTSIDE, TABLED, Case, Hidden, Trial
 from _blind_poke_curve import table
 from _blind_poke_sigma import sigmas, sized
-from _blind_record_case import apart, in_turn
+from _blind_record_case import SEVERAL, apart, in_turn
 
 RIG = ("depth-offset", "force-gain", "force-offset", "force-drift", "friction")
 
 
 def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = None) -> Case:
-    """kind: clean, one (of LIBRARY), two, trap (a gain of everything) or outside (one of OUTSIDE); name: of
-    the cause, drawn where empty. target: its size in sigmas, drawn from 4 to 40 where None."""
+    """kind: clean, one (of LIBRARY), two or three at once, trap (a gain of everything) or outside (one of
+    OUTSIDE); name: of the cause, drawn where empty. target: its size in sigmas, drawn from 4 to 40 where
+    None."""
     rng = np.random.default_rng([seed, 0])
     for _ in range(60):
         if kind == "clean":
             names: list[str] = []
         elif kind == "trap":
             names = ["force-gain"]
-        elif kind == "two":
-            names = [str(n) for n in rng.choice([n for n in LIBRARY if n not in TABLED], 2, replace=False)]
+        elif kind in SEVERAL:
+            free = [n for n in LIBRARY if n not in TABLED]
+            names = [str(n) for n in rng.choice(free, SEVERAL[kind], replace=False)]
         else:
             names = [name or str(rng.choice(LIBRARY if kind == "one" else OUTSIDE))]
         trials = _trials(rng, names)
         wanted = target or float(np.exp(rng.uniform(np.log(4.0), np.log(40.0))))
-        if kind == "two":
+        if kind in SEVERAL:
             wanted = max(wanted, 8.0)
         moduli = {t.material: t.G for t in trials}
         if kind == "trap":

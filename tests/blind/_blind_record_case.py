@@ -8,6 +8,8 @@ from typing import Any, Protocol, TypeVar
 
 import yaml
 
+SEVERAL = {"two": 2, "three": 3}  # kinds of cases with so many causes at once
+
 T = TypeVar("T")
 H = TypeVar("H")
 
@@ -66,8 +68,13 @@ def in_turn(
     return found
 
 
+def draw_several(count: int, seed: int, make: Callable[[int, str], T], kind: str) -> list[T]:
+    """Cases that all have several causes at once (a kind of SEVERAL)."""
+    return [make(1000 * seed + n, kind) for n in range(count)]
+
+
 def apart(size: Callable[[T, H, tuple[H, ...]], float], trials: T, hidden: tuple[H, ...]) -> bool:
-    """Whether each of two causes is still seen beside the other; size: in sigmas, of one beside others."""
+    """Whether each of several causes is still seen beside the others; size: of one beside others [sigmas]."""
     return all(size(trials, h, tuple(o for o in hidden if o is not h)) > 3.0 for h in hidden)
 
 

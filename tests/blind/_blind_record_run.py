@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from _blind_record_case import SEVERAL
 from _blind_record_score import Pair, confusion, goals, named, true_names
 
 
@@ -63,6 +64,7 @@ def parser(about: str | None) -> argparse.ArgumentParser:
     found.add_argument("--cases", type=int, default=40)
     found.add_argument("--seed", type=int, default=1)
     found.add_argument("--out", type=Path, help="JSON file for truths and verdicts")
+    found.add_argument("--together", choices=list(SEVERAL), help="so many causes at once, in all cases")
     return found
 
 

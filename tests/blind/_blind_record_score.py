@@ -10,6 +10,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from _blind_record_case import SEVERAL
+
 # the parameter that diagnosis.json writes for an effect, and how many of its units make one SI unit; only of
 # effects whose amplitude means the same on both sides (not: the size of a loop whose form no name settles)
 UNITS = {
@@ -83,9 +85,14 @@ def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
     yield "outside the library, 10 sigmas: unexplained or ambiguous", "90 %", part(unsure)
     alone = [said == "found" for said in out]
     yield "outside the library, 10 sigmas: one name", "at most 5 %", part(alone)
-    two = [p for p in pairs if p[0]["kind"] == "two"]
-    yield "two at once: both first", "-", part([named(v) == true_names(t) for t, v in two])
-    yield "two at once: both in the named set", "-", part([true_names(t) in named_set(v) for t, v in two])
+    for kind in SEVERAL:
+        some = [p for p in pairs if p[0]["kind"] == kind]
+        if some:
+            yield f"{kind} at once: all first", "-", part([named(v) == true_names(t) for t, v in some])
+            held = [true_names(t) in named_set(v) for t, v in some]
+            yield f"{kind} at once: all in the named set", "-", part(held)
+            only = [set(named(v)) <= set(true_names(t)) for t, v in some if v["verdict"] == "found"]
+            yield f"{kind} at once: of those found, no wrong name among them", "-", part(only)
 
 
 def _numbers(single: Sequence[Pair]) -> Iterator[Row]:
@@ -129,7 +136,7 @@ def confusion(pairs: Sequence[Pair]) -> str:
     """One line a true cause: how often it was named what."""
     lines: dict[str, Counter[str]] = {}
     for t, v in pairs:
-        truth = "two at once" if t["kind"] == "two" else "+".join(true_names(t)) or "(clean)"
+        truth = f"{t['kind']} at once" if t["kind"] in SEVERAL else "+".join(true_names(t)) or "(clean)"
         if v["verdict"] in ("none", "unexplained"):
             said = v["verdict"]
         else:

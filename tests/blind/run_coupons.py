@@ -12,9 +12,10 @@ from pathlib import Path
 
 from _blind_coupon_case import Case, Protocol
 from _blind_coupon_curve import until_it_locks
-from _blind_coupon_draw import draw_cases
+from _blind_coupon_draw import draw_cases, make_coupon
 from _blind_coupon_file import write
 from _blind_coupon_verdict import verdict_on
+from _blind_record_case import draw_several
 from _blind_record_run import diagnosed, parser, show
 from _blind_record_score import Pair, named, part, true_names
 
@@ -59,6 +60,10 @@ def main() -> None:
     options = parser(__doc__)
     options.add_argument("--settle", action="store_true", help="simulate the experiments that are advised")
     asked = options.parse_args()
+    if asked.together:
+        cases = draw_several(asked.cases, asked.seed, make_coupon, asked.together)
+        show(diagnosed(enumerate(cases), write, verdict_on, tell=True), asked.out)
+        return
     pairs = run(asked.cases, asked.seed)
     show(pairs, asked.out)
     if asked.settle:

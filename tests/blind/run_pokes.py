@@ -6,9 +6,10 @@ process's memory.
 
 from __future__ import annotations
 
-from _blind_poke_draw import draw_cases
+from _blind_poke_draw import draw_cases, make_poke
 from _blind_poke_file import write
 from _blind_poke_verdict import verdict_on
+from _blind_record_case import draw_several
 from _blind_record_run import diagnosed, parser, show
 from _blind_record_score import Pair
 
@@ -24,6 +25,10 @@ def main() -> None:
     options.add_argument("--first", type=int, default=0, help="case to begin with")
     options.add_argument("--last", type=int, default=None, help="case to end before")
     asked = options.parse_args()
+    if asked.together:
+        several = list(enumerate(draw_several(asked.cases, asked.seed, make_poke, asked.together)))
+        show(diagnosed(several[asked.first : asked.last], write, verdict_on, tell=True), asked.out)
+        return
     show(run(asked.cases, asked.seed, only=slice(asked.first, asked.last)), asked.out)
 
 

@@ -23,6 +23,7 @@ EFFECT = PokeEffect(
     belongs_to="rig",
     step=0.01,
     bounds=(-FRICTION, 0.4),
+    ends=(-FRICTION,),
     plausible=FRICTION,
     starts=1.0,  # most of what it does it does near its bound
     sentence="rod and block rub less, or more, than believed",

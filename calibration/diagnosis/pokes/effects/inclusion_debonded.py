@@ -25,6 +25,7 @@ EFFECT = PokeEffect(
     belongs_to="specimen",
     step=0.01,
     bounds=(0.0, 1.0),
+    ends=(1.0,),
     plausible=1.0,
     sentence="the soft material has come off the inclusion",
     remedy="pull at the surface above the inclusion, or poke a place far from it",

@@ -18,6 +18,7 @@ EFFECT = PressEffect(
     belongs_to="rig",
     step=1e-3,
     bounds=(0.0, MOST),
+    ends=(MOST,),
     plausible=0.5,
     sentence="the platens hold the ends of the compressed cylinder by friction or adhesion",
     remedy="lubricate the platens and repeat, or press cylinders of two heights",

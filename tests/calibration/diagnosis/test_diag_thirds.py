@@ -1,0 +1,120 @@
+"""Three causes at once, on formulas: found where pairs do not do, with what would do as well."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from fake_nested import FakeNested, effect, library, noise, sigmas, waves
+
+from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.explanation import Explanation, explain
+from calibration.diagnosis.null import Null
+from calibration.diagnosis.search import Rules, calibrated, search
+from calibration.diagnosis.thirds import with_third
+
+THREE = ("bend", "kink", "slack")
+
+
+def at_sigmas(name: str, size: float, **shapes: np.ndarray) -> np.ndarray:
+    raw = {**library(), **shapes}[name]
+    return np.asarray(raw * (size / sigmas(raw, FakeNested())))
+
+
+def together(*names: str, size: float = 14.0) -> np.ndarray:
+    return np.asarray(sum((-1.0) ** k * at_sigmas(n, size) for k, n in enumerate(names)))
+
+
+@pytest.mark.parametrize("names", list(combinations(sorted(library()), 3)))
+def test_three_causes_are_found_together(names: tuple[str, ...]) -> None:
+    found = search(FakeNested(hidden=together(*names), noise=noise(200)))
+    assert found.verdict == "found"
+    assert found.chosen is not None
+    assert found.chosen.names == names
+
+
+def test_no_more_than_asked_for_are_named() -> None:
+    found = search(FakeNested(hidden=together(*THREE), noise=noise(201)), rules=Rules(most=2))
+    assert found.verdict == "unexplained"
+    assert all(len(e.names) <= 2 for e in found.explanations)
+
+
+def test_two_causes_are_not_made_three() -> None:
+    tripled = 0
+    for k in range(12):
+        found = search(FakeNested(hidden=together("bend", "slack"), noise=noise(210 + k)))
+        tripled += len(found.explanations[0].names) > 2
+    assert tripled <= 1
+
+
+@pytest.mark.parametrize("of", THREE)
+def test_what_would_do_as_well_as_one_of_three_is_named_too(of: str) -> None:
+    shapes = library()
+    shapes["twin"] = shapes[of] + 0.03 * shapes["ripple"]
+    for k in range(2):
+        found = search(FakeNested(shapes=shapes, hidden=together(*THREE), noise=noise(230 + k)))
+        other = tuple(sorted({*THREE, "twin"} - {of}))
+        assert found.verdict == "ambiguous"
+        assert {THREE, other} <= set(found.rivals)
+
+
+def test_stand_ins_are_tried_in_the_place_of_each() -> None:
+    """With one third beside one pair nothing else would find the twin."""
+    for of in THREE:
+        shapes = library()
+        shapes["twin"] = shapes[of] + 0.03 * shapes["ripple"]
+        model = FakeNested(shapes=shapes, hidden=together(*THREE), noise=noise(260))
+        found = search(model, rules=Rules(beside=(1, 1)))
+        assert {THREE, tuple(sorted({*THREE, "twin"} - {of}))} <= set(found.rivals), of
+
+
+def beside(names: tuple[str, str], hidden: np.ndarray, seed: int) -> tuple[list[Explanation], list[str]]:
+    """What comes of a third cause beside a pair, and what was told."""
+    model = FakeNested(hidden=hidden, noise=noise(seed))
+    start = calibrated(model)
+    linear = model.linearise(start.state, model.candidates)
+    null = Null(len(linear.z), model.patterns())
+    pair = explain(model, start, [Candidate(effect=n) for n in names], [0.0, 0.0], null)
+    assert pair is not None
+    told: list[str] = []
+    return with_third(model, [pair], null, Rules(), told.append), told
+
+
+def test_a_third_without_which_the_pair_does_is_not_even_fitted() -> None:
+    fitted = 0
+    for k in range(12):
+        _, told = beside(("bend", "slack"), together("bend", "slack"), 270 + k)
+        fitted += any(t.startswith("confirming") for t in told)
+    assert fitted <= 1
+
+
+def test_all_three_are_needed() -> None:
+    """Of a pair of which one is wrong, a third makes it idle: these are two causes."""
+    found, told = beside(("bend", "slope"), together("bend", "kink"), 290)
+    assert any("kink" in t for t in told)
+    assert found == []
+
+
+def test_what_three_causes_leave_is_unexplained() -> None:
+    shapes = library()
+    ripple = shapes.pop("ripple")
+    odd = 14.0 * waves(7)[:, 5] / np.linalg.norm(waves(7)[:, 5])
+    for more in (odd, 14.0 * ripple):
+        found = search(FakeNested(shapes=shapes, hidden=together(*THREE) + more, noise=noise(240)))
+        assert found.verdict == "unexplained"
+        assert found.chosen is None
+
+
+def test_a_third_that_ends_at_a_bound_is_none_but_where_physics_ends() -> None:
+    reach = 14.0 / sigmas(library()["slack"], FakeNested())
+    near = effect("slack", bounds=(-0.8 * reach, 0.8 * reach))
+    for ends, named in (((), False), ((0.8 * reach,), True)):
+        model = FakeNested(
+            hidden=at_sigmas("bend", 14.0) + at_sigmas("kink", -14.0) + at_sigmas("slack", 14.0),
+            noise=noise(250),
+            effects={"slack": replace(near, ends=ends)},
+        )
+        sets = {e.names for e in search(model).explanations}
+        assert (THREE in sets) == named
