@@ -73,7 +73,7 @@ def diagnose(
         unit=model.unit,
         next_experiment=advice,
         invisible=invisible(model, finding),
-        notes=tuple(_notes(model, finding, rules or Rules())),
+        notes=tuple(_notes(model, finding, refined, rules or Rules())),
         seconds=time.monotonic() - begun,
     )
 
@@ -142,11 +142,21 @@ def _never(finding: Finding, name: str) -> bool:
     return bool(sizes) and max(sizes) == 0.0
 
 
-def _notes(model: Diagnosable, finding: Finding, rules: Rules) -> list[str]:
-    found = model.remarks() + _other_places(model, finding, rules)
+def _notes(model: Diagnosable, finding: Finding, chosen: Explanation | None, rules: Rules) -> list[str]:
+    found = model.remarks() + _at_the_end(model, chosen) + _other_places(model, finding, rules)
     for e in (finding.baseline, *(x.fit for x in finding.explanations)):
         if not e.converged:
             found.append(f"fit of {e.reports()}: {e.message}")
+    return found
+
+
+def _at_the_end(model: Diagnosable, chosen: Explanation | None) -> list[str]:
+    """Causes that are as large as they can be."""
+    found = []
+    for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
+        effect = model.effects[c.effect]
+        if a in effect.ends:
+            found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is as far as it goes")
     return found
 
 

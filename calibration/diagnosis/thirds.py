@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from calibration.diagnosis.explanation import Explanation, Names, explain
 from calibration.diagnosis.nested import Linear, Nested
 from calibration.diagnosis.null import Null
 from calibration.diagnosis.rules import Rules, Tell
-from calibration.diagnosis.screening import Screen, screen
+from calibration.diagnosis.screening import Screen, screen, worth
 from calibration.diagnosis.several import all_there
 
 Array = NDArray[np.float64]
@@ -27,8 +27,8 @@ def with_third(
     model: Nested, pairs: Sequence[Explanation], null: Null, rules: Rules, tell: Tell
 ) -> list[Explanation]:
     """Three causes, beside the best pairs, where none of these explains the data: one more that gains what
-    noise would not, and of which all three are needed. Where three do explain them, others are tried in the
-    place of each, so that a name that would do as well is not left out."""
+    noise would not, and of which all three are needed. Then others are tried in the place of each, so that a
+    name that would do as well is not left out."""
     search = _Search(model, null, rules, tell)
     beside: list[Names] = []
     for pair in sorted(pairs, key=lambda e: e.score):
@@ -37,7 +37,7 @@ def with_third(
             search.add_to(pair)
     for _ in range(ROUNDS):
         best = min(search.found, key=lambda e: e.score, default=None)
-        if best is None or best.departure.p < rules.unlike or not search.replace_in(best):
+        if best is None or not search.replace_in(best):
             break
     return search.found
 
@@ -53,7 +53,8 @@ class _Search:
     def add_to(self, pair: Explanation) -> None:
         """A third cause beside two, where one gains what noise would not."""
         self.tell(f"looking for a third cause beside {pair.fit.reports()}")
-        linear = self._linear(pair)
+        # an effect that is there already has its place, or its scope: the scene holds one
+        linear = self._linear(pair, lambda c: c.effect not in pair.names)
         beside = screen(linear, self.model.effects, held=pair.fit)
         promises = np.where(beside.sizes > 0.0, beside.promises(linear.z), 0.0)
         if self.null.gains(beside).chance(float(promises.max(initial=0.0))) > self.rules.second:
@@ -63,34 +64,38 @@ class _Search:
             self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
 
     def replace_in(self, three: Explanation) -> bool:
-        """Others in the place of each of three causes; whether one that had not been tried is better."""
+        """Others in the place of each of three causes, and the same elsewhere; whether one that had not been
+        tried is better. Where the three do not explain the data, only the same elsewhere."""
         self.tell(f"looking for what would do as well as {three.fit.reports()}")
         count, best = len(three.candidates), three.score
-        linear = self._linear(three)
+        explained = three.departure.p >= self.rules.unlike
+        linear = self._linear(three, lambda c: explained or c.effect in three.names)
         for k, out in enumerate(three.candidates):
             kept = [j for j in range(count) if j != k]
+            there = {three.candidates[j].effect for j in kept}
+            free = [j for j, c in enumerate(linear.candidates) if j >= count and c.effect not in there]
             without = replace(
                 linear,
                 by_u=np.column_stack([linear.by_u, linear.columns[:, kept]]),
-                columns=linear.columns[:, count:],
-                candidates=linear.candidates[count:],
+                columns=linear.columns[:, free],
+                candidates=tuple(linear.candidates[j] for j in free),
             )
             beside = screen(without, self.model.effects)
             target = linear.z - linear.columns[:, k] * three.fit.state.amplitudes[out]
             promises = np.where(beside.sizes > 0.0, beside.promises(target), 0.0)
             value, sd = three.fit.amplitude(out)
-            own = (value / sd) ** 2
-            promises[promises < min(HOPELESS * own, own - FAR)] = 0.0
+            own = (value / sd) ** 2 - worth(out)
+            same = np.array([c.effect == out.effect for c in beside.candidates], dtype=bool)
+            promises[promises < np.where(same, own, min(HOPELESS * own, own - FAR))] = 0.0
             guesses = beside.amplitudes(target)
             for j in _best_of_each(beside, promises, self.rules.beside[0]):
                 others = {c: a for c, a in three.fit.state.amplitudes.items() if c != out}
                 self._confirm(three, {**others, beside.candidates[j]: float(guesses[j])})
         return min(e.score for e in self.found) < best
 
-    def _linear(self, held: Explanation) -> Linear:
-        """Columns of its causes, then of all others. An effect that is there already has its place, or its
-        scope: the scene holds one."""
-        others = tuple(c for c in self.model.candidates if c.effect not in held.names)
+    def _linear(self, held: Explanation, wanted: Callable[[Candidate], bool]) -> Linear:
+        """Columns of its causes, then of all others that are wanted."""
+        others = tuple(c for c in self.model.candidates if c not in held.candidates and wanted(c))
         return self.model.linearise(held.fit.state, (*held.candidates, *others))
 
     def _confirm(self, start: Explanation, guess: dict[Candidate, float]) -> None:

@@ -115,10 +115,11 @@ class Diagnosis:
             )
         chosen = self.chosen
         assert chosen is not None
-        said = " and ".join(
+        parts = [
             f"{self.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
             for c in chosen.candidates
-        )
+        ]
+        said = " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
         if verdict == "found":
             return f"Found: {said} ({' + '.join(chosen.names)})."
         others = "; or ".join(" + ".join(names) for names in self.finding.rivals[1:])

@@ -70,13 +70,19 @@ def test_stand_ins_are_tried_in_the_place_of_each() -> None:
         assert {THREE, tuple(sorted({*THREE, "twin"} - {of}))} <= set(found.rivals), of
 
 
-def beside(names: tuple[str, str], hidden: np.ndarray, seed: int) -> tuple[list[Explanation], list[str]]:
-    """What comes of a third cause beside a pair, and what was told."""
-    model = FakeNested(hidden=hidden, noise=noise(seed))
+def beside(
+    names: tuple[str, str], hidden: np.ndarray, seed: int, *, at: str = "all", scoped: tuple[str, ...] = ()
+) -> tuple[list[Explanation], list[str]]:
+    """What comes of a third cause beside a pair, the first of which sits somewhere, and what was told."""
+    model = FakeNested(hidden=hidden, noise=noise(seed), scoped=scoped)
     start = calibrated(model)
     linear = model.linearise(start.state, model.candidates)
     null = Null(len(linear.z), model.patterns())
-    pair = explain(model, start, [Candidate(effect=n) for n in names], [0.0, 0.0], null)
+    sits = (
+        next(c for c in model.candidates if (c.effect, c.at) == (names[0], at)),
+        Candidate(effect=names[1]),
+    )
+    pair = explain(model, start, sits, [0.0, 0.0], null)
     assert pair is not None
     told: list[str] = []
     return with_third(model, [pair], null, Rules(), told.append), told
@@ -88,6 +94,13 @@ def test_a_third_without_which_the_pair_does_is_not_even_fitted() -> None:
         _, told = beside(("bend", "slack"), together("bend", "slack"), 270 + k)
         fitted += any(t.startswith("confirming") for t in told)
     assert fitted <= 1
+
+
+def test_each_of_three_may_sit_elsewhere_than_in_the_pair() -> None:
+    """Bent in both materials, where the pair had it in one: no other third makes up for that."""
+    found, _ = beside(("bend", "kink"), together(*THREE), 291, at="S0", scoped=("bend",))
+    best = min(found, key=lambda e: e.score)
+    assert {c.label for c in best.candidates} == set(THREE)
 
 
 def test_all_three_are_needed() -> None:

@@ -96,6 +96,33 @@ def test_found() -> None:
     assert diagnosis.sentence() == "Found: there is bend (bend)."
 
 
+def test_three_causes() -> None:
+    names = ("bend", "kink", "slack")
+    model = FakeNested(hidden=np.sum([hidden(n, 14.0) for n in names], axis=0), noise=noise(1))
+    diagnosis = diagnose(model)
+    data = written(diagnosis)
+    check_schema(data)
+    assert sorted(c["effect"] for c in data["causes"]) == list(names)
+    for cause in data["causes"]:
+        name, size = cause["effect"], cause["parameters"]["size_mm"]
+        assert abs(size["value"] - 14e3 / sigmas(library()[name], model)) < 4.0 * size["sd"]
+    assert diagnosis.sentence() == (
+        "Found: there is bend; there is slack; and there is kink (bend + kink + slack)."
+    )
+
+
+def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
+    most = 10.0 / sigmas(library()["bend"], FakeNested())
+    near = effect("bend", bounds=(-most, most))
+    for ends, noted in (((), []), ((most,), [f"bend: {1e3 * most:.3g} size_mm is as far as it goes"])):
+        found = diagnose(
+            FakeNested(
+                hidden=hidden("bend", 11.0), noise=noise(1), effects={"bend": replace(near, ends=ends)}
+            )
+        )
+        assert [n for n in found.notes if "as far as" in n] == noted
+
+
 def test_where_else_a_cause_may_sit_is_a_note() -> None:
     """A bend in the beams of S0 alone is a candidate everywhere, and one of S0."""
     shapes = library()
