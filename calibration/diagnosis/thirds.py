@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -53,10 +53,11 @@ class _Search:
     def add_to(self, pair: Explanation) -> None:
         """A third cause beside two, where one gains what noise would not."""
         self.tell(f"looking for a third cause beside {pair.fit.reports()}")
-        # an effect that is there already has its place, or its scope: the scene holds one
-        linear = self._linear(pair, lambda c: c.effect not in pair.names)
+        linear = self._linear(pair)
         beside = screen(linear, self.model.effects, held=pair.fit)
-        promises = np.where(beside.sizes > 0.0, beside.promises(linear.z), 0.0)
+        # an effect that is there already has its place, or its scope: the scene holds one
+        free = np.array([c.effect not in pair.names for c in linear.candidates]) & (beside.sizes > 0.0)
+        promises = np.where(free, beside.promises(linear.z), 0.0)
         if self.null.gains(beside).chance(float(promises.max(initial=0.0))) > self.rules.second:
             return
         guesses = beside.amplitudes(linear.z)
@@ -65,11 +66,10 @@ class _Search:
 
     def replace_in(self, three: Explanation) -> bool:
         """Others in the place of each of three causes, and the same elsewhere; whether one that had not been
-        tried is better. Where the three do not explain the data, only the same elsewhere."""
+        tried is better."""
         self.tell(f"looking for what would do as well as {three.fit.reports()}")
         count, best = len(three.candidates), three.score
-        explained = three.departure.p >= self.rules.unlike
-        linear = self._linear(three, lambda c: explained or c.effect in three.names)
+        linear = self._linear(three)
         for k, out in enumerate(three.candidates):
             kept = [j for j in range(count) if j != k]
             there = {three.candidates[j].effect for j in kept}
@@ -93,9 +93,9 @@ class _Search:
                 self._confirm(three, {**others, beside.candidates[j]: float(guesses[j])})
         return min(e.score for e in self.found) < best
 
-    def _linear(self, held: Explanation, wanted: Callable[[Candidate], bool]) -> Linear:
-        """Columns of its causes, then of all others that are wanted."""
-        others = tuple(c for c in self.model.candidates if c not in held.candidates and wanted(c))
+    def _linear(self, held: Explanation) -> Linear:
+        """Columns of its causes, then of all others."""
+        others = tuple(c for c in self.model.candidates if c not in held.candidates)
         return self.model.linearise(held.fit.state, (*held.candidates, *others))
 
     def _confirm(self, start: Explanation, guess: dict[Candidate, float]) -> None:
