@@ -176,3 +176,28 @@ def test_repeats_tell_how_much_tests_differ() -> None:
     assert found.finding.verdict == "none", found.sentence()
     odd = max(repeats, key=lambda t: float(np.ptp(t.stress / sliding(strain + 1e-9))))
     assert told(experiment(odd)).finding.verdict != "none"
+
+
+def test_three_causes_at_once() -> None:
+    """Bonded, a second invariant, and a zero of the strain that is off, as it may be in the Ecoflex of the
+    real data."""
+    found = told(both(lambda x: bonded("mooney-rivlin 0.3")(x + 0.005), seed=2, noise=0.001))
+    assert found.finding.rivals[0] == ("platen-friction", "second-invariant", "strain-offset")
+    (offset,) = [c for c in found.causes() if c["effect"] == "strain-offset"]
+    estimate = offset["parameters"]["offset_percent"]
+    assert abs(abs(estimate["value"]) - 0.5) < 3.0 * estimate["sd"]
+
+
+def test_platens_that_hold_all_they_can_may_be_one_of_two_causes() -> None:
+    """Bonded cylinders held 1.2 times as much in the force's logarithm: beyond what the effect reaches."""
+
+    def harder(strain: Array) -> Array:
+        s = 1.0 - strain
+        free = (s - s**-2) * (0.7 + 0.3 / s)
+        ratio = bonded("mooney-rivlin 0.3")(strain) / np.where(strain > 0.0, free, 1.0)
+        return np.where(strain > 0.0, free * ratio**1.2, 0.0)
+
+    found = diagnose(PressModel(both(harder, seed=2, noise=0.001)), gain=False)
+    pairs = [e for e in found.finding.explanations if e.names == ("platen-friction", "second-invariant")]
+    assert pairs
+    assert {c.effect: a for c, a in pairs[0].fit.state.amplitudes.items()}["platen-friction"] == 1.1
