@@ -13,6 +13,7 @@ from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.explanation import Explanation, Names, explain
 from calibration.diagnosis.nested import Linear, Nested
 from calibration.diagnosis.null import Null
+from calibration.diagnosis.pairs import best_threes
 from calibration.diagnosis.rules import Rules, Tell
 from calibration.diagnosis.screening import Screen, screen, worth
 from calibration.diagnosis.several import all_there
@@ -63,6 +64,13 @@ class _Search:
         guesses = beside.amplitudes(linear.z)
         for k in _best_of_each(beside, promises, self.rules.beside[1]):
             self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
+        # the best pair may be a mixture of three others: these are sought afresh, around where it leads
+        alone = screen(linear, self.model.effects)
+        target = linear.z - linear.columns[:, : len(pair.candidates)] @ _values(pair)
+        for three in best_threes(alone, target, count=self.rules.beside[1]):
+            columns = linear.columns[:, three] - alone.free @ (alone.free.T @ linear.columns[:, three])
+            guess = -np.linalg.lstsq(columns, target, rcond=None)[0]
+            self._confirm(pair, {linear.candidates[k]: float(g) for k, g in zip(three, guess, strict=True)})
 
     def replace_in(self, three: Explanation) -> bool:
         """Others in the place of each of three causes, and the same elsewhere; whether one that had not been
@@ -112,6 +120,11 @@ class _Search:
         least = chi2.isf(self.rules.second, 1)
         parts = [three.fit.amplitude(c) for c in three.candidates]
         return all(value**2 >= least * sd**2 for value, sd in parts)
+
+
+def _values(found: Explanation) -> Array:
+    """Amplitudes of its causes, in their order."""
+    return np.array([found.fit.state.amplitudes[c] for c in found.candidates])
 
 
 def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
