@@ -11,7 +11,7 @@ from fake_nested import FakeNested, by_modulus, effect, library, noise, sigmas
 from calibration.diagnosis.effect import Candidate
 from calibration.diagnosis.fitting import fit
 from calibration.diagnosis.nested import Linear, State
-from calibration.diagnosis.pairs import best_pairs
+from calibration.diagnosis.pairs import best_pairs, best_threes
 from calibration.diagnosis.screening import Screen, basis_of, screen
 
 
@@ -117,17 +117,17 @@ def test_a_basis_leaves_out_what_is_there_twice() -> None:
     assert basis_of(np.zeros((72, 3))).shape == (72, 0)
 
 
-def brute_pairs(at: Linear) -> list[tuple[float, frozenset[str]]]:
-    """Gain of the best pair of each two names, less what the choice of scopes costs; best first."""
-    base = chi2(at.by_u, at.z)
+def brute(at: Linear, of: int) -> list[tuple[float, frozenset[str]]]:
+    """Sets of so many effects by the improvement of chi-square that least squares give them, best first."""
     best: dict[frozenset[str], float] = {}
-    for i, j in combinations(range(len(at.candidates)), 2):
-        a, b = at.candidates[i], at.candidates[j]
-        if a.effect == b.effect:
+    base = chi2(at.by_u, at.z)
+    for some in combinations(range(len(at.candidates)), of):
+        members = [at.candidates[k] for k in some]
+        names = frozenset(c.effect for c in members)
+        if len(names) < of:
             continue
-        gain = base - chi2(np.column_stack([at.by_u, at.columns[:, [i, j]]]), at.z)
-        gain -= 2.0 * np.log(a.rivals) + 2.0 * np.log(b.rivals)
-        names = frozenset((a.effect, b.effect))
+        gain = base - chi2(np.column_stack([at.by_u, at.columns[:, some]]), at.z)
+        gain -= sum(2.0 * np.log(c.rivals) for c in members)
         best[names] = max(best.get(names, -np.inf), gain)
     return sorted(((g, n) for n, g in best.items()), key=lambda p: -p[0])
 
@@ -139,7 +139,7 @@ def test_pairs_are_those_of_a_search_through_all() -> None:
     at = linear(model)
     found = best_pairs(screen(at, model.effects), at.z, count=4)
     names = [frozenset(at.candidates[k].effect for k in pair) for pair in found]
-    assert names == [n for _, n in brute_pairs(at)[:4]]
+    assert names == [n for _, n in brute(at, 2)[:4]]
     assert names[0] == {"bend", "slack"}
     assert len(set(names)) == 4
 
@@ -156,6 +156,40 @@ def test_pairs_of_causes_that_are_one_and_of_unseen_ones_are_left_out() -> None:
     assert len(names) == 15 - 1  # six effects that are seen, in twos
 
 
+def test_threes_are_those_of_a_search_through_all() -> None:
+    shapes = library()
+    data = 4.0 * shapes["bend"] - 6.0 * shapes["slack"] + 5.0 * shapes["kink"]
+    model = FakeNested(scoped=tuple(shapes), hidden=data, noise=noise(5))
+    at = linear(model)
+    found = best_threes(screen(at, model.effects), at.z, count=6)
+    names = [frozenset(at.candidates[k].effect for k in three) for three in found]
+    assert names == [n for _, n in brute(at, 3)[:6]]
+    assert names[0] == {"bend", "slack", "kink"}
+
+
+def test_threes_of_which_one_would_be_less_than_nothing_are_left_out() -> None:
+    shapes = library()
+    data = 4.0 * shapes["bend"] - 6.0 * shapes["slack"] + 5.0 * shapes["kink"]
+    upwards = {"slack": effect("slack", bounds=(0.0, 1e3))}
+    model = FakeNested(hidden=data, noise=noise(5), effects=upwards)
+    at = linear(model)
+    found = best_threes(screen(at, model.effects), at.z, count=10)
+    names = [{at.candidates[k].effect for k in three} for three in found]
+    assert names
+    assert {"bend", "slack", "kink"} not in names
+
+
+def test_no_threes_of_causes_that_are_one() -> None:
+    shapes = library()
+    shapes["twin"] = shapes["bend"] + 0.01 * shapes["ripple"]
+    model = FakeNested(shapes=shapes, hidden=9.0 * shapes["bend"], noise=noise(6))
+    at = linear(model)
+    found = best_threes(screen(at, model.effects), at.z, count=100)
+    names = [{at.candidates[k].effect for k in three} for three in found]
+    assert not any({"bend", "twin"} <= n for n in names)
+    assert len(names) == 20 - 4  # six effects in threes, less those of both with one of the others
+
+
 def test_no_pairs_of_one_candidate() -> None:
     one = Screen(
         candidates=(Candidate(effect="bend"),),
@@ -165,3 +199,4 @@ def test_no_pairs_of_one_candidate() -> None:
         free=np.zeros((72, 0)),
     )
     assert best_pairs(one, noise(7), count=3) == []
+    assert best_threes(one, noise(7), count=3) == []

@@ -103,6 +103,11 @@ def test_each_of_three_may_sit_elsewhere_than_in_the_pair() -> None:
     assert {c.label for c in best.candidates} == set(THREE)
 
 
+def test_three_others_than_the_pair_are_sought_too() -> None:
+    found, _ = beside(("slope", "ripple"), together(*THREE), 292)
+    assert min(found, key=lambda e: e.score).names == THREE
+
+
 def test_all_three_are_needed() -> None:
     """Of a pair of which one is wrong, a third makes it idle: these are two causes."""
     found, told = beside(("bend", "slope"), together("bend", "kink"), 290)
