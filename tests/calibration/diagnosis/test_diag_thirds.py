@@ -104,8 +104,10 @@ def test_each_of_three_may_sit_elsewhere_than_in_the_pair() -> None:
 
 
 def test_three_others_than_the_pair_are_sought_too() -> None:
-    found, _ = beside(("slope", "ripple"), together(*THREE), 292)
+    found, told = beside(("slope", "ripple"), together(*THREE), 292)
     assert min(found, key=lambda e: e.score).names == THREE
+    at_once = told[: next(k for k, t in enumerate(told) if t.startswith("looking for what would do"))]
+    assert any(set(t.removeprefix("confirming ").split(" + ")) == set(THREE) for t in at_once)
 
 
 def test_all_three_are_needed() -> None:
