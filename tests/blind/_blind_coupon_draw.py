@@ -50,10 +50,13 @@ def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ..
     chosen = [str(m) for m in rng.choice(modes, number, replace=False)]
     if "platen-friction" in names and "compression" not in chosen:
         chosen[0] = "compression"
+    pressed = chosen.index("compression") if "platen-friction" in names else None
     if "limited-extensibility" in names and not {"tension", "planar", "equibiaxial"} & set(chosen):
+        if pressed == 0:
+            chosen, pressed = ["", *chosen], 1
         chosen[0] = "tension"
     if "anisotropy" in names and set(chosen) <= {"tension", "compression"}:
-        chosen[-1] = "equibiaxial"
+        chosen[0 if pressed == len(chosen) - 1 else -1] = "equibiaxial"
     turns = int(rng.choice([0, 1, 3], p=[0.6, 0.25, 0.15]))
     if "hysteresis" in names:
         turns = max(turns, 1)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from _blind_coupon_case import Hidden, Protocol
+from _blind_coupon_case import LIBRARY, Hidden, Protocol
 from _blind_coupon_curve import curve
-from _blind_coupon_draw import make_coupon
+from _blind_coupon_draw import _protocols, make_coupon
 from _blind_coupon_file import write
 from _blind_coupon_law import Solid
 from _blind_coupon_verdict import verdict_on
@@ -52,6 +53,31 @@ def test_clean_coupons_seldom_have_a_cause(tmp_path: Path) -> None:
 def test_what_is_outside_the_library_has_no_name(tmp_path: Path) -> None:
     _, verdict = told(tmp_path, 31, "outside", "wavy-gauge")
     assert verdict["verdict"] == "unexplained"
+
+
+def test_three_causes_at_once(tmp_path: Path) -> None:
+    """Of six as they are drawn at 25 sigmas; some that are hidden look like two others by themselves."""
+    pairs = []
+    for seed in range(41, 47):
+        case = make_coupon(seed, "three", target=25.0)
+        write(case, tmp_path / str(seed))
+        pairs.append((case.truth(), verdict_on(tmp_path / str(seed))))
+    assert sum(true_names(t) in named_set(v) for t, v in pairs) >= 4
+    sure = [(t, v) for t, v in pairs if v["verdict"] == "found" and len(named(v)) == 3]
+    assert sure
+    assert all(named(v) == true_names(t) for t, v in sure)
+
+
+@pytest.mark.parametrize("names", list(combinations(LIBRARY, 3)))
+def test_a_protocol_has_what_its_causes_need(names: tuple[str, ...]) -> None:
+    for seed in range(5):
+        made = _protocols(np.random.default_rng(seed), list(names))
+        if "platen-friction" in names:
+            assert any(p.top < 1.0 for p in made)
+        if "anisotropy" in names:
+            assert {p.mode for p in made} != {"uniaxial"}
+        if "limited-extensibility" in names:
+            assert any(p.mode in ("planar", "equibiaxial") or p.top > 1.0 for p in made)
 
 
 def test_no_truth_in_the_folder(tmp_path: Path) -> None:
