@@ -96,7 +96,9 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
 
     if chance > rules.alarm and departure.p >= rules.unlike:
         return finding("none", singles, False)
-    if chance <= rules.alarm:
+    if rules.most < 2:
+        pairs = []
+    elif chance <= rules.alarm:
         tell(f"looking for a second cause beside {singles[0].fit.reports()}")
         pairs = with_second(model, singles[0], screened, linear.columns, null, rules, tell)
     else:
