@@ -52,6 +52,10 @@ class Nested(Protocol):
     @property
     def effects(self) -> Mapping[str, Effect]: ...
 
+    @property
+    def most_causes(self) -> int:
+        """That may be named together: more could stand in for a cause that is not in the catalogue."""
+
     def start(self) -> Array:
         """Coordinates to begin the baseline's fit from. ValueError where there are none."""
 

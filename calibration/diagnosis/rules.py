@@ -14,8 +14,8 @@ class Rules:
     unlike: chance below which what a fit leaves of the residuals counts as unexplained.
     within: of chi-square: what explains the data nearly as well as the best is a rival.
     shortlist: effects that are confirmed in the simulator; pairs: pairs of them.
-    most: causes that are named together; beside: pairs that a third is looked for beside, and how many thirds
-    of each are confirmed.
+    most: causes that are named together, where the model allows as many. beside: pairs that a third is looked
+    for beside, and how many thirds of each are confirmed.
     seed: of the bootstrap.
     """
 

@@ -96,7 +96,8 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
 
     if chance > rules.alarm and departure.p >= rules.unlike:
         return finding("none", singles, False)
-    if rules.most < 2:
+    most = min(rules.most, model.most_causes)
+    if most < 2:
         pairs = []
     elif chance <= rules.alarm:
         tell(f"looking for a second cause beside {singles[0].fit.reports()}")
@@ -107,7 +108,7 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
     where = set(moved.values())
     pairs, again = _placed(model, pairs, _loose(pairs, where)[:PLACED], null, tell)
     both = sorted(singles + pairs, key=lambda e: e.score)
-    if rules.most > 2 and pairs and both[0] in pairs:
+    if most > 2 and pairs and both[0] in pairs:
         three = with_third(model, pairs, null, rules, tell)
         three, _ = _placed(model, three, _loose(three, where | set(again.values()))[:PLACED], null, tell)
         both = sorted(both + three, key=lambda e: e.score)

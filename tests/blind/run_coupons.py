@@ -17,7 +17,7 @@ from _blind_coupon_file import write
 from _blind_coupon_verdict import verdict_on
 from _blind_record_case import draw_several
 from _blind_record_run import diagnosed, parser, show
-from _blind_record_score import Pair, named, part, true_names
+from _blind_record_score import Pair, named, named_set, part, true_names
 
 # each trial once more, in another way
 SAME_TESTS = ("further", "twice", "to-the-end", "unload", "second-cycle", "faster")
@@ -56,9 +56,30 @@ def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | 
     return found
 
 
+def without_truth(pairs: list[Pair], cases: list[Case]) -> list[Pair]:
+    """(truth with what was said of it, verdict without the true effect in the catalogue), cases of one."""
+    found: list[Pair] = []
+    for (truth, said), case in zip(pairs, cases, strict=True):
+        if case.kind == "one":
+            with tempfile.TemporaryDirectory() as place:
+                write(case, Path(place) / "experiment")
+                then = verdict_on(Path(place) / "experiment", without=true_names(truth))
+            found.append(({**truth, "said": said}, then))
+    return found
+
+
+def show_without(pairs: list[Pair]) -> None:
+    """How often what is not in the catalogue is unexplained, or said to be what it could not be told from."""
+    right = [v["verdict"] == "unexplained" or named(v) in named_set(t["said"]) for t, v in pairs]
+    alone = [v["verdict"] == "found" and not ok for (_, v), ok in zip(pairs, right, strict=True)]
+    print(f"{'truth not in the library: unexplained or a listed rival':60} goal {'all':12} {part(right)}")
+    print(f"{'truth not in the library: another name, alone':60} goal {'0':12} {part(alone)}")
+
+
 def main() -> None:
     options = parser(__doc__)
     options.add_argument("--settle", action="store_true", help="simulate the experiments that are advised")
+    options.add_argument("--without-truth", action="store_true", help="once more without the true effect")
     asked = options.parse_args()
     if asked.together:
         cases = draw_several(asked.cases, asked.seed, make_coupon, asked.together)
@@ -66,6 +87,8 @@ def main() -> None:
         return
     pairs = run(asked.cases, asked.seed)
     show(pairs, asked.out)
+    if asked.without_truth:
+        show_without(without_truth(pairs, draw_cases(asked.cases, asked.seed)))
     if asked.settle:
         settled = settle(pairs, draw_cases(asked.cases, asked.seed))
         for cause, name, right in settled:

@@ -57,6 +57,8 @@ class BarModel:
     InputError where there is no bar with markers, or where one lacks something.
     """
 
+    most_causes = 3
+
     def __init__(
         self,
         experiment: Experiment,

@@ -53,6 +53,9 @@ class BeamModel:
     InputError where no beam was traced, or where a density is missing.
     """
 
+    # three stand in for an axial gradient of 16 sigmas: a gap at the clamps, an image scale and a radius
+    most_causes = 2
+
     def __init__(
         self,
         experiment: Experiment,

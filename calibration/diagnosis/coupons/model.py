@@ -43,6 +43,8 @@ class CouponModel:
     InputError where there is no coupon; ValueError where the law is unknown.
     """
 
+    most_causes = 3
+
     def __init__(
         self,
         experiment: Experiment,

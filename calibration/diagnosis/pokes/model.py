@@ -53,6 +53,8 @@ class PokeModel:
     ValueError where one has no answer.
     """
 
+    most_causes = 3
+
     def __init__(
         self, experiment: Experiment, *, without: Sequence[str] = (), workers: int | None = None
     ) -> None:

@@ -100,6 +100,7 @@ class FakeNested:
     shared: bool = False  # one modulus for both materials
     no_answer: Callable[[State], bool] = lambda _: False
     split: Mapping[str, Sequence[NDArray[np.bool_]]] | None = None
+    most_causes: int = 3
 
     def __post_init__(self) -> None:
         self.effects = {n: effect(n) for n in self.shapes} | dict(self.effects)

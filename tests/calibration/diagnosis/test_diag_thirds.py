@@ -37,9 +37,13 @@ def test_three_causes_are_found_together(names: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("most", [1, 2])
 def test_no_more_than_asked_for_are_named(most: int) -> None:
-    found = search(FakeNested(hidden=together(*THREE), noise=noise(201)), rules=Rules(most=most))
-    assert found.verdict == "unexplained"
-    assert max(len(e.names) for e in found.explanations) == most
+    hidden = together(*THREE)
+    for found in (
+        search(FakeNested(hidden=hidden, noise=noise(201)), rules=Rules(most=most)),
+        search(FakeNested(hidden=hidden, noise=noise(201), most_causes=most)),
+    ):
+        assert found.verdict == "unexplained"
+        assert max(len(e.names) for e in found.explanations) == most
 
 
 def test_two_causes_are_not_made_three() -> None:
