@@ -36,6 +36,8 @@ class LinearModel:
     """z = offset + A u + sum of amplitudes times columns. `twin` points nearly where `bend` does, nothing
     points where `blind` should."""
 
+    most_causes = 3
+
     def __init__(self, kind: Kind, *, place: str = "S0") -> None:
         draws = np.random.default_rng(5)
         basis, _ = np.linalg.qr(draws.standard_normal((ROWS, 8)))
