@@ -17,7 +17,7 @@ from calibration.diagnosis.null import Departure, Null
 from calibration.diagnosis.places import settled
 from calibration.diagnosis.rules import Rules, Tell
 from calibration.diagnosis.screening import Screen, screen
-from calibration.diagnosis.several import hidden, with_second
+from calibration.diagnosis.several import hiding_each_other, with_second
 from calibration.diagnosis.thirds import with_third
 
 Array = NDArray[np.float64]
@@ -104,13 +104,13 @@ def search(model: Nested, *, rules: Rules | None = None, tell: Tell = lambda _: 
         pairs = with_second(model, singles[0], screened, linear.columns, null, rules, tell)
     else:
         tell("looking for two causes that hide each other")
-        pairs = hidden(model, baseline, screened, linear, null, rules, tell)
+        pairs = hiding_each_other(model, baseline, screened, linear, null, rules, tell)
     where = set(moved.values())
-    pairs, again = _placed(model, pairs, _loose(pairs, where)[:PLACED], null, tell)
+    pairs, again = _placed(model, pairs, _unsettled(pairs, where)[:PLACED], null, tell)
     both = sorted(singles + pairs, key=lambda e: e.score)
     if most > 2 and pairs and both[0] in pairs:
         three = with_third(model, pairs, null, rules, tell)
-        three, _ = _placed(model, three, _loose(three, where | set(again.values()))[:PLACED], null, tell)
+        three, _ = _placed(model, three, _unsettled(three, where | set(again.values()))[:PLACED], null, tell)
         both = sorted(both + three, key=lambda e: e.score)
     if (chance > rules.alarm and not pairs) or both[0].departure.p < rules.unlike:
         return finding("unexplained", both, False)
@@ -133,7 +133,7 @@ def calibrated(model: Nested) -> Fit:
     return found
 
 
-def _loose(explanations: Sequence[Explanation], where: Collection[Candidate]) -> list[Explanation]:
+def _unsettled(explanations: Sequence[Explanation], where: Collection[Candidate]) -> list[Explanation]:
     """Those with a cause that has not been moved to where it sits, best first."""
     some = [e for e in explanations if any(c.place is not None and c not in where for c in e.candidates)]
     return sorted(some, key=lambda e: e.score)

@@ -57,7 +57,7 @@ def with_second(
     return _pairs(model, best.fit, screen(linear, model.effects), linear.columns, target, null, rules, tell)
 
 
-def hidden(
+def hiding_each_other(
     model: Nested,
     baseline: Fit,
     screened: Screen,

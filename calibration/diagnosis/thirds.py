@@ -1,4 +1,5 @@
-"""Three causes at once: looked for only where no pair explains the data."""
+"""Three causes at once: looked for only where two are better than one, and one more gains what noise would
+not."""
 
 from __future__ import annotations
 
@@ -21,29 +22,30 @@ from calibration.diagnosis.several import all_there
 Array = NDArray[np.float64]
 
 HOPELESS, FAR = 0.35, 40.0  # a stand-in that promises less than this part, and so much less, is not fitted
+STAND_INS = 2  # of other effects that are fitted in the place of each of three
 ROUNDS = 3  # of stand-ins, each beside the best three that there are
 
 
 def with_third(
     model: Nested, pairs: Sequence[Explanation], null: Null, rules: Rules, tell: Tell
 ) -> list[Explanation]:
-    """Three causes, beside the best pairs, where none of these explains the data: one more that gains what
-    noise would not, and of which all three are needed. Then others are tried in the place of each, so that a
-    name that would do as well is not left out."""
-    search = _Search(model, null, rules, tell)
+    """Sets of three of which all are needed: one more beside the best pairs, where it gains what noise would
+    not, or three others that promise more. Then others are tried in the place of each, so that a name that
+    would do as well is not left out."""
+    threes = _Threes(model, null, rules, tell)
     beside: list[Names] = []
     for pair in sorted(pairs, key=lambda e: e.score):
         if pair.names not in beside and len(beside) < rules.beside[0]:
             beside.append(pair.names)
-            search.add_to(pair)
+            threes.add_to(pair)
     for _ in range(ROUNDS):
-        best = min(search.found, key=lambda e: e.score, default=None)
-        if best is None or not search.replace_in(best):
+        best = min(threes.found, key=lambda e: e.score, default=None)
+        if best is None or not threes.replace_in(best):
             break
-    return search.found
+    return threes.found
 
 
-class _Search:
+class _Threes:
     """What has been tried of three causes, and what was found. found: sets of which all three are needed."""
 
     def __init__(self, model: Nested, null: Null, rules: Rules, tell: Tell) -> None:
@@ -96,7 +98,7 @@ class _Search:
             same = np.array([c.effect == out.effect for c in beside.candidates], dtype=bool)
             promises[promises < np.where(same, own, min(HOPELESS * own, own - FAR))] = 0.0
             guesses = beside.amplitudes(target)
-            for j in _best_of_each(beside, promises, self.rules.beside[0]):
+            for j in _best_of_each(beside, promises, STAND_INS):
                 others = {c: a for c, a in three.fit.state.amplitudes.items() if c != out}
                 self._confirm(three, {**others, beside.candidates[j]: float(guesses[j])})
         return min(e.score for e in self.found) < best
