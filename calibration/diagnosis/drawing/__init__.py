@@ -9,7 +9,7 @@ from calibration.diagnosis.drawing._curves import (
     shown_explanation,
 )
 from calibration.diagnosis.drawing._domain import Figure, noise_of, pictures_of
-from calibration.diagnosis.drawing._labels import label
+from calibration.diagnosis.drawing._labels import label, label_of_causes
 from calibration.diagnosis.drawing._panels import dots, draw_rms, legend, panels, titled
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "dots",
     "draw_rms",
     "label",
+    "label_of_causes",
     "legend",
     "legend_of",
     "missing",

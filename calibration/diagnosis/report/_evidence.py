@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from calibration.diagnosis.drawing import label
+from calibration.diagnosis.drawing import label_of_causes
 from calibration.diagnosis.explanation import Explanation
 from calibration.diagnosis.report._words import HEADLINE
 from calibration.diagnosis.search import Finding, Rules
@@ -119,6 +119,8 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
     for tick, b in zip(axes.get_yticklabels(), shown, strict=True):
         tick.set_fontweight("bold" if b.named else "normal")
         tick.set_color(NAMED if b.named else INK)
+        tick.set_linespacing(0.95)
+        tick.set_fontsize(tick.get_fontsize() if tick.get_text().count("\n") < 2 else 6.0)
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xlim(0.0, 1.12 * max(float(drawn.max(initial=0.0)), float(np.sqrt(noise.threshold(RARE)))))
     axes.set_title("Is anything there?", fontsize=10, loc="left", fontweight="bold")
@@ -147,7 +149,7 @@ def _behind(axes: Any, shown: Sequence[Bar]) -> None:
 
 
 def _named(b: Bar) -> str:
-    return label(b.name) + ("" if b.converged else " (not converged)")
+    return label_of_causes(b.name) + ("" if b.converged else " (not converged)")
 
 
 CLEAR = {"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85}

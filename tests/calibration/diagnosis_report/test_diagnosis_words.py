@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from diagnosis_cases import diagnosis
 
-from calibration.diagnosis.drawing import label
+from calibration.diagnosis.drawing import label, label_of_causes
 from calibration.diagnosis.report._evidence import bars
 from calibration.diagnosis.report._units import quantity_and_unit
 
@@ -61,6 +61,16 @@ def test_what_was_only_screened_has_its_gain_to_first_order() -> None:
     for e in made.finding.explanations:
         gain = made.finding.baseline.chi2 - e.fit.chi2
         assert linear[e.fit.reports()] == pytest.approx(gain, abs=1e-6)
+
+
+def test_causes_go_on_in_another_line_and_none_is_left_out() -> None:
+    assert label_of_causes("creep + skin") == "creep + skin"
+    three = "hysteresis of M0 + strain-offset of M1-equibiaxial + limited-extensibility of M0"
+    shown = label_of_causes(three)
+    assert shown == "hysteresis of M0 + strain-offset of M1-equibiaxial +\nlimited-extensibility of M0"
+    long = label_of_causes(f"creep + {'a' * 90} + skin").split("\n")
+    assert [line[0] for line in long] == ["c", "a", "s"]
+    assert max(len(line) for line in long) == 54 + len(" +")
 
 
 def test_labels_are_short_and_no_mathematics() -> None:
