@@ -1,8 +1,8 @@
 """Deflection errors of static beams against references/beams.json; prints a table.
 
-    python benchmarks/accuracy_beams.py                      # the default beams, the whole table: 10 s
-    python benchmarks/accuracy_beams.py --element tet4 --mesh paper   # as the paper's 7,257 nodes: 3 min
-    python benchmarks/accuracy_beams.py --element hex8 --mesh fine
+    python -m benchmarks.accuracy_beams                      # the default beams, the whole table: 10 s
+    python -m benchmarks.accuracy_beams --element tet4 --mesh paper   # as the paper's 7,257 nodes: 3 min
+    python -m benchmarks.accuracy_beams --element hex8 --mesh fine
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -23,8 +23,8 @@ from typing import Any
 
 import numpy as np
 
-from tisim._beam import solve_beam
-from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS
+from tisim.mesh import PAPER_LAYER, PAPER_RINGS
+from tisim.problems.beam.solve import solve_beam
 from tisim.scene import Beam, Material
 
 FILE = Path(__file__).parent / "references" / "beams.json"
@@ -70,8 +70,8 @@ def rows(element: Any, mesh: str, only: list[str] | None) -> Iterator[Row]:
             length=length,
             supports="clamped-clamped" if bridge else "clamped-free",
             element=element,
-            rings=rings,
-            layer=layer,
+            radial_elements=rings,
+            axial_element_size=layer,
         )
         result = solve_beam(scene)
         rest = result.mesh.nodes

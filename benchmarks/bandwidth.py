@@ -1,7 +1,7 @@
 """Share of the memory-bandwidth and arithmetic limits that a poke's two big kernels reach; prints a table.
 
-    python benchmarks/bandwidth.py                # the default poke mesh: 20 s
-    python benchmarks/bandwidth.py --refinement 1.5
+    python -m benchmarks.bandwidth                # the default poke mesh: 20 s
+    python -m benchmarks.bandwidth --refinement 1.5
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -26,10 +26,10 @@ from collections.abc import Callable
 import numpy as np
 
 import tisim
-from tisim._body import Layout
-from tisim._pardiso import Pardiso
-from tisim._poke_system import PokeSystem
-from tisim.mesh.poke_block import poke_mesh
+from tisim.discretisation.body import Discretisation
+from tisim.linear.pardiso import Pardiso
+from tisim.mesh import poke_mesh
+from tisim.problems.indentation.system import PokeSystem
 
 LAW_OPERATIONS = 1100  # invariants, cofactors, 45 entries of the tangent by outer products, its mirror
 
@@ -87,7 +87,8 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=7)
     args = parser.parse_args()
     scene = tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3), refinement=args.refinement
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
+        refinement=args.refinement,
     )
     mesh = poke_mesh(
         block=scene.block,
@@ -96,9 +97,9 @@ def main() -> None:
         rod=scene.rod,
         refinement=args.refinement,
     )
-    layout = Layout.build(mesh, mesh.node_sets["base"])
-    system = PokeSystem(scene, layout)
-    body, pattern = system.body, layout.pattern
+    discretisation = Discretisation.build(mesh, mesh.node_sets["base"])
+    system = PokeSystem(scene, discretisation)
+    body, pattern = system.body, discretisation.pattern
     blocks = body.stiffness(mesh.nodes)[0]
     factor = Pardiso(pattern.indptr, pattern.indices, single=True)
     factor._iparm[17] = -1  # asks for the entries of the factor
@@ -112,7 +113,7 @@ def main() -> None:
     # PARDISO counts 3 x 3 blocks: the memory it says it holds bears that out
     entries, held = 9 * int(factor._iparm[17]), 1024 * int(factor._iparm[16])
     factor_bytes = 4.0 * entries
-    ref = layout.reference
+    ref = discretisation.reference
     elements, points, nodes, _ = ref.gradients.shape
     inputs = (ref.gradients, ref.weights, mesh.elements, pattern.slot, mesh.nodes)
     assembly_bytes = float(sum(a.nbytes for a in inputs) + 2 * blocks.nbytes)

@@ -1,7 +1,7 @@
 """What a candidate and a calibration cost, by law, beside CalculiX at equal error.
 
     python -m calibration.fit EXPERIMENT --model all --out FITS
-    python benchmarks/calibration_cost.py EXPERIMENT FITS [--no-peers]
+    python -m benchmarks.calibration_cost EXPERIMENT FITS [--no-peers]
 
 EXPERIMENT: beams of 50 and 100 mm and a 150 mm bridge, as in measured/bench/clean. Set OMP_NUM_THREADS,
 MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1; CalculiX (`ccx`) is the peer. A candidate: all beams of one
@@ -15,20 +15,19 @@ from __future__ import annotations
 import argparse
 import json
 import statistics
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
-from static_beams import CASES, LAWS, QUADRATIC, SECTION, TABLE, beam, error, our_error
 
 import tisim
+from benchmarks.static_beams import CASES, LAWS, QUADRATIC, SECTION, TABLE, beam, error, our_error
 from calibration.experiment import read
-from calibration.outlines import COARSE
+from calibration.inference import Problem
+from calibration.measurements.outlines import COARSE
 from calibration.parameters import parametrisation
-from calibration.search import Problem
 from calibration.study import measurements
-from tisim.mesh.beam import beam_mesh
+from tisim.mesh import beam_mesh
 
 MODULUS = 40e3
 
@@ -36,12 +35,10 @@ MODULUS = 40e3
 def candidate(experiment: Path, material: str, law: str, repeats: int = 5) -> float:
     """Core seconds of one candidate."""
     p = parametrisation(law)
-    data = measurements(read(experiment), material, workers=1)
-    assert data.outlines is not None
-    data.outlines.reference = None
+    data = measurements(read(experiment), material, p, workers=1)
     problem = Problem(parametrisation=p, objectives=data.objectives)
     start = p.start(shear=MODULUS)
-    if not problem.linearise(start):
+    if not problem.linearise(start, rough=True):
         return float("nan")
     rng = np.random.default_rng(0)
     seconds = []
@@ -63,8 +60,7 @@ def our_worst_error() -> float:
 
 def calculix_three() -> tuple[float, float]:
     """Core seconds of the three beams and their worst error [%]."""
-    sys.path.insert(0, str(Path(__file__).parent / "peers"))
-    import calculix
+    from benchmarks.peers import calculix
 
     rings, layer = QUADRATIC
     seconds, errors = 0.0, []
@@ -74,8 +70,8 @@ def calculix_three() -> tuple[float, float]:
         mesh = beam_mesh(
             length=float(length) / 1e3,
             section=SECTION,
-            rings=rings,
-            layer=layer,
+            radial_elements=rings,
+            axial_element_size=layer,
             mirror=True,
             supports="clamped-clamped" if bridge else "clamped-free",
         )

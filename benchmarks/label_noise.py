@@ -1,8 +1,8 @@
 """How far the simulator agrees with itself on other meshes: below this no surrogate is to blame.
 
-    python benchmarks/label_noise.py --out runs/noise                # 22 pokes on 3 meshes each: 15 to 20 min
-    python benchmarks/label_noise.py --out runs/noise --pokes 44
-    python benchmarks/label_noise.py --out runs/fine --refinements 1.0 1.5 --pokes 6
+    python -m benchmarks.label_noise --out runs/noise                # 22 pokes on 3 meshes each: 15 to 20 min
+    python -m benchmarks.label_noise --out runs/noise --pokes 44
+    python -m benchmarks.label_noise --out runs/fine --refinements 1.0 1.5 --pokes 6
 
 Pokes of a recipe, spread evenly over its shapes, are meshed anew and solved at each refinement. The first is
 what the dataset holds; the others are compared with it, frame by frame, on the 32 x 32 grid: mean and largest
@@ -28,8 +28,8 @@ from rich.progress import track
 from rich.table import Table
 
 import tisim
-from factory._grid import SIZE, grid_points, interpolation
 from factory._record import first_touch
+from factory._sampling import SIZE, grid_points, interpolation
 from factory.plan import PlannedPoke, make_plan
 from factory.recipe import load_recipe
 

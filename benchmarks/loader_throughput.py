@@ -1,6 +1,6 @@
 """How fast learn's loaders read the dataset's displacement, for several layouts, beside a NumPy memmap.
 
-    python benchmarks/loader_throughput.py [--frames 14000]
+    python -m benchmarks.loader_throughput [--frames 14000]
 
 Fields as smooth as simulated ones (decaying from random sites, float32) are written in the dataset's format;
 each layout is read for three epochs in random order in batches of 64. Medians; the file cache is warm.
@@ -19,9 +19,9 @@ from rich.console import Console
 from rich.table import Table
 from zarr.codecs import BloscCodec, BloscShuffle
 
-from learn._throughput import loader_rates
+from learn.benchmark import loader_rates
 from learn.data import Store
-from learn.data._source import group_here
+from learn.data._files import group_here
 
 # name, frames a chunk, frames a shard, codec of Blosc (None: uncompressed), shuffle
 LAYOUTS: list[tuple[str, int, int, str | None, str]] = [

@@ -1,8 +1,8 @@
 """What a poke costs, where the time goes, and how good its force is; prints a table.
 
-    python benchmarks/pokes.py                       # to 10 mm at 0 and 45 degrees, 3,500 nodes: 1 to 2 min
-    python benchmarks/pokes.py --fine                # refinement 1.5, 11,300 nodes, as well
-    python benchmarks/pokes.py --deep --repeats 1    # to 20 mm as well
+    python -m benchmarks.pokes                       # to 10 mm at 0 and 45 degrees, 3,500 nodes: 1 to 2 min
+    python -m benchmarks.pokes --fine                # refinement 1.5, 11,300 nodes, as well
+    python -m benchmarks.pokes --deep --repeats 1    # to 20 mm as well
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -32,7 +32,7 @@ from pathlib import Path
 import numpy as np
 
 import tisim
-from tisim._poke import solve_poke
+from tisim.problems.indentation.solve import solve_poke
 
 FILE = Path(__file__).parent / "references" / "poke.json"
 GOALS = {10: 3.0, 20: 10.0}  # depth [mm]: core seconds
@@ -51,7 +51,7 @@ def poke(angle: float, depth: float, refinement: float, side: float = 0.100) -> 
     """The scene; angle from the normal [degrees], depth and side of the block [m]."""
     tilt = math.radians(angle)
     return tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         block=tisim.Block(size=(side, side, 0.032)),
         direction=(math.sin(tilt), 0.0, -math.cos(tilt)),
         depth=depth,

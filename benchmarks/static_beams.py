@@ -1,7 +1,7 @@
 """Static beams at equal error against CalculiX and FElupe; prints tables of ratios and the goals.
 
-    python benchmarks/static_beams.py                # all of it: 3 to 4 min
-    python benchmarks/static_beams.py --no-peers     # ours alone: 20 s
+    python -m benchmarks.static_beams                # all of it: 3 to 4 min
+    python -m benchmarks.static_beams --no-peers     # ours alone: 20 s
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1. Needs `ccx` and the extra `bench`.
 
@@ -24,15 +24,14 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from accuracy_beams import FILE, material
 
 import tisim
-from tisim._beam_system import _own_layout, _structured_layout
-from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, beam_mesh
+from benchmarks.accuracy_beams import FILE, material
+from tisim.mesh import PAPER_LAYER, PAPER_RINGS, beam_mesh
+from tisim.problems.beam.system import _own_discretisation, _structured_discretisation
 
 Array = np.ndarray[Any, Any]
 TABLE = {(e["case"], e["set"], e["G"]): e for e in json.loads(FILE.read_text())["beams"]}
@@ -96,8 +95,8 @@ def ours(scene: tisim.Beam, law: str, repeats: int, *, warm: bool) -> Timed:
     result = tisim.simulate([scene], workers=1)[0]
     for _ in range(repeats):
         if not warm:
-            _structured_layout.cache_clear()
-            _own_layout.cache_clear()
+            _structured_discretisation.cache_clear()
+            _own_discretisation.cache_clear()
         start = time.process_time()
         result = tisim.simulate([scene], workers=1)[0]
         seconds.append(time.process_time() - start)
@@ -118,7 +117,10 @@ def fresh_process(law: str, repeats: int) -> dict[str, float]:
     found = []
     for _ in range(repeats + 1):
         out = subprocess.run(
-            [sys.executable, __file__, "--fresh", law], capture_output=True, text=True, check=True
+            [sys.executable, "-m", "benchmarks.static_beams", "--fresh", law],
+            capture_output=True,
+            text=True,
+            check=True,
         )
         found.append(json.loads(out.stdout.splitlines()[-1]))
     return {k: statistics.median(f[k] for f in found[1:]) for k in found[0]}
@@ -126,7 +128,7 @@ def fresh_process(law: str, repeats: int) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Batch:
-    """A batch of 48: core-seconds a beam (solve, mesh and layout), wall of all of it, worst error [%]."""
+    """A batch of 48: core-seconds a beam (solve; mesh and sparsity), wall of all of it, worst error [%]."""
 
     solve: float
     mesh: float
@@ -145,7 +147,7 @@ def batch(law: str, repeats: int) -> Batch:
     solve, mesh, process, wall = [], [], [], []
     results: list[tisim.Result] = []
     for _ in range(repeats):
-        _structured_layout.cache_clear()
+        _structured_discretisation.cache_clear()
         start = time.process_time()
         results = tisim.simulate(scenes, workers=1)
         process.append((time.process_time() - start) / len(scenes))
@@ -181,7 +183,7 @@ def peer(run: Callable[[], Any], law: str, points: Array) -> Timed:
 
 def calculix_run(law: str, mesh: tisim.Mesh) -> Callable[[], Any]:
     """CalculiX on this mesh."""
-    import calculix
+    from benchmarks.peers import calculix
 
     entry = TABLE[ALONE[0], LAWS[law], ALONE[1]]
     p = {k: v for k, v in entry["parameters"].items() if k not in ("K", "lambda")}
@@ -194,7 +196,7 @@ def calculix_run(law: str, mesh: tisim.Mesh) -> Callable[[], Any]:
 
 def felupe_run(law: str, mesh: tisim.Mesh) -> Callable[[], Any]:
     """FElupe on this mesh."""
-    import felupe_beam
+    from benchmarks.peers import felupe_beam
 
     entry = TABLE[ALONE[0], LAWS[law], ALONE[1]]
     p = {k: v for k, v in entry["parameters"].items() if k not in ("K", "lambda")}
@@ -225,9 +227,14 @@ def main() -> None:
     if args.fresh:
         print(json.dumps(fresh(args.fresh)))
         return
-    sys.path.insert(0, str(Path(__file__).parent / "peers"))
     length = 0.1
-    paper = beam_mesh(length=length, section=SECTION, kind="tet4", rings=PAPER_RINGS, layer=PAPER_LAYER)
+    paper = beam_mesh(
+        length=length,
+        section=SECTION,
+        kind="tet4",
+        radial_elements=PAPER_RINGS,
+        axial_element_size=PAPER_LAYER,
+    )
     head = f"{'':47s} {'nodes':>9s} {'error %':>8s} {'core s':>9s}"
 
     print("1. a batch of 48 beams: 16 shear moduli (9 to 100 kPa) x 50, 100 mm cantilever, 150 mm bridge")
@@ -257,7 +264,12 @@ def main() -> None:
         if args.no_peers:
             continue
         rings, layer = QUADRATIC
-        size: dict[str, Any] = {"length": length, "section": SECTION, "rings": rings, "layer": layer}
+        size: dict[str, Any] = {
+            "length": length,
+            "section": SECTION,
+            "radial_elements": rings,
+            "axial_element_size": layer,
+        }
         whole, half = beam_mesh(**size), beam_mesh(**size, mirror=True)
         runs = [
             ("CalculiX C3D4, the paper's fineness", calculix_run(law, paper), paper),

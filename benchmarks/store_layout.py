@@ -1,6 +1,6 @@
 """Chunks, shards and codecs for the dataset's biggest array, measured side by side.
 
-    python benchmarks/store_layout.py [--frames 3072] [--repeats 3]
+    python -m benchmarks.store_layout [--frames 3072] [--repeats 3]
 
 The array is `grid_displacement` (frame, 32, 32, 3) in float32, filled with decaying fields of random
 pokes, so that it compresses as the real one does. For each layout: write, size on disk, a training batch

@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
-from calibration._command import plain_ends
-from calibration.diagnosis import KINDS, SIMULATORS, Diagnosis, Rules, diagnose, model_of
-from calibration.diagnosis.card import write_cards
-from calibration.diagnosis.report import write_report
+from calibration.cli import Measured, Seed, Version, Workers, command, names_in, plain_ends
 from calibration.errors import InputError
-from calibration.experiment import read
 
-app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+if TYPE_CHECKING:
+    from calibration.progress import Progress
+    from calibration.results import DiagnosisResult
+
+app = command()
 
 EXAMPLES = """
 [bold]Examples[/bold]
 
 Beams photographed by a lab: verdict, report.html, pictures, cards and diagnosis.json
 
-  python -m calibration.diagnose measured/bench/creeps --out diagnoses/creeps
+  python -m calibration.diagnose datasets/measured/bench/creeps --out diagnoses/creeps
 
 Would another cause have done as well? Take the named one out of the catalogue:
 
-  python -m calibration.diagnose measured/bench/creeps --without creep --out diagnoses/without-creep
+  python -m calibration.diagnose datasets/measured/bench/creeps --without creep --out diagnoses/without-creep
 
 Exit codes: 0 diagnosed (whatever the verdict), 1 the baseline did not converge, 2 bad input, 130 stopped.
 """
@@ -36,49 +36,57 @@ Exit codes: 0 diagnosed (whatever the verdict), 1 the baseline did not converge,
 
 @app.command(epilog=EXAMPLES)
 def main(
-    experiment: Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")],
+    experiment: Measured,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results. Default: diagnoses/EXPERIMENT.")
     ] = None,
-    kind: Annotated[
-        str | None, typer.Option(help=f"{', '.join(KINDS)}: where the experiment has several.")
+    domain: Annotated[
+        str | None,
+        typer.Option(
+            "--domain",
+            "--kind",
+            help="Kind of measurement, where the experiment has several: outlines, indentation, homogeneous,"
+            " compression or release.",
+        ),
     ] = None,
     without: Annotated[str, typer.Option(help="Effects to leave out of the catalogue, by commas.")] = "",
     simulator: Annotated[
-        str, typer.Option(help=f"Whose faults are looked for as well: {', '.join(SIMULATORS)}.")
+        str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
     ] = "ours",
-    gain: Annotated[bool, typer.Option(help="Measure the gain on held-out data.")] = True,
-    seed: Annotated[int, typer.Option(help="Seed of the bootstrap.")] = 0,
-    workers: Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)] = None,
+    gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
+    seed: Seed = 0,
+    workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
+    version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Find what the simulation of an experiment gets wrong: name the cause, or say why not."""
+    """Find what the simulation of an experiment lacks: name the cause, or say why not."""
     console = Console()
     with plain_ends():
-        data = read(experiment)
+        from calibration import api
+
         folder = out or Path("diagnoses") / experiment.resolve().name
+        data = api.read_experiment(experiment)
         _check_folder(folder, overwrite)
-        left_out = [n.strip() for n in without.split(",") if n.strip()]
-        model = model_of(data, kind=kind, without=left_out, simulator=simulator, workers=workers)
         begun = time.monotonic()
 
-        def tell(what: str) -> None:
-            console.print(f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {what}")
+        def show(progress: Progress) -> None:
+            console.print(
+                f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {escape(str(progress))}", highlight=False
+            )
 
-        try:
-            found = diagnose(model, rules=Rules(seed=seed), gain=gain, tell=tell)
-        except ValueError as error:  # no equilibrium of the baseline anywhere
-            raise InputError(f"{experiment}: the baseline cannot be calibrated: {error}") from error
-        folder.mkdir(parents=True, exist_ok=True)
-        write_report(found, model, folder, title=data.name)
-        write_cards(folder / "cards", found, data)
-        # last, and in one piece: a folder with a diagnosis.json is complete
-        part = folder / "diagnosis.json.part"
-        text = json.dumps(found.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
-        part.write_text(text + "\n", encoding="utf-8")
-        part.replace(folder / "diagnosis.json")
-        _show(found, folder, console)
-    raise typer.Exit(0 if found.finding.baseline.converged else 1)
+        found = api.diagnose(
+            data,
+            domain=domain,
+            without=names_in(without),
+            simulator=simulator,
+            gain=gain,
+            seed=seed,
+            workers=workers,
+            on_progress=show,
+        )
+        report = found.write(folder)
+        _show(found, report, console)
+    raise typer.Exit(0 if found.baseline_converged else 1)
 
 
 def _check_folder(folder: Path, overwrite: bool) -> None:
@@ -88,17 +96,13 @@ def _check_folder(folder: Path, overwrite: bool) -> None:
         raise InputError(f"--out {folder}: holds a diagnosis already; add --overwrite to replace it")
 
 
-def _show(found: Diagnosis, folder: Path, console: Console) -> None:
+def _show(found: DiagnosisResult, report: Path, console: Console) -> None:
     console.print()
-    console.print(f"[bold]{found.sentence()}[/bold]")
-    for cause in found.causes():
-        for name, value in cause["parameters"].items():
-            console.print(
-                f"  {cause['effect']} ({cause['scope']}): {name} {value['value']:.4g} +- {value['sd']:.2g}"
-            )
-    if found.next_experiment:
-        console.print(f"Next: {found.next_experiment}.")
-    console.print(f"Report: {folder / 'report.html'}, {found.seconds:.0f} s")
+    first, *rest = repr(found).splitlines()
+    console.print(first, style="bold", markup=False, highlight=False, soft_wrap=True)
+    for line in rest:
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
+    console.print(f"Report: {report}, {found.diagnosis.seconds:.0f} s", markup=False, soft_wrap=True)
 
 
 if __name__ == "__main__":

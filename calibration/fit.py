@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
-from calibration._command import plain_ends
-from calibration._options import Laws, Measured, Workers, command, laws_in, names_in, processes
-from calibration._screen import FitScreen, law_table
-from calibration.diagnosis.rig import Rig, read_rig
-from calibration.errors import InputError
-from calibration.experiment import BeamTrial, Experiment, read
-from calibration.search import CmaOptions
-from calibration.study import (
-    Calibration,
-    FitOptions,
-    ObjectiveName,
-    OnSetup,
-    Task,
-    run,
-    stopped,
-    usable,
-    write_card,
+from calibration.cli import (
+    FitScreen,
+    Laws,
+    Measured,
+    Seed,
+    Version,
+    Workers,
+    command,
+    law_table,
+    names_in,
+    plain_ends,
 )
-from calibration.study.report import write_report
+
+if TYPE_CHECKING:
+    from calibration.results import Fits
 
 app = command()
 
@@ -37,27 +32,31 @@ EXAMPLES = """
 
 One law for every material of the experiment:
 
-  python -m calibration.fit measured/bench --model ogden
+  python -m calibration.fit datasets/measured/bench/clean --model ogden
 
 All six laws, a table that compares them, report.html and cards:
 
-  python -m calibration.fit measured/bench --model all --out calibrations/bench
+  python -m calibration.fit datasets/measured/bench/clean --model all --out calibrations/clean
 
-Two laws, one material, cards where factory.build looks for them:
+One law, one material, cards where factory.build looks for them:
 
-  python -m calibration.fit measured/bench --model neo-hookean,ogden --material S1 --cards datasets/materials
+  python -m calibration.fit datasets/measured/coupons --model ogden --material M1 --cards datasets/materials
+
+Relaxation and softening beside the law, from ramps, holds and cycles of homogeneous tests with a clock:
+
+  python -m calibration.fit EXPERIMENT --model ogden --time prony --damage mullins
 
 Corrected for what a diagnosis found in rig and camera:
 
-  python -m calibration.fit measured/bench --rig diagnoses/bench/cards/rig.yaml --out calibrations/bench-rig
+  python -m calibration.fit datasets/measured/bench/grips-short --rig diagnosed/cards/rig.yaml
 
 As the paper did it, by the overlap of bodies instead of the likelihood (no error bars):
 
-  python -m calibration.fit measured/bench --objective dice --out calibrations/bench-dice
+  python -m calibration.fit datasets/measured/bench/clean --objective dice --out calibrations/clean-dice
 
 Stopped or killed, the same command goes on where it was; what is known so far is written when it is stopped.
 
-Exit codes: 0 fitted, 1 some fit did not converge, 2 bad input, 130 stopped by Ctrl-C.
+Exit codes: 0 every fit converged, 1 some did not or lacks fit, 2 bad input, 130 stopped by Ctrl-C.
 """
 
 
@@ -69,6 +68,25 @@ def main(
         str | None, typer.Option(help="Materials, separated by commas. Default: all of the experiment.")
     ] = None,
     terms: Annotated[int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)] = 1,
+    time: Annotated[
+        str | None,
+        typer.Option(
+            help="Relaxation beside the law, from homogeneous tests with a column time_s: prony (the data"
+            " choose the number of terms), prony:1 to prony:3, or prony:spectrum (two stated times a decade)."
+            " Moduli are then long-time ones."
+        ),
+    ] = None,
+    damage: Annotated[
+        str | None,
+        typer.Option(help="Softening beside the law, from homogeneous tests that unload: mullins."),
+    ] = None,
+    fibres: Annotated[
+        bool,
+        typer.Option(
+            "--fibres",
+            help="One family of fibres beside the law, at the same angle in all homogeneous tests.",
+        ),
+    ] = False,
     objective: Annotated[
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
     ] = "likelihood",
@@ -82,7 +100,7 @@ def main(
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
     ] = None,
     cards: Annotated[Path | None, typer.Option(help="Folder of the cards. Default: OUT/cards.")] = None,
-    seed: Annotated[int, typer.Option(help="Seed of CMA-ES.")] = 1,
+    seed: Seed = 1,
     population: Annotated[
         int | None, typer.Option(help="Candidates a generation. Default: 4 + 3 ln n.", min=4)
     ] = None,
@@ -92,115 +110,64 @@ def main(
     held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = True,
     workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Start anew instead of going on.")] = False,
+    version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Fit constitutive laws to beams and coupons; writes fits, cards and report.html."""
+    """Fit constitutive laws to all measurements of an experiment; writes fits, cards and report.html."""
+    console = Console()
     with plain_ends():
-        data = read(experiment)
-        names = laws_in(model)
-        wanted = _materials(material, data)
-        minimised = _objective(objective)
-        setup = _rig(rig, data, minimised, wanted)
-        folder = out or Path("calibrations") / (experiment.resolve().name)
-        _check_folder(folder, overwrite)
-        options = FitOptions(
-            cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
-            gauss_newton=polish and minimised == "likelihood",  # Dice is not smooth where it is best
-            leave_one_out=held_out,
+        from calibration.api import plan_fit
+
+        plan = plan_fit(
+            experiment,
+            model=model,
+            materials=None if material is None else names_in(material),
+            terms=terms,
+            time=time,
+            damage=damage,
+            fibres=fibres,
+            objective=objective,
+            rig=rig,
+            out=out or Path("calibrations") / experiment.resolve().name,
+            seed=seed,
+            population=population,
+            generations=generations,
+            restarts=restarts,
+            polish=polish,
+            held_out=held_out,
+            workers=workers,
+            overwrite=overwrite,
         )
-        tasks = [
-            Task(
-                experiment=experiment.resolve(),
-                digest=data.digest,
-                material=m,
-                law=law,
-                terms=terms if law == "ogden" else 1,
-                options=options,
-                folder=folder / "fits",
-                objective=minimised,
-                setup=setup,
-            )
-            for law in names
-            for m in wanted
-        ]
-        console = Console()
-        if setup is not None:
-            console.print(setup.sentence, markup=False, highlight=False)
-        results = _fit(tasks, OnSetup.of(data, setup), console, processes(workers), folder, cards)
-    raise typer.Exit(0 if all(r.status == "converged" for r in results) else 1)
-
-
-def _fit(
-    tasks: list[Task], data: Experiment, console: Console, workers: int, folder: Path, cards: Path | None
-) -> list[Calibration]:
-    with plain_ends(f"Stopped. The same command goes on; the best so far is in {folder}."):
+        if plan.rig is not None:
+            console.print(plan.rig.sentence, markup=False, highlight=False)
+    with plain_ends(f"Stopped. The same command goes on; the best so far is in {plan.folder}."):
         try:
             with FitScreen(console) as screen:
-                results = run(tasks, workers=workers, told=screen.update)
+                found = plan.run(screen.update)
         except KeyboardInterrupt:
-            _write(stopped(tasks, data), data, console, folder, cards)
+            _write(plan.stopped(), console, plan.folder, cards)
             raise
-        _write(results, data, console, folder, cards)
-    return results
+        _write(found, console, plan.folder, cards)
+    raise typer.Exit(0 if found.converged else 1)
 
 
-def _write(
-    results: list[Calibration], data: Experiment, console: Console, folder: Path, cards: Path | None
-) -> None:
-    if not results:
+def _write(found: Fits, console: Console, folder: Path, cards: Path | None) -> None:
+    if not len(found):
         console.print("No fit has found anything yet: no cards, no report.")
         return
-    console.print(law_table(results))
-    for name in dict.fromkeys(r.material for r in results):
-        mine = [r for r in results if r.material == name]
-        if any(usable(r) for r in mine):
-            console.print(f"card: {write_card(cards or folder / 'cards', mine, data)}")
-        else:
-            console.print(f"{name}: no card, since no law has a finished fit")
-    console.print(f"report: {write_report(folder, results, data)}")
-
-
-def _objective(name: str) -> ObjectiveName:
-    if name == "likelihood":
-        return "likelihood"
-    if name == "dice":
-        return "dice"
-    raise InputError(f"--objective {name}: expected likelihood or dice")
-
-
-def _rig(path: Path | None, data: Experiment, minimised: ObjectiveName, materials: list[str]) -> Rig | None:
-    """What is known of the rig; InputError where these fits cannot be corrected by it."""
-    if path is None:
-        return None
-    if minimised != "likelihood":
-        raise InputError(f"--rig {path}: expected --objective likelihood, overlaps of bodies know no rig")
-    marked = [t.id for t in data.trials if isinstance(t, BeamTrial) and t.material in materials and t.markers]
-    if marked:
-        raise InputError(
-            f"--rig {path}: corrects outlines, not markers: expected none, but trial {marked[0]} has some"
-        )
-    return read_rig(path).on(data)
-
-
-def _materials(wanted: str | None, data: Experiment) -> list[str]:
-    used = {t.material for t in data.trials}
-    if wanted is None:
-        return [m for m in data.materials if m in used]
-    names = names_in(wanted)
-    for name in names:
-        if name not in used:
-            raise InputError(f"--material {name}: expected some of {', '.join(sorted(used))}")
-    return names
-
-
-def _check_folder(folder: Path, overwrite: bool) -> None:
-    """Refuse a folder that holds something else; with overwrite, remove our own fits only."""
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder to write to")
-    if overwrite and (folder / "fits").is_dir():
-        shutil.rmtree(folder / "fits")
-    folder.mkdir(parents=True, exist_ok=True)
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"{folder}: expected a folder that can be written to")
+    for sentence in found.headlines:
+        console.print(sentence, markup=False, highlight=False, soft_wrap=True, style="bold")
+    for r in found:
+        if r.note:
+            console.print(f"{r.material}, {r.label}: {r.note}", markup=False, highlight=False, soft_wrap=True)
+    console.print(law_table(found))
+    written = found.write_cards(cards or folder / "cards")
+    for path in written:
+        console.print(f"card: {escape(str(path))}", highlight=False, soft_wrap=True)
+    for name in found.materials:
+        if name not in {p.stem for p in written}:
+            console.print(f"{escape(name)}: no card, since no law has a finished fit", highlight=False)
+    report = found.write_report(folder)
+    console.print(f"report: {escape(str(report))}", highlight=False, soft_wrap=True)
 
 
 if __name__ == "__main__":

@@ -4,43 +4,31 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import track
 
-from calibration._command import plain_ends
-from calibration._options import Laws, Measured, Workers, command, laws_in, processes
-from calibration._screen import FitScreen
+from calibration.cli import FitScreen, Laws, Measured, Version, Workers, command, plain_ends
 from calibration.errors import InputError
-from calibration.experiment import Experiment, read
-from calibration.study import Calibration, FitOptions, Task, run
-from calibration.table_of_paper import (
-    Row,
-    averages,
-    fits_folder,
-    measured,
-    read_fit,
-    rich_table,
-    row,
-    traced_beams,
-    write_csv,
-    write_markdown,
-)
+
+if TYPE_CHECKING:
+    from calibration.experiment import Experiment
+    from calibration.study import Calibration
+    from calibration.study.paper_table import Row
 
 app = command()
 
 EXAMPLES = """
 [bold]Examples[/bold]
 
-All six laws; fits that are missing in calibrations/bench are made first:
+All six laws; fits that are missing in calibrations/clean are made first:
 
-  python -m calibration.table measured/bench
+  python -m calibration.table datasets/measured/bench/clean
 
 Fits of your own, no new ones:
 
-  python -m calibration.table measured/bench --fits fits/of-today --no-run --model neo-hookean,ogden
+  python -m calibration.table datasets/measured/bench/clean --fits fits/of-today --no-run --model ogden
 
 Exit codes: 0 written, 1 written and some law has no figures, 2 bad input, 130 stopped by Ctrl-C.
 """
@@ -61,27 +49,25 @@ def main(
         bool, typer.Option("--run/--no-run", help="Make fits that are missing, or leave their rows empty.")
     ] = True,
     workers: Workers = None,
+    version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Table of calibration results, ours beside the paper's; writes table.csv and table.md."""
+    """Table of calibration results of photographed beams beside the paper's: table.csv and table.md."""
+    console = Console()
     with plain_ends():
-        data = read(experiment)
-        names = laws_in(model)
-        materials = [m for m in data.materials if traced_beams(data, m)]
-        if not materials:
-            raise InputError(f"{experiment / 'experiment.yaml'}: expected at least one beam with an outline")
-        for m in materials:
-            if data.materials[m].density is None:
-                raise InputError(
-                    f"{experiment / 'experiment.yaml'}: materials.{m}.density_kg_m3: expected, since beams of"
-                    " an unknown weight cannot be simulated"
-                )
+        from rich.progress import track
+
+        from calibration.api import law_names, processes, read_experiment
+        from calibration.study.paper_table import fits_folder, measured, read_fit, row
+
+        data = read_experiment(experiment)
+        names = law_names(model)
+        materials = _materials(data, experiment)
         home = fits or Path("calibrations") / experiment.resolve().name
         folder = fits_folder(home) if fits else home / "fits"
         found = {(law, m): read_fit(folder, data, m, law) for law in names for m in materials}
         bodies = {m: measured(data, m) for m in materials}
-        console = Console()
         if run_missing:
-            _fill(found, data, experiment, folder, processes(workers), console)
+            _fill(found, data, folder, processes(workers), console)
         rows = [
             row(law, fit, data, m, bodies[m], workers=workers)
             for (law, m), fit in track(
@@ -94,35 +80,51 @@ def main(
     raise typer.Exit(0 if all(r.measures for r in rows) else 1)
 
 
+def _materials(data: Experiment, folder: Path) -> list[str]:
+    """Materials with traced beams of known weight; InputError where there is none, or a weight is missing."""
+    from calibration.study.paper_table import traced_beams
+
+    main = folder / "experiment.yaml"
+    found = [m for m in data.materials if traced_beams(data, m)]
+    if not found:
+        kinds = dict.fromkeys(type(t).__name__.removesuffix("Trial").lower() for t in data.trials)
+        raise InputError(
+            f"{main}: expected at least one beam with an outline, found trials of kind {', '.join(kinds)}:"
+            " the paper's table compares the bodies of photographed beams; calibration.fit writes a report of"
+            " every kind"
+        )
+    for m in found:
+        if data.materials[m].density is None:
+            raise InputError(
+                f"{main}: materials.{m}.density_kg_m3: expected, since beams of an unknown weight cannot be"
+                " simulated"
+            )
+    return found
+
+
 def _fill(
     found: dict[tuple[str, str], Calibration | None],
     data: Experiment,
-    experiment: Path,
     folder: Path,
     workers: int,
     console: Console,
 ) -> None:
     """Make the fits that are missing, as calibration.fit makes them without options."""
+    from calibration.study import run, tasks_for
+
     missing = [key for key, fit in found.items() if fit is None]
-    tasks = [
-        Task(
-            experiment=experiment.resolve(),
-            digest=data.digest,
-            material=m,
-            law=law,
-            terms=1,
-            options=FitOptions(),
-            folder=folder,
-        )
-        for law, m in missing
-    ]
+    tasks = [t for law, m in missing for t in tasks_for(data, law_names=[law], materials=[m], folder=folder)]
     if not tasks:
         return
     with FitScreen(console) as screen:
-        found.update(zip(missing, run(tasks, workers=workers, told=screen.update), strict=True))
+        results = run(tasks, workers=workers, on_progress=screen.update)
+    found.update(zip(missing, results, strict=True))
 
 
 def _write(rows: list[Row], target: Path, console: Console, *, command: str, data: Experiment) -> None:
+    from calibration.study.paper_table import averages
+    from calibration.study.paper_table_files import rich_table, write_csv, write_markdown
+
     whole = [*rows, *averages(rows)]
     order = list(dict.fromkeys(r.law for r in rows))
     whole.sort(key=lambda r: order.index(r.law))  # stable: a law's average stands after its mixtures

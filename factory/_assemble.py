@@ -1,4 +1,4 @@
-"""From finished parts to the Zarr store: one writer, whole shards, in the order of the plan.
+"""From staged results to the Zarr store: one writer, whole shards, in the order of the plan.
 
 Nothing here depends on time, on the number of workers or on the order in which pokes finished, so that
 the same plan gives the same bytes.
@@ -10,8 +10,8 @@ import json
 import os
 import shutil
 import warnings
-import zipfile
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,44 +20,57 @@ import zarr
 import zarr.codecs
 from numpy.typing import NDArray
 
-from factory._grid import SIZE, grid_points
-from factory._layout import FIRST_DIMENSION, FIXED_DIMENSION, MESSAGE_BYTES, SPECS, Rows, Spec
-from factory._manifest import write_manifest
-from factory._parts import Parts, read_ledger, sync_folder
-from factory._profile import LEVELS, level_depths, profiles
+from factory._course import deepest
+from factory._parts import part_entries
 from factory._record import COUNTERS
-from factory._store import PROVENANCE
-from factory.errors import InputError
-from factory.materials import STORED_LAWS
+from factory._sampling import LEVELS, SIZE, grid_points, level_depths, profiles
+from factory._schema import (
+    FIRST_DIMENSION,
+    FIXED_DIMENSION,
+    MESSAGE_BYTES,
+    STORED_KINDS,
+    STORED_LAWS,
+    Rows,
+    Spec,
+    flags,
+    specs_of,
+)
+from factory._staging import DamagedResultError, Staging, sync_folder
+from factory._store import PROVENANCE, read_ledger, write_manifest
 from factory.plan import FORMAT, Plan
-from tisim.bodies import BoxInclusion, Inclusion, SphereInclusion
+from tisim import Inclusion, laws
 
 _RAGGED: dict[Rows, str] = {"frame": "depth", "node": "surface_rest", "triangle": "surface_triangle"}
 
 
-def assemble(plan: Plan, parts: Parts, target: Path) -> None:
-    """Writes the store beside, then puts it in the target's place. Safe to repeat after any kill."""
-    shutil.rmtree(parts.store, ignore_errors=True)
+def assemble(plan: Plan, staging: Staging, target: Path) -> None:
+    """Write the store beside, then put it in the target's place. Safe to repeat after any kill.
+
+    Raises
+    ------
+    DamagedResultError
+        Where a staged result cannot be read; nothing has changed then.
+    """
+    shutil.rmtree(staging.store, ignore_errors=True)
     try:
-        _write(plan, parts, parts.store)
-        _sync_tree(parts.store)
-    except zipfile.BadZipFile as error:
-        raise InputError(f"{parts.parts}: a part is damaged ({error}); delete it and run again") from None
+        _write(plan, staging, staging.store)
+        _sync_tree(staging.store)
     except BaseException:
-        shutil.rmtree(parts.store, ignore_errors=True)  # a full disk needs the room
+        shutil.rmtree(staging.store, ignore_errors=True)  # a full disk needs the room
         raise
-    old = parts.folder / "old"
+    old = staging.folder / "old"
     shutil.rmtree(old, ignore_errors=True)
     if target.exists():
         target.rename(old)
-    parts.store.rename(target)
+    staging.store.rename(target)
     sync_folder(target.parent)
     shutil.rmtree(old, ignore_errors=True)
 
 
-def _write(plan: Plan, parts: Parts, folder: Path) -> None:
-    done, errors = parts.done(), parts.errors()
-    small = _poke_arrays(plan, parts, done, errors)
+def _write(plan: Plan, staging: Staging, folder: Path) -> None:
+    done, errors = staging.finished(), staging.errors()
+    specs = _specs(plan)
+    small = _poke_arrays(plan, staging, done, errors)
     totals: dict[Rows, int] = {
         "poke": len(plan.pokes),
         "geometry": len(plan.inclusions) * len(plan.materials),
@@ -66,7 +79,7 @@ def _write(plan: Plan, parts: Parts, folder: Path) -> None:
     group = zarr.create_group(store=folder, zarr_format=3, attributes=_attributes(plan, done))
     fixed = {**small, **_fixed_arrays(plan), **_geometry_arrays(plan)}
     streams: dict[str, _Appender] = {}
-    for name, spec in SPECS.items():
+    for name, spec in specs.items():
         if name in fixed:
             array = _create(group, name, spec, fixed[name].shape)
             array[...] = fixed[name]
@@ -76,15 +89,18 @@ def _write(plan: Plan, parts: Parts, folder: Path) -> None:
     for poke in plan.pokes:
         if poke.index not in done:
             continue
-        with parts.opened(poke.index) as part:
-            frames = len(part["depth"])
+        with staging.opened(poke.index) as result:
+            frames = len(result["depth"])
             derived: dict[str, NDArray[Any]] = {
                 "frame_poke": np.full(frames, poke.index, dtype=np.int32),
                 "rod_axis": np.tile(_unit(poke.scene.direction), (frames, 1)),
             }
             for name, stream in streams.items():
-                rows = derived[name] if name in derived else part[name]
-                stream.append(rows.reshape(-1, *SPECS[name].row))
+                rows = derived[name] if name in derived else result[name]
+                try:
+                    stream.append(rows.reshape(-1, *specs[name].row))
+                except ValueError as error:  # rows of another shape: a result changed under our hands
+                    raise DamagedResultError(poke.index, f"array {name}: {error}") from None
     for stream in streams.values():
         stream.finish()
     zarr.create_group(store=folder, path=PROVENANCE, zarr_format=3)
@@ -92,8 +108,28 @@ def _write(plan: Plan, parts: Parts, folder: Path) -> None:
         # consolidated metadata is an extension of Zarr 3; without it plain xarray.open_zarr warns
         warnings.simplefilter("ignore")
         zarr.consolidate_metadata(folder, zarr_format=3)
-    _provenance(parts, folder)
+    _provenance(staging, folder)
     write_manifest(folder)
+
+
+def stored_laws(law: str) -> tuple[str, ...]:
+    """The laws that a store of that law lists."""
+    return STORED_LAWS if law in STORED_LAWS else (*STORED_LAWS, law)
+
+
+def _stored_kinds(plan: Plan) -> tuple[str, ...]:
+    """Kinds of inclusion that the plan's store lists: the usual ones, then those that others lack."""
+    return tuple(dict.fromkeys((*STORED_KINDS, *(inclusion.kind for inclusion in plan.inclusions))))
+
+
+def _specs(plan: Plan) -> dict[str, Spec]:
+    """The arrays of the plan's store: laws and kinds of inclusion that others lack are among its codes."""
+    specs = specs_of(plan.recipe.identity())
+    return {
+        **specs,
+        "law": replace(specs["law"], attributes=flags(stored_laws(plan.law))),
+        "inclusion_kind": replace(specs["inclusion_kind"], attributes=flags(_stored_kinds(plan))),
+    }
 
 
 class _Appender:
@@ -173,11 +209,27 @@ def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
         "pokes": len(plan.pokes),
         "pokes_done": len(done),
         "shapes": [shape.id for shape in recipe.shapes],
-        "softness": list(recipe.softness),
+        "softness": list(recipe.levels),
         "parameter_names": _parameter_names(plan),
         "solver_tolerance": plan.pokes[0].scene.solver.tolerance,
         "identity": plan.identity,
+        **_described(plan),
     }
+
+
+def _described(plan: Plan) -> dict[str, Any]:
+    """Moduli, parts beside the law, and fields of inclusions that no reader knows from the format."""
+    found: dict[str, Any] = {}
+    if plan.law not in STORED_LAWS:
+        moduli = [laws.get(m.law).moduli(m.parameters) for m in plan.materials]
+        found["shear_modulus"] = [m.shear_modulus for m in moduli]
+        found["bulk_modulus"] = [m.bulk_modulus for m in moduli]
+    parts = [part_entries(material) for material in plan.materials]
+    if any(parts):
+        found["parts"] = parts
+    if any(inclusion.kind not in STORED_KINDS for inclusion in plan.inclusions):
+        found["inclusions"] = [inclusion.encode() for inclusion in plan.inclusions]
+    return found
 
 
 def _parameter_names(plan: Plan) -> list[str]:
@@ -187,46 +239,55 @@ def _parameter_names(plan: Plan) -> list[str]:
     return names
 
 
-def _parameters(plan: Plan, softness: int) -> list[float]:
+def _parameters(plan: Plan, level: int) -> list[float]:
     values: list[float] = []
-    for value in plan.materials[softness].parameters.values():
+    for value in plan.materials[level].parameters.values():
         values += value if isinstance(value, tuple) else [value]
     return values
 
 
-def _poke_arrays(plan: Plan, parts: Parts, done: set[int], errors: dict[int, str]) -> dict[str, NDArray[Any]]:
+def _poke_arrays(
+    plan: Plan, staging: Staging, done: set[int], errors: dict[int, str]
+) -> dict[str, NDArray[Any]]:
     """The arrays with one row a poke."""
     n = len(plan.pokes)
-    width = len(_parameter_names(plan))
+    pieces = (len(plan.recipe.protocol.course),)
+    widths = {
+        "parameter": (len(_parameter_names(plan)),),
+        "course_time": pieces,
+        "course_depth": pieces,
+    }
     arrays: dict[str, NDArray[Any]] = {}
-    for name, spec in SPECS.items():
+    for name, spec in specs_of(plan.recipe.identity()).items():
         if spec.rows == "poke":
-            row = (width,) if name == "parameter" else spec.row
+            row = widths.get(name, spec.row)
             arrays[name] = np.zeros((n, *row), dtype=spec.dtype)
     for poke in plan.pokes:
         i, scene = poke.index, poke.scene
         arrays["poke_shape"][i] = poke.shape
-        arrays["poke_softness"][i] = poke.softness
+        arrays["poke_softness"][i] = poke.level
         arrays["poke_geometry"][i] = poke.geometry
-        arrays["law"][i] = STORED_LAWS.index(plan.law)
-        arrays["parameter"][i] = _parameters(plan, poke.softness)
+        arrays["law"][i] = stored_laws(plan.law).index(plan.law)
+        arrays["parameter"][i] = _parameters(plan, poke.level)
         arrays["site_shared"][i] = poke.shared
         arrays["site_number"][i] = poke.site
         arrays["seed"][i] = poke.seed
         arrays["site"][i] = scene.site
         arrays["direction"][i] = _unit(scene.direction)
-        arrays["depth_asked"][i] = scene.depth
+        arrays["depth_asked"][i] = deepest(scene)
+        if scene.course is not None:
+            arrays["course_time"][i], arrays["course_depth"][i] = scene.course.times, scene.course.values
         text = errors.get(i, "").encode()
         if i in done:
-            with parts.opened(i) as part:
+            with staging.opened(i) as result:
                 arrays["done"][i] = True
-                text = part["message"].tobytes()
+                text = result["message"].tobytes()
                 for name in ("status", "path_start", "path_end", "mesh_nodes", "mesh_elements"):
-                    arrays[name][i] = part[name]
-                for name, value in zip(COUNTERS, part["counters"], strict=True):
+                    arrays[name][i] = result[name]
+                for name, value in zip(COUNTERS, result["counters"], strict=True):
                     arrays[name][i] = value
                 for kind, source in _RAGGED.items():
-                    arrays[f"{kind}_count"][i] = len(part[source])
+                    arrays[f"{kind}_count"][i] = len(result[source])
         arrays["message"][i, : min(len(text), MESSAGE_BYTES)] = np.frombuffer(text[:MESSAGE_BYTES], np.uint8)
     arrays["value_count"] = arrays["frame_count"] * arrays["node_count"]
     for kind in ("frame", "node", "triangle", "value"):
@@ -245,27 +306,29 @@ def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
     levels = np.zeros((len(pairs), SIZE, SIZE, LEVELS), dtype=np.uint8)
     for row, (inclusion, card) in enumerate(pairs):
         levels[row] = profiles(grid, height, inclusion, card.stiffness)
-    described = [_describe(inclusion) for inclusion, _ in pairs]
+    kinds = _stored_kinds(plan)
+    bodies = [inclusion for inclusion, _ in pairs]
     return {
         "profile": levels,
-        "inclusion_kind": np.array([d[0] for d in described], dtype=np.uint8),
-        "inclusion_size": np.array([d[1] for d in described]),
-        "inclusion_angle": np.array([d[2] for d in described]),
-        "inclusion_centre": np.array([inclusion.centre for inclusion, _ in pairs]),
+        "inclusion_kind": np.array([kinds.index(body.kind) for body in bodies], dtype=np.uint8),
+        "inclusion_size": np.array([_three(body.dimensions) for body in bodies]),
+        "inclusion_angle": np.array([_angle(body) for body in bodies]),
+        "inclusion_centre": np.array([body.centre for body in bodies]),
     }
 
 
-def _describe(inclusion: Inclusion) -> tuple[int, tuple[float, float, float], float]:
-    if isinstance(inclusion, BoxInclusion):
-        return 0, inclusion.size, inclusion.angle
-    if isinstance(inclusion, SphereInclusion):
-        return 1, (inclusion.radius, 0.0, 0.0), 0.0
-    return 2, (inclusion.radius, inclusion.height, 0.0), 0.0
+def _three(dimensions: tuple[float, ...]) -> tuple[float, ...]:
+    """The first three dimensions, filled up with zeros; a shape that has more is in attribute inclusions."""
+    return (*dimensions, 0.0, 0.0, 0.0)[:3]
 
 
-def _provenance(parts: Parts, folder: Path) -> None:
+def _angle(inclusion: Inclusion) -> float:
+    return float(getattr(inclusion, inclusion.angles[0])) if inclusion.angles else 0.0
+
+
+def _provenance(staging: Staging, folder: Path) -> None:
     """Wall times go into a file of their own: they differ from run to run, the store must not."""
-    ledger = read_ledger(parts.ledger_file)
+    ledger = read_ledger(staging.ledger_file)
     text = "".join(json.dumps(ledger[i]) + "\n" for i in sorted(ledger))
     (folder / PROVENANCE / "ledger.jsonl").write_text(text, encoding="utf-8")
 

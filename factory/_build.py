@@ -1,88 +1,164 @@
-"""Building a dataset: plan, resume, simulate, assemble. Used by the command and by tests."""
+"""Building a dataset: resume, simulate, assemble."""
 
 from __future__ import annotations
 
+import logging
+import shlex
+import shutil
 from collections.abc import Callable, Generator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from factory._assemble import assemble
-from factory._cluster import run_cluster
-from factory._parts import Parts
-from factory._pool import run_local
+from factory._execution import CLUSTER_TIMEOUT, SIMULATOR, run_cluster, run_local
+from factory._input import InputError, describe_os_error
 from factory._record import Outcome
-from factory._store import root_attributes
-from factory._worker import SIMULATOR
-from factory.errors import InputError, describe_os_error
+from factory._staging import DamagedResultError, Staging, set_damaged_aside
+from factory._store import DamagedError, is_store, root_attributes
 from factory.plan import Plan, PlannedPoke, changes
+
+log = logging.getLogger(__name__)
+_ROUNDS = 3  # of simulating again what turns out damaged while the store is written
 
 
 @dataclass(frozen=True)
-class Progress:
-    """How far a build is. outcome: the poke that just came in (None at the start)."""
+class BuildProgress:
+    """State of a build, as `on_progress` gets it: once at the start, then after each poke.
+
+    Attributes
+    ----------
+    done, failed, total : int
+        Pokes with a staged result, pokes that failed in this run, pokes of the plan.
+    staging : Staging
+        The folder of the staged results.
+    outcome : Outcome or None
+        The poke that was just staged; None at the start.
+    """
 
     done: int
     failed: int
     total: int
+    staging: Staging
     outcome: Outcome | None = None
 
 
 @dataclass(frozen=True)
 class Built:
-    """How a build ended. fresh: pokes simulated by this run; errors: text by poke index."""
+    """How a build ended.
+
+    Attributes
+    ----------
+    store : Path
+        The dataset.
+    total : int
+        Pokes of the plan.
+    simulated : int
+        Pokes that this run simulated.
+    errors : dict of int to str
+        Why pokes failed, by their index.
+    damaged : tuple of int
+        Pokes whose staged result was damaged, and which were simulated again.
+    """
 
     store: Path
     total: int
-    fresh: int
-    errors: dict[int, str]
+    simulated: int
+    errors: dict[int, str] = field(default_factory=dict)
+    damaged: tuple[int, ...] = ()
 
 
-Watch = Callable[[Progress, Parts], None]
+OnProgress = Callable[[BuildProgress], None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Means:
+class _Means:
     """What simulates: worker processes here or a dask cluster, and the function that they call."""
 
-    workers: int = 2
-    cluster: str | None = None
-    simulator: str = SIMULATOR
+    workers: int
+    cluster: str | None
+    cluster_timeout: float
+    simulator: str
 
     def run(self, pokes: list[PlannedPoke]) -> Generator[Outcome]:
         if self.cluster is None:
             return run_local(pokes, workers=self.workers, simulator=self.simulator)
-        return run_cluster(pokes, address=self.cluster, workers=self.workers, simulator=self.simulator)
+        return run_cluster(
+            pokes,
+            address=self.cluster,
+            workers=self.workers,
+            simulator=self.simulator,
+            timeout=self.cluster_timeout,
+        )
 
 
-def build(
+def build_dataset(
     plan: Plan,
     target: Path,
     *,
     overwrite: bool = False,
     workers: int = 2,
     cluster: str | None = None,
+    cluster_timeout: float = CLUSTER_TIMEOUT,
     simulator: str = SIMULATOR,
-    watch: Watch | None = None,
+    on_progress: OnProgress | None = None,
 ) -> Built:
-    """Builds or completes the dataset `target`; the same call goes on after any interruption.
+    """Build or complete a dataset; the same call goes on after any interruption and ends in the same bytes.
 
-    overwrite: simulate everything again; what is there stays until the new store is complete.
-    cluster: a dask scheduler's address, or "local".
-    InputError says in one sentence why nothing was done, or why the build stopped.
+    Parameters
+    ----------
+    plan : Plan
+    target : Path
+        The store to write; it is built in the folder TARGET.building beside it.
+    overwrite : bool
+        Simulate everything again; an old store stays until the new one is complete.
+    workers : int
+        Worker processes on this machine.
+    cluster : str, optional
+        Address of a dask scheduler, or "local".
+    cluster_timeout : float
+        Time [s] without a scheduler or without a worker after which the build gives up.
+    simulator : str
+        "module:function" that stands for `tisim.simulate`.
+    on_progress : callable, optional
+        Called with a `BuildProgress` at the start and after each poke.
+
+    Returns
+    -------
+    Built
+        Pokes that failed are in its `errors`; the store marks them as not done.
+
+    Raises
+    ------
+    InputError
+        In one sentence, why nothing was done, or why the build stopped. Every finished poke is kept.
     """
-    check_target(target)
+    check_target(target, overwrite=overwrite)
     try:
-        with Parts(target) as parts:
-            if _already(plan, target, parts, overwrite):
-                return Built(target, len(plan.pokes), 0, {})
-            means = Means(workers=workers, cluster=cluster, simulator=simulator)
-            fresh = _simulate(plan, parts, means, watch)
-            errors = parts.errors()
-            assemble(plan, parts, target)
+        with Staging(target) as staging:
+            if _is_complete(plan, target, staging, overwrite):
+                return Built(target, len(plan.pokes), 0)
+            means = _Means(
+                workers=workers, cluster=cluster, cluster_timeout=cluster_timeout, simulator=simulator
+            )
+            damaged = set_damaged_aside(staging, plan.pokes)
+            simulated = _simulate(plan, staging, means, on_progress)
+            for left in reversed(range(_ROUNDS)):
+                try:
+                    assemble(plan, staging, target)
+                    break
+                except DamagedResultError as error:
+                    if not left:
+                        raise InputError(
+                            f"{staging.results}: {error}, {_ROUNDS} times in a row; is the disk sound?"
+                        ) from None
+                    staging.set_aside(error.index, error.reason)
+                    damaged.append(error.index)
+                    simulated += _simulate(plan, staging, means, on_progress)
+            errors = staging.errors()
             if not errors:
-                parts.remove()
-            return Built(target, len(plan.pokes), fresh, errors)
+                staging.remove()
+            return Built(target, len(plan.pokes), simulated, errors, tuple(sorted(set(damaged))))
     except OSError as error:
         raise InputError(
             describe_os_error(error, f"{target}: the build stopped at")
@@ -90,68 +166,96 @@ def build(
         ) from error
 
 
-def check_target(target: Path) -> None:
-    """Refuses targets that are something else than a store of ours."""
-    if target.exists() and root_attributes(target) is None:
+def check_target(target: Path, *, overwrite: bool = False) -> None:
+    """Refuse a target that is no dataset, or a damaged one that is not to be overwritten."""
+    if not target.exists():
+        return
+    if not is_store(target):
         raise InputError(f"{target}: exists and is not a dataset of the factory: give another --out")
+    try:
+        root_attributes(target)
+    except DamagedError as error:
+        if not overwrite:
+            raise InputError(
+                f"{error}: the dataset is damaged: give --overwrite to build it anew, or another --out"
+            ) from None
 
 
-def _already(plan: Plan, target: Path, parts: Parts, overwrite: bool) -> bool:
+def free_name(target: Path) -> Path:
+    """A name beside the target at which there is nothing yet: NAME-2.zarr, NAME-3.zarr ..."""
+    number = 2
+    while (found := target.with_name(f"{target.stem}-{number}{target.suffix}")).exists():
+        number += 1
+    return found
+
+
+def warn_of_full_disk(target: Path, needed: float) -> bool:
+    """Log a warning where the disk has less room than the build is expected to need [bytes]."""
+    folder = next(path for path in (target, *target.parents) if path.exists())
+    free = shutil.disk_usage(folder).free
+    if free >= needed:
+        return False
+    log.warning(
+        "%s: %.1f GB are free, and the build is expected to need %.1f GB: it may stop on a full disk, and "
+        "goes on from there when there is room.",
+        folder,
+        free / 1e9,
+        needed / 1e9,
+    )
+    return True
+
+
+def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
     """Whether the target is complete; if not, the building folder is ready for this plan afterwards."""
     if overwrite:
-        parts.begin(plan.identity)
+        staging.begin(plan.identity)
         return False
-    finished, begun = root_attributes(target), parts.read_plan()
+    finished, begun = root_attributes(target), staging.read_plan()
     if begun is not None and begun != plan.identity:
-        raise _changed(f"{parts.folder}: was begun", begun, plan)
+        raise _changed(f"{staging.folder}: was begun", begun, plan, target)
     if finished is not None and finished["fingerprint"] == plan.fingerprint:
         if finished["pokes_done"] == finished["pokes"]:
-            parts.remove()  # what a build killed while tidying up has left, or our lock
+            staging.remove()  # what a build killed while tidying up has left, or our lock
             return True
         if begun is None:
-            parts.remove()
+            staging.remove()
             raise InputError(
-                f"{target}: has failed pokes, and {parts.folder.name} with the others is gone: "
+                f"{target}: has failed pokes, and {staging.folder.name} with the others is gone: "
                 "give --overwrite to build it again"
             )
     elif finished is not None and begun is None:
-        parts.remove()
-        raise _changed(f"{target}: was built", finished["identity"], plan)
+        staging.remove()
+        raise _changed(f"{target}: was built", finished["identity"], plan, target)
     if begun is None:
-        parts.begin(plan.identity)
-    parts.parts.mkdir(exist_ok=True)
+        staging.begin(plan.identity)
+    staging.results.mkdir(exist_ok=True)
     return False
 
 
-def _simulate(plan: Plan, parts: Parts, means: Means, watch: Watch | None) -> int:
-    """Simulates what is missing; returns how many pokes succeeded."""
-    done = parts.done()
+def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgress | None) -> int:
+    """Simulate what is missing; returns how many pokes succeeded."""
+    done = staging.finished()
     missing = [poke for poke in plan.pokes if poke.index not in done]
-    total, fresh, failed = len(plan.pokes), 0, 0
-    if watch is not None:
-        watch(Progress(len(done), 0, total), parts)
+    total, simulated, failed = len(plan.pokes), 0, 0
+    if on_progress is not None:
+        on_progress(BuildProgress(len(done), 0, total, staging))
     if not missing:
         return 0
     with closing(means.run(missing)) as outcomes:
         for outcome in outcomes:
-            parts.keep(outcome)
-            parts.log(
-                {
-                    "poke": outcome.index,
-                    "wall_seconds": round(outcome.wall, 3),
-                    "core_seconds": round(outcome.core, 3),
-                    "error": outcome.error,
-                }
-            )
-            fresh += outcome.error is None
+            staging.stage(outcome)
+            staging.note_times(outcome)
+            simulated += outcome.error is None
             failed += outcome.error is not None
-            if watch is not None:
-                watch(Progress(len(done) + fresh, failed, total, outcome), parts)
-    return fresh
+            if outcome.error is not None:
+                log.debug("poke %d failed: %s", outcome.index, outcome.error)
+            if on_progress is not None:
+                on_progress(BuildProgress(len(done) + simulated, failed, total, staging, outcome))
+    return simulated
 
 
-def _changed(state: str, old: dict[str, object], plan: Plan) -> InputError:
+def _changed(state: str, old: dict[str, object], plan: Plan, target: Path) -> InputError:
     return InputError(
-        f"{state} with another plan (changed: {changes(old, plan.identity)}): "
-        "give --overwrite to build it anew, or another --out"
+        f"{state} with another plan (changed: {changes(old, plan.identity)}): give another --out, "
+        f"--out {shlex.quote(str(free_name(target)))} for example, or --overwrite to build it anew"
     )

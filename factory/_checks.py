@@ -3,33 +3,91 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from factory._grid import SIZE
-from factory._layout import SPECS
-from factory._manifest import manifest_faults
-from factory._profile import LEVELS
+from factory._course import PHASES, states_at
+from factory._input import InputError, one_line
 from factory._record import STATUSES
-from factory.reader import Dataset
+from factory._sampling import LEVELS, RIGID, SIZE, profiles
+from factory._store import DamagedError, file_faults, manifest_faults
+from factory.reader import Dataset, open_dataset
 
-FORCE_BALANCE = 0.01  # of the rod's force
+FORCE_BALANCE = 0.01  # of the indenter's force
 FORCE_FLOOR = 1e-3  # N: forces below that are compared with it instead
+COURSE_SLACK = 1e-6  # of the course's depth, or of its speed
+ENERGY_SLACK = 1e-9  # of the energy dissipated so far: rounding
 TIP_SLACK = 0.01  # of the frame spacing
 
 Check = Callable[[Dataset], list[str]]
 
 
-def checksums(data: Dataset) -> list[str]:
-    """Every file is the one the manifest was written for."""
-    return manifest_faults(data.path)
+@dataclass(frozen=True)
+class Verification:
+    """What was found in a dataset.
+
+    Attributes
+    ----------
+    path : Path
+    faults : dict of str to list of str
+        Sentences by the name of the check; all checks are there.
+    pokes, frames : int
+        How many were checked; 0 where the dataset could not be opened.
+    """
+
+    path: Path
+    faults: dict[str, list[str]]
+    pokes: int = 0
+    frames: int = 0
+
+    @property
+    def total(self) -> int:
+        """Number of faults."""
+        return sum(len(found) for found in self.faults.values())
+
+
+def verify_dataset(path: str | Path) -> Verification:
+    """Check files, checksums, shapes, finite values, statuses and physics of a finished dataset.
+
+    Raises
+    ------
+    InputError
+        Where there is no dataset of the factory. Damage is a fault, not an error.
+    """
+    folder = Path(path)
+    faults: dict[str, list[str]] = {}
+    data: Dataset | None = None
+    try:
+        data = open_dataset(folder)
+    except DamagedError as error:
+        faults["attributes"] = [str(error)]
+    faults["files"] = _caught(lambda: file_faults(folder))
+    faults["checksums"] = _caught(lambda: manifest_faults(folder))
+    if data is None:
+        return Verification(folder, faults)
+    for name, check in CHECKS.items():
+        faults[name] = _caught(lambda check=check: check(data))  # type: ignore[misc]
+    frames = 0 if any(faults.values()) else len(data.table["frame_poke"])
+    return Verification(folder, faults, data.n_pokes, frames)
+
+
+def _caught(check: Callable[[], list[str]]) -> list[str]:
+    """The faults that a check finds; what breaks it is one."""
+    try:
+        return check()
+    except InputError as error:
+        return [str(error)]
+    except Exception as error:  # a damaged file can break anywhere in the decoding
+        return [f"cannot be checked ({type(error).__name__}: {one_line(error)})"]
 
 
 def shapes(data: Dataset) -> list[str]:
     """Arrays are all there, with the shapes that the poke table says."""
     faults = []
-    for name in SPECS:
+    for name in data.specs:
         if name not in data.group:
             faults.append(f"{name}: missing")
     if faults:
@@ -37,10 +95,10 @@ def shapes(data: Dataset) -> list[str]:
     table = data.table
     counts = {
         "poke": data.n_pokes,
-        "geometry": len(data.attributes["shapes"]) * len(data.attributes["softness"]),
+        "geometry": len(data.shapes) * len(data.levels),
         **{kind: int(table[f"{kind}_count"].sum()) for kind in ("frame", "node", "triangle", "value")},
     }
-    for name, spec in SPECS.items():
+    for name, spec in data.specs.items():
         shape = data.array(name).shape
         if spec.rows != "fixed" and shape[0] != counts[spec.rows]:
             faults.append(f"{name}: {shape[0]} rows, expected {counts[spec.rows]}")
@@ -52,6 +110,12 @@ def shapes(data: Dataset) -> list[str]:
         count = table[f"{kind}_count"]
         if not np.array_equal(table[f"{kind}_start"], np.cumsum(count) - count):
             faults.append(f"{kind}_start: does not add up the counts")
+    shape, level = table["poke_shape"], table["poke_softness"]
+    for name, codes, names in (("poke_shape", shape, data.shapes), ("poke_softness", level, data.levels)):
+        if not ((codes >= 0) & (codes < len(names))).all():
+            faults.append(f"{name}: has an index beyond the {len(names)} names")
+    if not np.array_equal(table["poke_geometry"], shape * len(data.levels) + level):
+        faults.append("poke_geometry: is not shape x material levels + level")
     if not np.array_equal(table["value_count"], table["frame_count"] * table["node_count"]):
         faults.append("value_count: is not frames times surface nodes")
     if not np.array_equal(table["frame_poke"], np.repeat(np.arange(data.n_pokes), table["frame_count"])):
@@ -62,15 +126,15 @@ def shapes(data: Dataset) -> list[str]:
 def finite(data: Dataset) -> list[str]:
     """No NaN and no infinity anywhere; triangles point at nodes of their poke."""
     faults = []
-    for name, spec in SPECS.items():
+    for name, spec in data.specs.items():
         if spec.dtype.startswith("f"):
             array = data.array(name)
             for start in range(0, max(array.shape[0], 1), spec.shard):
-                if not np.isfinite(array[start : start + spec.shard]).all():
+                if not np.isfinite(data.read(name, slice(start, start + spec.shard))).all():
                     faults.append(f"{name}: has values that are not finite")
                     break
     for index in range(data.n_pokes):
-        triangles = data.array("surface_triangle")[data.rows(index, "triangle")]
+        triangles = data.read("surface_triangle", data.rows(index, "triangle"))
         if triangles.size and (triangles.min() < 0 or triangles.max() >= data.table["node_count"][index]):
             faults.append(f"poke {index}: a surface triangle has no such node")
     return faults
@@ -118,13 +182,18 @@ def forces(data: Dataset) -> list[str]:
 
 
 def motion(data: Dataset) -> list[str]:
-    """Frames lie on the rod's path, deeper one by one, apart by the spacing (the last may be nearer)."""
+    """Frames lie on the rod's path, deeper one by one, apart by the spacing (the last may be nearer).
+
+    Where the rod has a course, `time` says how far apart they are.
+    """
     table = data.table
     recipe = data.attributes["identity"]["recipe"]
     spacing = recipe["protocol"]["frame_spacing_mm"] * 1e-3
     poke = table["frame_poke"]
     expected = table["path_start"][poke] + table["depth"][:, None] * table["direction"][poke]
     off = np.linalg.norm(table["rod_tip"] - expected, axis=1) > 1e-6
+    if data.timed:
+        return _frames(data, off, "the tip is off the rod's path")
     same = poke[1:] == poke[:-1]
     step = np.diff(table["depth"])
     last = np.append(poke[1:] != poke[:-1], True)[1:]
@@ -133,6 +202,54 @@ def motion(data: Dataset) -> list[str]:
         *_frames(data, off, "the tip is off the rod's path"),
         *_frames(data, close[: len(poke)], "nearer to the frame before than the spacing"),
     ]
+
+
+def clock(data: Dataset) -> list[str]:
+    """Time rises, depth, phase and speed are those of the rod's course, and no energy comes back."""
+    if not data.timed:
+        return []
+    table = data.table
+    poke, time, lost = table["frame_poke"], table["time"], table["dissipated_energy"]
+    first = np.append(True, poke[1:] != poke[:-1])[: len(poke)]
+    faults = []
+    for index in range(data.n_pokes):
+        corners = np.append(0.0, table["course_time"][index])
+        if not (np.diff(corners) > 0.0).all() or (table["course_depth"][index] < 0.0).any():
+            return [f"poke {index}: its course goes back in time or above the surface"]
+    off = {name: np.zeros(len(poke), dtype=bool) for name in ("depth", "phase", "rod_speed")}
+    for index in np.unique(poke):
+        rows = data.rows(int(index), "frame")
+        times, depths = table["course_time"][index], table["course_depth"][index]
+        states = states_at(times, depths, time[rows])
+        off["phase"][rows] = table["phase"][rows] != states["phase"]
+        for name in ("depth", "rod_speed"):
+            slack = COURSE_SLACK * max(float(np.abs(states[name]).max()), float(depths.max()))
+            off[name][rows] = np.abs(table[name][rows] - states[name]) > slack
+    early = np.where(first, time <= 0.0, np.diff(time, prepend=0.0) <= 0.0)
+    gain = np.where(first, lost < 0.0, np.diff(lost, prepend=0.0) < -ENERGY_SLACK * np.abs(lost))
+    faults += _frames(data, early, "not later than the frame before")
+    faults += _frames(data, table["phase"] >= len(PHASES), "an unknown phase")
+    for name, bad in off.items():
+        faults += _frames(data, bad, f"{name} is not that of the rod's course")
+    faults += _frames(data, gain, "energy dissipated before has come back")
+    return faults
+
+
+def inclusion_profiles(data: Dataset) -> list[str]:
+    """The rigid part of every stiffness profile is the inclusion that the store describes."""
+    faults, grid = [], data.table["grid_rest"]
+    for geometry in range(len(data.shapes) * len(data.levels)):
+        try:
+            inclusion = data.inclusion(geometry)
+        except InputError as error:
+            faults.append(str(error))
+            continue
+        rigid = profiles(grid, float(grid[0, 0, 2]), inclusion, 0.0) == round(255 * RIGID)
+        if not np.array_equal(data.read("profile", geometry) == round(255 * RIGID), rigid):
+            faults.append(
+                f"geometry {geometry}: the profile's rigid part is not the {inclusion.kind} described"
+            )
+    return faults
 
 
 def _frames(data: Dataset, bad: NDArray[np.bool_], what: str) -> list[str]:
@@ -146,11 +263,12 @@ def _frames(data: Dataset, bad: NDArray[np.bool_], what: str) -> list[str]:
 
 
 CHECKS: dict[str, Check] = {
-    "checksums": checksums,
     "shapes": shapes,
     "finite values": finite,
     "statuses": statuses,
+    "inclusions": inclusion_profiles,
     "equilibrium of each frame": equilibrium,
     "base reaction = rod force": forces,
     "rod path and spacing": motion,
+    "time, phase and energy": clock,
 }

@@ -1,189 +1,135 @@
-"""The folder of a dataset being built: one finished file a poke, under a lock.
+"""What a card states beside its laws: viscosity, softening and fibres, by the names that `tisim.parts` knows.
 
-    NAME.zarr.building/
-        lock            held with flock while a builder runs: freed by the system whatever ends it
-        plan.json       what is being built
-        parts/poke-00012.npz      a finished poke; written beside, synced, then renamed
-        parts/poke-00013.error    the text of a poke that failed; tried again by the next run
-        ledger.jsonl    wall times, one line a poke
-        store/          the store being assembled from the parts
+    viscosity: {kind: prony, fractions: [0.2, 0.1], times_s: [1, 30], modulus: long-time}
+    softening: {kind: ogden-roxburgh, r: 2, m_J_per_m3: 2000, beta: 0.1}
+    fibres: {kind: holzapfel-gasser-ogden, direction: [1, 0, 0], k1_Pa: 5000, k2: 1}
 
-Only the builder's main process writes here.
+`kind` is the part's registered name; the other keys are its fields (SI), with or without a unit at the end.
 """
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
-import json
-import os
-import shutil
-from collections.abc import Iterator, Mapping
-from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, Field, fields
+from typing import Annotated, Any
 
-import numpy as np
-from numpy.typing import NDArray
+from pydantic import BeforeValidator, InstanceOf
+from pydantic_core import PydanticCustomError
 
-from factory._record import Outcome
-from factory.errors import InputError
+from factory._input import one_line
+from tisim import Material, parts
 
-
-def building_folder(target: Path) -> Path:
-    """Where the dataset `target` is built."""
-    return target.with_name(target.name + ".building")
+UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key may end with
+FIELDS: dict[str, Any] = {
+    "viscosity": parts.Viscosity,
+    "softening": parts.Softening,
+    "fibres": parts.Fibres,
+}
+# the unit behind a field of tisim's own parts; those from outside are written without
+_WRITTEN = {"times": "s", "m": "J_per_m3", "k1": "Pa"}
 
 
-class Parts:
-    """The building folder of one target; use as a context manager, which holds the lock."""
+def part_entry(part: parts.Part) -> dict[str, Any]:
+    """A part as a card states it: plain numbers, lists and words."""
+    own = part.name in parts.names() and type(part).__module__.startswith("tisim.")
+    entry: dict[str, Any] = {"kind": part.name}
+    for field in fields(part):
+        unit = _WRITTEN.get(field.name) if own else None
+        entry[f"{field.name}_{unit}" if unit else field.name] = _plain(getattr(part, field.name))
+    return entry
 
-    def __init__(self, target: Path) -> None:
-        self.folder = building_folder(target)
-        self.parts = self.folder / "parts"
-        self.plan_file = self.folder / "plan.json"
-        self.ledger_file = self.folder / "ledger.jsonl"
-        self.store = self.folder / "store"
-        self._lock: int | None = None
 
-    def __enter__(self) -> Self:
-        while True:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(lock)
-                raise InputError(f"{self.folder}: another builder is at work on this dataset") from None
-            # the builder before us may have finished and removed the file between open and flock
-            try:
-                same = (self.folder / "lock").stat().st_ino == os.fstat(lock).st_ino
-            except FileNotFoundError:
-                same = False
-            if same:
-                self._lock = lock
-                return self
-            os.close(lock)
+def part_entries(material: Material) -> dict[str, dict[str, Any]]:
+    """All parts of a material as a card states them, by the card's keys; empty for a material without."""
+    found = {name: getattr(material, name) for name in FIELDS}
+    return {name: part_entry(part) for name, part in found.items() if part is not None}
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
 
-    def read_plan(self) -> dict[str, Any] | None:
-        """The identity that the parts belong to, where there is one."""
+def _plain(value: Any) -> Any:
+    if isinstance(value, str):
+        return value
+    return [float(v) for v in value] if hasattr(value, "__iter__") else float(value)
+
+
+def _reader(name: str) -> Callable[[object], object]:
+    """What makes a part of a card's entry; faults come out under the entry's own keys."""
+
+    def read(value: object) -> object:
+        if value is None or isinstance(value, FIELDS[name]):
+            return value
+        if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
+            raise PydanticCustomError("part", "expected the key kind and the parameters of that kind")
+        kind = _kind(name, value)
+        keys = _keys(kind, value)
+        found = {field: value[key] for field, key in keys.items()}
+        for field, key in keys.items():
+            if not _sound(found[field]):
+                raise _faults(("value", key, "expected a number, a word or a list of numbers", found[field]))
         try:
-            found: dict[str, Any] = json.loads(self.plan_file.read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            return None
-        except ValueError:
-            raise InputError(f"{self.plan_file}: damaged: give --overwrite to build it anew") from None
-        return found
+            part = kind(**found)
+            part.check()
+        except ValueError as error:  # it begins with the field
+            field, _, text = one_line(error).partition(": ")
+            key = keys.get(field, "")
+            raise _faults(("value", key, text if key else one_line(error), None)) from None
+        except Exception as error:  # a part from outside may raise anything
+            text = f"{kind.name}: {type(error).__name__}: {one_line(error)}"
+            raise _faults(("value", "", text, None)) from None
+        return part
 
-    def begin(self, identity: dict[str, Any]) -> None:
-        """Clears what was there and notes what is built from now on."""
-        self.plan_file.unlink(missing_ok=True)  # first: parts without a plan are nobody's
-        self.ledger_file.unlink(missing_ok=True)
-        for folder in (self.parts, self.store):
-            shutil.rmtree(folder, ignore_errors=True)
-        self.parts.mkdir(parents=True)
-        write_atomic(self.plan_file, json.dumps(identity, indent=1, sort_keys=True).encode())
+    return read
 
-    def keep(self, outcome: Outcome) -> None:
-        """Stores a poke for good: after this returns, no crash can lose it."""
-        part, note = self.part(outcome.index), self._note(outcome.index)
-        if outcome.payload is not None:
-            write_atomic(part, outcome.payload)
-            note.unlink(missing_ok=True)
+
+def _kind(name: str, value: Mapping[str, object]) -> type[parts.Part]:
+    known = [n for n in parts.names() if issubclass(parts.get(n), FIELDS[name])]
+    if "kind" not in value:
+        raise _faults(("missing", "kind", "", None))
+    if value["kind"] not in known:
+        raise _faults(("value", "kind", f"expected one of {', '.join(known)}", value["kind"]))
+    return parts.get(str(value["kind"]))
+
+
+def _keys(kind: type[parts.Part], value: Mapping[str, object]) -> dict[str, str]:
+    """Which key states each field that is given; refuses unknown, doubled and missing ones."""
+    found: dict[str, str] = {}
+    problems: list[tuple[str, str, str, object]] = []
+    known = {f.name: f for f in fields(kind) if f.init}
+    for key in value:
+        if key == "kind":
+            continue
+        field = next((f for f in known if key == f or key in {f"{f}_{unit}" for unit in UNITS}), None)
+        if field is None:
+            problems.append(("extra_forbidden", key, "", None))
+        elif field in found:
+            problems.append(("value", key, f"states the same as {found[field]}: expected one of them", None))
         else:
-            write_atomic(note, (outcome.error or "unknown error").encode())
-
-    def part(self, index: int) -> Path:
-        return self.parts / f"poke-{index:05d}.npz"
-
-    @contextlib.contextmanager
-    def opened(self, index: int) -> Iterator[Mapping[str, NDArray[Any]]]:
-        """The arrays of a finished poke, each read when it is asked for."""
-        with self.part(index).open("rb") as file, np.load(file) as arrays:
-            yield arrays
-
-    def _note(self, index: int) -> Path:
-        return self.parts / f"poke-{index:05d}.error"
-
-    def done(self) -> set[int]:
-        """Indices of the finished pokes."""
-        return {int(path.stem[5:]) for path in self.parts.glob("poke-*.npz")}
-
-    def errors(self) -> dict[int, str]:
-        """Texts of the pokes that failed and have not succeeded since."""
-        done = self.done()
-        found = {int(path.stem[5:]): path for path in self.parts.glob("poke-*.error")}
-        return {i: path.read_text(encoding="utf-8") for i, path in sorted(found.items()) if i not in done}
-
-    def log(self, line: dict[str, Any]) -> None:
-        """Appends to the ledger; a line torn by a crash is skipped when it is read."""
-        with self.ledger_file.open("a", encoding="utf-8") as file:
-            file.write("\n" + json.dumps(line) if _torn(self.ledger_file) else json.dumps(line))
-            file.write("\n")
-
-    def remove(self) -> None:
-        """Removes the folder, the lock last (it is still held)."""
-        lock = self.folder / "lock"
-        for path in self.folder.iterdir():
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            elif path != lock:
-                path.unlink(missing_ok=True)
-        lock.unlink(missing_ok=True)
-        with contextlib.suppress(OSError):
-            self.folder.rmdir()
+            found[field] = key
+    lacking = [field for name, field in known.items() if name not in found and not _has_default(field)]
+    problems += [("missing", f.name, "", None) for f in lacking]
+    if problems:
+        raise _faults(*problems)
+    return found
 
 
-def write_atomic(path: Path, content: bytes) -> None:
-    """The file appears whole or not at all, and stays through a power cut."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
-    sync_folder(path.parent)
+def _has_default(field: Field[Any]) -> bool:
+    return field.default is not MISSING or field.default_factory is not MISSING
 
 
-def sync_folder(folder: Path) -> None:
-    """Makes renames inside the folder durable."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+def _sound(value: object) -> bool:
+    if isinstance(value, tuple | list):
+        return all(isinstance(v, int | float) and not isinstance(v, bool) for v in value)
+    return isinstance(value, int | float | str) and not isinstance(value, bool)
 
 
-def read_ledger(path: Path) -> dict[int, dict[str, Any]]:
-    """The last line of each poke."""
-    lines: dict[int, dict[str, Any]] = {}
-    for line in _lines(path):
-        with contextlib.suppress(ValueError, KeyError, TypeError):
-            entry = json.loads(line)
-            lines[int(entry["poke"])] = entry
-    return lines
+def _faults(*problems: tuple[str, str, str, object]) -> PydanticCustomError:
+    """Faults of an entry's keys, to be reported under them: (type, key, sentence, value)."""
+    listed = [
+        {"type": kind, "loc": (key,) if key else (), "msg": text or kind, "input": value}
+        for kind, key, text, value in problems
+    ]
+    return PydanticCustomError("nested", "{text}", {"text": "nested", "problems": listed})
 
 
-def _lines(path: Path) -> Iterator[str]:
-    if path.is_file():
-        yield from path.read_text(encoding="utf-8", errors="replace").splitlines()
-
-
-def _torn(path: Path) -> bool:
-    if not path.is_file() or path.stat().st_size == 0:
-        return False
-    with path.open("rb") as file:
-        file.seek(-1, os.SEEK_END)
-        return file.read(1) != b"\n"
+Viscosity = Annotated[InstanceOf[parts.Viscosity] | None, BeforeValidator(_reader("viscosity"))]
+Softening = Annotated[InstanceOf[parts.Softening] | None, BeforeValidator(_reader("softening"))]
+Fibres = Annotated[InstanceOf[parts.Fibres] | None, BeforeValidator(_reader("fibres"))]

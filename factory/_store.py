@@ -1,19 +1,232 @@
-"""A finished store on disk, read without decoding its big arrays."""
+"""The files of a finished store: attributes of its root, its ledger, and a manifest with sha256 of the rest.
+
+Nothing here decodes an array, and nothing follows a link.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import json
-from pathlib import Path
+import math
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
 from typing import Any
 
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from factory._input import InputError, describe_os_error, validation_sentence
+
 PROVENANCE = "provenance"  # a Zarr group, so that its files do not disturb who lists the arrays
+MANIFEST = f"{PROVENANCE}/manifest.json"
+LEDGER = f"{PROVENANCE}/ledger.jsonl"
+_OUTSIDE = {MANIFEST, LEDGER}  # the ledger holds wall times: no two runs agree on them
+
+
+class DamagedError(InputError):
+    """A dataset of the factory that cannot be read as it should."""
+
+
+class _Lenient(BaseModel):
+    model_config = ConfigDict(extra="allow", strict=True, allow_inf_nan=False)
+
+
+class _Rod(_Lenient):
+    radius_mm: float = Field(gt=0)
+    edge_radius_mm: float = Field(gt=0)
+    tip: str
+
+
+class _Protocol(_Lenient):
+    frame_spacing_mm: float = Field(gt=0)
+    shared_sites: int = Field(ge=0)
+    own_sites: int = Field(ge=0)
+    course: list[dict[str, Any]] = Field(default_factory=list)
+
+
+class _Shape(_Lenient):
+    id: str
+
+
+class _Recipe(_Lenient):
+    name: str
+    rod: _Rod
+    protocol: _Protocol
+    softness: list[str]
+    shapes: list[_Shape]
+
+
+class _Identity(_Lenient):
+    model: str
+    recipe: _Recipe
+
+
+class _Attributes(_Lenient):
+    """What the readers of a store rely on."""
+
+    format: int
+    uuid: str
+    fingerprint: str
+    model: str
+    pokes: int = Field(ge=1)
+    pokes_done: int = Field(ge=0)
+    shapes: list[str] = Field(min_length=1)
+    softness: list[str] = Field(min_length=1)
+    parameter_names: list[str]
+    solver_tolerance: float = Field(gt=0)
+    identity: _Identity
+
+
+def is_store(path: Path) -> bool:
+    """`path` is a dataset of the factory, or what damage has left of one."""
+    attributes = _raw_attributes(path)
+    return (attributes is not None and "fingerprint" in attributes) or (path / MANIFEST).is_file()
 
 
 def root_attributes(store: Path) -> dict[str, Any] | None:
-    """Attributes of the store's root group; None where this is no store."""
-    try:
-        metadata = json.loads((store / "zarr.json").read_text(encoding="utf-8"))
-        attributes: dict[str, Any] = metadata["attributes"]
-    except (OSError, ValueError, KeyError, TypeError):
+    """Attributes of the store's root group; None where this is no store.
+
+    Raises
+    ------
+    DamagedError
+        Where it is a store, but its attributes are not as they should be; names the key.
+    """
+    if not is_store(store):
         return None
-    return attributes if "fingerprint" in attributes else None
+    attributes = _raw_attributes(store)
+    file = store / "zarr.json"
+    if attributes is None:
+        raise DamagedError(f"{file}: expected the attributes of the dataset: the file is missing or damaged")
+    try:
+        _Attributes.model_validate(attributes)
+    except ValidationError as error:
+        raise DamagedError(f"{file}: attributes: {validation_sentence(error)}") from None
+    return attributes
+
+
+def check_identity(identity: object, where: Path) -> dict[str, Any]:
+    """The identity of a plan as it was read from a file; DamagedError names the key that is wrong."""
+    try:
+        _Identity.model_validate(identity)
+    except ValidationError as error:
+        raise DamagedError(f"{where}: {validation_sentence(error)}") from None
+    assert isinstance(identity, dict)
+    return identity
+
+
+def read_json(path: Path) -> object:
+    """Content of a JSON file; ValueError where it is damaged, OSError where it cannot be read."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except RecursionError:
+        raise ValueError("nested too deep") from None
+
+
+def _raw_attributes(store: Path) -> dict[str, Any] | None:
+    try:
+        metadata = read_json(store / "zarr.json")
+    except (OSError, ValueError):
+        return None
+    attributes = metadata.get("attributes") if isinstance(metadata, dict) else None
+    return attributes if isinstance(attributes, dict) else None
+
+
+def read_ledger(path: Path) -> dict[int, dict[str, Any]]:
+    """The last sound line of each poke: index, wall_seconds, core_seconds and error text.
+
+    Lines torn by a crash or edited by hand are skipped; a ledger that cannot be read is empty.
+    """
+    lines: dict[int, dict[str, Any]] = {}
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return lines
+    for line in text.splitlines():
+        with contextlib.suppress(ValueError, RecursionError):
+            entry = json.loads(line)
+            if _is_sound(entry):
+                lines[entry["poke"]] = entry
+    return lines
+
+
+def _is_sound(entry: object) -> bool:
+    if not isinstance(entry, dict) or type(entry.get("poke")) is not int:
+        return False
+    walls = [entry.get("wall_seconds"), entry.get("core_seconds", 0.0)]
+    numbers = all(type(v) in (int, float) and math.isfinite(v) and v >= 0 for v in walls)
+    return numbers and isinstance(entry.get("error"), str | None)
+
+
+def plain_files(folder: Path) -> Iterator[tuple[str, Path, bool]]:
+    """Name, path and soundness of everything in a folder but its folders, sorted by name.
+
+    A link, a pipe or a device is not sound: it is named, never followed or opened.
+    """
+    found: list[tuple[str, Path, bool]] = []
+    for root, folders, files in os.walk(folder, followlinks=False):
+        for name in (*folders, *files):
+            path = Path(root) / name
+            mode = path.lstat().st_mode
+            if not stat.S_ISDIR(mode):
+                found.append((path.relative_to(folder).as_posix(), path, stat.S_ISREG(mode)))
+    yield from sorted(found)
+
+
+def write_manifest(folder: Path) -> None:
+    """Write provenance/manifest.json: {"sha256": {file: digest}}."""
+    text = json.dumps({"sha256": _sums(folder)}, indent=1, sort_keys=True) + "\n"
+    (folder / MANIFEST).write_text(text, encoding="utf-8")
+
+
+def file_faults(folder: Path) -> list[str]:
+    """What lies in a store besides files and folders: links, pipes, devices."""
+    return [
+        f"{name}: is {'a symbolic link' if path.is_symlink() else 'no plain file'}, which no dataset contains"
+        for name, path, sound in plain_files(folder)
+        if not sound
+    ]
+
+
+def manifest_faults(folder: Path) -> list[str]:
+    """What differs from the manifest, one sentence a file."""
+    path = folder / MANIFEST
+    try:
+        if path.is_symlink() or not path.is_file():
+            return [f"{MANIFEST}: missing or no plain file"]
+        content = read_json(path)
+    except OSError as error:
+        return [describe_os_error(error, f"{MANIFEST}: cannot be read")]
+    except ValueError:
+        return [f"{MANIFEST}: is not valid JSON"]
+    expected = content.get("sha256") if isinstance(content, dict) else None
+    if not isinstance(expected, dict):
+        return [f'{MANIFEST}: expected {{"sha256": {{file: digest}}}}']
+    outside = sorted(name for name in expected if not _stays_inside(name))
+    faults = [f"{MANIFEST}: names {name!r}, which is not inside of the dataset" for name in outside]
+    found = _sums(folder)
+    listed = set(expected) - set(outside)
+    faults += [f"{name}: missing" for name in sorted(listed - set(found))]
+    faults += [f"{name}: not in the manifest" for name in sorted(set(found) - listed)]
+    faults += [
+        f"{name}: sha256 differs from the manifest"
+        for name in sorted(listed & set(found))
+        if expected[name] != found[name]
+    ]
+    return faults
+
+
+def _stays_inside(name: str) -> bool:
+    path = PurePosixPath(name)
+    plain = bool(name) and "\\" not in name and "\0" not in name and path.as_posix() == name
+    return plain and not path.is_absolute() and ".." not in path.parts
+
+
+def _sums(folder: Path) -> dict[str, str]:
+    sums = {}
+    for name, path, sound in plain_files(folder):
+        if sound and name not in _OUTSIDE:
+            with path.open("rb") as file:
+                sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
+    return sums

@@ -1,22 +1,21 @@
-"""What is in a dataset, poke by poke, whether it is finished or still being built."""
+"""The content of a dataset poke by poke, whether it is finished or still being built."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from factory._manifest import LEDGER
-from factory._parts import Parts, building_folder, read_ledger
+from factory._input import InputError, describe_os_error
 from factory._record import STATUSES
-from factory.errors import InputError
-from factory.reader import open_dataset
+from factory._staging import DamagedResultError, Staging, building_folder
+from factory._store import LEDGER, check_identity, read_json, read_ledger
+from factory.reader import name_of, open_dataset
 
-# the paper's table of dataset features: law -> softness -> mean and sd of Sim_max [mm], F_max [N],
+# the paper's table of dataset features: law -> material level -> mean and sd of Sim_max [mm], F_max [N],
 # Tip_mean [mm], F_mean [N]
 PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
     "mooney-rivlin": {
@@ -34,11 +33,21 @@ PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeSummary:
-    """depth [m] and force [N]: of each frame."""
+    """One poke.
+
+    Attributes
+    ----------
+    index : int
+    shape, level, status, message : str
+    nodes : int
+        Of the volume mesh.
+    depth, force : ndarray, shape (frames,)
+        Travel of the indenter [m] and size of the force on it [N].
+    """
 
     index: int
     shape: str
-    softness: str
+    level: str
     status: str
     message: str
     nodes: int
@@ -48,7 +57,23 @@ class PokeSummary:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Summary:
-    """finished: the store is complete on disk (failed pokes count as finished, with their error)."""
+    """A dataset.
+
+    Attributes
+    ----------
+    path : Path
+    finished : bool
+        The store is complete on disk; failed pokes count as finished, with their error.
+    model, recipe, uuid : str
+    pokes : int
+        Of the plan.
+    shapes, levels : list of str
+    done : list of PokeSummary
+    failed, damaged : dict of int to str
+        Error text, or damage of the staged result, by index.
+    ledger : dict of int to dict
+        Wall times by index.
+    """
 
     path: Path
     finished: bool
@@ -57,18 +82,27 @@ class Summary:
     uuid: str
     pokes: int
     shapes: list[str]
-    softness: list[str]
+    levels: list[str]
     done: list[PokeSummary]
     failed: dict[int, str]
     ledger: dict[int, dict[str, Any]]
+    damaged: dict[int, str] = field(default_factory=dict)
 
 
-def summarise(path: Path) -> Summary:
-    """Summary of a store, or of the building folder where the store is not there yet."""
+def summarise(path: str | Path) -> Summary:
+    """Summary of a dataset, or of the building folder where the store is not there yet.
+
+    Raises
+    ------
+    InputError
+        Where there is neither, or its files are damaged.
+    """
+    path = Path(path)
     building = building_folder(path)
     if not path.exists() and (building / "plan.json").is_file():
-        return _of_parts(path, building)
+        return _of_staging(path)
     data = open_dataset(path)
+    data.check_rows()
     table, attributes = data.table, data.attributes
     force = np.linalg.norm(table["rod_force"], axis=1)
     done, failed = [], {}
@@ -80,8 +114,8 @@ def summarise(path: Path) -> Summary:
         done.append(
             PokeSummary(
                 index=i,
-                shape=attributes["shapes"][int(table["poke_shape"][i])],
-                softness=attributes["softness"][int(table["poke_softness"][i])],
+                shape=name_of(data.shapes, int(table["poke_shape"][i])),
+                level=name_of(data.levels, int(table["poke_softness"][i])),
                 status=data.status(i),
                 message=data.message(i),
                 nodes=int(table["mesh_nodes"][i]),
@@ -96,49 +130,60 @@ def summarise(path: Path) -> Summary:
         recipe=attributes["identity"]["recipe"]["name"],
         uuid=attributes["uuid"],
         pokes=data.n_pokes,
-        shapes=attributes["shapes"],
-        softness=attributes["softness"],
+        shapes=data.shapes,
+        levels=data.levels,
         done=done,
         failed=failed,
         ledger=read_ledger(path / LEDGER),
     )
 
 
-def _of_parts(path: Path, building: Path) -> Summary:
+def _of_staging(path: Path) -> Summary:
+    staging = Staging(path)
     try:
-        identity = json.loads((building / "plan.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise InputError(f"{building / 'plan.json'}: unreadable") from None
+        identity = check_identity(read_json(staging.plan_file), staging.plan_file)
+    except OSError as error:
+        raise InputError(describe_os_error(error, "cannot read")) from None
+    except ValueError:
+        raise InputError(f"{staging.plan_file}: is damaged: it is not valid JSON") from None
     recipe = identity["recipe"]
     shapes = [shape["id"] for shape in recipe["shapes"]]
-    softness = list(recipe["softness"])
+    levels = list(recipe["softness"])
     each = recipe["protocol"]["shared_sites"] + recipe["protocol"]["own_sites"]
-    parts = Parts(path)
-    done = []
-    for index in sorted(parts.done()):
-        with parts.opened(index) as part:
-            done.append(
-                PokeSummary(
-                    index=index,
-                    shape=shapes[index // (each * len(softness))],
-                    softness=softness[index // each % len(softness)],
-                    status=str(STATUSES[int(part["status"])]),
-                    message=part["message"].tobytes().decode(errors="replace"),
-                    nodes=int(part["mesh_nodes"]),
-                    depth=part["depth"],
-                    force=np.linalg.norm(part["rod_force"], axis=1),
+    total = each * len(levels) * len(shapes)
+    done, damaged = [], {}
+    for index in sorted(staging.finished()):
+        try:
+            if index >= total:
+                raise DamagedResultError(index, f"the plan has {total} pokes")
+            with staging.opened(index) as result:
+                done.append(
+                    PokeSummary(
+                        index=index,
+                        shape=shapes[index // (each * len(levels))],
+                        level=levels[index // each % len(levels)],
+                        status=name_of([str(s) for s in STATUSES], int(result["status"])),
+                        message=result["message"].tobytes().decode(errors="replace"),
+                        nodes=int(result["mesh_nodes"]),
+                        depth=result["depth"],
+                        force=np.linalg.norm(result["rod_force"].reshape(-1, 3), axis=1),
+                    )
                 )
-            )
+        except DamagedResultError as error:
+            damaged[index] = error.reason
+        except (TypeError, ValueError) as error:
+            damaged[index] = str(error)
     return Summary(
         path=path,
         finished=False,
         model=identity["model"],
         recipe=recipe["name"],
         uuid="given on completion",
-        pokes=each * len(softness) * len(shapes),
+        pokes=total,
         shapes=shapes,
-        softness=softness,
+        levels=levels,
         done=done,
-        failed=parts.errors(),
-        ledger=read_ledger(parts.ledger_file),
+        failed=staging.errors(),
+        ledger=read_ledger(staging.ledger_file),
+        damaged=damaged,
     )

@@ -1,27 +1,25 @@
-"""`python -m factory.build`: builds a dataset of simulated pokes."""
+"""`python -m factory.build`: build a dataset of simulated pokes."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
-from rich.console import Console
 
-from factory._build import Built, build, check_target
-from factory._estimate import estimate
-from factory._parts import building_folder
-from factory._screen import Screen, effect_lines, fail, make_console, plan_table
-from factory.errors import InputError, describe_os_error
-from factory.materials import LAWS
-from factory.plan import make_plan
-from factory.recipe import load_recipe, recipe_names
+from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
+from factory._input import shipped_folder
+from tisim import laws
 
-app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from factory._build import Built
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -30,11 +28,17 @@ A small dataset in minutes:
 
   python -m factory.build --model ogden --recipe quick
 
-The paper's, 11 shapes x 3 softness levels x 40 pokes; first what it would take:
+The paper's, 11 shapes x 3 material levels x 40 pokes; first what it would take:
 
   python -m factory.build --model ogden --dry-run
 
   python -m factory.build --model ogden
+
+With calibrated materials, of the recipe's names or of others:
+
+  python -m factory.build --model ogden --recipe quick --materials fitted/cards
+
+  python -m factory.build --model ogden --recipe quick --materials fitted/cards --levels Eco,Dragon
 
 Elsewhere, or on the workers of a dask cluster (tisim must be installed there):
 
@@ -47,67 +51,121 @@ Stopped or killed, the same command goes on where it was.
 Exit codes: 0 built, 1 built but some pokes failed, 2 bad input or target, 130 stopped by Ctrl-C.
 """
 
+RECIPES = ", ".join(sorted(path.stem for path in shipped_folder("recipes").glob("*.yaml")))
+MODELS = ", ".join(laws.all_names())
 
-@app.command(epilog=EXAMPLES)
+
 def main(
-    model: Annotated[str, typer.Option(help=f"Constitutive law: {', '.join(LAWS)}.")],
-    recipe: Annotated[
-        str, typer.Option(help=f"A recipe by name ({', '.join(recipe_names())}) or a YAML file.")
-    ] = "paper",
+    model: Annotated[str, typer.Option(help=f"Constitutive law: {MODELS}, or one that a plugin registers.")],
+    recipe: Annotated[str, typer.Option(help=f"A recipe by name ({RECIPES}) or a YAML file.")] = "paper",
     out: Annotated[
-        Path | None, typer.Option(help="The store to write. Default: datasets/RECIPE-MODEL.zarr.")
+        Path | None,
+        typer.Option(
+            help="The store to write. Default: datasets/RECIPE-MODEL.zarr under the current folder; with "
+            "--materials, datasets/RECIPE-MODEL-FOLDER.zarr.",
+            show_default=False,
+        ),
+    ] = None,
+    materials: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of material cards. Default: those of the paper. Where it has none of the recipe's "
+            "material levels, its own cards are the levels.",
+            show_default=False,
+        ),
+    ] = None,
+    levels: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME,...", help="Material levels (names of cards), in place of the recipe's."
+        ),
     ] = None,
     resume: Annotated[
         bool,
         typer.Option(
             "--resume/--overwrite",
             help="Go on where an earlier run stopped, or simulate everything again "
-            "(what is there stays until the new store is complete).",
+            "(an old store stays until the new one is complete).",
         ),
     ] = True,
-    workers: Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one a core.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Worker processes. Default: one a core.", show_default=False)
+    ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print the plan.")] = False,
     cluster: Annotated[
         str | None,
         typer.Option(help="Address of a dask scheduler, or 'local' for one on this machine."),
     ] = None,
-    materials: Annotated[
-        Path | None, typer.Option(help="Folder of material cards. Default: datasets/materials.")
-    ] = None,
+    cluster_timeout: Annotated[
+        float,
+        typer.Option(
+            min=1.0,
+            metavar="SECONDS",
+            help="With --cluster: give up after this time without a scheduler or without a worker.",
+        ),
+    ] = 300.0,
+    plugin: Plugins = None,
+    version: Version = False,
 ) -> None:
-    """Builds a dataset of simulated pokes: a Zarr store with a preview picture beside it."""
-    console = make_console()
+    """Build a dataset of simulated pokes: a Zarr store with a preview picture beside it."""
+    del version
     target = out
     try:
-        plan = make_plan(load_recipe(recipe), model, materials)
-        target = (out or Path("datasets") / f"{plan.recipe.name}-{model}.zarr").absolute()
-        count = workers or os.cpu_count() or 1
-        expected = estimate(plan, target, count)
-        if dry_run:
-            check_target(target)
-            console.print(plan_table(plan, target, expected, count))
-            return
-        for name, text in effect_lines(plan):
-            console.print(f"effect in {name}: {text}", markup=False)
-        with _terminable(), Screen(plan, target, console, expected) as screen:
-            built = build(
-                plan, target, overwrite=not resume, workers=count, cluster=cluster, watch=screen.update
-            )
-            screen.finish(built)
-    except InputError as error:
-        fail(error)
-    except OSError as error:
-        fail(InputError(describe_os_error(error, "cannot use")))
+        with shown_errors("cannot use"):
+            import_plugins(plugin)
+
+            from factory._build import build_dataset, check_target, warn_of_full_disk
+            from factory._report import Screen, derived_levels, effect_lines, estimate, plan_table
+            from factory.plan import make_plan
+            from factory.recipe import load_recipe
+
+            console = make_console()
+            wanted = None if levels is None else [name.strip() for name in levels.split(",")]
+            plan = make_plan(load_recipe(recipe), model, materials, levels=wanted)
+            target = (out or default_target(plan.recipe.name, model, materials)).absolute()
+            count = workers or os.cpu_count() or 1
+            expected = estimate(plan, target, count)
+            check_target(target, overwrite=not resume)
+            if dry_run:
+                console.print(plan_table(plan, target, expected, count))
+                return
+            for name in derived_levels(plan):
+                console.print(f"material {name}: its card has no parameters of {model}: small-strain moduli.")
+            for name, text in effect_lines(plan):
+                console.print(f"effect in {name}: {text}")
+            warn_of_full_disk(target, 2 * expected.size)
+            with _terminable(), Screen(plan, target, console, expected) as screen:
+                built = build_dataset(
+                    plan,
+                    target,
+                    overwrite=not resume,
+                    workers=count,
+                    cluster=cluster,
+                    cluster_timeout=cluster_timeout,
+                    on_progress=screen.update,
+                )
+                screen.finish(built)
     except KeyboardInterrupt:
-        _say_stopped(target)
+        _report_stopped(target)
     if built.errors:
-        _say_failed(built, console)
+        _report_failed(built, console)
         raise typer.Exit(1)
+
+
+def default_target(recipe: str, model: str, materials: Path | None) -> Path:
+    """datasets/RECIPE-MODEL.zarr, or with a folder of materials datasets/RECIPE-MODEL-FOLDER.zarr."""
+    name = f"{recipe}-{model}"
+    if materials is not None:
+        folder = materials.absolute()
+        part = folder.parent.name if folder.name in ("cards", "materials") else folder.name
+        word = re.sub(r"[^A-Za-z0-9._-]+", "-", part).strip("-.")
+        name += f"-{word or 'materials'}"
+    return Path("datasets") / f"{name}.zarr"
 
 
 @contextlib.contextmanager
 def _terminable() -> Iterator[None]:
-    """Lets SIGTERM end the build as Ctrl-C does."""
+    """Let SIGTERM end the build as Ctrl-C does."""
 
     def interrupt(_number: int, _frame: object) -> NoReturn:
         raise KeyboardInterrupt
@@ -119,8 +177,12 @@ def _terminable() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _say_stopped(target: Path | None) -> NoReturn:
-    kept = len(list((building_folder(target) / "parts").glob("poke-*.npz"))) if target else 0
+def _report_stopped(target: Path | None) -> NoReturn:
+    kept = 0
+    if target is not None:
+        from factory._staging import Staging
+
+        kept = len(Staging(target.absolute()).finished())
     typer.echo(
         f"Stopped. {kept} finished pokes are kept; the same command (without --overwrite) goes on.",
         err=True,
@@ -128,15 +190,16 @@ def _say_stopped(target: Path | None) -> NoReturn:
     raise typer.Exit(130)
 
 
-def _say_failed(built: Built, console: Console) -> None:
+def _report_failed(built: Built, console: Console) -> None:
     index, text = next(iter(built.errors.items()))
     console.print(
         f"{len(built.errors)} of {built.total} pokes failed (first: poke {index}: {text}); "
         "the same command tries them again.",
         style="yellow",
-        markup=False,
     )
 
+
+app = make_app(main, EXAMPLES)
 
 if __name__ == "__main__":
     app()

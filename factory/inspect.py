@@ -1,25 +1,32 @@
-"""`python -m factory.inspect DATASET`: what is in a dataset, and how far it got."""
+"""`python -m factory.inspect DATASET`: the content of a dataset, and how far it got."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
-from numpy.typing import NDArray
-from rich.console import Console
-from rich.table import Table
 
-from factory._layout import SPECS
-from factory._picture import draw_poke
-from factory._screen import duration, fail, make_console, size_text
-from factory._summary import PAPER, PokeSummary, Summary, summarise
-from factory.errors import InputError, describe_os_error
-from factory.reader import Dataset, open_dataset
+from factory._cli import (
+    Plugins,
+    Version,
+    duration,
+    import_plugins,
+    make_app,
+    make_console,
+    shown_errors,
+    size_text,
+)
+from factory._input import InputError
 
-app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from factory._summary import PokeSummary, Summary
+    from factory.reader import Dataset, PokeData
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -32,16 +39,23 @@ EXAMPLES = """
 """
 
 
-@app.command(epilog=EXAMPLES)
 def main(
     dataset: Annotated[Path, typer.Argument(help="The store (also while it is being built).")],
     poke: Annotated[int | None, typer.Option(help="Show one poke, by index.")] = None,
     picture: Annotated[Path | None, typer.Option(help="With --poke: write its picture, a PNG.")] = None,
     arrays: Annotated[bool, typer.Option("--arrays", help="List every array with its units.")] = False,
+    plugin: Plugins = None,
+    version: Version = False,
 ) -> None:
-    """What is in a dataset: progress, depths and forces reached, what stopped the pokes, sizes."""
-    console = make_console()
-    try:
+    """Show the content of a dataset: progress, depths and forces, what ended the pokes, sizes."""
+    del version
+    with shown_errors(f"{dataset}: cannot read"):
+        import_plugins(plugin)
+
+        from factory._summary import summarise
+        from factory.reader import open_dataset
+
+        console = make_console()
         if poke is not None:
             _show_poke(open_dataset(dataset), poke, picture, console)
             return
@@ -52,21 +66,23 @@ def main(
         if summary.done:
             console.print(_reached(summary))
             console.print(_causes(summary))
+        for index, text in list(summary.damaged.items())[:10]:
+            console.print(f"poke {index}: its staged result is damaged ({text}): a build simulates it again")
         for index, text in list(summary.failed.items())[:10]:
-            console.print(f"poke {index} failed: {text}", markup=False, highlight=False)
+            console.print(f"poke {index} failed: {text}")
         if summary.finished:
-            data = open_dataset(dataset)
-            console.print(_arrays(data, everything=arrays))
-    except InputError as error:
-        fail(error)
-    except OSError as error:
-        fail(InputError(describe_os_error(error, f"{dataset}: cannot read")))
+            console.print(_arrays(open_dataset(dataset), everything=arrays))
 
 
 def _overview(summary: Summary) -> Table:
+    import numpy as np
+    from rich.table import Table
+
     table = Table(title=str(summary.path), show_header=False)
     state = "finished" if summary.finished else "being built, or stopped on the way"
     counts = f"{len(summary.done)} of {summary.pokes} pokes, {len(summary.failed)} failed"
+    if summary.damaged:
+        counts += f", {len(summary.damaged)} damaged"
     table.add_row("state", f"{state}: {counts}")
     table.add_row("recipe, law", f"{summary.recipe}, {summary.model}")
     table.add_row("uuid", summary.uuid)
@@ -83,12 +99,16 @@ def _overview(summary: Summary) -> Table:
 
 
 def _reached(summary: Summary) -> Table:
+    from rich.table import Table
+
+    from factory._summary import PAPER
+
     table = Table(title="Depths and forces reached, mean +- sd (the paper's below)")
     measures = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
-    for head in ("softness", "pokes", *measures):
+    for head in ("material level", "pokes", *measures):
         table.add_column(head, justify="right")
-    for name in summary.softness:
-        pokes = [poke for poke in summary.done if poke.softness == name]
+    for name in summary.levels:
+        pokes = [poke for poke in summary.done if poke.level == name]
         if not pokes:
             continue
         table.add_row(name, str(len(pokes)), *_features(pokes))
@@ -100,6 +120,8 @@ def _reached(summary: Summary) -> Table:
 
 
 def _features(pokes: list[PokeSummary]) -> list[str]:
+    import numpy as np
+
     kept = [poke for poke in pokes if len(poke.depth)]
     if not kept:
         return ["-"] * 4
@@ -112,19 +134,22 @@ def _features(pokes: list[PokeSummary]) -> list[str]:
     return [_mean_sd(values) for values in columns]
 
 
-def _mean_sd(values: NDArray[np.float64]) -> str:
+def _mean_sd(values: Any) -> str:
     return f"{values.mean():.2f} +- {values.std():.2f}"
 
 
 def _causes(summary: Summary) -> Table:
+    from rich.table import Table
+
     table = Table(title="What ended the pokes")
     for head in ("status", "pokes", "deepest, mean [mm]", "for example"):
         table.add_column(head)
     for status, count in Counter(poke.status for poke in summary.done).most_common():
         those = [poke for poke in summary.done if poke.status == status]
         depths = [poke.depth.max() * 1e3 if len(poke.depth) else 0.0 for poke in those]
-        example = f"poke {those[0].index}: {those[0].message}"
-        table.add_row(status, str(count), f"{np.mean(depths):.1f}", example)
+        first = those[0]
+        example = f"poke {first.index}: {first.message}" if first.message else f"poke {first.index}"
+        table.add_row(status, str(count), f"{sum(depths) / len(depths):.1f}", example)
     if summary.failed:
         index, text = next(iter(summary.failed.items()))
         table.add_row("failed", str(len(summary.failed)), "-", f"poke {index}: {text}")
@@ -132,47 +157,86 @@ def _causes(summary: Summary) -> Table:
 
 
 def _arrays(data: Dataset, *, everything: bool) -> Table:
+    from rich.table import Table
+
     table = Table(title="Arrays" if everything else "Largest arrays (--arrays lists all)")
-    for head in ("name", "shape", "type", "units", "on disk", "what it is"):
+    for head in ("name", "shape", "type", "units", "on disk", "content"):
         table.add_column(head)
-    sizes = {name: _size(data.path / name) for name in SPECS}
-    names = list(SPECS) if everything else sorted(SPECS, key=lambda name: -sizes[name])[:4]
+    specs = data.specs
+    sizes = {name: _size(data.path / name) for name in specs}
+    names = list(specs) if everything else sorted(specs, key=lambda name: -sizes[name])[:4]
     for name in names:
         array = data.array(name)
         shape = " x ".join(str(n) for n in array.shape)
         units = str(array.attrs.get("units", ""))
-        table.add_row(name, shape, str(array.dtype), units, size_text(sizes[name]), SPECS[name].text)
+        table.add_row(name, shape, str(array.dtype), units, size_text(sizes[name]), specs[name].text)
     table.add_row("all", "", "", "", size_text(_size(data.path)), "")
     return table
 
 
 def _size(folder: Path) -> int:
-    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    from factory._store import plain_files
+
+    return sum(path.stat().st_size for _, path, sound in plain_files(folder) if sound)
 
 
 def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console) -> None:
+    import numpy as np
+    from rich.table import Table
+
     if not 0 <= index < data.n_pokes:
         raise InputError(f"--poke {index}: expected 0 to {data.n_pokes - 1}")
     poke = data.poke(index)
     table = Table(title=f"Poke {index} of {data.path}", show_header=False)
-    table.add_row("shape, softness", f"{poke.shape}, {poke.softness}")
+    table.add_row("shape, material level", f"{poke.shape}, {poke.level}")
+    lengths = ", ".join(f"{1e3 * v:g}" for v in poke.inclusion.dimensions)
+    table.add_row("inclusion", f"{poke.inclusion.kind}, {lengths} mm")
     table.add_row("status", f"{poke.status}: {poke.message}" if poke.message else poke.status)
     x, y = (v * 1e3 for v in data.table["site"][index])
     angle = np.degrees(np.arccos(np.clip(-poke.direction[2], -1, 1)))
-    table.add_row("site, angle", f"({x:.1f}, {y:.1f}) mm, {angle:.1f} degrees from the normal")
+    table.add_row("contact point, angle", f"({x:.1f}, {y:.1f}) mm, {angle:.1f} degrees from the normal")
     table.add_row("frames", str(len(poke.depth)))
     if len(poke.depth):
         table.add_row("deepest", f"{poke.depth.max() * 1e3:.2f} mm")
         table.add_row("largest force", f"{np.linalg.norm(poke.rod_force, axis=1).max():.3f} N")
+    for name, text in _pieces(data, index, poke):
+        table.add_row(name, text)
     console.print(table)
     if picture is not None:
         if picture.suffix != ".png":
             raise InputError(f"--picture {picture}: expected a name that ends in .png")
         if not len(poke.depth):
             raise InputError(f"--poke {index}: it has no frames to draw ({poke.message or poke.status})")
+        from factory._figures import draw_poke
+
         draw_poke(poke, data, picture)
         console.print(f"picture: {picture}")
 
+
+def _pieces(data: Dataset, index: int, poke: PokeData) -> Iterator[tuple[str, str]]:
+    """Each piece of a poke's course: its speed or length, and the force at its first and last frame."""
+    import numpy as np
+
+    from factory._course import PHASES, phases, pieces_at
+
+    if poke.time is None or poke.dissipated_energy is None:
+        return
+    times, depths = data.table["course_time"][index], data.table["course_depth"][index]
+    force, piece = np.linalg.norm(poke.rod_force, axis=1), pieces_at(times, poke.time)
+    lengths, moves = np.diff(times, prepend=0.0), np.diff(depths, prepend=0.0)
+    for number, phase in enumerate(phases(depths)):
+        inside = np.flatnonzero(piece == number)
+        what = f"{lengths[number]:.3g} s"
+        if moves[number]:
+            speed = 1e3 * abs(moves[number]) / lengths[number]
+            what = f"to {1e3 * depths[number]:.3g} mm at {speed:.3g} mm/s, {what}"
+        forces = f"{force[inside[0]]:.3f} to {force[inside[-1]]:.3f} N" if len(inside) else "not reached"
+        yield PHASES[phase], f"{what}: {len(inside)} frames, {forces}"
+    if len(poke.time):
+        yield "energy dissipated", f"{1e3 * poke.dissipated_energy[-1]:.3g} mJ in {poke.time[-1]:.3g} s"
+
+
+app = make_app(main, EXAMPLES)
 
 if __name__ == "__main__":
     app()

@@ -1,25 +1,36 @@
-"""From a recipe to the list of its pokes: every site, direction and inclusion drawn from the seed."""
+"""From a recipe to its pokes: every contact point, direction and inclusion drawn from the seed."""
 
 from __future__ import annotations
 
 import hashlib
 import importlib.metadata
 import json
+import logging
 import math
 import uuid
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from factory._extended import in_one_law
-from factory.errors import InputError
-from factory.materials import Card, card_path, check_law, load_card, material_of
-from factory.recipe import Cube, Cylinder, Recipe, Sphere
-from tisim.bodies import Block, BoxInclusion, CylinderInclusion, Inclusion, Rod, SphereInclusion
-from tisim.scene import Material, Poke
+from factory._course import deepest, draw_course
+from factory._input import InputError
+from factory._parts import part_entries
+from factory.materials import (
+    Card,
+    card_names,
+    card_path,
+    check_law,
+    in_one_law,
+    load_card,
+    material_of,
+)
+from factory.recipe import Recipe
+from tisim import Block, Inclusion, Material, Poke, Rod
+
+log = logging.getLogger(__name__)
 
 FORMAT = 1  # of the store; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")
@@ -28,15 +39,29 @@ _MM = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class PlannedPoke:
-    """One poke to simulate; indices into the plan's shapes and softness levels.
+    """One poke to simulate.
 
-    geometry: shape * number of softness levels + softness. site: number of the site within its set.
-    shared: the site is common to all softness levels of the shape. seed: what the site was drawn from.
+    Attributes
+    ----------
+    index : int
+        Its place in the plan and in the store.
+    shape, level : int
+        Indices into the recipe's shapes and material levels.
+    geometry : int
+        shape * number of material levels + level.
+    site : int
+        Number of the contact point within its set.
+    shared : bool
+        The contact point is common to all material levels of the shape.
+    seed : int
+        Seed that contact point and direction were drawn from.
+    scene : Poke
+        What is simulated.
     """
 
     index: int
     shape: int
-    softness: int
+    level: int
     geometry: int
     site: int
     shared: bool
@@ -46,9 +71,22 @@ class PlannedPoke:
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """A whole dataset before it is simulated; `identity` is what its bytes depend on.
+    """A whole dataset before it is simulated.
 
-    model: the law that was asked for.
+    Attributes
+    ----------
+    recipe : Recipe
+    model : str
+        The law that was asked for.
+    cards : tuple of Card
+    materials : tuple of Material
+        One a material level, as the cards.
+    inclusions : tuple of Inclusion
+        One a shape of the recipe.
+    pokes : tuple of PlannedPoke
+        In the order in which they are stored.
+    identity : dict
+        What the bytes of the dataset depend on.
     """
 
     recipe: Recipe
@@ -58,6 +96,12 @@ class Plan:
     inclusions: tuple[Inclusion, ...]
     pokes: tuple[PlannedPoke, ...]
     identity: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return (
+            f"Plan({self.recipe.name}, {self.model}: {len(self.pokes)} pokes = {len(self.inclusions)} shapes "
+            f"x {len(self.materials)} material levels x {self.recipe.pokes_each})"
+        )
 
     @property
     def fingerprint(self) -> str:
@@ -81,38 +125,67 @@ class Plan:
         return self.pokes[0].scene.block.size
 
 
-def make_plan(recipe: Recipe, model: str, materials: Path | None = None) -> Plan:
-    """All pokes of a recipe under one law, in the order they are stored: shape, softness, shared, own."""
+def make_plan(
+    recipe: Recipe, model: str, materials: Path | None = None, *, levels: Sequence[str] | None = None
+) -> Plan:
+    """Plan a dataset: all pokes of a recipe under one law.
+
+    Parameters
+    ----------
+    recipe : Recipe
+    model : str
+        Name of a law of `tisim.laws`.
+    materials : Path, optional
+        Folder of material cards; default: those that come with the package.
+    levels : sequence of str, optional
+        Names of the cards to take as material levels in place of the recipe's. Where `materials` has none of
+        the recipe's levels, its own cards are taken.
+
+    Returns
+    -------
+    Plan
+        Its pokes in the order shape, material level, shared contact points, own ones.
+
+    Raises
+    ------
+    InputError
+        Where the law is unknown, a card is missing or bad, a card does not go with the law, or an indenter
+        would leave the block through a side.
+    """
     check_law(model)
-    cards = tuple(load_card(name, materials) for name in recipe.softness)
+    recipe = _with_levels(recipe, materials, levels)
+    cards = tuple(_card(name, materials) for name in recipe.levels)
     laws = _materials(cards, model, materials)
+    _check_clock(recipe, cards, materials)
     inclusions = tuple(_place(recipe, number) for number in range(len(recipe.shapes)))
     pokes: list[PlannedPoke] = []
     for shape, inclusion in enumerate(inclusions):
-        for softness, material in enumerate(laws):
+        for level, material in enumerate(laws):
             for site in range(recipe.pokes_each):
                 shared = site < recipe.protocol.shared_sites
-                key = (shape, 0, site) if shared else (shape, 1 + softness, site)
+                key = (shape, 0, site) if shared else (shape, 1 + level, site)
                 seed = _seed(recipe.seed, key)
+                scene = _scene(recipe, inclusion, material, seed)
+                _check_path(recipe, len(pokes), scene)
                 pokes.append(
                     PlannedPoke(
                         index=len(pokes),
                         shape=shape,
-                        softness=softness,
-                        geometry=shape * len(laws) + softness,
+                        level=level,
+                        geometry=shape * len(laws) + level,
                         site=site,
                         shared=shared,
                         seed=seed,
-                        scene=_scene(recipe, inclusion, material, seed),
+                        scene=scene,
                     )
                 )
     identity = {
         "format": FORMAT,
         "model": model,
-        "recipe": recipe.model_dump(mode="json"),
+        "recipe": recipe.identity(),
         "materials": {
-            name: {**asdict(material), "stiffness": card.stiffness, **_taken(card)}
-            for name, material, card in zip(recipe.softness, laws, cards, strict=True)
+            name: {**_stated(material), "stiffness": card.stiffness, **_taken(card)}
+            for name, material, card in zip(recipe.levels, laws, cards, strict=True)
         },
         "versions": versions(),
     }
@@ -127,6 +200,33 @@ def make_plan(recipe: Recipe, model: str, materials: Path | None = None) -> Plan
     )
 
 
+def _with_levels(recipe: Recipe, folder: Path | None, levels: Sequence[str] | None) -> Recipe:
+    """The recipe at the levels that were asked for, or at the folder's where it has none of the recipe's."""
+    if levels is not None:
+        return recipe.with_levels(levels)
+    if folder is None or any(card_path(name, folder).is_file() for name in recipe.levels):
+        return recipe
+    own = card_names(folder)
+    if not own:
+        return recipe
+    log.info(
+        "%s has no card of the recipe's material levels (%s): its own cards are the levels: %s.",
+        folder,
+        ", ".join(recipe.levels),
+        ", ".join(own),
+    )
+    return recipe.with_levels(own)
+
+
+def _card(name: str, folder: Path | None) -> Card:
+    if folder is not None and not card_path(name, folder).is_file() and (own := card_names(folder)):
+        raise InputError(
+            f"{card_path(name, folder)}: no material card for material level {name}; the folder has "
+            f"{', '.join(own)}: give --levels {','.join(own)} to take these"
+        )
+    return load_card(name, folder)
+
+
 def _materials(cards: Sequence[Card], model: str, folder: Path | None) -> tuple[Material, ...]:
     """The materials of the cards, all in one law, with what their effects make of them."""
     found: dict[str, Material] = {}
@@ -136,6 +236,22 @@ def _materials(cards: Sequence[Card], model: str, folder: Path | None) -> tuple[
         except InputError as error:
             raise InputError(f"{card_path(card.material, folder)}: {error}") from None
     return tuple(in_one_law(found).values())
+
+
+def _check_clock(recipe: Recipe, cards: Sequence[Card], folder: Path | None) -> None:
+    """Refuse viscous cards under a recipe without time: any speed taken silently would decide the forces."""
+    viscous = next((card for card in cards if card.viscosity is not None), None)
+    if viscous is not None and not recipe.protocol.course:
+        raise InputError(
+            f"recipe {recipe.name}: expected key protocol.course, the rod's speeds and holds, since"
+            f" {card_path(viscous.material, folder)} has key viscosity"
+        )
+
+
+def _stated(material: Material) -> dict[str, Any]:
+    """A material as plain values, its parts as a card states them; no key for a part that it lacks."""
+    law = {"law": material.law, "parameters": material.parameters, "density": material.density}
+    return {**law, **part_entries(material)}
 
 
 def _taken(card: Card) -> dict[str, Any]:
@@ -185,21 +301,13 @@ def _place(recipe: Recipe, number: int) -> Inclusion:
     shape = recipe.shapes[number]
     random = np.random.default_rng(_seed(recipe.seed, (number, 2**32 - 1)))
     room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_mm[:2]]
-    x, y = (float(v) * _MM for v in random.uniform(-1, 1, 2) * room)
-    if isinstance(shape, Cube):
-        side = shape.side_mm * _MM
-        angle = float(random.uniform(0, math.pi / 2))
-        return BoxInclusion(size=(side, side, side), centre=(x, y, side / 2), angle=angle)
-    if isinstance(shape, Sphere):
-        z = (shape.radius_mm - shape.sunk_mm) * _MM
-        return SphereInclusion(radius=shape.radius_mm * _MM, centre=(x, y, z))
-    assert isinstance(shape, Cylinder)
-    height = shape.height_mm * _MM
-    return CylinderInclusion(radius=shape.radius_mm * _MM, height=height, centre=(x, y, height / 2))
+    x, y = (float(v) for v in random.uniform(-1, 1, 2) * room)
+    angle = float(random.uniform(0, math.pi / 2)) if shape.turned else 0.0
+    return shape.standing(x, y, angle)
 
 
 def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) -> Poke:
-    """The poke that a seed draws: a site on the top, an angle to the normal and a heading."""
+    """The poke that a seed draws: a contact point on the top, an angle to the normal and a heading."""
     protocol = recipe.protocol
     random = np.random.default_rng(seed)
     room = [side / 2 - protocol.margin_mm for side in recipe.block_mm[:2]]
@@ -208,11 +316,16 @@ def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) 
     heading = float(random.uniform(0, 2 * math.pi))
     sine = math.sin(angle)
     width, length, height = (side * _MM for side in recipe.block_mm)
+    driven: dict[str, Any] = {
+        "depth": protocol.depth_mm * _MM,
+        "frame_spacing": protocol.frame_spacing_mm * _MM,
+    }
+    if protocol.course:
+        driven = {"course": draw_course(protocol.course, protocol.frame_spacing_mm, random)}
     return Poke(
         material=material,
         site=(x, y),
         direction=(sine * math.cos(heading), sine * math.sin(heading), -math.cos(angle)),
-        depth=protocol.depth_mm * _MM,
         block=Block(size=(width, length, height), inclusion=inclusion),
         rod=Rod(
             radius=recipe.rod.radius_mm * _MM,
@@ -221,6 +334,20 @@ def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) 
             edge_radius=recipe.rod.edge_radius_mm * _MM,
         ),
         friction=recipe.friction,
-        frame_spacing=protocol.frame_spacing_mm * _MM,
         refinement=recipe.refinement,
+        **driven,
     )
+
+
+def _check_path(recipe: Recipe, index: int, poke: Poke) -> None:
+    """Refuse a poke whose indenter, at its full depth, has left the block through a side."""
+    depth = deepest(poke)
+    end = [(s + depth * d) / _MM for s, d in zip(poke.site, poke.direction[:2], strict=True)]
+    if any(abs(place) > side / 2 for place, side in zip(end, recipe.block_mm[:2], strict=True)):
+        protocol = recipe.protocol
+        raise InputError(
+            f"recipe {recipe.name}: protocol.margin_mm: expected contact points so far inside that no"
+            f" indenter leaves the block through a side at up to {protocol.max_angle_deg:g} degrees and"
+            f" {protocol.depth_mm:g} mm of depth, got {protocol.margin_mm:g}: that of poke {index} ends at"
+            f" x = {end[0]:.3g}, y = {end[1]:.3g} mm"
+        )

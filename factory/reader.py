@@ -7,39 +7,75 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import zarr
 from numpy.typing import NDArray
 
-from factory._layout import SPECS
-from factory._parts import building_folder
+from factory._course import PHASES
+from factory._input import InputError, describe_os_error, one_line
 from factory._record import STATUSES
-from factory._store import root_attributes
-from factory.errors import InputError
+from factory._schema import Spec, specs_of
+from factory._staging import building_folder
+from factory._store import DamagedError, root_attributes
 from factory.plan import FORMAT
+from tisim import Inclusion, inclusions
 
+Counted = Literal["frame", "node", "triangle", "value"]
 _BIG = {"profile", "grid_displacement", "surface_displacement", "surface_rest", "surface_triangle"}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeData:
-    """One poke; f frames, n surface nodes, t triangles. SI units.
+    """One poke: f frames, n surface nodes, t triangles.
 
-    depth, rod_force, base_force, rod_tip: by frame. direction: of the push. grid: positions of the top
-    grid, (f, 32, 32, 3). surface: positions of the surface nodes, (f, n, 3); surface_rest (n, 3);
-    triangles (t, 3). profile: stiffness under each grid point, uint8 = 255 x code, (32, 32, 128).
+    Attributes
+    ----------
+    index : int
+    shape, level : str
+        Names of the inclusion and of the material level.
+    status, message : str
+        Why the simulation ended.
+    inclusion : Inclusion
+        The rigid inclusion [m].
+    direction : ndarray, shape (3,)
+        Of the push, unit length.
+    depth : ndarray, shape (f,)
+        Travel of the indenter since first touch [m].
+    rod_tip : ndarray, shape (f, 3)
+        Centre of the indenter's tip [m].
+    rod_force, base_force : ndarray, shape (f, 3)
+        Force of the tissue on the indenter, of the fixed nodes on the tissue [N].
+    grid : ndarray, shape (f, 32, 32, 3)
+        Positions of the grid on the top [m].
+    surface : ndarray, shape (f, n, 3)
+        Positions of the surface nodes [m]; `surface_rest`, shape (n, 3), at rest.
+    triangles : ndarray, shape (t, 3)
+        Outward triangles of surface nodes.
+    profile : ndarray of uint8, shape (32, 32, 128)
+        Stiffness under each grid point, 255 x code.
+    time : ndarray, shape (f,), or None
+        Time since first touch [s]; this and the following where the recipe has a course.
+    phase : tuple of str, length f, or None
+        "load", "hold", "retract", "reload" or "rest".
+    rod_speed : ndarray, shape (f,), or None
+        Change of depth in time [m/s].
+    dissipated_energy : ndarray, shape (f,), or None
+        Energy that the material has lost since first touch [J].
     """
 
     index: int
     shape: str
-    softness: str
+    level: str
     status: str
     message: str
+    inclusion: Inclusion
     direction: NDArray[np.float64]
     depth: NDArray[np.float64]
     rod_tip: NDArray[np.float64]
@@ -50,27 +86,87 @@ class PokeData:
     surface_rest: NDArray[np.float64]
     triangles: NDArray[np.int32]
     profile: NDArray[np.uint8]
+    time: NDArray[np.float64] | None = None
+    phase: tuple[str, ...] | None = None
+    rod_speed: NDArray[np.float64] | None = None
+    dissipated_energy: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """A finished store. `table[name]` is any array of one row a poke or frame, in memory."""
+    """A finished store.
+
+    Attributes
+    ----------
+    path : Path
+    attributes : dict
+        Of the store's root: recipe, seeds, names of shapes and material levels, versions.
+    group : zarr.Group
+    table : dict of str to ndarray
+        Every array of one row a poke, a frame or a geometry, in memory.
+    """
 
     path: Path
     attributes: dict[str, Any]
     group: zarr.Group
 
+    def __repr__(self) -> str:
+        return (
+            f"Dataset({self.path}: {self.attributes['model']}, {self.n_pokes} pokes of "
+            f"{len(self.shapes)} shapes at {len(self.levels)} material levels)"
+        )
+
     @cached_property
     def table(self) -> dict[str, NDArray[Any]]:
-        return {name: self.array(name)[...] for name in SPECS if name not in _BIG}
+        return {name: self.read(name) for name in self.specs if name not in _BIG}
+
+    @property
+    def specs(self) -> dict[str, Spec]:
+        """The arrays that the store has, with units and contents."""
+        return specs_of(self.attributes["identity"]["recipe"])
+
+    @property
+    def timed(self) -> bool:
+        """Whether frames have a time: the recipe has a course."""
+        return "time" in self.specs
 
     def array(self, name: str) -> Any:
-        """The Zarr array itself."""
-        return self.group[name]
+        """The Zarr array itself; DamagedError where it is missing or its metadata are damaged."""
+        with self._damage_named(name):
+            if not (self.path / name / "zarr.json").is_file():  # the root's metadata would hide that
+                raise KeyError(name)
+            return self.group[name]
+
+    def read(self, name: str, rows: slice | int = slice(None)) -> NDArray[Any]:
+        """Rows of an array; DamagedError where they cannot be read."""
+        array = self.array(name)
+        with self._damage_named(name):
+            return np.asarray(array[rows])
+
+    @contextlib.contextmanager
+    def _damage_named(self, name: str) -> Iterator[None]:
+        try:
+            yield
+        except KeyError:
+            raise DamagedError(f"{self.path / name}: the array is missing") from None
+        except Exception as error:  # a damaged file can break anywhere in the decoding
+            raise DamagedError(
+                f"{self.path / name}: the array cannot be read ({type(error).__name__}: {one_line(error)})"
+            ) from None
 
     @property
     def n_pokes(self) -> int:
         return int(self.attributes["pokes"])
+
+    @property
+    def shapes(self) -> list[str]:
+        """Names of the inclusions."""
+        return list(self.attributes["shapes"])
+
+    @property
+    def levels(self) -> list[str]:
+        """Names of the material levels."""
+        return list(self.attributes["softness"])
 
     def message(self, index: int) -> str:
         """What stopped a poke, or its error."""
@@ -80,48 +176,125 @@ class Dataset:
         """Status as a word; "failed" where the poke has no result."""
         if not self.table["done"][index]:
             return "failed"
-        return str(STATUSES[int(self.table["status"][index])])
+        return name_of([str(s) for s in STATUSES], int(self.table["status"][index]))
 
-    def rows(self, index: int, kind: str) -> slice:
-        """Rows of a poke in arrays counted by kind: frame, node, triangle or value."""
-        start = int(self.table[f"{kind}_start"][index])
-        return slice(start, start + int(self.table[f"{kind}_count"][index]))
+    def rows(self, index: int, counted: Counted) -> slice:
+        """Rows of a poke in the arrays that count frames, nodes, triangles or values."""
+        start = int(self.table[f"{counted}_start"][index])
+        return slice(start, start + int(self.table[f"{counted}_count"][index]))
+
+    def check_rows(self) -> None:
+        """DamagedError where the tables are not as long as the attributes and their own counts say."""
+        expected: dict[str, int] = {
+            "poke": self.n_pokes,
+            "geometry": len(self.shapes) * len(self.levels),
+            "frame": int(self.table["frame_count"].sum()),
+        }
+        for name, spec in self.specs.items():
+            if name not in self.table or spec.rows not in expected:
+                continue
+            array = self.table[name]
+            if array.shape[:1] != (expected[spec.rows],) or (spec.row and array.shape[1:] != spec.row):
+                raise DamagedError(
+                    f"{self.path / name}: has shape {array.shape}, expected {expected[spec.rows]} rows"
+                )
+
+    def inclusion(self, geometry: int) -> Inclusion:
+        """The inclusion of one row of the arrays that count geometries.
+
+        Raises
+        ------
+        DamagedError
+            Where the row describes no inclusion, or its kind is not registered in `tisim.inclusions`.
+        """
+        try:
+            if "inclusions" in self.attributes:
+                return inclusions.decode(self.attributes["inclusions"][geometry // len(self.levels)])
+            kinds = str(self.array("inclusion_kind").attrs["flag_meanings"]).split()
+            return inclusions.from_dimensions(
+                kinds[int(self.table["inclusion_kind"][geometry])],
+                self.table["inclusion_size"][geometry],
+                self.table["inclusion_centre"][geometry],
+                float(self.table["inclusion_angle"][geometry]),
+            )
+        except (LookupError, TypeError, ValueError) as error:
+            raise DamagedError(f"{self.path}: inclusion of geometry {geometry}: {one_line(error)}") from None
 
     def poke(self, index: int) -> PokeData:
-        """Everything about one poke."""
+        """Everything about one poke; DamagedError where the store cannot be read."""
+        if not 0 <= index < self.n_pokes:
+            raise InputError(f"poke {index}: expected 0 to {self.n_pokes - 1}")
+        self.check_rows()
         table, frames = self.table, self.rows(index, "frame")
-        rest = self.array("surface_rest")[self.rows(index, "node")]
-        moved = self.array("surface_displacement")[self.rows(index, "value")]
+        geometry = int(table["poke_geometry"][index])
+        rest = self.read("surface_rest", self.rows(index, "node"))
+        moved = self.read("surface_displacement", self.rows(index, "value"))
+        depth = table["depth"][frames]
+        if moved.shape != (len(depth) * len(rest), 3) or rest.shape[1:] != (3,):
+            raise DamagedError(f"{self.path}: poke {index}: its surface and its frames do not match")
+        profile = self.array("profile")
+        if not 0 <= geometry < profile.shape[0]:
+            raise DamagedError(f"{self.path}: poke {index}: geometry {geometry} is not in the store")
         return PokeData(
             index=index,
-            shape=self.attributes["shapes"][int(table["poke_shape"][index])],
-            softness=self.attributes["softness"][int(table["poke_softness"][index])],
+            shape=name_of(self.shapes, int(table["poke_shape"][index])),
+            level=name_of(self.levels, int(table["poke_softness"][index])),
             status=self.status(index),
             message=self.message(index),
+            inclusion=self.inclusion(geometry),
             direction=table["direction"][index],
-            depth=table["depth"][frames],
+            depth=depth,
             rod_tip=table["rod_tip"][frames],
             rod_force=table["rod_force"][frames],
             base_force=table["base_force"][frames],
-            grid=table["grid_rest"] + self.array("grid_displacement")[frames],
-            surface=rest + moved.reshape(-1, len(rest), 3),
+            grid=table["grid_rest"] + self.read("grid_displacement", frames),
+            surface=rest + moved.reshape(len(depth), len(rest), 3),
             surface_rest=rest,
-            triangles=self.array("surface_triangle")[self.rows(index, "triangle")],
-            profile=self.array("profile")[int(table["poke_geometry"][index])],
+            triangles=self.read("surface_triangle", self.rows(index, "triangle")),
+            profile=self.read("profile", geometry),
+            **self._of_time(frames),
         )
+
+    def _of_time(self, frames: slice) -> dict[str, Any]:
+        if not self.timed:
+            return {}
+        phase = tuple(name_of(PHASES, int(code)) for code in self.table["phase"][frames])
+        names = ("time", "rod_speed", "dissipated_energy")
+        return {"phase": phase, **{name: self.table[name][frames] for name in names}}
+
+
+def name_of(names: Sequence[str], number: int) -> str:
+    """The name of a code; "unknown (7)" where a damaged store has one that there is not."""
+    return names[number] if 0 <= number < len(names) else f"unknown ({number})"
 
 
 def open_dataset(path: str | Path) -> Dataset:
-    """A finished store, for reading; InputError where there is none."""
+    """Open a finished store for reading.
+
+    Raises
+    ------
+    InputError
+        Where there is no dataset of the factory, or one that is still being built; DamagedError where its
+        metadata are damaged.
+    """
     folder = Path(path)
     if not folder.is_dir():
         hint = ""
         if building_folder(folder).is_dir():
             hint = f": it is still being built in {building_folder(folder).name}"
         raise InputError(f"{folder}: no such dataset{hint}")
-    attributes = root_attributes(folder)
+    try:
+        attributes = root_attributes(folder)
+    except OSError as error:
+        raise InputError(describe_os_error(error, "cannot read")) from None
     if attributes is None:
         raise InputError(f"{folder}: not a dataset of the factory")
-    if attributes.get("format") != FORMAT:
-        raise InputError(f"{folder}: format {attributes.get('format')}, expected {FORMAT}")
-    return Dataset(folder, attributes, zarr.open_group(store=folder, mode="r", zarr_format=3))
+    if attributes["format"] != FORMAT:
+        raise InputError(f"{folder}: format {attributes['format']}, expected {FORMAT}")
+    try:
+        group = zarr.open_group(store=folder, mode="r", zarr_format=3)
+    except Exception as error:  # damaged metadata can break anywhere in the decoding
+        raise DamagedError(
+            f"{folder / 'zarr.json'}: cannot be read ({type(error).__name__}: {one_line(error)})"
+        ) from None
+    return Dataset(folder, attributes, group)

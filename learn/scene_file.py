@@ -1,109 +1,196 @@
-"""A poke to predict, as a YAML file; lengths in mm, angles in degrees, because people write it."""
+"""A poke to predict, as a YAML file or a dictionary; lengths in mm, angles in degrees, because people write
+it.
+
+The keys are those of `PokeScene`. Whatever does not fit the dataset's block is refused by name: no model can
+say anything about it. Whether a poke that fits is one that the model was trained on is `learn.validity`'s
+question.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import torch
-import yaml
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from learn.data import Store
-from learn.data._format import RIGID
+from learn._yaml import first_fault, read_yaml
+from learn.data.store import RIGID, Store
 from learn.errors import InputError
 from learn.models import Pokes, Scene, make_scene
+from learn.validity import shape_kind
 
 _MM = 1e-3
+STEEPEST = 45.0  # [degrees] of a push against the normal, as in the simulator
 
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-Length = Annotated[float, Field(gt=0, lt=1000)]
-Pair = tuple[float, float]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Length = Annotated[float, Field(strict=True, gt=0, lt=1000)]
+Pair = tuple[Number, Number]
+Triple = tuple[Number, Number, Number]
+Name = Annotated[str, Field(strict=True, min_length=1)]
+
+
+class NoInclusion(_Strict):
+    """A block without an inclusion."""
+
+    kind: Literal["none"]
+
+    def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return np.zeros(local.shape[:-1], dtype=bool)
 
 
 class Sphere(_Strict):
-    """centre_mm: in the block's frame, z from the base up."""
+    """A rigid sphere; centre_mm: in the block's frame, z above the base."""
 
     kind: Literal["sphere"]
     radius_mm: Length
-    centre_mm: tuple[float, float, float]
+    centre_mm: Triple
+
+    @property
+    def half_mm(self) -> Triple:
+        """Half extents in x, y and z."""
+        return self.radius_mm, self.radius_mm, self.radius_mm
+
+    def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which points (..., 3), relative to the centre [m], lie in it."""
+        return np.asarray((local**2).sum(axis=-1) <= (self.radius_mm * _MM) ** 2)
 
 
 class Cylinder(_Strict):
-    """Upright."""
+    """A rigid upright cylinder; centre_mm: of its middle."""
 
     kind: Literal["cylinder"]
     radius_mm: Length
     height_mm: Length
-    centre_mm: tuple[float, float, float]
+    centre_mm: Triple
+
+    @property
+    def half_mm(self) -> Triple:
+        return self.radius_mm, self.radius_mm, self.height_mm / 2
+
+    def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
+        radial = (local[..., :2] ** 2).sum(axis=-1) <= (self.radius_mm * _MM) ** 2
+        return np.asarray(radial & (np.abs(local[..., 2]) <= self.height_mm * _MM / 2))
 
 
 class Cube(_Strict):
-    """Turned by angle_deg about the vertical."""
+    """A rigid cube, turned by angle_deg about the vertical; centre_mm: of its middle."""
 
     kind: Literal["cube"]
     side_mm: Length
-    centre_mm: tuple[float, float, float]
-    angle_deg: float = 0.0
+    centre_mm: Triple
+    angle_deg: Number = 0.0
+
+    @property
+    def half_mm(self) -> Triple:
+        turn, half = math.radians(self.angle_deg), self.side_mm / 2
+        reach = half * (abs(math.cos(turn)) + abs(math.sin(turn)))
+        return reach, reach, half
+
+    def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
+        c, s = math.cos(math.radians(self.angle_deg)), math.sin(math.radians(self.angle_deg))
+        half = self.side_mm * _MM / 2
+        u, v = c * local[..., 0] + s * local[..., 1], c * local[..., 1] - s * local[..., 0]
+        return np.asarray((np.abs(u) <= half) & (np.abs(v) <= half) & (np.abs(local[..., 2]) <= half))
 
 
-class PokeFile(_Strict):
-    """One poke: where, how deep, how inclined, into what.
+Inclusion = Annotated[Sphere | Cylinder | Cube | NoInclusion, Field(discriminator="kind")]
 
-    site_mm: where the rod's axis meets the rest surface. angle_deg: from the surface's normal;
-    heading_deg: of the push's horizontal part, from x towards y. shape: one of the dataset's, or inclusion:
-    a body of one's own. softness: one of the dataset's, or shear_modulus_kPa: at small strain.
+
+class PokeScene(_Strict):
+    """One poke.
+
+    Attributes
+    ----------
+    site_mm : where the indenter's axis meets the rest surface, (x, y), from the middle of the block.
+    depth_mm : travel along the push since first contact.
+    angle_deg : between the push and the surface's normal, 0 to 45.
+    heading_deg : direction of the push's horizontal part, from x towards y.
+    shape, inclusion : a shape of the dataset by name, or an inclusion of one's own; one of the two.
+    time_s, rod_speed_mm_per_s, approach_speed_mm_per_s : time since first contact, speed of the rod now (0 in
+        a hold, negative when drawn back) and from first contact on; all three, for models trained with time.
+    softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain; one of
+        the two.
     """
 
     site_mm: Pair
     depth_mm: Length
-    angle_deg: Annotated[float, Field(ge=0, lt=80)] = 0.0
-    heading_deg: float = 0.0
-    shape: str | None = None
-    inclusion: Annotated[Sphere | Cylinder | Cube, Field(discriminator="kind")] | None = None
-    softness: str | None = None
-    shear_modulus_kPa: Annotated[float, Field(gt=0, lt=1e6)] | None = None
+    angle_deg: Annotated[float, Field(strict=True, ge=0, le=STEEPEST)] = 0.0
+    heading_deg: Annotated[float, Field(strict=True, ge=-360, le=360)] = 0.0
+    shape: Name | None = None
+    inclusion: Inclusion | None = None
+    softness: Name | None = None
+    shear_modulus_kPa: Annotated[float, Field(strict=True, gt=0, lt=1e6)] | None = None
+    time_s: Annotated[float, Field(strict=True, gt=0, lt=1e9)] | None = None
+    rod_speed_mm_per_s: Annotated[float, Field(strict=True, gt=-1e6, lt=1e6)] | None = None
+    approach_speed_mm_per_s: Annotated[float, Field(strict=True, gt=0, lt=1e6)] | None = None
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        for one, other in (("shape", "inclusion"), ("softness", "shear_modulus_kPa")):
+            if (getattr(self, one) is None) == (getattr(self, other) is None):
+                raise ValueError(f"expected either {one} or {other}")
+        if len({value is None for value in self._clock}) > 1:
+            raise ValueError(
+                "expected time_s, rod_speed_mm_per_s and approach_speed_mm_per_s, or none of them"
+            )
+        return self
+
+    @property
+    def _clock(self) -> tuple[float | None, float | None, float | None]:
+        return self.time_s, self.rod_speed_mm_per_s, self.approach_speed_mm_per_s
+
+    @property
+    def clock(self) -> tuple[float, float, float] | None:
+        """Time [s], the rod's speed and its speed of approach [m/s]; None without time."""
+        time, speed, approach = self._clock
+        if time is None or speed is None or approach is None:
+            return None
+        return time, speed * _MM, approach * _MM
+
+    @property
+    def free(self) -> bool:
+        """Whether it asks for an interior or a modulus of its own."""
+        return self.inclusion is not None or self.shear_modulus_kPa is not None
 
 
-def load_poke(path: Path) -> PokeFile:
-    """The file's poke; InputError names the key that is wrong."""
-    if not path.is_file():
-        raise InputError(f"{path}: no such scene file")
+def load_poke(source: Path | str | Mapping[str, Any] | PokeScene) -> PokeScene:
+    """The poke of a YAML file, or with these keys; InputError names the key that is wrong."""
+    if isinstance(source, PokeScene):
+        return source
+    where = "scene"
+    if not isinstance(source, Mapping):
+        path = Path(source)
+        if not path.is_file():
+            raise InputError(f"{path}: no such scene file")
+        source, where = read_yaml(path), str(path)
     try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not YAML ({' '.join(str(error).split())[:120]})") from None
-    try:
-        poke = PokeFile.model_validate(values)
+        return PokeScene.model_validate(dict(source))
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"]) or "(the whole file)"
-        raise InputError(f"{path}: key {key}: {first['msg']}") from None
-    for one, other in (("shape", "inclusion"), ("softness", "shear_modulus_kPa")):
-        if (getattr(poke, one) is None) == (getattr(poke, other) is None):
-            raise InputError(f"{path}: expected either {one} or {other}")
-    return poke
+        raise InputError(f"{where}: {first_fault(error)}") from None
 
 
-def scene_and_poke(file: PokeFile, store: Store, path: Path) -> tuple[Scene, Pokes]:
-    """The poke on the store's grid, one interior; InputError where it does not fit the block."""
+def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple[Scene, Pokes]:
+    """The scene (the store's grid over one interior) and the poke.
+
+    InputError, which begins with `where`, for a poke that does not fit the store's block.
+    """
+    _check_fit(file, store, where)
     points = store.points
-    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    site = np.array(file.site_mm) * _MM
-    if (site < low).any() or (site > high).any():
-        bounds = ", ".join(f"{a * 1e3:.1f} to {b * 1e3:.1f}" for a, b in zip(low, high, strict=True))
-        raise InputError(f"{path}: key site_mm: expected x and y within {bounds}")
+    profile = _profile(file, store, where)
     scene = make_scene(
         points=points,
         normals=store.normals,
-        profile=_profile(file, store, path)[None],
+        profile=profile[None],
         level_depth=store.level_depth,
         rod_radius=store.rod_radius,
         rod_edge=store.rod_edge,
@@ -111,7 +198,9 @@ def scene_and_poke(file: PokeFile, store: Store, path: Path) -> tuple[Scene, Pok
     lean, heading = math.radians(file.angle_deg), math.radians(file.heading_deg)
     sine, cosine = math.sin(lean), math.cos(lean)
     direction = np.array([sine * math.cos(heading), sine * math.sin(heading), -cosine])
-    start = np.array([*site, points[0, 2]]) - direction * _set_back(store, sine, cosine) / cosine
+    top = np.array([file.site_mm[0] * _MM, file.site_mm[1] * _MM, points[0, 2]])
+    start = top - direction * _set_back(store, sine, cosine) / cosine
+    _check_cover(file, store, profile, start + direction * file.depth_mm * _MM, where)
 
     def tensor(*values: float) -> torch.Tensor:
         return torch.tensor(values, dtype=torch.float64)
@@ -121,48 +210,103 @@ def scene_and_poke(file: PokeFile, store: Store, path: Path) -> tuple[Scene, Pok
         start=torch.from_numpy(start)[None],
         direction=torch.from_numpy(direction)[None],
         depth=tensor(file.depth_mm * _MM),
-        modulus=tensor(_modulus(file, store, path)),
+        modulus=tensor(_modulus(file, store, where)),
+        clock=tensor(*(file.clock or ()))[None],
     )
     return scene, pokes
 
 
+def kind_of(file: PokeScene, store: Store) -> str | None:
+    """Kind of the inclusion; None where the dataset does not say."""
+    return file.inclusion.kind if file.inclusion else shape_kind(store, file.shape or "")
+
+
+def _check_fit(file: PokeScene, store: Store, where: str) -> None:
+    size = np.array(store.block_size) * 1e3
+    middle = (store.points[:, :2].min(axis=0) + store.points[:, :2].max(axis=0)) / 2 * 1e3
+    low, high = middle - size[:2] / 2, middle + size[:2] / 2
+    radius = store.rod_radius * 1e3
+    for k, value in enumerate(file.site_mm):
+        if not low[k] + radius <= value <= high[k] - radius:
+            bounds = ", ".join(
+                f"{a + radius:.4g} to {b - radius:.4g}" for a, b in zip(low, high, strict=True)
+            )
+            raise InputError(
+                f"{where}: key site_mm: expected x and y within {bounds} (the block less the rod's radius), "
+                f"got {value:g}"
+            )
+    if file.depth_mm >= size[2]:
+        raise InputError(
+            f"{where}: key depth_mm: expected less than the block's height of {size[2]:.4g} mm, "
+            f"got {file.depth_mm:g}"
+        )
+    body = file.inclusion
+    if body is None or isinstance(body, NoInclusion):
+        return
+    centre, half = np.array(body.centre_mm), np.array(body.half_mm)
+    base = store.points[0, 2] * 1e3 - size[2]
+    limits = [(low[0], high[0]), (low[1], high[1]), (base, base + size[2])]
+    for k, (axis, (a, b)) in enumerate(zip("xyz", limits, strict=True)):
+        # an inclusion may be sunk into the base, but some of it has to be in the block
+        below = centre[k] + half[k] <= a if axis == "z" else centre[k] - half[k] < a - 1e-9
+        above = centre[k] + half[k] >= b if axis == "z" else centre[k] + half[k] > b + 1e-9
+        if below or above:
+            raise InputError(
+                f"{where}: key inclusion: expected within the block, {axis} {a:.4g} to {b:.4g} mm, but it "
+                f"reaches from {centre[k] - half[k]:.4g} to {centre[k] + half[k]:.4g} mm"
+            )
+
+
+def _check_cover(
+    file: PokeScene, store: Store, profile: NDArray[np.uint8], tip: NDArray[np.float64], where: str
+) -> None:
+    """InputError where the tip's middle would end within the rigid inclusion."""
+    column = int(np.linalg.norm(store.points[:, :2] - tip[:2], axis=1).argmin())
+    rigid = profile[column] == RIGID
+    height = store.block_size[2]
+    level = int((store.points[0, 2] - tip[2]) / height * len(rigid))
+    if rigid[: min(max(level, 0), len(rigid))].any():
+        cover = float(rigid.argmax()) * height / len(rigid) * 1e3
+        raise InputError(
+            f"{where}: key depth_mm: expected less, the tip would end within the rigid inclusion, which "
+            f"lies under {cover:.3g} mm of cover there, got {file.depth_mm:g}"
+        )
+
+
 def _set_back(store: Store, sine: float, cosine: float) -> float:
-    """How high above the surface the middle of the inclined tip is at first touch [m]."""
+    """Height of the middle of the inclined tip above the surface at first contact [m]."""
     return store.rod_edge * (1 - cosine) + (store.rod_radius - store.rod_edge) * sine
 
 
-def _modulus(file: PokeFile, store: Store, path: Path) -> float:
+def _modulus(file: PokeScene, store: Store, where: str) -> float:
     if file.shear_modulus_kPa is not None:
         return file.shear_modulus_kPa * 1e3
     assert file.softness is not None
     if file.softness not in store.softness_names:
-        raise InputError(f"{path}: key softness: expected one of {', '.join(store.softness_names)}")
+        raise InputError(f"{where}: key softness: expected one of {', '.join(store.softness_names)}")
     level = store.softness_names.index(file.softness)
-    return float(store.modulus[store.softness == level][0])
+    moduli = store.modulus[(store.softness == level) & store.done]
+    if not len(moduli):
+        raise InputError(f"{where}: key softness: the dataset has no poke of {file.softness}")
+    return float(moduli[0])
 
 
-def _profile(file: PokeFile, store: Store, path: Path) -> NDArray[np.uint8]:
-    """Interior under each point, (n, levels); silicone as 0: our model sees what is rigid alone."""
+def _profile(file: PokeScene, store: Store, where: str) -> NDArray[np.uint8]:
+    """Interior under each point, (n, levels); silicone as 0: the model sees what is rigid alone."""
     if file.shape is not None:
         if file.shape not in store.shapes:
-            raise InputError(f"{path}: key shape: expected one of {', '.join(store.shapes)}")
+            raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}")
         mine = store.shape == store.shapes.index(file.shape)
         if file.softness is not None and file.softness in store.softness_names:
             mine &= store.softness == store.softness_names.index(file.softness)
-        return store.profile[store.geometry[mine][0]]
+        if not mine.any():
+            raise InputError(f"{where}: key shape: the dataset has no poke of {file.shape}")
+        return np.asarray(store.profile[store.geometry[mine][0]])
     body = file.inclusion
     assert body is not None
     columns = np.repeat(store.points[:, None], len(store.level_depth), axis=1)
     columns[..., 2] -= store.level_depth
-    local = columns - np.array(body.centre_mm) * _MM
-    if isinstance(body, Sphere):
-        inside = (local**2).sum(axis=2) <= (body.radius_mm * _MM) ** 2
-    elif isinstance(body, Cylinder):
-        radial = (local[..., :2] ** 2).sum(axis=2) <= (body.radius_mm * _MM) ** 2
-        inside = radial & (np.abs(local[..., 2]) <= body.height_mm * _MM / 2)
-    else:
-        c, s = math.cos(math.radians(body.angle_deg)), math.sin(math.radians(body.angle_deg))
-        half = body.side_mm * _MM / 2
-        u, v = c * local[..., 0] + s * local[..., 1], c * local[..., 1] - s * local[..., 0]
-        inside = (np.abs(u) <= half) & (np.abs(v) <= half) & (np.abs(local[..., 2]) <= half)
-    return np.where(inside, RIGID, 0).astype(np.uint8)
+    centre = np.zeros(3) if isinstance(body, NoInclusion) else np.array(body.centre_mm) * _MM
+    # heights count from the base of the block
+    centre[2] += store.points[0, 2] - store.block_size[2]
+    return np.where(body.inside(columns - centre), RIGID, 0).astype(np.uint8)

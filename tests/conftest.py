@@ -1,11 +1,106 @@
-"""For all tests."""
+"""For all tests: long files first, and the core-seconds of each package beside their budget in README.md."""
 
 from __future__ import annotations
 
+import os
+import re
+import resource
 import signal
+from collections import Counter
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+
+HERE = Path(__file__).parent
+# pytest-xdist hands out whole files: a long one that comes late would leave the other processes idle
+LONG = (
+    "blind/test_beams.py",
+    "blind/test_indentation.py",
+    "factory/test_interruption.py",
+    "calibration/study/test_fit_command.py",
+    "calibration/metrics/test_metrics_distance.py",
+    "packaging/test_pages.py",
+    "factory/test_adding.py",
+    "learn/test_evaluation.py",
+    "learn/test_training.py",
+    "learn/test_pokes.py",
+    "calibration/photo/test_trace_photo.py",
+    "calibration/indentation/test_poke_objective.py",
+)
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """What is started in the background ignores Ctrl-C, and so would the programs whose Ctrl-C is tested."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    config.option.loadscopereorder = False  # by the number of tests: `LONG` stands for their time
+    config.pluginmanager.register(_CoreSeconds(config))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {HERE / name: i for i, name in enumerate(LONG)}
+    items.sort(key=lambda item: place.get(item.path, len(place)))
+
+
+class _CoreSeconds:
+    """Counts what each package's tests use, in this process and those that it starts."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config = config
+        self.used: Counter[str] = Counter()
+        self.last = 0.0
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(
+        self, item: pytest.Item, nextitem: pytest.Item | None
+    ) -> Generator[None, Any, Any]:
+        done = yield
+        if nextitem is None or nextitem.path != item.path:
+            now = _core_seconds()
+            self.used[item.path.relative_to(HERE).parts[0]] += now - self.last
+            self.last = now
+        return done
+
+    def pytest_sessionfinish(self) -> None:
+        if hasattr(self.config, "workeroutput"):  # a worker of pytest-xdist
+            self.config.workeroutput["core_seconds"] = dict(self.used)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node: Any) -> None:
+        self.used.update(getattr(node, "workeroutput", {}).get("core_seconds", {}))
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        budgets = _budgets()
+        lines = [
+            f"{name:>12} {used:6.0f} of {budgets.get(name, 0):4d}{'  over' * (used > budgets.get(name, 0))}"
+            for name, used in sorted(self.used.items())
+        ]
+        if lines:
+            total = f"{'all':>12} {sum(self.used.values()):6.0f} of {sum(budgets.values()):4d}"
+            terminalreporter.section("core-seconds of each package, of its budget in tests/README.md")
+            terminalreporter.write("\n".join([*lines, total, ""]))
+
+
+def _core_seconds() -> float:
+    """This process's, its ended children's, and those of its living descendants."""
+    ended = sum(
+        used.ru_utime + used.ru_stime
+        for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    )
+    return ended + sum(_living(child) for child in psutil.Process(os.getpid()).children(recursive=True))
+
+
+def _living(process: psutil.Process) -> float:
+    try:
+        times = process.cpu_times()
+    except psutil.Error:
+        return 0.0
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def _budgets() -> dict[str, int]:
+    text = (HERE / "README.md").read_text(encoding="utf-8")
+    return {name: int(budget) for name, budget in re.findall(r"^\| `(\w+)` \| (\d+) \|", text, re.MULTILINE)}

@@ -3,7 +3,7 @@
 A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 
 >>> import tisim
->>> soft = tisim.material_from_moduli("neo-hookean", shear=15e3, bulk=300e3)
+>>> soft = tisim.material_from_moduli("neo-hookean", shear_modulus=15e3, bulk_modulus=300e3)
 >>> beams = [tisim.Beam(material=soft, length=length) for length in (0.05, 0.10)]
 >>> for result in tisim.simulate(beams):
 ...     tip = result.mesh.node_sets["tip"]
@@ -12,11 +12,12 @@ A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 converged: the end sinks by 7 mm
 converged: the end sinks by 69 mm
 
-`tisim.write(result, "beam.vtu")` exports a frame, `tisim.picture(result, "beam.png")` draws it.
+`tisim.write(result, "beam.vtu")` exports a frame, `tisim.picture(result, "beam.png")` draws it. Laws,
+inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, `tisim.inclusions`,
+`tisim.problems`.
 """
 
-from tisim import export, laws, mesh
-from tisim._specimen import rest_positions
+from tisim import _extensions, inclusions, laws, mesh, parts, problems
 from tisim.bodies import (
     Block,
     BoxInclusion,
@@ -27,46 +28,77 @@ from tisim.bodies import (
     Rod,
     SphereInclusion,
 )
-from tisim.export import surface_triangles, write
+from tisim.course import Course
+from tisim.io import export
+from tisim.io.export import frame_index, surface_triangles, write
+from tisim.io.picture import picture
 from tisim.laws import Moduli
-from tisim.materials import material_from_moduli
 from tisim.mesh import Mesh
-from tisim.picture import picture
+from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
+from tisim.problems.beam.rest_shape import rest_positions
+from tisim.problems.dynamics.paper_stop import PaperStop, paper_stop
 from tisim.result import Cost, Result, Status
-from tisim.scene import Beam, Clamps, Coupon, Material, Poke, Press, Scene, Solver, Specimen, Void
+from tisim.scene import (
+    Beam,
+    ClampImperfections,
+    Coupon,
+    Imperfections,
+    Material,
+    Poke,
+    Press,
+    Scene,
+    Solver,
+    Void,
+    material_from_moduli,
+)
 from tisim.simulate import simulate
+
+__version__ = "0.1.0"
 
 __all__ = [
     "Beam",
     "Block",
     "BoxInclusion",
     "Circle",
-    "Clamps",
+    "ClampImperfections",
     "Cost",
     "Coupon",
+    "Course",
     "CylinderInclusion",
+    "HolzapfelGasserOgden",
+    "Imperfections",
     "Inclusion",
     "Material",
     "Mesh",
     "Moduli",
+    "OgdenRoxburgh",
+    "PaperStop",
     "Poke",
     "Press",
+    "Prony",
     "Rectangle",
     "Result",
     "Rod",
     "Scene",
     "Solver",
-    "Specimen",
     "SphereInclusion",
     "Status",
     "Void",
+    "__version__",
     "export",
+    "frame_index",
+    "inclusions",
     "laws",
     "material_from_moduli",
     "mesh",
+    "paper_stop",
+    "parts",
     "picture",
+    "problems",
     "rest_positions",
     "simulate",
     "surface_triangles",
     "write",
 ]
+
+_extensions.load()

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+from html import escape
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh import Mesh
-from tisim.scene import Scene
 
 
 class Status(StrEnum):
@@ -26,9 +27,15 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """core_seconds: CPU time of the solve; mesh_seconds: of making the mesh; counts of the work done.
+    """Work done.
 
-    Counts of a poke: iterations are of the tissue near the rod, factorisations of that and of the far tissue.
+    Attributes
+    ----------
+    core_seconds, mesh_seconds : float
+        CPU time of the solve, and of making the mesh [s].
+    steps, newton_iterations, factorisations, linear_iterations, step_cuts : int
+        Counts. Of a poke, iterations are of the tissue near the rod, factorisations of that and of the far
+        tissue.
     """
 
     core_seconds: float = 0.0
@@ -40,40 +47,100 @@ class Cost:
     step_cuts: int = 0
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Result:
-    """The answer to one scene.
+    """The answer to one scene; f frames on a mesh of n nodes. Quantities that its kind lacks are None.
 
-    mesh: rest mesh the answer lives on; of a beam with an imperfect specimen, the ideal prism's (see
+    Attributes
+    ----------
+    scene : Scene
+    status : Status
+    message : str
+        One sentence where the status is not CONVERGED.
+    mesh : Mesh
+        Rest mesh the answer lives on; of a beam with imperfections, the ideal prism's (see
         `tisim.rest_positions`).
-    load: what the frames are counted by, shape (f,): beam = part of the load (1.0 = all), poke = depth
-        [m], coupon = stretch, dynamics = time [s].
-    positions: node positions [m], shape (f, n, 3).
-    support_force: force of the supports on the body [N], shape (f, 3), of the whole body.
-    rod_force: force of the body on the rod [N], shape (f, 3) (zeros without a rod).
-    rod_tip: centre of the rod's tip [m], shape (f, 3).
-    penetration: deepest overlap of body and rod [m], shape (f,).
-    min_jacobian: smallest det F at the integration points, shape (f,).
-    residual: free nodes' residual relative to the applied load at each frame, shape (f,).
-    nominal_stress: coupons' nominal stress in the pulled direction [Pa], shape (f,).
-    message: one sentence for people where the status is not CONVERGED.
+    load : ndarray, shape (f,)
+        What the frames are counted by: fraction of the load of a static beam (1.0 = all), time of a dynamic
+        one [s], depth of a poke [m], stretch of a coupon or a compressed cylinder, part of the load of a beam
+        with a course.
+    time : ndarray, shape (f,), or None
+        Time of the frames [s]; scenes with a course, and dynamic ones.
+    dissipated : ndarray, shape (f,), or None
+        Energy that the whole body's material has lost so far [J], damping of the solver's own not counted;
+        materials with viscosity or softening.
+    positions : ndarray, shape (f, n, 3)
+        Node positions [m].
+    support_force : ndarray, shape (f, 3)
+        Force of the supports on the whole body [N].
+    rod_force : ndarray, shape (f, 3), or None
+        Force of the body on the rod [N]; pokes.
+    rod_tip : ndarray, shape (f, 3), or None
+        Centre of the rod's tip [m]; pokes.
+    penetration : ndarray, shape (f,), or None
+        Deepest overlap of body and rod, or of side and platen [m]; pokes and compression.
+    min_jacobian : ndarray, shape (f,)
+        Smallest det F at the integration points.
+    residual : ndarray, shape (f,)
+        Free nodes' residual relative to the applied load.
+    nominal_stress : ndarray, shape (f,), or None
+        Force over rest area in the loaded direction [Pa]; coupons and compression.
+    cost : Cost
     """
 
-    scene: Scene
+    scene: Any
     status: Status
-    message: str
+    message: str = ""
     mesh: Mesh
     load: NDArray[np.float64]
     positions: NDArray[np.float64]
     support_force: NDArray[np.float64]
-    rod_force: NDArray[np.float64]
-    rod_tip: NDArray[np.float64]
-    penetration: NDArray[np.float64]
+    rod_force: NDArray[np.float64] | None = None
+    rod_tip: NDArray[np.float64] | None = None
+    penetration: NDArray[np.float64] | None = None
     min_jacobian: NDArray[np.float64]
     residual: NDArray[np.float64]
-    nominal_stress: NDArray[np.float64]
-    cost: Cost
+    nominal_stress: NDArray[np.float64] | None = None
+    time: NDArray[np.float64] | None = None
+    dissipated: NDArray[np.float64] | None = None
+    cost: Cost = field(default_factory=Cost)
 
     @property
     def ok(self) -> bool:
+        """Whether the whole load, depth or duration was reached."""
         return self.status is Status.CONVERGED
+
+    def __repr__(self) -> str:
+        rows = ", ".join(f"{name} {value}" for name, value in self._summary())
+        return f"<Result of a {type(self.scene).__name__}: {rows}>"
+
+    def _repr_html_(self) -> str:
+        """A small table for notebooks."""
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
+            for name, value in self._summary()
+        )
+        return f"<table><caption>Result of a {type(self.scene).__name__}</caption>{rows}</table>"
+
+    def _summary(self) -> list[tuple[str, str]]:
+        frames = len(self.load)
+        rows = [("status", str(self.status))]
+        if self.message:
+            rows.append(("message", self.message))
+        rows.append(("mesh", f"{self.mesh.n_nodes} nodes, {self.mesh.n_elements} {self.mesh.kind}"))
+        rows.append(("frames", f"{frames}, load to {self.load[-1]:.4g}" if frames else "none"))
+        if frames:
+            moved = np.linalg.norm(self.positions[-1] - self.mesh.nodes, axis=1).max()
+            if self.time is not None:
+                rows.append(("time", f"to {self.time[-1]:.4g} s"))
+            rows.append(("largest displacement", f"{moved * 1e3:.4g} mm"))
+            if self.rod_force is not None:
+                rows.append(("force on the rod", f"{np.linalg.norm(self.rod_force[-1]):.4g} N"))
+            else:
+                rows.append(("support force", f"{np.linalg.norm(self.support_force[-1]):.4g} N"))
+            if self.nominal_stress is not None:
+                rows.append(("nominal stress", f"{self.nominal_stress[-1]:.4g} Pa"))
+            if self.dissipated is not None:
+                rows.append(("dissipated", f"{self.dissipated[-1]:.4g} J"))
+        rows.append(("core seconds", f"{self.cost.core_seconds:.3g}"))
+        return rows

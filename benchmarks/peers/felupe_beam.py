@@ -11,18 +11,15 @@ not. Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1 before P
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import felupe as fe
 import numpy as np
 import pypardiso
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "references"))
-from laws import OgdenIsochoric
+from benchmarks.references.laws import OgdenIsochoric
 
 Array = np.ndarray[Any, Any]
 

@@ -1,7 +1,7 @@
 """Reference deflections of soft cylinders under gravity, by FElupe; writes beams.json beside this file.
 
-    python benchmarks/references/beams.py --levels 1 2      # 4.5 minutes of one core
-    python benchmarks/references/beams.py --levels 3 --laws neo_hookean-20 neo_hookean-1000   # 9.5 more, adds
+    python -m benchmarks.references.beams --levels 1 2      # 4.5 minutes of one core
+    python -m benchmarks.references.beams --levels 3 --laws neo_hookean-20 neo_hookean-1000   # 9.5 more, adds
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -33,9 +33,10 @@ from typing import Any
 
 import felupe as fe
 import numpy as np
-from cylinder import half_cylinder
-from laws import mixed_law
-from mixed import MixedModel, clock, mixed_fields
+
+from benchmarks.references.cylinder import half_cylinder
+from benchmarks.references.laws import mixed_law
+from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 
 RADIUS, DENSITY, GRAVITY = 0.010, 1000.0, 9.81
 FILE = Path(__file__).with_suffix(".json")

@@ -8,7 +8,8 @@ from typing import Any
 
 import felupe as fe
 import numpy as np
-from cylinder import graded, lattice_cells
+
+from benchmarks.references.cylinder import graded, lattice_cells
 
 Array = np.ndarray[Any, Any]
 

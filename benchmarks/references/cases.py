@@ -1,6 +1,6 @@
 """Values that tisim is verified against, by FElupe and by CalculiX; writes cases.json beside this file.
 
-    python benchmarks/references/cases.py
+    python -m benchmarks.references.cases
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -21,19 +21,17 @@ K/2 (J - 1)^2 against ln^2 J. Values are Richardson's from three levels with the
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import felupe as fe
 import numpy as np
-from boxes import box, tetrahedra, two_sided
-from cylinder import graded
-from laws import OgdenIsochoric, mixed_law
-from mixed import MixedModel, clock, mixed_fields
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "peers"))
-import calculix
+from benchmarks.peers import calculix
+from benchmarks.references.boxes import box, tetrahedra, two_sided
+from benchmarks.references.cylinder import graded
+from benchmarks.references.laws import OgdenIsochoric, mixed_law
+from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")

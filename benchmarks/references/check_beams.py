@@ -1,6 +1,6 @@
 """CalculiX against beams.json: the 50 mm cantilever, G = 20 kPa, on the same meshes; prints a table.
 
-    python benchmarks/references/check_beams.py                  # 90 s of one core
+    python -m benchmarks.references.check_beams                  # 90 s of one core
 
 C3D20R on the first 20 nodes of the reference meshes' 27-node hexahedra, levels 1 to 3, extrapolated with the
 observed order. CalculiX's Neo-Hookean is the split one with K/2 (J - 1)^2 (see peers/calculix.py).
@@ -9,15 +9,12 @@ observed order. CalculiX's Neo-Hookean is the split one with K/2 (J - 1)^2 (see 
 from __future__ import annotations
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
-from beams import FILE, LAWS, RADIUS, SPANS, extrapolate, order, scaled
-from cylinder import half_cylinder
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "peers"))
-import calculix
+from benchmarks.peers import calculix
+from benchmarks.references.beams import FILE, LAWS, RADIUS, SPANS, extrapolate, order, scaled
+from benchmarks.references.cylinder import half_cylinder
 
 
 def tip(law: str, modulus: float, level: int) -> tuple[float, float, float]:

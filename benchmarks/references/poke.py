@@ -1,9 +1,9 @@
 """Reference force of a normal poke, by FElupe on an axisymmetric model; writes poke.json beside this file.
 
-    python benchmarks/references/poke.py --levels 1 2
-    python benchmarks/references/poke.py --levels 3 --frictions 0.6 inf         # 100 s
-    python benchmarks/references/poke.py --levels 2 --frictions 0.6 --penalty 2e10
-    python benchmarks/references/poke.py --levels 1 --frictions inf 0 --penalty 2e10
+    python -m benchmarks.references.poke --levels 1 2
+    python -m benchmarks.references.poke --levels 3 --frictions 0.6 inf         # 100 s
+    python -m benchmarks.references.poke --levels 2 --frictions 0.6 --penalty 2e10
+    python -m benchmarks.references.poke --levels 1 --frictions inf 0 --penalty 2e10
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -25,10 +25,11 @@ from typing import Any
 
 import felupe as fe
 import numpy as np
-from cylinder import graded
-from laws import mixed_law
-from mixed import MixedModel, clock, mixed_fields
-from rod import FlatRod
+
+from benchmarks.references.cylinder import graded
+from benchmarks.references.laws import mixed_law
+from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.references.rod import FlatRod
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")

@@ -1,6 +1,6 @@
 """Bonded cylinders pressed by a little and by 10 and 15 %: axisymmetric Q2/P-1 elements of FElupe.
 
-    python benchmarks/references/press.py        # writes press.json beside it, two minutes
+    python -m benchmarks.references.press        # writes press.json beside it, two minutes
 
 No side contact: at these strains the fold at the platen's edge is not there yet, or too small to matter.
 """
@@ -13,9 +13,10 @@ from typing import Any
 
 import felupe as fe
 import numpy as np
-from cylinder import graded
-from laws import mixed_law
-from mixed import MixedModel, mixed_fields
+
+from benchmarks.references.cylinder import graded
+from benchmarks.references.laws import mixed_law
+from benchmarks.references.mixed import MixedModel, mixed_fields
 
 Array = np.ndarray[Any, Any]
 

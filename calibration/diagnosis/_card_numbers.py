@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.bars.effects import BarEffect
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.fitting import Fit
-from calibration.diagnosis.verdict import Diagnosis
-from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial, Trial
-from calibration.pokes import block_names
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.measurements._effect import Candidate
 
 Array = NDArray[np.float64]
-
-# what a diagnosis is of, by the unit of its residuals
-_KINDS: dict[str, type[Trial]] = {"mm": BeamTrial, "kPa": CouponTrial, "N": PokeTrial}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,29 +23,18 @@ class Modulus:
     weights: Array
 
 
-def chosen_fit(diagnosis: Diagnosis) -> Fit:
-    """The fit that cards are of: that with the named causes, else the baseline's."""
-    chosen = diagnosis.chosen
-    return diagnosis.finding.baseline if chosen is None else chosen.fit
-
-
-def moduli(diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Modulus]:
-    """Of each material that was diagnosed. Models begin u with ln G of each specimen, in the order of the
-    trials; ValueError where these do not give the moduli that the diagnosis tells."""
-    fit = chosen_fit(diagnosis)
-    n = len(fit.state.u)
-    covariance = fit.covariance()[:n, :n]
-    owners: dict[str, str] = {}
-    for t in _used(diagnosis, experiment):
-        owners.setdefault(t.specimen or t.material, t.material)
+def moduli(diagnosis: Diagnosis) -> dict[str, Modulus]:
+    """Of each material that was diagnosed. ValueError where the coordinates of the fit do not give the moduli
+    that the diagnosis reports."""
+    u = diagnosis.fit.state.u
+    n = len(u)
+    covariance = diagnosis.fit.covariance()[:n, :n]
     found = {}
     for name, value in (diagnosis.extended or diagnosis.baseline).shear_modulus_Pa.items():
-        weights = np.zeros(n)
-        mine = [k for k, owner in enumerate(owners.values()) if owner == name]
-        if not mine or len(owners) > n:
+        weights = diagnosis.subject.modulus_weights.get(name)
+        if weights is None:
             raise ValueError(f"material {name}: no coordinate of the diagnosis is its modulus")
-        weights[mine] = 1.0 / len(mine)
-        if not np.isclose(np.exp(weights @ fit.state.u), value, rtol=1e-6):
+        if not np.isclose(np.exp(weights @ u), value, rtol=1e-6):
             raise ValueError(f"material {name}: its modulus is not that of the diagnosis' coordinates")
         sd = float(np.sqrt(weights @ covariance @ weights))
         found[name] = Modulus(value=float(value), relative_sd=sd, weights=weights)
@@ -62,7 +43,7 @@ def moduli(diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Modulus]:
 
 def file_covariance(diagnosis: Diagnosis) -> tuple[Array, list[str]]:
     """Covariance of the named effects' amplitudes in file units, (c, c), and what each is."""
-    fit = chosen_fit(diagnosis)
+    fit = diagnosis.fit
     units = np.array([diagnosis.effects[c.effect].per_unit for c in fit.candidates])
     n = len(fit.state.u)
     names = [f"{c.label}: {diagnosis.effects[c.effect].parameter}" for c in fit.candidates]
@@ -71,7 +52,7 @@ def file_covariance(diagnosis: Diagnosis) -> tuple[Array, list[str]]:
 
 def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str, float]:
     """Of an effect's amplitude with the material's shear modulus and with the other named effects."""
-    fit = chosen_fit(diagnosis)
+    fit = diagnosis.fit
     n = len(fit.state.u)
     row = fit.covariance()[n + index]
     sds = np.sqrt(np.diag(fit.covariance())[n:])
@@ -82,21 +63,10 @@ def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str
     return found
 
 
-def valid_range(candidate: Candidate, diagnosis: Diagnosis, experiment: Experiment) -> dict[str, list[float]]:
-    """Between what the effect was measured: lengths and times of beams, stretches, depths."""
-    values: dict[str, list[float]] = {}
-    for t in _used(diagnosis, experiment):
-        if not reaches(candidate, t):
-            continue
-        if isinstance(t, BeamTrial):
-            values.setdefault("free_length_mm", []).append(1e3 * t.free_length)
-            values.setdefault("time_s", []).extend(c.time for c in t.captures if c.outline is not None)
-            values["time_s"].extend(float(m.time[-1]) for m in t.markers if _let_go(diagnosis))
-        elif isinstance(t, CouponTrial):
-            values.setdefault("stretch", []).extend(t.stretch)
-        else:
-            values.setdefault("depth_mm", []).extend(1e3 * t.record.depth)
-    return {name: [rounded(min(v)), rounded(max(v))] for name, v in values.items()}
+def valid_range(candidate: Candidate, diagnosis: Diagnosis) -> dict[str, list[float]]:
+    """Between what the effect was measured, by the quantity's name in files."""
+    ranges = diagnosis.subject.ranges.get(candidate, {})
+    return {name: [rounded(low), rounded(high)] for name, (low, high) in ranges.items()}
 
 
 def gain(diagnosis: Diagnosis) -> dict[str, float | str | None] | None:
@@ -114,22 +84,3 @@ def rounded(x: float) -> float:
 
 def _part(covariance: float, sds: float) -> float:
     return rounded(covariance / sds) if sds > 0.0 else 0.0
-
-
-def _used(diagnosis: Diagnosis, experiment: Experiment) -> Sequence[Trial]:
-    kind = _KINDS[diagnosis.unit[0]]
-    trials = [t for t in experiment.trials if isinstance(t, kind)]
-    if _let_go(diagnosis):
-        return [t for t in trials if isinstance(t, BeamTrial) and t.markers]
-    return [t for t in trials if not isinstance(t, BeamTrial) or any(c.outline for c in t.captures)]
-
-
-def _let_go(diagnosis: Diagnosis) -> bool:
-    """Whether bars with markers were diagnosed, and not traced beams."""
-    return any(isinstance(e, BarEffect) for e in diagnosis.effects.values())
-
-
-def reaches(candidate: Candidate, trial: Trial) -> bool:
-    """Whether an effect is in a trial: in all, or where its material, specimen, block or id is named."""
-    blocks = block_names(trial) if isinstance(trial, PokeTrial) else ()
-    return candidate.at in ("all", trial.material, trial.specimen, trial.id, *blocks)

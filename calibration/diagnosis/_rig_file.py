@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from calibration.diagnosis.beams import EFFECTS, BeamEffect
-from calibration.diagnosis.effect import Effect
+from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.experiment import Strict, say
+from calibration.measurements._effect import EffectModel
+from calibration.measurements.outlines._effect import OutlineEffect
 
 FORMAT = 1
 DIGITS = 1e-5  # what six digits, as files hold numbers, may move one by
@@ -29,10 +30,10 @@ USES: dict[Corrects, str] = {
 }
 
 
-def corrects(effects: Iterable[Effect]) -> Corrects:
+def corrects(effects: Iterable[EffectModel]) -> Corrects:
     """What a rig's file with these effects corrects: a fit knows how effects on photographed beams enter its
     scenes and pictures; those of bars, coupons, pressed cylinders and pokes only their diagnosis knows."""
-    return "outlines" if all(isinstance(e, BeamEffect) for e in effects) else "nothing"
+    return "outlines" if all(isinstance(e, OutlineEffect) for e in effects) else "nothing"
 
 
 Text = Annotated[str, Field(min_length=1, max_length=300)]

@@ -13,33 +13,23 @@ import numpy as np
 
 from calibration.diagnosis._card_numbers import (
     Modulus,
-    chosen_fit,
     correlations,
     file_covariance,
     gain,
     moduli,
-    reaches,
     rounded,
     valid_range,
 )
 from calibration.diagnosis._rig_file import FORMAT, USES, corrects
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
+from calibration.measurements._effect import Candidate
 from calibration.study import Calibration
 from calibration.study.cards import card, save
 from tisim import laws
 
-BASE = "neo-hookean"
-BULK = 300.0  # over the shear modulus, as the baseline has it
 RIG = "rig.yaml"
-
-# effects that go with the material into any body; others of a specimen belong to the form of that body
-MATERIAL_EFFECTS = frozenset({
-    "anisotropy", "compressibility", "creep", "density", "hysteresis", "limited-extensibility", "mullins",
-    "rate-dependence", "relaxation", "second-invariant", "strain-stiffening",
-})  # fmt: skip
 
 
 def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> list[Path]:
@@ -48,16 +38,16 @@ def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> l
 
     Without a named cause the cards are of the baseline. InputError where a material is called rig.
     """
-    known = moduli(diagnosis, experiment)
-    if Path(RIG).stem in known:
+    if Path(RIG).stem in (diagnosis.extended or diagnosis.baseline).shear_modulus_Pa:
         raise InputError(f"material {Path(RIG).stem}: expected another name, since {RIG} is the rig's card")
+    known = moduli(diagnosis)
     (folder / RIG).unlink(missing_ok=True)
     heading = "Moduli in Pa, density in kg/m3. Diagnosed: see provenance and effects."
     written = []
     for name, modulus in known.items():
         content = _material(name, modulus, diagnosis, experiment)
         written.append(save(folder / f"{name}.yaml", content, heading))
-    at_fault = [k for k, c in enumerate(chosen_fit(diagnosis).candidates) if not _of_specimen(c, diagnosis)]
+    at_fault = [k for k, c in enumerate(diagnosis.fit.candidates) if not _of_specimen(c, diagnosis)]
     if at_fault:
         content = _rig(at_fault, diagnosis, experiment)
         written.append(save(folder / RIG, content, "What a diagnosis found beside the specimens: see use."))
@@ -65,54 +55,54 @@ def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> l
 
 
 def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
-    shear = modulus.value
+    shear, law, bulk_ratio = modulus.value, diagnosis.subject.law, diagnosis.subject.bulk_ratio
     numbers = diagnosis.extended or diagnosis.baseline
     fit = Calibration(
         material=name,
-        law=BASE,
-        label=BASE,
+        law=law,
+        label=law,
         status="converged",  # or the provenance says how it ended
         message="",
         density=experiment.materials[name].density,
-        parameters=laws.get(BASE).from_moduli(shear, BULK * shear),
+        parameters=laws.get(law).from_moduli(shear, bulk_ratio * shear),
         shear_modulus=shear,
         shear_modulus_sd=modulus.relative_sd * shear,
-        bulk_modulus=BULK * shear,
+        bulk_modulus=bulk_ratio * shear,
         reduced_chi2=numbers.reduced_chi2,
     )
     content = card([fit], experiment)
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment)
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free. The bulk"
-        f" modulus is {BULK:g} shear moduli by assumption, but for a compressibility among the effects."
+        f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
     )
     effects = [
         {
-            **_entry(k, diagnosis, experiment),
-            "applies_to": "material" if c.effect in MATERIAL_EFFECTS else "shape",
-            "base_law": BASE,
+            **_entry(k, diagnosis),
+            "applies_to": "material" if diagnosis.effects[c.effect].effect.with_material else "shape",
+            "base_law": law,
             "correlations": correlations(k, modulus, diagnosis),
             "gain": gain(diagnosis),
             "experiment_sha256": experiment.digest,
         }
-        for k, c in enumerate(chosen_fit(diagnosis).candidates)
-        if _of_specimen(c, diagnosis) and _reaches(c, name, experiment)
+        for k, c in enumerate(diagnosis.fit.candidates)
+        if _of_specimen(c, diagnosis) and name in diagnosis.subject.materials.get(c, frozenset())
     ]
     return {**content, "effects": effects} if effects else content
 
 
 def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
     covariance, names = file_covariance(diagnosis)
-    candidates = chosen_fit(diagnosis).candidates
+    candidates = diagnosis.fit.candidates
     said = corrects(diagnosis.effects[candidates[k].effect] for k in at_fault)
     content = {
         "format": FORMAT,
         "experiment": experiment.name,
         "experiment_sha256": experiment.digest,
-        "base_law": BASE,
+        "base_law": diagnosis.subject.law,
         "corrects": said,
         "use": USES[said],
-        "effects": [_entry(k, diagnosis, experiment) for k in at_fault],
+        "effects": [_entry(k, diagnosis) for k in at_fault],
         "covariance": {
             "names": [names[k] for k in at_fault],
             "matrix": [[rounded(x) for x in row] for row in covariance[np.ix_(at_fault, at_fault)]],
@@ -122,33 +112,34 @@ def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> d
     return content if held_out is None else {**content, "gain": held_out}
 
 
-def _entry(index: int, diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
+def _entry(index: int, diagnosis: Diagnosis) -> dict[str, Any]:
     """What material cards and the rig's card say alike of an effect of the chosen explanation."""
-    candidate = chosen_fit(diagnosis).candidates[index]
+    candidate = diagnosis.fit.candidates[index]
     amplitudes = diagnosis.causes()[index]["parameters"]
     return {
         "effect": candidate.effect,
         "belongs_to": diagnosis.effects[candidate.effect].belongs_to,
         "scope": candidate.at,
         "parameters": {n: {key: rounded(x) for key, x in a.items()} for n, a in amplitudes.items()},
-        "valid_range": valid_range(candidate, diagnosis, experiment),
-        "rivals": [" + ".join(r) for r in diagnosis.finding.rivals if candidate.effect not in r],
+        "valid_range": valid_range(candidate, diagnosis),
+        "rivals": [" + ".join(r) for r in diagnosis.finding.equivalent if candidate.effect not in r],
     }
 
 
 def _provenance(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Experiment) -> str:
     numbers = diagnosis.extended or diagnosis.baseline
-    fit = chosen_fit(diagnosis)
+    fit = diagnosis.fit
     lines = [
         f"Fitted to experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.diagnose,"
-        f" baseline law {BASE}, other laws filled in from the moduli: shear modulus {modulus.value:.5g} Pa,"
+        f" baseline law {diagnosis.subject.law}, other laws filled in from the moduli: shear modulus"
+        f" {modulus.value:.5g} Pa,"
         f" reduced chi-square {numbers.reduced_chi2:.2f}.",
         f"Verdict: {diagnosis.finding.verdict}. {diagnosis.sentence()}",
     ]
     if fit.candidates:
         before = diagnosis.baseline
         lines.append(
-            f"The modulus is that beside {fit.reports()}; without it {before.shear_modulus_Pa[name]:.5g} Pa"
+            f"The modulus is that beside {fit.label}; without it {before.shear_modulus_Pa[name]:.5g} Pa"
             f" at a reduced chi-square of {before.reduced_chi2:.2f}."
         )
     if diagnosis.finding.verdict == "unexplained":
@@ -162,9 +153,3 @@ def _provenance(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: E
 
 def _of_specimen(candidate: Candidate, diagnosis: Diagnosis) -> bool:
     return bool(diagnosis.effects[candidate.effect].belongs_to == "specimen")
-
-
-def _reaches(candidate: Candidate, material: str, experiment: Experiment) -> bool:
-    """Whether an effect concerns a material: all of it, or a specimen, block or trial of it."""
-    mine = [t for t in experiment.trials if t.material == material]
-    return any(reaches(candidate, t) for t in mine)

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis._rig_file import RigFile
-from calibration.diagnosis.beams import EFFECTS, BeamEffect, Situation, reaches
-from calibration.diagnosis.effect import Candidate
+from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.experiment import parse
 from calibration.experiment.model import BeamTrial, Experiment
+from calibration.measurements._effect import Candidate, reaches
+from calibration.measurements.outlines._effect import OutlineEffect, Situation
 from tisim import Beam
 
 Array = NDArray[np.float64]
@@ -24,8 +25,8 @@ Array = NDArray[np.float64]
 class Rig:
     """Effects of rig and camera where they were found, with amplitudes [SI] and their covariance.
 
-    A `calibration.outlines.setup.Setup`. digest: sha256 of the file; found_on: of the experiment that it was
-    found on. remarks: what the reader of a corrected calibration must know.
+    A `calibration.measurements.outlines.setup.Setup`. digest: sha256 of the file; found_on: of
+    the experiment that it was found on. remarks: what the reader of a corrected calibration must know.
     """
 
     candidates: tuple[Candidate, ...]
@@ -83,7 +84,7 @@ class Rig:
             remarks.append("found on these very measurements, which the error bars thus count twice")
         return replace(self, remarks=tuple(remarks))
 
-    def _inside(self, trial: BeamTrial) -> Sequence[tuple[BeamEffect, float, Situation]]:
+    def _inside(self, trial: BeamTrial) -> Sequence[tuple[OutlineEffect, float, Situation]]:
         """What reaches a trial, in the catalogue's order. No effect of a rig differs from one photograph of a
         trial to the next (`RigFile` refuses those that do), so that the time is of no matter."""
         situation = Situation(trial=trial, time=1.0)

@@ -1,8 +1,8 @@
-"""A measured experiment: what a lab writes down (`measured/FORMAT.md`), read, checked and in SI."""
+"""A measured experiment: experiment.yaml and its files, read, checked and in SI."""
 
 from calibration.experiment._fields import Strict, say
 from calibration.experiment._read import read
-from calibration.experiment._yaml import parse
+from calibration.experiment._yaml import load, parse
 from calibration.experiment.model import (
     BeamTrial,
     Capture,
@@ -40,6 +40,7 @@ __all__ = [
     "TracedOutline",
     "Trial",
     "Vector",
+    "load",
     "parse",
     "read",
     "say",

@@ -1,4 +1,4 @@
-"""A beam in experiment.yaml: its keys, and what they say in SI."""
+"""A beam in experiment.yaml: its keys, read into SI."""
 
 from __future__ import annotations
 
@@ -24,9 +24,8 @@ from calibration.experiment._fields import (
     only_one,
     say,
 )
-from calibration.experiment._files import Files
+from calibration.experiment._files import Files, parse_table
 from calibration.experiment._outline import read_sides
-from calibration.experiment._table import parse_table
 from calibration.experiment.model import (
     BeamTrial,
     Capture,
@@ -42,7 +41,9 @@ _MM = 1e-3
 _STRONGEST = 100.0  # m/s2: a gravity beyond is one in mm/s2
 _FAR = 3.0  # free lengths: a marker beyond is a slip of the unit
 
-Squares = Annotated[int, Field(ge=3, le=1000)]
+_MOST_SQUARES = 600  # the search for a larger board takes more memory than a machine has
+
+Squares = Annotated[int, Field(ge=3, le=60)]
 
 
 class Section(Strict):
@@ -93,10 +94,17 @@ class CheckerboardEntry(Strict):
     squares: tuple[Squares, Squares]
     square_mm: Length
 
+    @model_validator(mode="after")
+    def _searchable(self) -> CheckerboardEntry:
+        count = self.squares[0] * self.squares[1]
+        if count > _MOST_SQUARES:
+            raise say("squares", f"expected at most {_MOST_SQUARES} squares on the board, got {count}")
+        return self
+
 
 class CaptureEntry(Strict):
-    """One photograph. What is known of a traced outline's error must be said: a default would make the fit
-    surer than the lab is."""
+    """One photograph. The error of a traced outline must be stated: a default would make the fit surer than
+    the lab is."""
 
     time_s: Annotated[float, Field(gt=0, le=1e9)]
     outline: CsvFile | None = None

@@ -1,4 +1,4 @@
-"""A coupon in experiment.yaml: its keys, and what they say in SI."""
+"""A homogeneous test in experiment.yaml: its keys, read into SI; long records are averaged."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field
 
 from calibration.experiment._fields import CsvFile, Name, Noise, Strict
-from calibration.experiment._files import Files
-from calibration.experiment._table import parse_table
-from calibration.experiment.model import CouponMode, CouponTrial
+from calibration.experiment._files import Files, parse_table
+from calibration.experiment.model import Array, CouponMode, CouponTrial
 
 _KPA = 1e3
+_MOST_POINTS = 4000  # of a record: a fit ends in seconds, and a curve has no more to say
 
 
 class CouponEntry(Strict):
@@ -44,14 +44,31 @@ def read_coupon(entry: CouponEntry, files: Files, where: str) -> CouponTrial:
     if bad.size and entry.mode != "simple-shear":  # there it is 1 + gamma, of any sign
         row = int(bad[0])
         raise table.error(row, f"column stretch: expected more than 0, got {stretch[row]:g}")
+    columns, each = _averaged(
+        {n: table.numbers[n] for n in ("stretch", "nominal_stress_kPa", "time_s") if n in table}, len(table)
+    )
     return CouponTrial(
         id=entry.id,
         material=entry.material,
         specimen=entry.specimen,
         mode=entry.mode,
-        stretch=stretch,
-        stress=table.numbers["nominal_stress_kPa"] * _KPA,
-        time=table.numbers.get("time_s"),
+        stretch=columns["stretch"],
+        stress=columns["nominal_stress_kPa"] * _KPA,
+        time=columns.get("time_s"),
+        samples_averaged=each,
         stretch_sd=entry.stretch_sd,
         stress_sd=None if entry.stress_sd_kPa is None else entry.stress_sd_kPa * _KPA,
     )
+
+
+def _averaged(columns: dict[str, Array], rows: int) -> tuple[dict[str, Array], int]:
+    """Columns with runs of samples averaged so that at most `_MOST_POINTS` are left, and the length of a run.
+
+    Runs follow the order of the record, so that loading and unloading stay apart.
+    """
+    each = -(-rows // _MOST_POINTS)
+    if each == 1:
+        return columns, 1
+    starts = np.arange(0, rows, each)
+    counts = np.diff(np.append(starts, rows))
+    return {name: np.add.reduceat(values, starts) / counts for name, values in columns.items()}, each

@@ -24,13 +24,27 @@ class Strict(BaseModel):
     def _known_keys(cls, data: Any) -> Any:
         # before pydantic's own check, since only here it is known which keys were expected
         if isinstance(data, dict):
+            unknown = [str(key) for key in data if key not in cls.model_fields]
+            if unknown:
+                known = list(cls.model_fields)
+                meant = [expected_key(key, known) for key in unknown]
+                also = "".join(
+                    f"; also unknown: {key[:60]} (expected {name})"
+                    for key, name in list(zip(unknown, meant, strict=True))[1:4]
+                )
+                missing = [
+                    name
+                    for name, field in cls.model_fields.items()
+                    if field.is_required() and name not in data and name not in meant
+                ]
+                if missing:
+                    also += f"; also missing: {', '.join(missing)}"
+                raise PydanticCustomError(
+                    "unknown_key",
+                    "expected {expected}",
+                    {"key": unknown[0], "expected": meant[0], "also": also},
+                )
             for key, value in data.items():
-                if key not in cls.model_fields:
-                    raise PydanticCustomError(
-                        "unknown_key",
-                        "expected {expected}",
-                        {"key": str(key), "expected": expected_key(str(key), list(cls.model_fields))},
-                    )
                 if value is None:
                     raise PydanticCustomError(
                         "no_value", "expected a value, or the key left out", {"key": str(key)}

@@ -1,11 +1,18 @@
-"""The files of one experiment: each is read once, and what was read goes into the digest."""
+"""Files of one experiment: each is read once and goes into the digest; CSV files become checked tables."""
 
 from __future__ import annotations
 
+import csv
 import hashlib
+import io
+import math
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from calibration.errors import InputError
+from calibration.experiment.model import Array
 
 MAIN = "experiment.yaml"
 
@@ -24,7 +31,7 @@ class Files:
         return self.folder / MAIN
 
     def error(self, key: str, text: str) -> InputError:
-        """What is wrong with a key of experiment.yaml, as one sentence."""
+        """An error at a key of experiment.yaml, as one sentence."""
         return InputError(f"{self.main}: key {key}: {text}" if key else f"{self.main}: {text}")
 
     def read(self, name: str, key: str) -> bytes:
@@ -57,3 +64,132 @@ class Files:
         for name, content in sorted(self._sums.items()):
             total.update(f"{name}\0{content}\n".encode())
         return total.hexdigest()
+
+
+_LARGEST = 1e9  # beyond it a number is damage, not a measurement
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Table:
+    """Columns of a CSV file: numbers and texts by name, each (k,); lines: where each row stands."""
+
+    path: Path
+    numbers: dict[str, Array]
+    texts: dict[str, list[str]]
+    lines: list[int]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.numbers
+
+    def columns(self, *names: str) -> Array:
+        """(k, len(names))."""
+        return np.column_stack([self.numbers[name] for name in names])
+
+    def error(self, row: int, text: str) -> InputError:
+        return InputError(f"{self.path}: line {self.lines[row]}: {text}")
+
+    def need_rows(self, least: int) -> None:
+        if len(self) < least:
+            raise InputError(f"{self.path}: expected at least {least} rows below the header, got {len(self)}")
+
+    def need_growing(self, name: str, rows: list[int] | None = None, of: str = "") -> None:
+        """Refuses a column that does not grow from row to row (of `rows`, where given)."""
+        chosen = list(range(len(self))) if rows is None else rows
+        values = self.numbers[name][chosen]
+        bad = np.flatnonzero(np.diff(values) <= 0)
+        if bad.size:
+            at = int(bad[0]) + 1
+            raise self.error(
+                chosen[at],
+                f"column {name}: expected more than {values[at - 1]:g}{of} before it, got {values[at]:g}",
+            )
+
+    def need_within(self, name: str, limit: float, why: str) -> None:
+        """Refuses values beyond +-limit."""
+        bad = np.flatnonzero(np.abs(self.numbers[name]) > limit)
+        if bad.size:
+            row = int(bad[0])
+            raise self.error(
+                row, f"column {name}: expected at most {limit:g} ({why}), got {self.numbers[name][row]:g}"
+            )
+
+
+def parse_table(
+    content: bytes,
+    path: Path,
+    *,
+    numbers: tuple[str, ...],
+    texts: tuple[str, ...] = (),
+    optional: tuple[str, ...] = (),
+) -> Table:
+    """Comma-separated columns under one header line, in any order; blank lines are passed over.
+
+    optional: number columns that may be left out. InputError names the file, the line and what was expected.
+    """
+    try:
+        rows = csv.reader(io.StringIO(content.decode("utf-8-sig"), newline=""), strict=True)
+        header = [name.strip() for name in next(rows, [])]
+        _check_header(header, path, required=(*texts, *numbers), optional=optional)
+        found: dict[str, list[str]] = {name: [] for name in header}
+        lines = []
+        for row in rows:
+            if not any(cell.strip() for cell in row):
+                continue
+            if len(row) != len(header):
+                commas = len(row) == 2 * len(header)
+                raise InputError(
+                    f"{path}: line {rows.line_num}: expected {len(header)} values "
+                    f"({','.join(header)}), got {len(row)}"
+                    + ("; are its decimals written with commas? expected points" if commas else "")
+                )
+            lines.append(rows.line_num)
+            for name, cell in zip(header, row, strict=True):
+                found[name].append(cell.strip())
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: expected UTF-8 text") from None
+    except csv.Error as error:
+        raise InputError(f"{path}: line {rows.line_num}: expected comma-separated values ({error})") from None
+    values = {
+        name: np.array(
+            [_number(c, path, line, name) for c, line in zip(cells, lines, strict=True)], dtype=float
+        )
+        for name, cells in found.items()
+        if name not in texts
+    }
+    return Table(path=path, numbers=values, texts={name: found[name] for name in texts}, lines=lines)
+
+
+def _check_header(
+    header: list[str], path: Path, *, required: tuple[str, ...], optional: tuple[str, ...]
+) -> None:
+    whole = ",".join(required) + (f" (and, where known, {','.join(optional)})" if optional else "")
+    for mark, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
+        if len(header) == 1 and mark in header[0]:
+            raise InputError(
+                f"{path}: line 1: its columns are separated by {name}, expected commas between columns and"
+                f" points in decimals: {whole}"
+            )
+    for name in header:
+        if name not in (*required, *optional):
+            raise InputError(f"{path}: line 1: unknown column {name!r}, expected {whole}")
+        if header.count(name) > 1:
+            raise InputError(f"{path}: line 1: column {name} stands there twice, expected it once")
+    for name in required:
+        if name not in header:
+            raise InputError(f"{path}: line 1: missing column {name}, expected {whole}")
+
+
+def _number(cell: str, path: Path, line: int, name: str) -> float:
+    try:
+        value = float(cell) if "_" not in cell else math.nan
+    except ValueError:
+        value = math.nan
+    if not abs(value) <= _LARGEST:  # NaN too
+        comma = " (decimals with points, not commas)" if "," in cell else ""
+        raise InputError(
+            f"{path}: line {line}: column {name}: expected a finite number{comma}, got {cell[:60]!r}"
+        )
+    return value

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment._table import Table, parse_table
+from calibration.experiment._files import Table, parse_table
 from calibration.experiment.model import Array
 
 _FAR = 3.0  # free lengths: a point beyond is a slip of the unit or a stray click

@@ -1,4 +1,4 @@
-"""A poke in experiment.yaml: its keys, and what they say in SI.
+"""An indentation in experiment.yaml: its keys, read into SI.
 
 Inclusions, all rigid: `sphere: {radius_mm, centre_mm}`, `box: {size_mm, centre_mm, angle_deg}` (angle about
 z, 0 where left out), `cylinder: {radius_mm, height_mm, centre_mm}` (upright) or `mesh: file.stl`.
@@ -25,13 +25,14 @@ from calibration.experiment._fields import (
     only_one,
     say,
 )
-from calibration.experiment._files import Files
-from calibration.experiment._table import Table, parse_table
+from calibration.experiment._files import Files, Table, parse_table
 from calibration.experiment.model import PokeRecord, PokeTrial, SurfaceScan, Vector
 from tisim import Block, BoxInclusion, CylinderInclusion, Inclusion, SphereInclusion
 
 _MM = 1e-3
 _FAR = 3.0  # largest sides of the block: a depth or a scanned point beyond is a slip of the unit
+_FLAT = 1e-3  # of the block's height: the same
+_SHALLOW = 0.01  # indenter radii: a record that ends above is one in metres, or says nothing
 _COMPONENTS = ("force_x_N", "force_y_N", "force_z_N")
 
 Lengths3 = tuple[Length, Length, Length]
@@ -92,7 +93,7 @@ class InclusionEntry(Strict):
 
 
 class RodEntry(Strict):
-    """The rod."""
+    """The indenter."""
 
     radius_mm: Length
     tip: Literal["flat", "hemisphere"]
@@ -107,7 +108,7 @@ class SurfaceEntry(Strict):
 
 
 class PokeEntry(Strict):
-    """A rod pushed into a block."""
+    """An indentation of a block."""
 
     id: Name
     kind: Literal["poke"]
@@ -163,7 +164,9 @@ def read_poke(entry: PokeEntry, files: Files, where: str) -> PokeTrial:
             files.read(entry.inclusion.mesh, f"{where}.inclusion.mesh")
             mesh = files.folder / entry.inclusion.mesh
     length = math.hypot(*entry.direction)
-    u = tuple(component / length for component in entry.direction)
+    u = (entry.direction[0] / length, entry.direction[1] / length, entry.direction[2] / length)
+    record = _record(entry, files, where)
+    _check_path(entry, u, 1e3 * float(record.depth.max()), files, where)
     return PokeTrial(
         id=entry.id,
         material=entry.material,
@@ -173,8 +176,8 @@ def read_poke(entry: PokeEntry, files: Files, where: str) -> PokeTrial:
         rod_radius=entry.rod.radius_mm * _MM,
         rod_tip=entry.rod.tip,
         start=_scaled(entry.start_mm),
-        direction=(u[0], u[1], u[2]),
-        record=_record(entry, files, where),
+        direction=u,
+        record=record,
         force_sd=entry.force_sd_N,
         depth_sd=entry.depth_sd_mm * _MM,
         surfaces=tuple(
@@ -193,6 +196,12 @@ def _record(entry: PokeEntry, files: Files, where: str) -> PokeRecord:
     table.need_rows(3)
     table.need_growing("time_s", of=" s")
     _need_near(table, ("depth_mm",), entry)
+    deepest = float(table.numbers["depth_mm"].max())
+    if 0.0 < deepest < min(_SHALLOW * entry.rod.radius_mm, _FLAT * entry.block_mm[2]):
+        raise InputError(
+            f"{table.path}: column depth_mm: expected a depth in mm that an indenter of radius"
+            f" {entry.rod.radius_mm:g} mm makes, the deepest is {deepest:g}; is the column in metres?"
+        )
     given = [name for name in _COMPONENTS if name in table]
     if given and len(given) < 3:
         missing = next(name for name in _COMPONENTS if name not in table)
@@ -205,6 +214,18 @@ def _record(entry: PokeEntry, files: Files, where: str) -> PokeRecord:
         force=table.numbers["force_N"],
         force_vector=table.columns(*_COMPONENTS) if given else None,
     )
+
+
+def _check_path(entry: PokeEntry, u: Vector, deepest: float, files: Files, where: str) -> None:
+    """Refuse a tip that leaves the block through a side before its deepest place; u : of length 1; [mm]."""
+    x, y = (entry.start_mm[i] + max(deepest, 0.0) * u[i] for i in range(2))
+    half = [side / 2 for side in entry.block_mm[:2]]
+    if abs(x) > half[0] or abs(y) > half[1]:
+        raise files.error(
+            f"{where}.direction",
+            f"expected a path within the block's sides (x within +-{half[0]:g}, y within +-{half[1]:g} mm),"
+            f" at the {deepest:g} mm of {entry.record} the tip is outside, at x = {x:.3g}, y = {y:.3g} mm",
+        )
 
 
 def _surface(scan: SurfaceEntry, entry: PokeEntry, files: Files, where: str) -> SurfaceScan:

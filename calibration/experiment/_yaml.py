@@ -14,9 +14,24 @@ from calibration.errors import InputError
 
 M = TypeVar("M", bound=BaseModel)
 
+_NAMED = 8  # further problems that a sentence names
+
+
+_LARGEST_FILE = 20_000_000  # bytes
+_MOST_VALUES = 1_000_000  # aliases written out: a file of a few lines can stand for billions
+_DEEPEST = 50
+_LONGEST_NUMBER = 400  # digits
+
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML that refuses a key written twice and takes 1e3 for a number."""
+    """Safe YAML that refuses a key written twice, takes 1e3 for a number and leaves dates as text."""
+
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
+        if len(node.value) > _LONGEST_NUMBER + 10:
+            raise yaml.constructor.ConstructorError(
+                None, None, "expected a number of usual size", node.start_mark
+            )
+        return int(super().construct_yaml_int(node))
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen = set()
@@ -35,25 +50,94 @@ class _Loader(yaml.SafeLoader):
 
 
 # YAML 1.1 reads 1e3 as text, which no one means
-_Loader.yaml_implicit_resolvers = {key: list(value) for key, value in _Loader.yaml_implicit_resolvers.items()}
+_Loader.yaml_implicit_resolvers = {
+    key: [(tag, pattern) for tag, pattern in value if tag != "tag:yaml.org,2002:timestamp"]
+    for key, value in _Loader.yaml_implicit_resolvers.items()
+}
+_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
 _Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+.0123456789")
 )
 
 
-def parse(text: bytes, path: Path, model: type[M]) -> M:
-    """The file's content as `model`; InputError names the file, the key and what was expected."""
+def load(text: bytes, path: Path) -> Any:
+    """The values of a YAML file, with limits on its size, depth and aliases.
+
+    Raises
+    ------
+    InputError
+        The file is no plain YAML; one sentence that names it and the line.
+    """
+    if len(text) > _LARGEST_FILE:
+        raise InputError(
+            f"{path}: expected at most {_LARGEST_FILE / 1e6:.0f} MB, got {len(text) / 1e6:.0f} MB"
+        )
     try:
-        data = yaml.load(text.decode("utf-8"), Loader=_Loader)
-        data = _tuples(data)
+        loader = _Loader(text.decode("utf-8"))
+        try:
+            node = loader.get_single_node()
+            if node is None:
+                return None
+            if _written_out(node, {}, 0) > _MOST_VALUES:
+                raise InputError(
+                    f"{path}: expected at most {_MOST_VALUES:,} values, its aliases stand for more"
+                )
+            return loader.construct_document(node)
+        finally:
+            loader.dispose()
     except UnicodeDecodeError:
         raise InputError(f"{path}: expected UTF-8 text") from None
     except yaml.constructor.ConstructorError as error:
-        raise InputError(f"{path}: {_line(error)}{error.problem}") from None
+        problem = str(error.problem)
+        if "unhashable key" in problem:
+            problem = "expected a plain key, found a list or a map in its place"
+        raise InputError(f"{path}: {_line(error)}{problem}") from None
     except yaml.YAMLError as error:
         raise InputError(f"{path}: {_line(error)}expected valid YAML") from None
-    except (RecursionError, ValueError):  # an alias within itself; a date that is none
-        raise InputError(f"{path}: expected plain YAML values, without aliases of themselves") from None
+    except (RecursionError, ValueError, TypeError, AttributeError):
+        # nested without end; an alias within itself; a tag (!!timestamp) whose value is none
+        raise InputError(
+            f"{path}: expected plain YAML values, nested {_DEEPEST} deep at most and without aliases of"
+            " themselves"
+        ) from None
+
+
+def _written_out(node: yaml.Node, sizes: dict[int, int], depth: int) -> int:
+    """Number of values with every alias written out; RecursionError for an alias within itself."""
+    if depth > _DEEPEST:
+        raise RecursionError
+    if id(node) in sizes:
+        if sizes[id(node)] < 0:
+            raise RecursionError
+        return sizes[id(node)]
+    sizes[id(node)] = -1
+    total = 1
+    if isinstance(node, yaml.MappingNode):
+        total += sum(_written_out(n, sizes, depth + 1) for pair in node.value for n in pair)
+    elif isinstance(node, yaml.SequenceNode):
+        total += sum(_written_out(n, sizes, depth + 1) for n in node.value)
+    sizes[id(node)] = total
+    return total
+
+
+def parse(text: bytes, path: Path, model: type[M]) -> M:
+    """The file's content as `model`.
+
+    Parameters
+    ----------
+    text : bytes
+        Content of the file.
+    path : Path
+        For messages.
+    model : type
+        pydantic model.
+
+    Raises
+    ------
+    InputError
+        One sentence that names the file, the key and what was expected.
+    """
+    data = _tuples(load(text, path))
     if not isinstance(data, dict):
         raise InputError(f"{path}: expected keys and values at the top level")
     try:
@@ -94,7 +178,7 @@ def key_path(parts: Sequence[str | int], data: object) -> str:
 
 
 def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
-    # an unknown key comes first: with it said, the key that is missing for its sake needs no words
+    # an unknown key comes first: it explains the key that is missing in its place
     problems = sorted(error.errors(include_url=False), key=lambda e: e["type"] != "unknown_key")
     first = problems[0]
     context: dict[str, Any] = first.get("ctx", {})
@@ -117,8 +201,23 @@ def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
     got = f", got {_brief(given)}" if plain else ""
     where = key_path(parts, data) or "top level"
     what = "unknown key" if kind == "unknown_key" else "missing key" if kind == "missing" else "key"
-    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-    return f"{what} {where}: {reason}{got}{more}"
+    return f"{what} {where}: {reason}{got}{context.get('also', '')}{_others(problems[1:], data)}"
+
+
+def _others(problems: Sequence[Any], data: dict[Any, Any]) -> str:
+    """The further problems by the place of each: missing keys, unknown ones, then the others."""
+    groups: dict[str, list[str]] = {"missing": [], "unknown": [], "wrong": []}
+    for problem in problems:
+        own = problem.get("ctx", {}).get("key")
+        where = key_path([*problem["loc"], *([] if own is None else [str(own)])], data) or "top level"
+        kind = {"missing": "missing", "unknown_key": "unknown"}.get(problem["type"], "wrong")
+        groups[kind].append(where)
+    text = ""
+    for kind, places in groups.items():
+        if places:
+            rest = len(places) - _NAMED
+            text += f"; also {kind}: {', '.join(places[:_NAMED])}" + (f" and {rest} more" if rest > 0 else "")
+    return text
 
 
 def _brief(value: object) -> str:

@@ -1,12 +1,13 @@
-"""A measured experiment as the code sees it: frozen, SI units, what the lab believes and how sure it is.
+"""A measured experiment: frozen, SI units, nominal values with their standard deviations.
 
-Files hold millimetres (`measured/FORMAT.md`); everything here is in m, N, Pa, kg, s and radians.
+Files hold millimetres; everything here is in m, N, Pa, kg, s and radians.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import Literal
 
@@ -23,7 +24,16 @@ CouponMode = Literal["uniaxial", "equibiaxial", "planar", "simple-shear"]
 
 @dataclass(frozen=True, kw_only=True)
 class MaterialBelief:
-    """density [kg/m3] and its standard deviation; None where the lab does not say."""
+    """A material as the lab describes it.
+
+    Attributes
+    ----------
+    name : str
+    softener_ratio : float, optional
+        Parts of softener to one part of silicone.
+    density, density_sd : float
+        [kg/m3]; the density is None where the lab does not state it.
+    """
 
     name: str
     softener_ratio: float | None = None
@@ -33,8 +43,16 @@ class MaterialBelief:
 
 @dataclass(frozen=True, kw_only=True)
 class Registration:
-    """Standard deviations of where a photograph lies: one draw a photograph. shift [m] (x and z alike), roll
-    [rad] about the frame's origin, scale [-]."""
+    """Standard deviations of a photograph's position, one draw a photograph.
+
+    Attributes
+    ----------
+    shift : float
+        Of x and of z [m].
+    roll : float
+        About the frame's origin [rad].
+    scale : float
+    """
 
     shift: float = 0.0
     roll: float = 0.0
@@ -43,8 +61,18 @@ class Registration:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TracedOutline:
-    """The contour in the image plane: upper and lower edge as (k, 2) arrays of x, z [m], along the beam from
-    the clamp; sd [m] of its error along the normal, correlation [m] of that error along the contour."""
+    """The contour of a beam in the image plane.
+
+    Attributes
+    ----------
+    upper, lower : array, shape (k, 2)
+        x, z of the edges [m], along the beam from the clamp.
+    sd : float
+        Of the error along the normal [m].
+    correlation : float
+        Length over which that error holds along the contour [m].
+    registration : Registration
+    """
 
     upper: Array
     lower: Array
@@ -63,10 +91,18 @@ class Checkerboard:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Capture:
-    """One photograph of a beam, `time` [s] after its release: traced, or still to be traced.
+    """One photograph of a beam: traced, or still to be traced.
 
-    registration: what the lab says of where the photograph lies, None where it does not; a traced outline has
-    it too.
+    Attributes
+    ----------
+    time : float
+        After the beam's release [s].
+    outline : TracedOutline, optional
+    photo : Path, optional
+    checkerboard : Checkerboard, optional
+        The board in the photograph.
+    registration : Registration, optional
+        As the lab states it; a traced outline has its own too.
     """
 
     time: float
@@ -78,8 +114,18 @@ class Capture:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Marker:
-    """One marker: where it sits in the unloaded pose [m], and its displacement from there [m], shape (t, 3),
-    at `time` [s], shape (t,)."""
+    """One marker on a beam.
+
+    Attributes
+    ----------
+    name : str
+    position : tuple
+        In the unloaded pose [m].
+    time : array, shape (t,)
+        [s]
+    displacement : array, shape (t, 3)
+        From that position [m].
+    """
 
     name: str
     position: Vector
@@ -89,10 +135,23 @@ class Marker:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BeamTrial:
-    """A beam in its grips. section, free_length, grip_length, gravity, tip_force as in `tisim.Beam`.
+    """A beam in its grips.
 
-    specimen: trials with one specimen share its faults. section_sd: of the radius, or of (width, height) [m].
-    marker_sd [m]: of each component of a marker's displacement.
+    Attributes
+    ----------
+    id, material : str
+    section, free_length, grip_length, supports, gravity, tip_force
+        As in `tisim.Beam`, SI.
+    specimen : str, optional
+        Trials of one specimen share its faults.
+    section_sd : tuple of float
+        Of the radius, or of (width, height) [m].
+    free_length_sd : float
+        [m]
+    captures : tuple of Capture
+    markers : tuple of Marker
+    marker_sd : float, optional
+        Of each component of a marker's displacement [m].
     """
 
     id: str
@@ -113,8 +172,15 @@ class BeamTrial:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeRecord:
-    """time [s], depth [m], force along the rod [N] (positive pushing), each (t,); force_vector (t, 3) [N]
-    where the lab has it. Loading, holds and unloading as they came."""
+    """Record of an indentation: loading, holds and unloading as they came.
+
+    Attributes
+    ----------
+    time, depth, force : array, shape (t,)
+        [s], [m], and the force along the indenter [N], positive where it pushes.
+    force_vector : array, shape (t, 3), optional
+        [N]
+    """
 
     time: Array
     depth: Array
@@ -124,7 +190,17 @@ class PokeRecord:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceScan:
-    """Points of the block's top surface at one instant [s], (k, 3) [m]."""
+    """Points of the block's top surface at one instant.
+
+    Attributes
+    ----------
+    time : float
+        [s]
+    points : array, shape (k, 3)
+        [m]
+    sd : float
+        Of each coordinate [m].
+    """
 
     time: float
     points: Array
@@ -133,7 +209,29 @@ class SurfaceScan:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeTrial:
-    """A rod pushed into a block (as in `tisim.Poke`); inclusion_mesh: a rigid body given as a mesh file."""
+    """Indentation of a block, as in `tisim.Poke`.
+
+    Attributes
+    ----------
+    id, material : str
+    block : tisim.Block
+    rod_radius : float
+        Of the indenter [m].
+    rod_tip : str
+        "flat" or "hemisphere".
+    start : tuple
+        Centre of the tip at depth 0 [m].
+    direction : tuple
+        Unit vector of the indenter's motion.
+    record : PokeRecord
+    force_sd, depth_sd : float
+        [N], None where the lab does not state it; [m].
+    specimen : str, optional
+        Trials of one specimen share its faults.
+    inclusion_mesh : Path, optional
+        A rigid inclusion given as a mesh file.
+    surfaces : tuple of SurfaceScan
+    """
 
     id: str
     material: str
@@ -152,8 +250,27 @@ class PokeTrial:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CouponTrial:
-    """A homogeneous test: stretch (simple-shear: 1 + gamma) and nominal stress [Pa], each (k,); time [s]
-    where the lab has it. stress_sd [Pa]; None where the lab does not say."""
+    """A homogeneous test.
+
+    Attributes
+    ----------
+    id, material : str
+    mode : str
+    stretch : array, shape (k,)
+        Simple shear: 1 + gamma.
+    stress : array, shape (k,)
+        Nominal [Pa].
+    time : array, shape (k,), optional
+        [s]
+    stretch_sd : float
+    stress_sd : float, optional
+        [Pa]; None where the lab does not state it.
+    specimen : str, optional
+        Trials of one specimen share its faults.
+    samples_averaged : int
+        Samples of the record behind each point: more than 1 where the record was too long to fit point by
+        point. The stated standard deviations are kept, as if the samples of a run erred together.
+    """
 
     id: str
     material: str
@@ -164,15 +281,26 @@ class CouponTrial:
     stretch_sd: float = 0.0
     stress_sd: float | None = None
     specimen: str | None = None
+    samples_averaged: int = 1
 
 
 Trial = BeamTrial | PokeTrial | CouponTrial
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Experiment:
-    """A folder of measurements, read and checked. digest: sha256 over experiment.yaml and all files that it
-    names, so that a card can say what data it came from."""
+    """A folder of measurements, read and checked.
+
+    Attributes
+    ----------
+    name, notes : str
+    folder : Path
+    materials : mapping
+        `MaterialBelief` by name.
+    trials : tuple of Trial
+    digest : str
+        sha256 over experiment.yaml and all files that it names: a card states what data it came from.
+    """
 
     name: str
     folder: Path
@@ -180,3 +308,25 @@ class Experiment:
     materials: Mapping[str, MaterialBelief]
     trials: tuple[Trial, ...]
     digest: str
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of trials by kind: beam, poke, coupon."""
+        found: dict[str, int] = {}
+        for trial in self.trials:
+            kind = type(trial).__name__.removesuffix("Trial").lower()
+            found[kind] = found.get(kind, 0) + 1
+        return found
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in self.counts.items())
+        return f"Experiment({self.name!r}: {kinds} of {', '.join(self.materials)}; {self.folder})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(t.id)}</td><td>{type(t).__name__.removesuffix('Trial').lower()}</td>"
+            f"<td>{escape(t.material)}</td></tr>"
+            for t in self.trials
+        )
+        head = "<tr><th>trial</th><th>kind</th><th>material</th></tr>"
+        return f"<p>{escape(self.name)} ({escape(str(self.folder))})</p><table>{head}{rows}</table>"

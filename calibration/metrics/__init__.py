@@ -1,4 +1,4 @@
-"""How far a simulated body is from a measured one: one file a metric, one line here. SI units.
+"""Metrics of how far a simulated body is from a measured one. SI units.
 
 >>> import trimesh
 >>> from calibration import metrics
@@ -6,37 +6,88 @@
 >>> moved = body.copy().apply_translation((0.002, 0.0, 0.0))
 >>> f"{metrics.dice(body, moved):.3f}"
 '0.900'
+
+A metric of one's own is one `Metric` and one call of `register`, in any file:
+
+>>> shift = metrics.Metric(
+...     name="centroid_shift",
+...     title="distance of the centroids",
+...     unit="m",
+...     higher_is_better=False,
+...     compute=lambda a, b: float(abs(a.centroid - b.centroid).max()),
+... )
+>>> metrics.register(shift)
+>>> f"{metrics.compare(body, moved)['centroid_shift']:.3f}"
+'0.002'
+>>> metrics.unregister("centroid_shift")
 """
 
 from __future__ import annotations
 
-import trimesh
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from calibration.metrics._metric import Metric
-from calibration.metrics.dice import METRIC as _DICE
-from calibration.metrics.dice import dice
-from calibration.metrics.distances import point_to_surface, surface_points
-from calibration.metrics.hd95 import METRIC as _HD95
-from calibration.metrics.hd95 import hd95
-from calibration.metrics.surface_distance import METRIC as _SURFACE_DISTANCE
-from calibration.metrics.surface_distance import surface_distance
-from calibration.metrics.vertices import vertex_distance, vertex_hd95
-from calibration.metrics.volume_difference import METRIC as _VOLUME_DIFFERENCE
-from calibration.metrics.volume_difference import volume_difference
+from calibration.metrics.distances import (
+    HD95,
+    SURFACE_DISTANCE,
+    hd95,
+    point_to_surface,
+    surface_distance,
+    surface_points,
+    vertex_distance,
+    vertex_hd95,
+)
+from calibration.metrics.volumes import DICE, VOLUME_DIFFERENCE, dice, volume_difference
+
+if TYPE_CHECKING:
+    import trimesh
 
 # In the order of the paper's table.
-METRICS: dict[str, Metric] = {
-    metric.name: metric for metric in (_SURFACE_DISTANCE, _HD95, _DICE, _VOLUME_DIFFERENCE)
-}
+_METRICS: dict[str, Metric] = {m.name: m for m in (SURFACE_DISTANCE, HD95, DICE, VOLUME_DIFFERENCE)}
+
+METRICS = MappingProxyType(_METRICS)
+
+
+def register(metric: Metric) -> None:
+    """Add a metric: `compare` computes it, and the table of calibration results has a column of it.
+
+    Raises
+    ------
+    ValueError
+        The name is taken, or is no Python name.
+    """
+    if metric.name in _METRICS:
+        raise ValueError(f"metric: expected a new name, {metric.name!r} is registered already")
+    if not metric.name.isidentifier():
+        raise ValueError(f"metric: expected a Python name, got {metric.name!r}")
+    _METRICS[metric.name] = metric
+
+
+def unregister(name: str) -> None:
+    """Remove a registered metric. Raises KeyError where there is none of that name."""
+    del _METRICS[name]
 
 
 def compare(simulated: trimesh.Trimesh, measured: trimesh.Trimesh) -> dict[str, float]:
-    """Every metric of one pair of bodies, by name, in SI (distances in m, the others ratios).
+    """Every registered metric of one pair of bodies.
 
-    simulated, measured: closed surfaces in m, for example from `calibration.shape`.
-    Raises InputError as the metrics do.
+    Parameters
+    ----------
+    simulated, measured : trimesh.Trimesh
+        Closed surfaces, faces outward [m], for example from `calibration.shape`.
+
+    Returns
+    -------
+    dict
+        Value by the metric's name, SI (distances in m, the others ratios).
+
+    Raises
+    ------
+    InputError
+        A surface is not closed, or as the metric says.
     """
-    return {name: metric.compute(simulated, measured) for name, metric in METRICS.items()}
+    return {name: metric.compute(simulated, measured) for name, metric in _METRICS.items()}
 
 
 __all__ = [
@@ -46,8 +97,10 @@ __all__ = [
     "dice",
     "hd95",
     "point_to_surface",
+    "register",
     "surface_distance",
     "surface_points",
+    "unregister",
     "vertex_distance",
     "vertex_hd95",
     "volume_difference",

@@ -1,25 +1,35 @@
-"""What a metric is, for the registry."""
+"""Metric: a measure of two bodies, and the check of a body that all metrics share."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-
-import trimesh
+from typing import TYPE_CHECKING
 
 from calibration.errors import InputError
 
-BodyMetric = Callable[[trimesh.Trimesh, trimesh.Trimesh], float]
+if TYPE_CHECKING:
+    import trimesh
+
+BodyMetric = Callable[["trimesh.Trimesh", "trimesh.Trimesh"], float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Metric:
     """A measure of how far a simulated body is from a measured one.
 
-    name: its key in `compare`; title: for tables.
-    unit: of its value, "m" or "1" (a ratio).
-    higher_is_better: whether a perfect match is its largest value.
-    compute: value for (simulated, measured), closed surfaces in m, faces outward.
+    Attributes
+    ----------
+    name : str
+        Its key in `compare`.
+    title : str
+        For tables.
+    unit : str
+        Of its value: "m" or "1" (a ratio).
+    higher_is_better : bool
+        A perfect match is its largest value.
+    compute : callable
+        (simulated, measured) -> value; closed surfaces in m, faces outward.
     """
 
     name: str

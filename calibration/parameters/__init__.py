@@ -1,30 +1,90 @@
-"""Laws in search coordinates: one file where a law has more than two moduli, one line here."""
+"""Search coordinates of the constitutive laws: what an optimiser moves in place of a law's parameters.
+
+A law that is registered in `tisim.laws`, also from outside, is searched in its small-strain moduli (shear
+modulus and K/G). `register` gives a law with further constants coordinates of its own.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from calibration.parameters._coordinates import Coordinate, Parametrisation, two_moduli
-from calibration.parameters.arruda_boyce import arruda_boyce
-from calibration.parameters.mooney_rivlin import mooney_rivlin
-from calibration.parameters.ogden import ogden
+from calibration.parameters import fibres as _fibres  # noqa: F401 - registers itself
+from calibration.parameters import mullins as _mullins  # noqa: F401 - registers itself
+from calibration.parameters import prony as _prony  # noqa: F401
+from calibration.parameters._coordinates import (
+    Coordinate,
+    Parametrisation,
+    bulk_ratio,
+    shear_modulus,
+    two_moduli,
+)
+from calibration.parameters._laws import arruda_boyce, mooney_rivlin, ogden
+from calibration.parameters._parts import (
+    PartCoordinates,
+    PartKind,
+    ProtocolWindow,
+    part_alternatives,
+    part_coordinates,
+    part_kind,
+    part_kinds,
+    register_part,
+)
 from tisim import laws
 
-_OWN: dict[str, Callable[[int], Parametrisation]] = {
+_REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
     "mooney-rivlin": mooney_rivlin,
     "ogden": ogden,
     "arruda-boyce": arruda_boyce,
 }
 
 
-def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
-    """Search coordinates of a law; terms: of a series law (Ogden, 1 to 3).
+def register(law: str, make: Callable[[int], Parametrisation]) -> None:
+    """Give a law search coordinates of its own, in place of its small-strain moduli.
 
-    A law without a file here is searched in its small-strain moduli. ValueError names the laws there are.
+    Parameters
+    ----------
+    law : str
+        Name in `tisim.laws`.
+    make : callable
+        Number of terms (1 for a law that is no series) -> `Parametrisation`.
     """
-    if law not in laws.names():  # of others, the small-strain moduli need not be all there is to search
+    _REGISTERED[law] = make
+
+
+def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
+    """Search coordinates of a law.
+
+    Parameters
+    ----------
+    law : str
+        Name in `tisim.laws`.
+    terms : int
+        Terms of a series law (Ogden: 1 to 3).
+
+    Raises
+    ------
+    ValueError
+        The law is not known; the message names those that are.
+    """
+    if law not in (*laws.names(), *_REGISTERED):
         raise ValueError(f"law: expected one of {', '.join(laws.names())}, got {law!r}")
-    return _OWN[law](terms) if law in _OWN else two_moduli(law)
+    return _REGISTERED[law](terms) if law in _REGISTERED else two_moduli(law)
 
 
-__all__ = ["Coordinate", "Parametrisation", "parametrisation"]
+__all__ = [
+    "Coordinate",
+    "Parametrisation",
+    "PartCoordinates",
+    "PartKind",
+    "ProtocolWindow",
+    "bulk_ratio",
+    "parametrisation",
+    "part_alternatives",
+    "part_coordinates",
+    "part_kind",
+    "part_kinds",
+    "register",
+    "register_part",
+    "shear_modulus",
+    "two_moduli",
+]

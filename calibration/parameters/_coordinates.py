@@ -1,35 +1,55 @@
-"""Search coordinates of a law: what the optimiser moves, with bounds, a start and, where honest, a prior."""
+"""Search coordinates of a law: variables of the optimiser with bounds, a start and, where known, a prior."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tisim import Material, laws
 
+if TYPE_CHECKING:
+    from calibration.parameters._parts import PartCoordinates
+
 Array = NDArray[np.float64]
 Parameters = dict[str, "float | tuple[float, ...]"]
 
 # Search range of the shear modulus [Pa]: gels to stiff rubbers.
 SHEAR_LOW, SHEAR_HIGH = 50.0, 5e7
-# K/G of a silicone, if nobody measured it: nu between 0.495 and 0.4994 at one sd. Beams, pokes and coupons
-# hardly see it, and the shear modulus depends on it little (4 % from K/G 20 to 1000 on a beam).
+# K/G of a silicone that was not measured: nu between 0.495 and 0.4994 at one sd. No measurement here
+# determines it well, and the shear modulus depends on it little (4 % from K/G 20 to 1000 on a beam).
 BULK_RATIO, BULK_RATIO_LOG_SD = 300.0, 1.1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Coordinate:
-    """One direction of the search.
+    """One coordinate of the search.
 
-    name: what cards and reports call it; unit: of its value, not of its logarithm.
-    log: the optimiser moves the natural logarithm of the value.
-    low, high: bounds of the value; start: where a search begins (None: from the data).
-    spread: a plain step in the coordinate itself: initial sd of a search, ten times a finite difference.
-    prior: (centre, sd) of a normal prior on the coordinate itself (so on the logarithm, where log is set);
-        None where the data alone decide.
+    Attributes
+    ----------
+    name, unit : str
+        In cards and reports; the unit is that of the value, not of its logarithm.
+    log : bool
+        The optimiser moves the natural logarithm of the value.
+    low, high : float
+        Bounds of the value.
+    spread : float
+        Step in the coordinate itself: initial sd of a search, ten times a finite difference.
+    start : float, optional
+        Value where a search begins; from the data where left out.
+    prior : tuple, optional
+        Centre and sd of a normal prior on the coordinate itself (on the logarithm, where `log`); the data
+        alone decide where left out.
+    limit_low, limit_high : str
+        The simpler law that a bound stands for ("neo-Hookean"): a fit that ends there is no lack of fit.
+        Empty where the bound is one of the search only.
+    held : bool
+        Kept at its prior's centre (`Parametrisation.holding`).
+    start_per_shear : float, optional
+        In place of `start`: value where a search begins, over the guessed shear modulus.
     """
 
     name: str
@@ -40,6 +60,10 @@ class Coordinate:
     spread: float
     start: float | None = None
     prior: tuple[float, float] | None = None
+    limit_low: str = ""
+    limit_high: str = ""
+    held: bool = False
+    start_per_shear: float | None = None
 
     def inside(self, value: float) -> float:
         """The value as a coordinate."""
@@ -54,14 +78,24 @@ class Coordinate:
 class Parametrisation:
     """A law in search coordinates u, shape (n,).
 
-    law: name in `tisim.laws`. label: what tables print ("ogden-2" for two terms).
-    assemble: values by coordinate name -> the law's parameters.
+    Attributes
+    ----------
+    law : str
+        Name in `tisim.laws`.
+    label : str
+        In tables ("ogden-2" for two terms).
+    coordinates : tuple of Coordinate
+    assemble : callable
+        Values by coordinate name -> the law's parameters.
+    parts : tuple of PartCoordinates
+        What the material has beside the law; their coordinates are the last ones.
     """
 
     law: str
     label: str
     coordinates: tuple[Coordinate, ...]
     assemble: Callable[[dict[str, float]], Parameters]
+    parts: tuple[PartCoordinates, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -83,8 +117,13 @@ class Parametrisation:
         return found
 
     def material(self, u: ArrayLike, *, density: float = 1000.0) -> Material:
-        """Material at u; density [kg/m3]."""
-        return Material(law=self.law, parameters=self.parameters(u), density=density)
+        """Material at u with its parts; density [kg/m3]. ValueError where law or parts refuse it."""
+        found = Material(law=self.law, parameters=self.parameters(u), density=density)
+        if not self.parts:
+            return found
+        values = self.values(u)
+        parts: dict[str, Any] = {p.field: p.assembled(values) for p in self.parts}
+        return replace(found, **parts)
 
     def moduli(self, u: ArrayLike) -> laws.Moduli:
         """Small-strain moduli at u [Pa]."""
@@ -93,9 +132,27 @@ class Parametrisation:
     def start(self, *, shear: float) -> Array:
         """Start of a search at a guessed small-strain shear modulus [Pa], shape (n,)."""
         shears = [c for c in self.coordinates if c.start is None]
+        own = {c.name: c.start_per_shear * shear for c in self.coordinates if c.start_per_shear is not None}
         return np.array(
-            [c.inside(shear / len(shears) if c.start is None else c.start) for c in self.coordinates]
+            [
+                c.inside(shear / len(shears) if c.start is None else own.get(c.name, c.start))
+                for c in self.coordinates
+            ]
         )
+
+    def with_parts(self, parts: Sequence[PartCoordinates]) -> Parametrisation:
+        """The same material with these parts beside its law."""
+        return replace(
+            self,
+            label="+".join([self.label, *(p.label for p in parts)]),
+            coordinates=(*self.coordinates, *(c for p in parts for c in p.coordinates)),
+            parts=(*self.parts, *parts),
+        )
+
+    def remarks(self, u: ArrayLike) -> list[str]:
+        """What a reader must know of the parts at u, and what the tests cannot show, a sentence each."""
+        values, moduli = self.values(u), self.moduli(u)
+        return [sentence for p in self.parts for sentence in p.remarks(values, moduli)]
 
     @property
     def spread(self) -> Array:
@@ -106,7 +163,7 @@ class Parametrisation:
         """The same, with one coordinate held at its prior's centre (to within 1 %): where the data cannot
         see it, a law that misfits would use it to repair its curve."""
         held = tuple(
-            replace(c, prior=(c.prior[0], 0.01), spread=0.01) if c.name == name and c.prior else c
+            replace(c, prior=(c.prior[0], 0.01), spread=0.01, held=True) if c.name == name and c.prior else c
             for c in self.coordinates
         )
         return replace(self, coordinates=held)
@@ -133,6 +190,7 @@ def bulk_ratio() -> Coordinate:
         spread=1.0,
         start=BULK_RATIO,
         prior=(float(np.log(BULK_RATIO)), BULK_RATIO_LOG_SD),
+        limit_high="incompressible",
     )
 
 

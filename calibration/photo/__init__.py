@@ -19,13 +19,11 @@ outer corner; the specimen's mid plane lies at y = -distance.
 """
 
 from calibration.photo._board import Board, find_board
-from calibration.photo._camera import Camera, calibrate
-from calibration.photo._image import read_photograph
+from calibration.photo._camera import Camera, View, calibrate, locate
+from calibration.photo._files import PhotoSettings, read_settings
+from calibration.photo._image import PhotoProblem, read_photograph
 from calibration.photo._picture import strip
-from calibration.photo._problem import PhotoProblem
-from calibration.photo._settings import PhotoSettings, read_settings
 from calibration.photo._trace import Specimen, Trace, trace
-from calibration.photo._view import View, locate
 
 __all__ = [
     "Board",

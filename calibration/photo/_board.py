@@ -9,22 +9,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import Checkerboard
-from calibration.photo._draw import coloured, draw_corners, shrink
-from calibration.photo._image import Grey
-from calibration.photo._problem import PhotoProblem
+from calibration.photo._image import Grey, PhotoProblem, coloured, draw_corners, shrink
 
 Array = NDArray[np.float64]
 
 _PIXELS = 7e5  # larger photographs are searched at reduced size; corners are refined at full size
 _BLURRED = 9.0  # pixels from 10 to 90 % across an edge; a sharp photograph has 2 to 4
+_PARTS = 150  # smaller boards, the largest first, that are looked for where the whole is not found
 _FLAGS = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Board:
-    """Corners [px] as (rows, columns, 2): rows count upwards, columns to the right. points: the same corners
-    on the board [m], (rows, columns, 2) as x, z from the lower left outer corner of the squares.
-    blur: width of its edges [px], 10 to 90 %. size: of the photograph, (width, height) [px]."""
+    """A checkerboard in a photograph.
+
+    Attributes
+    ----------
+    corners : array, shape (rows, columns, 2)
+        Inner corners [px]; rows count upwards, columns to the right.
+    points : array, shape (rows, columns, 2)
+        The same corners on the board, x, z from the lower left outer corner of the squares [m].
+    square : float
+        Side of a square [m].
+    squares : tuple of int
+        Squares along the two sides.
+    blur : float
+        Width of the edges, 10 to 90 % [px].
+    size : tuple of int
+        Of the photograph, (width, height) [px].
+    """
 
     corners: Array
     points: Array
@@ -105,7 +118,7 @@ def _blurred(image: Grey, corners: Array, width: float) -> PhotoProblem:
 
 
 def _why_not(image: Grey, board: Checkerboard) -> PhotoProblem:
-    """What a smaller picture and smaller boards tell about a board that was not found."""
+    """The reason why a board was not found, from smaller pictures and smaller boards."""
     columns, rows = board.squares[0] - 1, board.squares[1] - 1
     name = f"board of {board.squares[0]} x {board.squares[1]} squares"
     for factor in (2, 4):
@@ -117,6 +130,14 @@ def _why_not(image: Grey, board: Checkerboard) -> PhotoProblem:
             full = (np.asarray(corners, np.float64).reshape(-1, 2) + 0.5) * factor - 0.5
             grid = full.reshape(rows, columns, 2)
             return _blurred(image, full, max(_edge_width(image, grid, columns, rows), _BLURRED + 1))
+    if _search(image, columns + 1, rows + 1) is not None:
+        columns, rows = board.squares
+        return PhotoProblem(
+            f"a board of {columns + 1} x {rows + 1} squares was found, with {columns} x {rows} inner corners:"
+            " photo_checkerboard.squares counts squares, not inner corners: expected"
+            f" [{columns + 1}, {rows + 1}]",
+            coloured(image),
+        )
     part = _largest_part(image, columns, rows)
     if part is None:
         return PhotoProblem(f"no {name} was found in the photograph", coloured(image))
@@ -136,7 +157,7 @@ def _largest_part(image: Grey, columns: int, rows: int) -> tuple[Array, tuple[in
     shapes.sort(key=lambda s: -s[0] * s[1])
     factor = max(1, round(max(image.shape) / 1200))
     small = np.asarray(shrink(image, factor))
-    for shape in shapes:
+    for shape in shapes[:_PARTS]:
         found, corners = cv2.findChessboardCornersSB(small, shape, flags=cv2.CALIB_CB_NORMALIZE_IMAGE)
         if found and corners is not None:
             return (np.asarray(corners, np.float64).reshape(-1, 2) + 0.5) * factor - 0.5, shape

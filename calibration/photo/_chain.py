@@ -1,4 +1,4 @@
-"""One capture through the chain, and the ledger that lets a later run keep what is done."""
+"""Reconstruction of one capture, and the ledger by which a later run keeps finished ones."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ import numpy as np
 from calibration.experiment.model import BeamTrial, Capture, Registration, TracedOutline
 from calibration.photo._board import Board
 from calibration.photo._camera import Camera
-from calibration.photo._files import centreline_csv, outline_csv, png, stl, write_whole
+from calibration.photo._files import PhotoSettings, centreline_csv, outline_csv, png, stl, write_whole
 from calibration.photo._image import Grey, read_photograph
 from calibration.photo._picture import strip
-from calibration.photo._settings import PhotoSettings
 from calibration.photo._trace import Specimen, trace
 from calibration.shape import centreline, sweep
 
-VERSION = 1  # raised when the same photograph would be traced differently
+VERSION = 2  # raised when the same photograph would be traced differently
 LEDGER = ".reconstruct"
 
 
@@ -140,7 +139,7 @@ def specimen_of(trial: BeamTrial) -> Specimen:
 
 
 def _with_registration(outline: TracedOutline, stated: Registration | None) -> TracedOutline:
-    """What the photograph says and what the lab says of how it hung the board, together."""
+    """The outline with the lab's stated registration error added to the photograph's own."""
     if stated is None:
         return outline
     own = outline.registration

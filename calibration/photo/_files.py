@@ -1,4 +1,4 @@
-"""What the chain leaves behind for one photograph, as bytes, and writing that is whole or not at all."""
+"""Files of a reconstruction: photographs.yaml in; outlines, mid lines, bodies, the traced experiment out."""
 
 from __future__ import annotations
 
@@ -6,14 +6,75 @@ import contextlib
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 import trimesh
+import yaml
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from calibration.errors import InputError
+from calibration.experiment import load
 from calibration.experiment.model import TracedOutline
 from calibration.shape import Centreline
+
+NAME = "photographs.yaml"
+
+
+class PhotoSettings(BaseModel):
+    """photographs.yaml: positions in the specimen's frame (x out of the clamp face, z up, y from the camera).
+
+    Attributes
+    ----------
+    board_corner_mm : tuple, optional
+        x, z of the lower left outer corner of the squares; without it x = 0 is found at the clamp's face and
+        z = 0 on the beam's axis there.
+    board_distance_mm : float, optional
+        y of the board; half the section's width (the specimen touches the board) where left out.
+    board_corner_sd_mm, board_distance_sd_mm, board_roll_sd_deg : float
+        Standard deviations; the last is of how level the board hangs.
+    square_sd : float
+        Relative standard deviation of the printed squares.
+    clamp_front_mm, clamp_back_mm : float, optional
+        y of the clamp's edges towards and away from the camera; the board's where the latter is left out.
+    calibration_photos : tuple of str
+        Further photographs of the same board by the same camera, from other directions.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    board_corner_mm: tuple[float, float] | None = None
+    board_corner_sd_mm: float = Field(default=0.1, ge=0)
+    board_distance_mm: float | None = Field(default=None, gt=0)
+    board_distance_sd_mm: float = Field(default=0.5, ge=0)
+    board_roll_sd_deg: float = Field(default=0.1, ge=0)
+    square_sd: float = Field(default=0.001, ge=0, lt=0.1)
+    clamp_front_mm: float | None = Field(default=None, lt=0)
+    clamp_back_mm: float | None = Field(default=None, gt=0)
+    calibration_photos: tuple[str, ...] = ()
+
+
+def read_settings(folder: Path) -> PhotoSettings:
+    """The settings of an experiment's folder; defaults where it has no photographs.yaml.
+
+    Raises InputError naming the file and the key.
+    """
+    path = folder / NAME
+    if not path.exists():
+        return PhotoSettings()
+    raw = load(path.read_bytes(), path)
+    if raw is None:
+        raw = {}
+    if not isinstance(raw, dict):
+        raise InputError(f"{path}: expected keys and values")
+    try:
+        return PhotoSettings.model_validate(raw)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}: {key}: {first['msg']}") from None
 
 
 def write_whole(path: Path, content: bytes) -> None:
@@ -63,3 +124,70 @@ def png(picture: NDArray[np.uint8]) -> bytes:
     if not done:
         raise OSError("the picture could not be encoded")
     return bytes(data)
+
+
+_FILE_KEYS = frozenset({"outline", "markers", "record", "points", "mesh"})
+
+
+def write_copy(
+    folder: Path, out: Path, figures: dict[tuple[str, int], dict[str, Any]], names: dict[tuple[str, int], str]
+) -> int:
+    """experiment.yaml into `out`, and the files it names beside it; the number of captures left out.
+
+    figures, names: of each capture by trial id and number (from 0); a photograph without figures is left out,
+    and a beam that has nothing else with it. Raises InputError where nothing would be left.
+    """
+    raw = load((folder / "experiment.yaml").read_bytes(), folder / "experiment.yaml")
+    dropped, trials = 0, []
+    for trial in raw["trials"]:
+        captures = trial.get("captures")
+        if captures is not None:
+            entries = [
+                _entry(capture, figures.get((trial["id"], k)), names[trial["id"], k])
+                for k, capture in enumerate(captures)
+            ]
+            dropped += entries.count(None)
+            trial["captures"] = [entry for entry in entries if entry is not None]
+            if not trial["captures"]:
+                del trial["captures"]
+                if "markers" not in trial:
+                    continue
+        trials.append(trial)
+    if not trials:
+        raise InputError(f"{folder}: no photograph can be used, nothing is left to write")
+    raw["trials"] = trials
+    if any("photo" in entry for entry in figures.values()):
+        origin = f"outlines traced from the photographs of {folder.name}"
+        raw["notes"] = f"{raw['notes']}; {origin}" if raw.get("notes") else origin
+    for name in sorted(_named(raw)):
+        source, target = folder / name, out / name
+        if not target.resolve().is_relative_to(out.resolve()):
+            raise InputError(f"{folder / 'experiment.yaml'}: {name} leads out of the folder")
+        if source.exists():
+            write_whole(target, source.read_bytes())
+    text = yaml.safe_dump(raw, sort_keys=False, allow_unicode=True)
+    write_whole(out / "experiment.yaml", text.encode())
+    return dropped
+
+
+def _entry(capture: dict[str, Any], figures: dict[str, Any] | None, name: str) -> dict[str, Any] | None:
+    entry = {key: value for key, value in capture.items() if key not in ("photo", "photo_checkerboard")}
+    if "outline" in capture:
+        return entry
+    if figures is None:
+        return None
+    entry["outline"] = f"outlines/{name}.csv"
+    entry["outline_sd_mm"] = round(figures["outline_sd_mm"], 5)
+    entry["outline_correlation_mm"] = round(figures["outline_correlation_mm"], 3)
+    entry["registration_sd"] = {key: round(value, 6) for key, value in figures["registration_sd"].items()}
+    return entry
+
+
+def _named(node: Any) -> set[str]:
+    """Files named anywhere in the experiment."""
+    if isinstance(node, dict):
+        own = {value for key, value in node.items() if key in _FILE_KEYS and isinstance(value, str)}
+        return own.union(*(_named(value) for value in node.values())) if node else own
+    if isinstance(node, list):
+        return set().union(*(_named(value) for value in node)) if node else set()
+    return set()

@@ -7,8 +7,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from calibration.photo._draw import BLUE, GREEN, ORANGE, RED, coloured, draw_line, draw_points
-from calibration.photo._image import Grey
+from calibration.photo._image import BLUE, GREEN, ORANGE, RED, Grey, coloured, draw_line, draw_points
 from calibration.photo._trace import Trace
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""One photograph from the board to the traced outline in the specimen's frame."""
+"""One photograph from the board to the traced outline in the specimen's frame, with its uncertainty."""
 
 from __future__ import annotations
 
@@ -6,25 +6,119 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import make_lsq_spline
 
 from calibration.experiment.model import Registration, Supports, TracedOutline
 from calibration.photo._board import Board
-from calibration.photo._body import Body, find_body, lay_out, show_body
-from calibration.photo._camera import Camera
+from calibration.photo._camera import Camera, View, locate
 from calibration.photo._contour import Contour, trace_contour
-from calibration.photo._edges import Edges, to_plane
-from calibration.photo._face import Face, find_face
-from calibration.photo._image import Grey
-from calibration.photo._origin import axis_height
-from calibration.photo._outline import sample
-from calibration.photo._problem import PhotoProblem
-from calibration.photo._scale import Scale, settle
-from calibration.photo._segment import Foreground, segment
-from calibration.photo._settings import PhotoSettings
-from calibration.photo._silhouette import Section, half_height, half_width
-from calibration.photo._view import View, locate
+from calibration.photo._files import PhotoSettings
+from calibration.photo._foreground import Body, Foreground, find_body, lay_out, segment, show_body
+from calibration.photo._frame import Face, Scale, axis_height, find_face, settle
+from calibration.photo._image import Grey, PhotoProblem
+from calibration.photo._silhouette import Edges, Section, half_height, half_width, to_plane
 
 Array = NDArray[np.float64]
+
+_KNOTS = 0.010  # [m]: a beam bends smoothly over that
+
+
+def edge_noise(points: Array) -> tuple[float, float]:
+    """sd [m] across an edge (k, 2) [m] about a smooth line, and Gaussian correlation length [m] along it."""
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    inner = np.linspace(0.0, s[-1], max(int(s[-1] / _KNOTS), 1) + 1)[1:-1]
+    knots = np.concatenate([[0.0] * 4, inner, [s[-1]] * 4])
+    line = make_lsq_spline(s, points, knots, k=3)
+    along = line.derivative()(s)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    off = points - line(s)
+    left = along[:, 0] * off[:, 1] - along[:, 1] * off[:, 0]
+    sd = float(np.sqrt((left**2).sum() / max(len(s) - len(knots) + 4, 1)))
+    step = float(np.diff(s).mean())
+    lags = np.arange(1, max(2, min(len(s) // 4, int(0.5 * _KNOTS / step))))
+    variance = float((left**2).mean())
+    if variance == 0.0:
+        return 0.0, step
+    together = np.array([(left[k:] * left[:-k]).mean() for k in lags]) / variance
+    below = np.flatnonzero(together < np.exp(-0.5))
+    return sd, float(lags[below[0] if len(below) else -1] * step)
+
+
+_SPACING = 1e-3  # [m]
+_SLOW = 0.010  # [m] over which an error of lens or shading holds on
+
+
+def stated_error(noise: float, length: float, slow: float) -> tuple[float, float]:
+    """One Gaussian covariance in place of two: sd [m] and correlation length [m] of an outline's error.
+
+    The contour errs twice along its arc length s: by the grey values' noise, whose sd is a, correlated over
+    l < 1 mm, and by lens and shading, sd b, which hold on over L = 10 mm (`_SLOW`). The experiment's format
+    has one Gaussian kernel for both. A kernel v exp(-s^2 / (2 c^2)) has the spectral density
+
+        S(k) = sqrt(2 pi) v c exp(-k^2 c^2 / 2)
+
+    and the two errors have the sum of theirs. With c = l and
+
+        v = (a^2 l + b^2 L) / l
+
+    the statement equals that sum for k -> 0 and lies above it for all other k, since L > l. So it is right
+    for waves much longer than L, which a material's constants move (a beam's deflection has the waves of its
+    first three or four polynomials), and cautious for shorter ones. The opposite choice, c between l and L
+    with v = a^2 + b^2, denies the noise: it puts neighbouring points 1 mm apart within a fiftieth of v of
+    each other, and chi-square per point came out between 70 and 700.
+
+    Points stand `_SPACING` apart. Where l is below half of that, c is half of that: a shorter c would make
+    them independent, of density v `_SPACING` above the one meant.
+
+    Parameters
+    ----------
+    noise, length : float
+        a and l [m], see `edge_noise`.
+    slow : float
+        b [m].
+    """
+    correlation = max(length, 0.5 * _SPACING)
+    return float(np.sqrt((noise**2 * length + slow**2 * _SLOW) / correlation)), float(correlation)
+
+
+def sample(
+    edges: Edges, contour: Contour, origin: Array, registration: Registration, *, camera_error: float
+) -> TracedOutline:
+    """Points about 1 mm apart by local straight lines, ending at a free end's corners; specimen's frame [m].
+
+    camera_error [m]: what the board's corners miss the camera's model by: it holds no better elsewhere.
+    """
+    lines = (edges.upper.outline - origin, edges.lower.outline - origin)
+    upper, lower = (_thin(line) for line in lines)
+    upper_noise, lower_noise = (edge_noise(line) for line in lines)
+    if edges.end is not None:
+        upper, lower = (
+            np.vstack([line, corner - origin]) for line, corner in zip((upper, lower), edges.end, strict=True)
+        )
+    noise = float(np.sqrt(np.mean(np.square([upper_noise[0], lower_noise[0]]))))
+    length = 0.5 * (upper_noise[1] + lower_noise[1])
+    # half of what two definitions of an edge disagree by
+    doubt = 0.5 * float(np.sqrt(np.median(contour.half**2))) * contour.metres_per_pixel
+    sd, correlation = stated_error(noise, length, float(np.hypot(doubt, camera_error)))
+    return TracedOutline(upper=upper, lower=lower, sd=sd, correlation=correlation, registration=registration)
+
+
+def _thin(line: Array) -> Array:
+    """A point every millimetre, each by a straight line through its own millimetre."""
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    count = max(int(s[-1] / _SPACING), 2)
+    at = np.linspace(0.0, s[-1], count + 1)
+    half = 0.5 * s[-1] / count
+    points = np.empty((len(at), 2))
+    for k, centre in enumerate(at):
+        near = np.abs(s - centre) <= half
+        if near.sum() < 4:
+            near = np.zeros(len(s), bool)
+            near[np.argsort(np.abs(s - centre))[:4]] = True
+        for axis in range(2):
+            points[k, axis] = np.polyfit(s[near] - centre, line[near, axis], 1)[1]
+    return points
+
 
 _CLEAR = 0.0006  # left out of the contour next to a clamp [m], and as many pixels as blur reaches
 _BLUR_PIXELS = 7.0
@@ -34,7 +128,17 @@ _ROLL_SD = np.radians(0.02)  # of the board's direction in one photograph
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Specimen:
-    """What the lab knows of the beam: section, sd of its height [m], free length [m], supports."""
+    """A beam as the lab describes it.
+
+    Attributes
+    ----------
+    section : tisim.Circle or tisim.Rectangle
+    section_sd : float
+        Of its height [m].
+    free_length : float
+        [m]
+    supports : str
+    """
 
     section: Section
     section_sd: float
@@ -44,11 +148,28 @@ class Specimen:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Trace:
-    """outline: in the specimen's frame, with what the photograph says about its uncertainty.
+    """A traced photograph.
 
-    metres_per_pixel at the specimen; tilt [rad] of the camera to the board; camera_distance [m] to the
-    specimen's plane; diameter [m] as the photograph shows it; focal [px]; origin: x, z of the specimen's
-    frame in the board's [m]; the rest is for pictures.
+    Attributes
+    ----------
+    outline : TracedOutline
+        In the specimen's frame, with its uncertainty.
+    metres_per_pixel : float
+        At the specimen.
+    tilt : float
+        Of the camera to the board [rad].
+    camera_distance : float
+        To the specimen's plane [m].
+    diameter : float
+        As measured in the photograph [m].
+    corner_noise : float
+        Of the board's corners about the camera's model [px].
+    focal : float
+        Focal length [px].
+    origin : tuple
+        x, z of the specimen's frame in the board's [m].
+    board, view, plane, contour, face
+        For pictures.
     """
 
     outline: TracedOutline
@@ -67,7 +188,13 @@ class Trace:
 
 
 def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, settings: PhotoSettings) -> Trace:
-    """Traces one photograph. Raises PhotoProblem with a sentence and a picture where it cannot be used."""
+    """Trace one photograph.
+
+    Raises
+    ------
+    PhotoProblem
+        It cannot be used: a sentence, and a picture of what was found.
+    """
     section = specimen.section
     touching = half_width(section)
     distance = touching if settings.board_distance_mm is None else settings.board_distance_mm * 1e-3

@@ -1,9 +1,8 @@
-"""The page of a calibration: what was found, how far it can be trusted, in words, tables and pictures.
+"""The page of a calibration: results and their uncertainty in sentences, tables and pictures.
 
 Frame, paper, colours and figures are those of the page of a diagnosis too.
 """
 
-from calibration.report._base import template
 from calibration.report._figure import (
     BAND,
     COLOURS,
@@ -15,9 +14,9 @@ from calibration.report._figure import (
     picture,
     plain,
 )
-from calibration.report._numbers import NOTHING, significant, with_sd
+from calibration.report._html import template
 from calibration.report._tables import Cell
-from calibration.report._words import listed
+from calibration.report._words import NOTHING, headline, listed, significant, with_sd
 from calibration.report.page import write_page
 
 __all__ = [
@@ -29,6 +28,7 @@ __all__ = [
     "Cell",
     "Picture",
     "file_name",
+    "headline",
     "listed",
     "paper",
     "picture",

@@ -1,13 +1,16 @@
-"""Which law of a material leads, and which of the others this data can tell from it."""
+"""Comparison of the laws of one material (Akaike), and the nuisances that the chosen fit moved far."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import degrees, sqrt
 
+from calibration.experiment.model import BeamTrial, Experiment
+from calibration.measurements.outlines._nuisances import CORNER_SD
 from calibration.study.calibration import Calibration
 from calibration.study.cards import best, usable
+from tisim import Circle
 
 # Burnham and Anderson, Model Selection and Multimodel Inference (2002), 2.6: a difference below 2 leaves a
 # model substantial support, one above 10 essentially none.
@@ -63,3 +66,51 @@ def compare(results: Sequence[Calibration]) -> Comparison | None:
 
 def _akaike(result: Calibration) -> float:
     return result.chi2 + 2.0 * len(result.u)
+
+
+FAR = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moved:
+    """name; by how many of its standard deviations; amount: the same with a unit, "" where it has none."""
+
+    name: str
+    sds: float
+    amount: str
+
+
+def far_nuisances(result: Calibration, experiment: Experiment) -> list[Moved]:
+    """Nuisances beyond two standard deviations, the farthest first."""
+    sizes = _sizes(result.material, experiment)
+    found = []
+    for name, sds in result.nuisances.items():
+        if abs(sds) > FAR:
+            sd, unit = sizes.get(name, (None, ""))
+            amount = "" if sd is None else f"{sds * sd:+.3g} {unit}"
+            found.append(Moved(name=name, sds=sds, amount=amount))
+    return sorted(found, key=lambda m: -abs(m.sds))
+
+
+def _sizes(material: str, experiment: Experiment) -> dict[str, tuple[float, str]]:
+    """One sd of each nuisance that `calibration.measurements.outlines` names, in units for people."""
+    belief = experiment.materials[material]
+    sizes = {f"density of {material}": (belief.density_sd, "kg/m³")}
+    for trial in experiment.trials:
+        if not isinstance(trial, BeamTrial) or trial.material != material:
+            continue
+        sizes[f"free length of {trial.id}"] = (trial.free_length_sd * 1e3, "mm")
+        for k in range(1, 9):
+            sizes[f"clamp corner {k} of {trial.id}"] = (CORNER_SD * 1e3, "mm")
+        labels = ("radius",) if isinstance(trial.section, Circle) else ("width", "height")
+        for label, sd in zip(labels, trial.section_sd, strict=False):
+            sizes.setdefault(f"{label} of {trial.specimen or trial.id}", (sd * 1e3, "mm"))
+        for capture in trial.captures:
+            if capture.outline is None:
+                continue
+            where = f"of {trial.id} at {capture.time:g} s"
+            registration = capture.outline.registration
+            sizes[f"shift x {where}"] = sizes[f"shift z {where}"] = (registration.shift * 1e3, "mm")
+            sizes[f"roll {where}"] = (degrees(registration.roll), "deg")
+            sizes[f"scale {where}"] = (registration.scale * 100.0, "%")
+    return sizes

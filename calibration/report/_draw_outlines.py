@@ -1,22 +1,122 @@
-"""Pictures of beams: outlines measured and simulated, and what is left between them."""
+"""Pictures of beams: outlines measured and simulated, and the residuals between them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.experiment.model import BeamTrial
-from calibration.report._contours import Drawn, DrawnPhotograph
+from calibration.measurements.objective import ModelObjective
+from calibration.measurements.outlines.model import OutlineModel
 from calibration.report._figure import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
+from calibration.study.calibration import Calibration
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnEdge:
+    """One edge of a photograph, k points: traced (k, 2); foot of each on the simulated edge (k, 2), with unit
+    normal (k, 2); raw and left (k,): distance along it as traced and once nuisances are taken out, the mesh's
+    error corrected in both; along (k,): distance from the clamp along the traced edge."""
+
+    traced: Array
+    foot: Array
+    normal: Array
+    raw: Array
+    left: Array
+    along: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnPhotograph:
+    """sd: of the contour's error, as the lab states it."""
+
+    name: str
+    trial: str
+    sd: float
+    upper: DrawnEdge
+    lower: DrawnEdge
+
+    @property
+    def edges(self) -> tuple[DrawnEdge, DrawnEdge]:
+        return self.upper, self.lower
+
+    @property
+    def rms(self) -> tuple[float, float]:
+        """rms distance as traced, and registered."""
+        raw, left = (np.concatenate([getattr(e, n) for e in self.edges]) for n in ("raw", "left"))
+        return float(np.sqrt(np.mean(raw**2))), float(np.sqrt(np.mean(left**2)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Drawn:
+    """photographs of all trials; simulated: upper and lower edge by trial, free part, (m, 2) each.
+
+    rms of all points once nuisances are taken out: what the fit calls rms.
+    """
+
+    photographs: tuple[DrawnPhotograph, ...]
+    simulated: Mapping[str, tuple[Array, Array]]
+
+    @property
+    def rms(self) -> float:
+        left = np.concatenate([e.left for p in self.photographs for e in p.edges])
+        return float(np.sqrt(np.mean(left**2)))
+
+
+def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Drawn | None:
+    """One simulation of each beam at the law's parameters; None where it has no equilibrium there.
+
+    Nuisances are taken at these parameters, as the fit's last step takes them.
+    """
+    u = np.array(chosen.u)
+    if not outlines.linearise(u):
+        return None
+    try:
+        seen = outlines.model.seen(outlines.state(u))
+    except ValueError:
+        return None
+    photographs, simulated = [], {}
+    for s in seen:
+        p = s.photograph
+        n = len(p.outline.upper)
+        upper, lower = (
+            DrawnEdge(
+                traced=traced,
+                foot=f.foot,
+                normal=f.normal,
+                raw=s.raw[part],
+                left=s.left[part],
+                along=_along(traced),
+            )
+            for traced, f, part in zip(
+                (p.outline.upper, p.outline.lower), s.feet, (slice(n), slice(n, None)), strict=True
+            )
+        )
+        photographs.append(
+            DrawnPhotograph(name=p.name, trial=p.trial.id, sd=p.outline.sd, upper=upper, lower=lower)
+        )
+        simulated[p.trial.id] = (s.simulated[0], s.simulated[1])
+    return Drawn(photographs=tuple(photographs), simulated=simulated)
+
+
+def _along(edge: Array) -> Array:
+    steps = np.linalg.norm(np.diff(edge, axis=0), axis=1)
+    return edge[0, 0] + np.concatenate([[0.0], np.cumsum(steps)])
+
 
 _SIDES = (("upper edge", COLOURS[0]), ("lower edge", COLOURS[1]))
 _MOST = 60  # panels of one picture
 
 
 def draw_trial(drawn: Drawn, trial: BeamTrial, label: str) -> Picture:
-    """One beam: to scale, and with what is left magnified."""
+    """One beam: to scale, and with its residuals magnified."""
     photographs = [p for p in drawn.photographs if p.trial == trial.id]
     lines = drawn.simulated[trial.id]
     everything = 1e3 * np.vstack([*lines, *(e.traced for p in photographs for e in p.edges)])
@@ -42,7 +142,7 @@ def draw_trial(drawn: Drawn, trial: BeamTrial, label: str) -> Picture:
     for i, p in enumerate(photographs):
         _photograph(true, magnified, p, COLOURS[i % len(COLOURS)], factor)
     true.set_title("traced, registered by the fit", fontsize=9, loc="left")
-    magnified.set_title(f"what is left, {factor:g} times magnified", fontsize=9, loc="left")
+    magnified.set_title(f"residuals, {factor:g} times magnified", fontsize=9, loc="left")
     if len(photographs) <= 8:
         handles, names = true.get_legend_handles_labels()
         figure.legend(
@@ -57,7 +157,7 @@ def draw_trial(drawn: Drawn, trial: BeamTrial, label: str) -> Picture:
 
 
 def draw_residuals(drawn: Drawn, name: str, label: str) -> Picture:
-    """What is left along each photograph's edges, one panel a photograph, one scale."""
+    """Residuals along each photograph's edges, one panel a photograph, one scale."""
     shown = drawn.photographs[:_MOST]
     columns = min(3, len(shown))
     rows = ceil(len(shown) / columns)

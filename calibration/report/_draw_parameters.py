@@ -10,13 +10,19 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
 from calibration.experiment.model import Experiment
+from calibration.inference import Estimate
 from calibration.report._figure import FAINT, Picture, looks, paper, picture, plain
 from calibration.report._tables import beam_lengths
-from calibration.report._words import spoken
-from calibration.search import Estimate
+from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration
 
-_SEEN = {"identified": "#0072B2", "weak": "#E69F00", "at a bound": "#D55E00", "not identified": FAINT}
+_SEEN = {
+    "identified": "#0072B2",
+    "weak": "#E69F00",
+    "at a bound": "#D55E00",
+    "not identified": FAINT,
+    "held": FAINT,
+}
 Bar = tuple[str, float, float, float, str]  # law, value, low, high, how well the data see it
 
 
@@ -45,8 +51,9 @@ def draw_parameters(results: Sequence[Calibration], name: str) -> Picture | None
     return picture(
         figure,
         f"{name}-parameters",
-        "Constants of each law with their 95 % intervals, coloured by how well the data see them. Grey: not"
-        " identified, the interval is the prior's or the bounds'.",
+        "Constants of each law with their 95 % intervals, coloured by how well the data determine them. Grey:"
+        " not identified, the interval is the prior's or the bounds', or, of a constant that was held, the"
+        " hold's.",
     )
 
 

@@ -1,4 +1,4 @@
-"""What all pictures share: paper, colours, PNG. Matplotlib without a display."""
+"""Figure kit of all pages: paper, colours, PNG. Matplotlib without a display."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 # Okabe and Ito's palette, which colour-blind people tell apart.
@@ -35,10 +34,8 @@ class Picture:
 
 
 def paper(width: float, height: float) -> Figure:
-    """An empty figure [inches]."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
+    """An empty figure [inches], outside pyplot: saved as a PNG it is drawn by Agg, whatever the backend."""
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def picture(figure: Figure, name: str, caption: str) -> Picture:

@@ -9,8 +9,8 @@ from math import isfinite
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.parameters import parametrisation
 from calibration.report._compare import Comparison
-from calibration.report._numbers import NOTHING, interval, millimetres, seconds, shear, significant
-from calibration.report._words import spoken
+from calibration.report._words import NOTHING, interval, millimetres, seconds, shear, significant
+from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration
 
 HEADINGS = (
@@ -126,12 +126,17 @@ def _bulk(r: Calibration) -> Cell:
     seen = next((e.seen for e in r.estimates if e.name == "bulk_ratio"), None)
     if seen is None:
         return _figure(f"{ratio:.0f}, no error bar", ratio)
-    if seen != "not identified":
+    if seen not in ("not identified", "held"):
         flag = "" if seen == "identified" else f", {seen}"
         return _figure(significant(ratio) + flag, ratio)
-    # without beams the search holds it (Parametrisation.holding)
-    why = "held at its prior," if r.rms is None else "not identified; prior"
-    return Cell(text=f"{why} {_prior(r):.0f}", mark="unseen")
+    # fits of earlier versions do not say "held"; without beams the search held it then too
+    held = seen == "held" or r.rms is None
+    text = (
+        f"held at its prior, {_prior(r):.0f}, not measured"
+        if held
+        else f"not identified; prior {_prior(r):.0f}"
+    )
+    return Cell(text=text, mark="unseen")
 
 
 def _prior(r: Calibration) -> float:

@@ -1,31 +1,72 @@
-"""What a calibration says, as sentences: the verdict, blind directions, fits that came to nothing."""
+"""Numbers and sentences of the page: as many digits as they are worth, kPa and mm."""
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from math import floor, isfinite, log10
 
+from calibration.experiment.model import Experiment
+from calibration.inference import Estimate
 from calibration.report._compare import ALIKE, REFUTED, Comparison, compare
-from calibration.report._numbers import shear, significant
+from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration
 
-_NAMES = {
-    "shear_modulus": "G",
-    "bulk_ratio": "K/G",
-    "second_share": "C01 / (C10 + C01)",
-    "alpha": "alpha",
-    "locking": "locking stretch",
-}
+NOTHING = "–"
 
 
-def spoken(name: str) -> str:
-    """A search coordinate's name for people; terms of a series keep their number."""
-    for known, word in _NAMES.items():
-        if name == known:
-            return word
-        if name.startswith(f"{known}_"):
-            return f"{word} {name.removeprefix(f'{known}_')}"
-    return name.replace("_", " ")
+def significant(value: float, digits: int = 3) -> str:
+    """Plain decimal notation, so many significant digits."""
+    if not isfinite(value):
+        return NOTHING
+    if value == 0.0:
+        return "0"
+    places = digits - 1 - floor(log10(abs(value)))
+    return f"{round(value, places):.{max(0, places)}f}"
+
+
+def with_sd(value: float, sd: float) -> str:
+    """`9.68 ± 0.07`: the sd to one digit (two where that is a 1), the value to the same place; four digits
+    and no sd where it is not known."""
+    if not isfinite(value):
+        return NOTHING
+    if not (isfinite(sd) and sd > 0.0):
+        return significant(value, 4)
+    places = -floor(log10(sd))
+    if round(sd * 10.0**places) < 2:
+        places += 1
+    return f"{round(value, places):.{max(0, places)}f} ± {round(sd, places):.{max(0, places)}f}"
+
+
+def millimetres(value: float | None) -> str:
+    """A length [m] in mm, to a micrometre."""
+    return NOTHING if value is None or not isfinite(value) else f"{value * 1e3:.3f}"
+
+
+def shear(result: Calibration) -> str:
+    """The shear modulus with its sd, in kPa, without the unit."""
+    return with_sd(result.shear_modulus / 1e3, result.shear_modulus_sd / 1e3)
+
+
+def seconds(value: float) -> str:
+    return significant(value, 2) if value < 10.0 else f"{value:.0f}"
+
+
+def interval(estimate: Estimate) -> str:
+    """A value with its 95 % interval, moduli in kPa; words where the data do not determine it."""
+    if estimate.seen == "not identified":
+        return "not identified"
+    if estimate.seen == "held":
+        return f"held at {significant(estimate.value)}, not measured"
+    part = 1e-3 if estimate.unit == "Pa" else 1.0
+    unit = " kPa" if estimate.unit == "Pa" else ""
+    text = significant(part * estimate.value)
+    if estimate.seen == "at a bound":
+        return f"{text}{unit}, at a bound"
+    low, high = significant(part * estimate.low), significant(part * estimate.high)
+    weak = ", weak" if estimate.seen == "weak" else ""
+    return f"{text} [{low}, {high}]{unit}{weak}"
 
 
 def listed(words: Sequence[str]) -> str:
@@ -33,8 +74,23 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else list(words))
 
 
+def headline(results: Sequence[Calibration], experiment: Experiment) -> str:
+    """One sentence on one material: its lack of fit and the command that finds the cause, or the verdict."""
+    found = compare(results)
+    if found is None or not found.chosen.lacking or found.chosen.status == "stopped":
+        return verdict(results)
+    chosen = found.chosen
+    fitted = [r for r in results if r.parameters]
+    laws = "every law tried" if len(fitted) > 1 and all(r.lacking for r in fitted) else chosen.label
+    return (
+        f"{chosen.material}: no calibration: the data ask for something that {laws} lacks"
+        f" ({'; '.join(chosen.lacking)}). Find the cause with: python -m calibration.diagnose"
+        f" {shlex.quote(str(experiment.folder))}. Until then: {shear(chosen)} kPa by {chosen.label}."
+    )
+
+
 def verdict(results: Sequence[Calibration]) -> str:
-    """One sentence on one material: its shear modulus, and what can be said of the laws."""
+    """One sentence on one material: its shear modulus, and the comparison of the laws."""
     material = results[0].material
     found = compare(results)
     if found is None:
@@ -52,7 +108,7 @@ def verdict(results: Sequence[Calibration]) -> str:
             parts.append("without error bars, since the fit was not polished")
         parts.append(_laws(found, results))
     # of a stopped search chi-square still has the coarse mesh's error in it
-    if found.misses and chosen.status != "stopped":
+    if found.misses and chosen.status != "stopped" and not chosen.lacking:
         parts.append(
             f"{'this law misses' if len(results) == 1 else 'even this law misses'} the data by more than the"
             f" stated noise (reduced chi-square {significant(chosen.reduced_chi2)})"
@@ -96,14 +152,32 @@ def rule() -> str:
 
 
 def blind(result: Calibration) -> list[str]:
-    """Each direction that the data do not see, as a sentence."""
-    return [f"{result.label}: {_direction(weights)}." for weights in result.blind]
+    """Each direction that the data do not determine, as a sentence; without constants that were held."""
+    held = {e.name for e in result.estimates if e.seen == "held"}
+    return [f"{result.label}: {_direction(weights)}." for weights in result.blind if not set(weights) <= held]
+
+
+def unidentified(result: Calibration) -> list[str]:
+    """Each constant whose value is its prior's, a bound's or a hold's, as a sentence; without those of
+    `blind`."""
+    alone = {name for weights in result.blind if len(weights) == 1 for name in weights}
+    found = []
+    for e in result.estimates:
+        if e.seen == "held":
+            found.append(
+                f"{result.label}: {spoken(e.name)} was held at {significant(e.value)}: its interval is the"
+                " hold's, not measured."
+            )
+        elif e.name not in alone and e.seen in ("not identified", "at a bound"):
+            why = "its bound decides" if e.seen == "at a bound" else "its prior or its bounds decide"
+            found.append(f"{result.label}: the data do not determine {spoken(e.name)}: {why}.")
+    return found
 
 
 def _direction(weights: Mapping[str, float]) -> str:
     if len(weights) == 1:
         name = spoken(next(iter(weights)))
-        return f"the data do not see {name} at all: only its prior and its bounds say what it is"
+        return f"the data do not determine {name}: its prior and its bounds do"
     first = max(weights, key=lambda n: abs(weights[n]))
     sign = 1.0 if weights[first] > 0.0 else -1.0
     moves = [
@@ -111,13 +185,17 @@ def _direction(weights: Mapping[str, float]) -> str:
         + ("" if n == first else f" by {significant(abs(w / weights[first]), 2)} as much of its range")
         for n, w in sorted(weights.items(), key=lambda pair: -abs(pair[1]))
     ]
-    return f"the data do not see {listed(moves)} together: such moves cancel each other"
+    return f"the data do not determine {listed(moves)} together: these changes cancel each other"
+
+
+def _why(r: Calibration) -> str:
+    return "; ".join(r.lacking) if r.status == "lack of fit" else r.message
 
 
 def troubles(results: Sequence[Calibration]) -> list[str]:
-    """Fits that did not converge, each with what it says of itself."""
+    """Fits that are no calibration, each with its message."""
     return [
-        f"{r.material}, {r.label}: {r.status}" + (f" ({r.message})" if r.message else "")
+        f"{r.material}, {r.label}: {r.status}" + (f" ({why})" if (why := _why(r)) else "")
         for r in results
         if r.status != "converged"
     ]

@@ -1,19 +1,199 @@
-"""report.html: one page that needs nothing beside it, and its pictures once more as files."""
+"""The page of a calibration: one section a material, and the command that makes it again."""
 
 from __future__ import annotations
 
+import json
+import shlex
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from calibration.experiment.model import Experiment
-from calibration.report._base import template
-from calibration.report._material import Section, section
-from calibration.report._origin import command
-from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS
-from calibration.report._template import PAGE
-from calibration.report._words import rule
+from calibration.experiment.model import CouponTrial, Experiment
+from calibration.measurements.homogeneous.model import HomogeneousModel
+from calibration.measurements.objective import ModelObjective
+from calibration.parameters import part_kind
+from calibration.report._compare import Comparison, Moved, compare, far_nuisances
+from calibration.report._draw_outlines import contours, draw_residuals, draw_trial
+from calibration.report._draw_parameters import draw_held_out, draw_parameters
+from calibration.report._draw_records import Coupon, coupon_errors, draw_coupons, draw_indentations
+from calibration.report._figure import Picture
+from calibration.report._html import PAGE, template
+from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS, Cell, held_out_rows, law_rows
+from calibration.report._words import NOTHING, blind, headline, rule, significant, troubles, unidentified
 from calibration.study.calibration import Calibration
+from calibration.study.measurements import Measurements, measurements
+
+
+def command(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> str:
+    """The command line of these fits; seed and limits from the fits in `folder`, where they are still."""
+    words = ["python", "-m", "calibration.fit", str(experiment.folder)]
+    words += ["--model", ",".join(dict.fromkeys(r.law for r in results))]
+    used = {t.material for t in experiment.trials}
+    materials = dict.fromkeys(r.material for r in results)
+    if set(materials) != used:
+        words += ["--material", ",".join(materials)]
+    own = [r.label.partition("+")[0] for r in results]
+    terms = [name.removeprefix("ogden-") for name in own if name.startswith("ogden-")]
+    if terms:
+        words += ["--terms", terms[0]]
+    for spec in results[0].parts:
+        asks = part_kind(spec).option
+        words += [f"--{asks}"] if asks == spec else [f"--{asks}", spec]
+    header = _header(folder, results[0])
+    for option in ("seed", "population", "generations", "restarts"):
+        if header.get(option) is not None:
+            words += [f"--{option}", str(header[option])]
+    if header.get("polish") is False:
+        words.append("--no-polish")
+    elif _held_out_left_out(results):
+        words.append("--no-held-out")
+    return shlex.join([*words, "--out", str(folder)])
+
+
+def _header(folder: Path, result: Calibration) -> dict[str, Any]:
+    """Header of a fit on disk (`calibration.study._store`), {} where there is none."""
+    whole = folder / "fits" / f"{result.material}-{result.label}.json"
+    if whole.is_file():
+        return dict(json.loads(whole.read_text(encoding="utf-8"))["header"])
+    lines = whole.with_suffix(".jsonl")
+    if lines.is_file():
+        with lines.open(encoding="utf-8") as file:
+            return dict(json.loads(file.readline()))
+    return {}
+
+
+def _held_out_left_out(results: Sequence[Calibration]) -> bool:
+    polished = [r for r in results if r.estimates and r.rms is not None]
+    return bool(polished) and not any(r.held_out or r.held_out_note for r in polished)
+
+
+Rows = list[list[Cell]]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Section:
+    """What the template shows of one material; pictures by what they are of, in the page's order."""
+
+    material: str
+    verdict: str
+    lacking: bool
+    chosen: Calibration | None
+    laws: Rows
+    held_out: Rows
+    held_out_notes: list[str]
+    coupons: Rows
+    coupon_headings: list[str]
+    beams: list[Picture]
+    residuals: Picture | None
+    held_out_picture: Picture | None
+    coupon_picture: Picture | None
+    indentation_picture: Picture | None
+    parameters: Picture | None
+    drawing_note: str
+    blind: list[str]
+    unidentified: list[str]
+    troubles: list[str]
+    notes: list[str]
+    moved: list[Moved]
+    nuisances: int
+    ignored: tuple[str, ...]
+
+    @property
+    def pictures(self) -> list[Picture]:
+        single = (self.residuals, self.held_out_picture, self.coupon_picture, self.indentation_picture)
+        return [*self.beams, *(p for p in (*single, self.parameters) if p is not None)]
+
+
+def section(results: Sequence[Calibration], experiment: Experiment) -> Section:
+    """results: of one material, all of its laws."""
+    material = results[0].material
+    found = compare(results)
+    chosen = found.chosen if found else None
+    data = measurements(experiment, material, (chosen or results[0]).parametrisation)
+    beams, residuals, note = _beams(data, chosen)
+    coupons = _coupons(data)
+    fitted = [r for r in results if r.parameters]
+    return Section(
+        material=material,
+        verdict=headline(results, experiment),
+        lacking=chosen is not None and bool(chosen.lacking),
+        chosen=chosen,
+        laws=law_rows(results, found, experiment),
+        held_out=held_out_rows(results, experiment),
+        held_out_notes=[f"{r.label}: {r.held_out_note}" for r in results if r.held_out_note],
+        coupons=_coupon_rows(coupons, fitted),
+        coupon_headings=["test", "mode", "points", *(r.label for r in fitted)],
+        beams=beams,
+        residuals=residuals,
+        held_out_picture=draw_held_out(results, experiment, material),
+        coupon_picture=draw_coupons(coupons, results, _label(found), material) if coupons else None,
+        indentation_picture=_indentations(data, chosen),
+        parameters=draw_parameters(results, material),
+        drawing_note=note,
+        blind=[sentence for r in results for sentence in blind(r)],
+        unidentified=[sentence for r in results for sentence in unidentified(r)],
+        troubles=troubles(results),
+        notes=[f"{r.label}: {r.note}" for r in results if r.note],
+        moved=far_nuisances(chosen, experiment) if chosen else [],
+        nuisances=len(chosen.nuisances) if chosen else 0,
+        ignored=(*data.ignored, *_averaged(experiment, material)),
+    )
+
+
+def _beams(data: Measurements, chosen: Calibration | None) -> tuple[list[Picture], Picture | None, str]:
+    """Pictures of each beam and of all residuals; a sentence where there are none."""
+    if data.outlines is None:
+        return [], None, ""
+    if chosen is None:
+        return [], None, "No law has parameters, so that no beam could be simulated."
+    drawn = contours(data.outlines, chosen)
+    if drawn is None:
+        return [], None, f"{chosen.label} has no equilibrium at these parameters: nothing to draw."
+    trials = [draw_trial(drawn, t, chosen.label) for t in data.outlines.model.trials]
+    return trials, draw_residuals(drawn, data.material, chosen.label), ""
+
+
+def _averaged(experiment: Experiment, material: str) -> list[str]:
+    return [
+        f"{t.id}: a record of more than {len(t.stress):,} points: each point is the mean of"
+        f" {t.samples_averaged:,} samples"
+        for t in experiment.trials
+        if isinstance(t, CouponTrial) and t.material == material and t.samples_averaged > 1
+    ]
+
+
+def _indentations(data: Measurements, chosen: Calibration | None) -> Picture | None:
+    if data.pokes is None or chosen is None:
+        return None
+    return draw_indentations(data.pokes, chosen, data.material)
+
+
+def _coupons(data: Measurements) -> list[Coupon]:
+    """Homogeneous tests with their records as they are compared."""
+    found: list[Coupon] = []
+    for o in data.objectives:
+        if isinstance(o, ModelObjective) and isinstance(o.model, HomogeneousModel):
+            found += zip(o.model.trials, o.model.records, strict=True)
+    return found
+
+
+def _coupon_rows(coupons: Sequence[Coupon], fitted: Sequence[Calibration]) -> Rows:
+    """rms error of each law on each coupon [% of its largest stress]."""
+    rows = []
+    for trial, record in coupons:
+        errors = coupon_errors((trial, record), fitted)
+        cells = [
+            Cell(text=NOTHING) if e != e else Cell(text=f"{significant(e)} %", value=e / 100.0)
+            for e in (errors[r.label] for r in fitted)
+        ]
+        rows.append([Cell(text=trial.id), Cell(text=trial.mode), Cell(text=str(record.points)), *cells])
+    return rows
+
+
+def _label(found: Comparison | None) -> str | None:
+    return found.chosen.label if found else None
 
 
 def write_page(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> Path:
@@ -42,6 +222,7 @@ def render(
     return template(PAGE).render(
         experiment=experiment,
         sections=sections,
+        diagnose=f"python -m calibration.diagnose {shlex.quote(str(experiment.folder))}",
         headings=HEADINGS,
         held_out_headings=HELD_OUT_HEADINGS,
         rule=rule(),

@@ -22,13 +22,21 @@ _MAX_GAP = 0.5  # of the section's height: from a clamp face to where the tracin
 class Centreline:
     """A mid line in the image plane, from the clamp face x = 0 to the end face or the far clamp's face.
 
-    s: arc length [m], (k,), from 0, increasing.
-    points: x and z [m], (k, 2).
-    angle: of the tangent against x [rad], (k,), positive upwards.
-    sd: standard deviation [m], (k,), of the line's place along its normal, from the tracing error alone (the
-        photograph's registration moves the line as a whole and is not in it); None for a line without error.
-    half_height: half of the distance between the edges [m], (k,); None where there were no edges.
-    supports: as of the beam; its clamped faces are planes x = constant.
+    Attributes
+    ----------
+    s : array, shape (k,)
+        Arc length from 0, increasing [m].
+    points : array, shape (k, 2)
+        x and z [m].
+    angle : array, shape (k,)
+        Of the tangent against x, positive upwards [rad].
+    sd : array, shape (k,), optional
+        Standard deviation along the line's normal [m], from the tracing error alone (the photograph's
+        registration moves the line as a whole and is not in it).
+    half_height : array, shape (k,), optional
+        Half of the distance between the edges [m].
+    supports : str
+        As of the beam; its clamped faces are planes x = constant.
     """
 
     s: Array

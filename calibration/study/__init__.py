@@ -1,10 +1,11 @@
 """A calibration study: every material of an experiment against every law, on disk, resumable."""
 
+from calibration.study._store import remove_fits
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration, HeldOut
 from calibration.study.cards import best, card, usable, write_card
 from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
-from calibration.study.run import Progress, Task, run, stopped
+from calibration.study.run import Task, by_cost, run, stopped, tasks_for
 
 __all__ = [
     "Calibration",
@@ -13,15 +14,17 @@ __all__ = [
     "Measurements",
     "ObjectiveName",
     "OnSetup",
-    "Progress",
     "Task",
     "best",
     "best_so_far",
+    "by_cost",
     "calibrate",
     "card",
     "measurements",
+    "remove_fits",
     "run",
     "stopped",
+    "tasks_for",
     "usable",
     "write_card",
 ]

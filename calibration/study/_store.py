@@ -1,20 +1,84 @@
-"""A fit on disk: its generations as JSON lines while it runs, its result as JSON when it ends."""
+"""Fits on disk: generations as JSON lines while a fit runs, its result as JSON when it ends, under a lock."""
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from calibration.errors import InputError
-from calibration.search import Generation
+from calibration.inference import Generation
 from calibration.study.calibration import Calibration
+
+_ANEW = "--overwrite starts anew, --out writes elsewhere"
+
+
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold a folder of fits, which is made; the system frees it whatever ends the process.
+
+    Raises
+    ------
+    InputError
+        Another process holds it.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        if not _take(handle):
+            raise InputError(
+                f"{folder}: another calibration is at work here; wait for it, or write elsewhere with --out"
+            )
+        yield
+    finally:
+        os.close(handle)
+
+
+def remove_fits(folder: Path) -> None:
+    """Remove all fits of a folder. InputError where another process is at work there."""
+    with locked(folder):
+        for path in folder.iterdir():
+            if path.is_dir():
+                shutil.rmtree(path)
+            elif path.name != ".lock":
+                path.unlink()
+
+
+def _take(handle: int) -> bool:
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        import msvcrt
+
+        try:
+            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+        except OSError:
+            return False
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 class FitStore:
-    """`folder/MATERIAL-LABEL.jsonl` and `.json`. header: what must be the same to go on with a fit."""
+    """One fit in a folder: `NAME.jsonl` (its generations) and `NAME.json` (its result).
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        MATERIAL-LAW.
+    header : dict
+        Must be the same to go on with a fit.
+    """
 
     def __init__(self, folder: Path, name: str, header: dict[str, Any]) -> None:
         self.history_path = folder / f"{name}.jsonl"
@@ -22,28 +86,48 @@ class FitStore:
         self.header = header
 
     def result(self) -> Calibration | None:
-        """The finished fit, if it is there and of the same header."""
+        """The finished fit, if it is there. InputError where it is damaged, or of another header."""
         if not self.result_path.exists():
             return None
-        data = json.loads(self.result_path.read_text(encoding="utf-8"))
-        self._check(data["header"], self.result_path)
-        return Calibration.from_json(data["calibration"])
+        try:
+            data = json.loads(self.result_path.read_text(encoding="utf-8"))
+            header, calibration = data["header"], data["calibration"]
+            found = Calibration.from_json(calibration)
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            raise InputError(
+                f"{self.result_path}: damaged, expected a fit that calibration.fit wrote ({_ANEW})"
+            ) from None
+        self._check(header, self.result_path)
+        return found
 
     def history(self) -> list[Generation]:
-        """Generations of an unfinished fit; a line cut short by a kill is dropped from the file."""
+        """Generations of an unfinished fit; a line cut short by a kill is dropped from the file.
+
+        InputError where the file is damaged, or of another header.
+        """
         if not self.history_path.exists():
             return []
+        try:
+            text = self.history_path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise self._damaged(1) from None
         whole: list[str] = []
-        for line in self.history_path.read_text(encoding="utf-8").splitlines(keepends=True):
+        for line in text.splitlines(keepends=True):
             if not line.endswith("\n"):
                 break
             whole.append(line)
         if not whole:
             self.history_path.unlink()
             return []
-        self._check(json.loads(whole[0]), self.history_path)
-        self.history_path.write_text("".join(whole), encoding="utf-8")
-        return [_generation(json.loads(line)) for line in whole[1:]]
+        try:
+            header = json.loads(whole[0])
+        except (ValueError, RecursionError):
+            raise self._damaged(1) from None
+        self._check(header, self.history_path)
+        found = [self._generation(line, number) for number, line in enumerate(whole[1:], 2)]
+        if len(whole) < len(text.splitlines()):
+            self.history_path.write_text("".join(whole), encoding="utf-8")
+        return found
 
     def append(self, generation: Generation) -> None:
         """Write one generation down, at once."""
@@ -70,20 +154,35 @@ class FitStore:
         part.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
         part.replace(self.result_path)
 
-    def _check(self, found: dict[str, Any], path: Path) -> None:
+    def _check(self, found: object, path: Path) -> None:
+        if not isinstance(found, dict):
+            raise InputError(f"{path}: damaged, expected the header of a fit ({_ANEW})")
         other = [k for k in self.header if found.get(k) != self.header[k]]
         if other:
             raise InputError(
-                f"{path}: made with another {' and '.join(other)}; expected the same to go on"
-                " (--overwrite starts anew, --out writes elsewhere)"
+                f"{path}: made with another {' and '.join(other)}; expected the same to go on ({_ANEW})"
             )
 
+    def _generation(self, line: str, number: int) -> Generation:
+        try:
+            data = json.loads(line)
+            candidates = np.array(data["candidates"], dtype=float)
+            costs = np.array([np.inf if c is None else float(c) for c in data["costs"]])
+            found = Generation(
+                restart=int(data["restart"]),
+                index=int(data["index"]),
+                candidates=candidates,
+                costs=costs,
+                replayed=True,
+            )
+        except (ValueError, KeyError, TypeError, RecursionError):
+            raise self._damaged(number) from None
+        sound = candidates.ndim == 2 and costs.shape == candidates.shape[:1] and len(costs)
+        if not sound or not np.isfinite(candidates).all() or np.isnan(costs).any():
+            raise self._damaged(number)
+        return found
 
-def _generation(data: dict[str, Any]) -> Generation:
-    return Generation(
-        restart=data["restart"],
-        index=data["index"],
-        candidates=np.array(data["candidates"], dtype=float),
-        costs=np.array([np.inf if c is None else c for c in data["costs"]]),
-        replayed=True,
-    )
+    def _damaged(self, line: int) -> InputError:
+        return InputError(
+            f"{self.history_path}: line {line}: damaged, expected a generation of a search ({_ANEW})"
+        )

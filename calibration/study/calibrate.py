@@ -1,21 +1,24 @@
-"""One calibration: scan for a start, CMA-ES, Gauss-Newton polish, certainty, held-out check."""
+"""One calibration: scan for a start, CMA-ES, Gauss-Newton polish, uncertainty, leave-one-out prediction."""
 
 from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from calibration.outlines import OutlineObjective
-from calibration.parameters import Parametrisation
-from calibration.search import (
+from calibration.inference import (
+    FINE_LADDER,
     CmaOptions,
+    Estimate,
     Generation,
+    Objective,
+    OfMaterial,
     Polished,
     Problem,
     guess,
@@ -23,18 +26,81 @@ from calibration.search import (
     polish,
     profile,
     search,
+    with_prior_sd,
 )
-from calibration.study.calibration import Calibration, Status
-from calibration.study.heldout import held_out
+from calibration.measurements.objective import ModelObjective
+from calibration.measurements.outlines.dice import DiceObjective
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.parameters import Parametrisation
+from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
+from calibration.study.calibration import Calibration, HeldOut, Status
 from calibration.study.measurements import Measurements
 
 Array = NDArray[np.float64]
 
+BULK = "bulk_ratio"
+_VALLEYS: dict[str, Any] = {"max_steps": 60, "ladder": FINE_LADDER}  # of a polish, for a law with parts
+SOFTEST, STIFFEST = 100.0, 1e7  # shear moduli [Pa]: beyond them a unit was mistaken, as a rule
+
+
+def held_out(
+    problem: Problem, outlines: ModelObjective[OutlineModel], u: Array
+) -> tuple[tuple[HeldOut, ...], str]:
+    """Each beam predicted from all other measurements, the fit starting at u; and a note where that fails.
+
+    Nuisances and mesh corrections stay as taken at u, so that this costs no reference solve.
+    """
+    others = tuple(o for o in problem.objectives if o is not outlines)
+    trials = outlines.model.trials
+    if len(trials) < 2 and not others:
+        return (), "one beam alone: no length can be left out"
+    checks, notes = [], []
+    for i, trial in enumerate(trials):
+        own = outlines.model.of_trial(i)
+        objectives = (*others, outlines.subset(own, others=True)) if len(trials) > 1 else others
+        part = Problem(parametrisation=problem.parametrisation, objectives=objectives)
+        try:
+            end = polish(part, u, settled=0.04)
+        except ValueError as error:
+            notes.append(f"{trial.id}: {error}")
+            continue
+        if not end.converged:
+            notes.append(f"{trial.id}: {end.message}")
+        alone = outlines.subset(own)
+        residuals = alone.residuals(end.u[None])[0]
+        if not np.isfinite(residuals).all():
+            notes.append(f"{trial.id}: no equilibrium with the parameters of the others")
+            continue
+        seen = alone.model.seen(alone.state(end.u))
+        checks.append(
+            HeldOut(
+                trial=trial.id,
+                shear_modulus=problem.parametrisation.moduli(end.u).shear_modulus,
+                rms_raw=_rms(s.raw for s in seen),
+                rms=_rms(s.left for s in seen),
+                reduced_chi2=float(residuals @ residuals) / alone.points,
+            )
+        )
+    return tuple(checks), "; ".join(notes)
+
+
+def _rms(parts: Iterable[Array]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate([*parts]) ** 2)))
+
 
 @dataclass(frozen=True, kw_only=True)
 class FitOptions:
-    """cma: of the search; gauss_newton: whether it is polished (without, there are no error bars);
-    leave_one_out: whether each beam is predicted from the others."""
+    """Options of a calibration.
+
+    Attributes
+    ----------
+    cma : CmaOptions
+        Of the global search.
+    gauss_newton : bool
+        Polish its result; without, there are no error bars.
+    leave_one_out : bool
+        Predict each beam from the others.
+    """
 
     cma: CmaOptions = field(default_factory=CmaOptions)
     gauss_newton: bool = True
@@ -42,20 +108,28 @@ class FitOptions:
 
 
 def calibrate(
-    parametrisation: Parametrisation,
     data: Measurements,
     *,
     options: FitOptions | None = None,
     history: Sequence[Generation] = (),
-    told: Callable[[Generation], None] = lambda _: None,
+    on_progress: Callable[[Generation], None] = lambda _: None,
 ) -> Calibration:
-    """Fit one law to one material's measurements.
+    """Fit the law of a material's measurements to them.
 
-    A law without equilibrium, or a search that does not converge, is a status of the result, no exception.
+    A law without equilibrium, a search that does not converge and a lack of fit are statuses of the result,
+    no exceptions.
+
+    Parameters
+    ----------
+    data : Measurements
+    options : FitOptions, optional
+    history : sequence of Generation
+        Of an earlier run of the same search, which goes on from it.
+    on_progress : callable
+        Called with each `Generation`.
     """
     options = options or FitOptions()
-    if data.outlines is None:
-        parametrisation = parametrisation.holding("bulk_ratio")
+    parametrisation = _searched(data)
     wall, begun = time.perf_counter(), _core_seconds()
     none = Calibration(
         material=data.material,
@@ -64,18 +138,21 @@ def calibrate(
         status="no equilibrium",
         message="no shear modulus between 1 kPa and 10 MPa has an answer for all trials",
         density=data.density,
+        **_parts(parametrisation),
     )
     problem = Problem(parametrisation=parametrisation, objectives=data.objectives)
-    start = _start(problem, data)
+    start = guess(problem)
     if start is None or not problem.linearise(start):
         return replace(none, wall_seconds=time.perf_counter() - wall, search_seconds=_core_seconds() - begun)
+    if parametrisation.parts:
+        start = _descended(problem, start)
     found = search(
         problem,
         start=start,
         spread=parametrisation.spread,
         options=options.cma,
         history=history,
-        told=told,
+        on_progress=on_progress,
     )
     searched = _core_seconds()
     counts = {
@@ -94,9 +171,15 @@ def calibrate(
         )
     status: Status = "converged" if found.reason.startswith("converged") else "not converged"
     message = "" if status == "converged" else f"CMA-ES ended after {found.reason}"
-    best = _point(problem, data, found.u, status=status, message=message)
+    u = found.u
+    if parametrisation.parts and problem.costs(start[None])[0] < found.cost:
+        u = start
+    best = _point(problem, data, u, status=status, message=message)
     if options.gauss_newton:
-        best = _polished(problem, data, found.u, best, options)
+        best = _polished(problem, data, u, best, options)
+    else:
+        bounds = at_bounds(parametrisation, u)
+        best = replace(best, unsettled=tuple(bounds)).assessed(constants_lacking(parametrisation, u))
     return replace(
         best,
         polish_seconds=_core_seconds() - searched,
@@ -105,17 +188,13 @@ def calibrate(
     )
 
 
-def best_so_far(
-    parametrisation: Parametrisation, data: Measurements, generations: Sequence[Generation]
-) -> Calibration:
+def best_so_far(data: Measurements, generations: Sequence[Generation]) -> Calibration:
     """The best candidate of an unfinished search, as a calibration with status "stopped"."""
     costs = np.array([g.costs.min() for g in generations])
     g = generations[int(costs.argmin())]
     u = g.candidates[g.costs.argmin()]
-    if data.outlines is None:
-        parametrisation = parametrisation.holding("bulk_ratio")
-    problem = Problem(parametrisation=parametrisation, objectives=data.objectives)
-    if not problem.linearise(u):
+    problem = Problem(parametrisation=_searched(data), objectives=data.objectives)
+    if not problem.linearise(u, rough=True):
         raise ValueError("the best candidate so far has no answer any more")
     message = f"stopped after {len(generations)} generations: no polish, mesh correction or error bars"
     return replace(
@@ -126,34 +205,63 @@ def best_so_far(
     )
 
 
-def _start(problem: Problem, data: Measurements) -> Array | None:
-    """A scan needs no mesh correction, which costs more than all of it."""
-    outlines = data.outlines
-    if outlines is None:
-        return guess(problem)
-    reference, outlines.reference = outlines.reference, None
+def _searched(data: Measurements) -> Parametrisation:
+    """The law as it is searched: without photographs nothing sees K/G, and it is held."""
+    return data.law if data.outlines is not None else data.law.holding(BULK)
+
+
+def _descended(problem: Problem, start: Array) -> Array:
+    """Where Gauss-Newton leads from a start; the start where it fails. Relaxation times and fractions make
+    long curved valleys, along which a short random search gets nowhere."""
     try:
-        return guess(problem)
-    finally:
-        outlines.reference = reference
+        return polish(problem, start, **_VALLEYS).u
+    except ValueError:
+        return start
 
 
 def _polished(
     problem: Problem, data: Measurements, u: Array, best: Calibration, options: FitOptions
 ) -> Calibration:
     try:
-        end = polish(problem, u)
+        end = polish(problem, u, **(_VALLEYS if problem.parametrisation.parts else {}))
     except ValueError as error:
         return replace(best, status="not converged", message=f"polish: {error}")
+    free = problem.parametrisation
+    lacking = constants_lacking(free, end.u, step_gains(end.residuals, end.jacobian))
+    wrong = {*at_bounds(free, end.u), *off_prior(free, end.u)}
+    if BULK in wrong:
+        problem, end = _bulk_held(problem, end)
     # the polish has the last word: a search that ran out of generations did its part if this converges
     status: Status = "converged" if end.converged else "not converged"
     message = "" if end.converged else f"polish: {end.message}"
     fitted = _point(problem, data, end.u, status=status, message=message, residuals=end.residuals)
-    fitted = _certain(problem, fitted, end)
+    fitted = replace(_certain(problem, fitted, end, free), unsettled=_unsettled(problem, end))
     if options.leave_one_out and data.outlines is not None:
         checks, note = held_out(problem, data.outlines, end.u)
         fitted = replace(fitted, held_out=checks, held_out_note=note)
-    return fitted
+    return fitted.assessed(lacking)
+
+
+def _bulk_held(problem: Problem, end: Polished) -> tuple[Problem, Polished]:
+    """The problem with K/G held at its prior's centre, polished from `end`; as given where that fails.
+
+    Photographs hardly see K/G. Where a fit drives it to its bound, or away from all that is known of rubbers,
+    it repairs with it what the law or the rig lacks, and takes the shear modulus along.
+    """
+    held = replace(problem, parametrisation=problem.parametrisation.holding(BULK))
+    centre, _ = held.parametrisation.prior()
+    i = held.parametrisation.names.index(BULK)
+    start = end.u.copy()
+    start[i] = centre[i]
+    try:
+        return held, polish(held, start)
+    except ValueError:
+        problem.linearise(end.u)
+        return problem, end
+
+
+def _unsettled(problem: Problem, end: Polished) -> tuple[str, ...]:
+    return tuple(at_bounds(problem.parametrisation, end.u, step_gains(end.residuals, end.jacobian)))
 
 
 def _point(
@@ -174,10 +282,11 @@ def _point(
     chi2 = float(residuals @ residuals - prior @ prior)
     rms: float | None = None
     nuisances: dict[str, float] = {}
-    if isinstance(data.outlines, OutlineObjective):
-        rms, nuisances = data.outlines.summary(p.material(u))
-    if data.pokes is not None:
-        nuisances = {**nuisances, **data.pokes.summary(p.material(u))[1]}
+    if isinstance(data.outlines, ModelObjective):
+        rms = _rms(s.left for s in data.outlines.model.seen(data.outlines.state(u)))
+    for o in problem.objectives:
+        if isinstance(o, ModelObjective):
+            nuisances = {**nuisances, **o.nuisances(u)}
     return Calibration(
         material=data.material,
         law=p.law,
@@ -187,31 +296,65 @@ def _point(
         density=data.density,
         u=tuple(float(x) for x in u),
         parameters=p.parameters(u),
-        shear_modulus=moduli.shear,
-        bulk_modulus=moduli.bulk,
+        shear_modulus=moduli.shear_modulus,
+        bulk_modulus=moduli.bulk_modulus,
         chi2=chi2,
         points=problem.points,
         reduced_chi2=chi2 / max(1, problem.points - len(u)),
         rms=rms,
         nuisances=nuisances,
-        note=_note(data),
+        note="; ".join(n for n in (_note(data, moduli.shear_modulus), *p.remarks(u)) if n),
+        **_parts(p),
+        objective="dice" if any(_is_dice(o) for o in data.objectives) else "likelihood",
     )
 
 
-def _note(data: Measurements) -> str:
-    """What the reader of the result must know beyond its status."""
-    notes = [data.outlines.uncorrected] if data.outlines is not None else []
-    notes += data.pokes.shortfalls if data.pokes is not None else []
+def _parts(p: Parametrisation) -> dict[str, Any]:
+    """Attributes of a `Calibration` that say what the material has beside the law."""
+    if not p.parts:
+        return {}
+    return {"parts": tuple(part.spec for part in p.parts), "protocol": asdict(p.parts[0].window)}
+
+
+def _is_dice(objective: Objective) -> bool:
+    return isinstance(objective, OfMaterial) and isinstance(objective.objective, DiceObjective)
+
+
+def _note(data: Measurements, shear_modulus: float) -> str:
+    """Notes for the reader of the result, beyond its status."""
+    notes = [note for o in data.objectives if isinstance(o, ModelObjective) for note in o.shortcomings()]
+    if not SOFTEST <= shear_modulus <= STIFFEST:
+        notes.append(
+            f"a shear modulus of {shear_modulus:.3g} Pa is outside what soft tissue and rubber have"
+            f" ({SOFTEST:g} Pa to {STIFFEST / 1e6:g} MPa): check the units of the records (kPa, N, mm)"
+        )
     return "; ".join(n for n in notes if n)
 
 
-def _certain(problem: Problem, fitted: Calibration, end: Polished) -> Calibration:
+def _certain(problem: Problem, fitted: Calibration, end: Polished, free: Parametrisation) -> Calibration:
+    """With error bars; free: the law's coordinates before one was held for this end."""
     known = identify(problem.parametrisation, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
+    if free is problem.parametrisation:
+        estimates = profile(problem, end, known)
+        if free.parts:
+            estimates = _widest(estimates, known.estimates)
+    else:
+        known = with_prior_sd(known, free, end.u, BULK)
+        estimates = known.estimates
     return replace(
         fitted,
-        estimates=profile(problem, end, known),
+        estimates=estimates,
         blind=known.blind,
         shear_modulus_sd=known.shear_modulus_sd,
+    )
+
+
+def _widest(profiled: Sequence[Estimate], linear: Sequence[Estimate]) -> tuple[Estimate, ...]:
+    """The farther end of both intervals: in valleys that curve, or run along a bound, the profile's few
+    Newton steps stop short of the least chi-square, and its ends come too early."""
+    return tuple(
+        replace(a, low=min(a.low, b.low), high=max(a.high, b.high))
+        for a, b in zip(profiled, linear, strict=True)
     )
 
 

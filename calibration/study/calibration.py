@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from calibration.outlines.dice import SCALE
-from calibration.search import Estimate
+from calibration.inference import Estimate
+from calibration.measurements.outlines.dice import SCALE
+from calibration.parameters import Parametrisation, ProtocolWindow, parametrisation, part_coordinates
+from calibration.study.assessment import misfit_lacking, sentence
+from tisim import Material
+from tisim.parts import Part
 
-Status = Literal["converged", "not converged", "no equilibrium", "stopped"]
+Status = Literal["converged", "lack of fit", "not converged", "no equilibrium", "stopped"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeldOut:
-    """One trial predicted from all others: rms distance of its points [m] before and after its photographs'
-    registration is taken out, and chi-square over points under the trial's whole covariance."""
+    """One trial predicted from all others.
+
+    Attributes
+    ----------
+    trial : str
+    shear_modulus : float
+        From the other trials [Pa].
+    rms_raw, rms : float
+        rms distance of its points before and after its photographs' registration is taken out [m].
+    reduced_chi2 : float
+        Chi-square over points, under the trial's whole covariance.
+    """
 
     trial: str
     shear_modulus: float
@@ -24,21 +38,60 @@ class HeldOut:
     reduced_chi2: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Calibration:
     """A law fitted to all measurements of one material. SI units.
 
-    status: "converged" (search and polish), "not converged" (message says what), "no equilibrium" (the law
-        has no answer for these trials anywhere that was looked), "stopped" (by the user: the best so far).
-    u: the law's search coordinates; parameters: as `tisim.Material` takes them.
-    chi2: of `points` measurements under the stated noise, without the prior's share;
-    reduced_chi2: over points minus coordinates. rms: of the outlines' distances, registered [m], or None.
-    note: what else the reader must know (a mesh error that could not be corrected).
-    estimates, blind: see `calibration.search.identify`; empty where there was no polish.
-    objective: what was minimised, "likelihood" or "dice"; with "dice" chi2 is the sum of (1 - Dice) / SCALE^2
-        over `points` photographs, and no measure of likelihood.
-    candidates, without_answer: that CMA-ES asked for, and how many of them had no equilibrium.
-    search_seconds, polish_seconds: core time; candidate_seconds: of one candidate, all its trials.
+    Attributes
+    ----------
+    material, law, label : str
+        The label is what tables print ("ogden-2" for two terms).
+    status : str
+        "converged" (search and polish, and chance explains what is left); "lack of fit" (they converged, and
+        the data ask for something that the law lacks: `lacking`, `message`); "not converged" (`message` says
+        what); "no equilibrium" (the law has no answer for these trials anywhere); "stopped" (best so far).
+    message : str
+        One sentence on the status, empty where it is "converged".
+    lacking : tuple of str
+        Phrases of `calibration.study.assessment`, for people.
+    unsettled : tuple of str
+        Constants at a bound of the search, whose value is the bound's and not the data's.
+    density : float, optional
+        As the lab states it [kg/m3].
+    u : tuple of float
+        The law's search coordinates.
+    parameters : mapping
+        As `tisim.Material` takes them.
+    shear_modulus, shear_modulus_sd, bulk_modulus : float
+        At small strain [Pa].
+    estimates, blind : tuple
+        See `calibration.inference.Identification`; empty where there was no polish.
+    chi2 : float
+        Of `points` measurements under the stated noise, without the prior's share. With the objective "dice"
+        the sum of (1 - Dice) / SCALE^2 over `points` photographs, and no measure of likelihood.
+    points : int
+    reduced_chi2 : float
+        Over points minus coordinates.
+    rms : float, optional
+        Of the outlines' distances, registered [m].
+    nuisances : mapping
+        Value of each in its standard deviations.
+    held_out : tuple of HeldOut
+    held_out_note, note : str
+        What else the reader must know (a mesh error that could not be corrected).
+    candidates, generations, without_answer : int
+        Of CMA-ES; candidates without equilibrium are counted in the last.
+    search_reason : str
+        Why the search ended.
+    search_seconds, polish_seconds, wall_seconds : float
+        Core time of both, and the time that passed [s].
+    objective : str
+        "likelihood" or "dice".
+    parts : tuple of str
+        What the material has beside the law ("prony:2", "mullins"); moduli are then long-time ones, those of
+        the first loading.
+    protocol : mapping
+        `calibration.parameters.ProtocolWindow` of the tests that these were fitted to.
     """
 
     material: str
@@ -70,11 +123,43 @@ class Calibration:
     polish_seconds: float = 0.0
     wall_seconds: float = 0.0
     objective: str = "likelihood"
+    lacking: tuple[str, ...] = ()
+    unsettled: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+    protocol: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def mean_dice(self) -> float | None:
         """Mean Dice of the photographs where that was the objective."""
         return 1.0 - self.chi2 * SCALE**2 / self.points if self.objective == "dice" and self.points else None
+
+    @property
+    def parametrisation(self) -> Parametrisation:
+        """The law in search coordinates, with its parts."""
+        own = self.label.partition("+")[0]
+        terms = 1 if own == self.law else int(own.removeprefix(f"{self.law}-"))
+        law = parametrisation(self.law, terms=terms)
+        if not self.parts:
+            return law
+        window = ProtocolWindow(
+            first=self.protocol["first"], last=self.protocol["last"], peaks=int(self.protocol["peaks"])
+        )
+        return law.with_parts([part_coordinates(spec, window) for spec in self.parts])
+
+    @property
+    def material_parts(self) -> dict[str, Part]:
+        """What the material has beside its law, by the field of `tisim.Material`."""
+        values = self.parametrisation.values(self.u) if self.parts else {}
+        return {p.field: p.assembled(values) for p in self.parametrisation.parts} if values else {}
+
+    def simulated(self, *, density: float = 1000.0) -> Material:
+        """The material as `tisim` takes it; density [kg/m3] where the lab states none."""
+        return Material(
+            law=self.law,
+            parameters=dict(self.parameters),
+            density=self.density or density,
+            **self.material_parts,  # type: ignore[arg-type]
+        )
 
     @property
     def candidate_seconds(self) -> float:
@@ -88,8 +173,10 @@ class Calibration:
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> Calibration:
-        """The inverse of `to_json`."""
+        """The inverse of `to_json`. A result of an earlier version is assessed now."""
         known = dict(data)
+        for name in ("lacking", "unsettled", "parts"):
+            known[name] = tuple(known.get(name, ()))
         known["estimates"] = tuple(Estimate(**_nan(e)) for e in known["estimates"])
         known["held_out"] = tuple(HeldOut(**_nan(h)) for h in known["held_out"])
         known["blind"] = tuple(dict(b) for b in known["blind"])
@@ -99,7 +186,27 @@ class Calibration:
         }
         for name in ("shear_modulus", "shear_modulus_sd", "bulk_modulus", "chi2", "reduced_chi2"):
             known[name] = float("nan") if known[name] is None else known[name]
-        return Calibration(**known)
+        found = Calibration(**known)
+        return found if "lacking" in data else found.assessed()
+
+    def assessed(self, lacking: Sequence[str] = ()) -> Calibration:
+        """The same with its lack of fit stated: the phrases given, and what its misfit and nuisances say."""
+        whole = (*lacking, *misfit_lacking(self))
+        if not whole:
+            return self
+        if self.status != "converged":
+            return replace(self, lacking=whole)
+        return replace(self, lacking=whole, status="lack of fit", message=sentence(self.label, whole))
+
+    def __repr__(self) -> str:
+        name = f"Calibration({self.material}, {self.label}: {self.status}"
+        if not self.parameters:
+            return f"{name}; {self.message})"
+        sd = (
+            f" +- {self.shear_modulus_sd / 1e3:.2g}" if self.shear_modulus_sd == self.shear_modulus_sd else ""
+        )
+        more = f"; {self.message}" if self.message else ""
+        return f"{name}, G {self.shear_modulus / 1e3:.4g}{sd} kPa{more})"
 
 
 def _nan(values: Mapping[str, Any]) -> dict[str, Any]:

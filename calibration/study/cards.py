@@ -1,12 +1,15 @@
 """Material cards: the form that `factory.build` reads (`datasets/materials/`), one a mixture, all laws.
 
 A law that has no usable fit is filled in from the best law's moduli, and the card's provenance says so.
+Parts that were fitted beside the best law (`tisim.parts`) stand under the keys `viscosity`, `softening` and
+`fibres`; moduli are then long-time ones.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +17,28 @@ import yaml
 
 from calibration.errors import InputError
 from calibration.experiment import Experiment
+from calibration.parameters import parametrisation
 from calibration.study.calibration import Calibration
 from tisim import laws
 
-# What a mixture is told to a surrogate by: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
+# How a mixture is given to a surrogate: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
 _STIFFEST, _PER_RATIO = 0.8, 0.8
 
 
 def usable(result: Calibration) -> bool:
     """Whether a calibration's parameters may go into a card: converged, or polished to error bars."""
-    return result.status == "converged" or (result.status == "not converged" and bool(result.estimates))
+    if result.status == "not converged":
+        return bool(result.estimates)
+    return result.status in ("converged", "lack of fit")
 
 
 def best(results: Sequence[Calibration]) -> Calibration | None:
-    """The fit with the smallest chi-square, twice its parameters added (Akaike), among usable ones."""
+    """The usable fit with the smallest chi-square, twice its parameters added (Akaike).
+
+    Fits with a constant at a bound of the search are chosen only where all are.
+    """
     found = [r for r in results if usable(r)]
+    found = [r for r in found if not r.unsettled] or found
     return min(found, key=lambda r: r.chi2 + 2.0 * len(r.u)) if found else None
 
 
@@ -40,7 +50,8 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
     belief = experiment.materials[chosen.material]
     by_law: dict[str, Calibration] = {}
     for r in results:
-        if usable(r) and (r.law not in by_law or r.label == r.law):
+        settled = not r.unsettled or r is chosen
+        if usable(r) and settled and (r.law not in by_law or r.label == r.law):
             by_law[r.law] = r
     parameters: dict[str, dict[str, Any]] = {}
     filled = []
@@ -66,6 +77,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "density": float(belief.density if belief.density is not None else 1000.0),
         "stiffness": float(max(0.0, _STIFFEST - _PER_RATIO * ratio)) if ratio is not None else 0.0,
         "laws": parameters,
+        **_parts(chosen),
     }
 
 
@@ -96,6 +108,17 @@ def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any
     }
 
 
+def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
+    """What the material has beside its law, by the card's keys: kinds of `tisim.parts`, parameters."""
+    found = {}
+    for name, part in chosen.material_parts.items():
+        values = {f.name: getattr(part, f.name) for f in fields(part)}
+        words = {k: v for k, v in values.items() if isinstance(v, str)}
+        numbers = _plain({k: v for k, v in values.items() if k not in words})
+        found[name] = {"kind": part.name, **words, **numbers}
+    return found
+
+
 def _provenance(
     results: Sequence[Calibration], chosen: Calibration, filled: Sequence[str], experiment: Experiment
 ) -> str:
@@ -103,8 +126,17 @@ def _provenance(
         f"Calibrated on experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.fit:"
         f" best law {chosen.label}, shear modulus {chosen.shear_modulus:.5g} Pa, {_agreement(chosen)}."
     ]
-    worse = [f"{r.label}: {r.status}{' (' + r.message + ')' if r.message else ''}" for r in results]
-    lines.append("Fits: " + "; ".join(worse) + ".")
+    states = [f"{r.label}: {r.status}{' (' + why + ')' if (why := _why(r)) else ''}" for r in results]
+    lines.append("Fits: " + "; ".join(states) + ".")
+    if chosen.lacking:
+        lines.append(
+            "Lack of fit: these parameters make up for something that the law lacks; python -m"
+            " calibration.diagnose looks for it."
+        )
+    if chosen.parts:
+        lines.append(
+            f"Parts ({', '.join(chosen.parts)}) were fitted beside {chosen.law}; moduli are long-time ones."
+        )
     if chosen.note:
         lines.append(f"Note: {chosen.note}.")
     if filled:
@@ -114,6 +146,19 @@ def _provenance(
     return "\n".join(lines)
 
 
+def _why(r: Calibration) -> str:
+    return "; ".join(r.lacking) if r.status == "lack of fit" else r.message
+
+
+def _prior_interval(law: str) -> tuple[float, float]:
+    """95 % interval of the prior on K/G."""
+    bulk = next(c for c in parametrisation(law).coordinates if c.name == "bulk_ratio")
+    if bulk.prior is None:
+        return bulk.low, bulk.high
+    centre, sd = bulk.prior
+    return bulk.value(centre - 1.96 * sd), bulk.value(centre + 1.96 * sd)
+
+
 def _agreement(chosen: Calibration) -> str:
     if chosen.mean_dice is not None:
         return f"fitted to overlaps, mean Dice {chosen.mean_dice:.4f} of {chosen.points} photographs"
@@ -121,10 +166,19 @@ def _agreement(chosen: Calibration) -> str:
 
 
 def _certainty(chosen: Calibration) -> str:
-    unseen = [e.name for e in chosen.estimates if e.seen != "identified"]
+    unseen = [e.name for e in chosen.estimates if e.seen not in ("identified", "held")]
     text = f"95 % interval of the shear modulus in {chosen.label}, nuisances and other constants free."
     if not chosen.estimates:
         return "No Gauss-Newton polish was made: the interval is not known."
     if unseen:
-        text += f" Not settled by this data (prior, bound or weak): {', '.join(unseen)}."
+        text += f" Not identified by this data (prior, bound or weak): {', '.join(unseen)}."
+    bulk = next((e for e in chosen.estimates if e.name == "bulk_ratio"), None)
+    low, high = _prior_interval(chosen.law)
+    if bulk is not None and bulk.seen == "held":
+        text += (
+            f" K/G was held at {bulk.value:.0f}, not measured: its prior's 95 % interval is {low:.0f} to"
+            f" {high:.0f}."
+        )
+    if bulk is not None and bulk.seen == "not identified":
+        text += f" K/G {bulk.value:.0f} is the prior's, 95 % interval {low:.0f} to {high:.0f}."
     return text

@@ -1,19 +1,24 @@
-"""What an experiment holds of one material, as objectives of a fit: any mix of its trials."""
+"""What an experiment holds of one material, as objectives of a fit of one law: any mix of its trials."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
-from calibration.coupons import CouponObjective
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, MaterialBelief, PokeTrial
-from calibration.motion import MarkerObjective
-from calibration.outlines import COARSE, REFERENCE, Fidelity, OutlineObjective
-from calibration.outlines.dice import DiceObjective
-from calibration.outlines.setup import Setup
-from calibration.pokes import PokeObjective
-from calibration.search import Objective
+from calibration.inference import Objective, OfMaterial
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._kinds import kind_of
+from calibration.measurements.indentation.model import IndentationModel
+from calibration.measurements.objective import ModelObjective
+from calibration.measurements.outlines.dice import DiceObjective
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.setup import Setup
+from calibration.measurements.outlines.simulators import OURS, Simulator
+from calibration.measurements.release import MarkerObjective
+from calibration.parameters import Parametrisation
 
 ObjectiveName = Literal["likelihood", "dice"]
 
@@ -34,27 +39,29 @@ class OnSetup(Experiment):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measurements:
-    """Objectives of one material; outlines is the one among them that photographs feed, pokes the one that
-    rods feed, if any. ignored: trials, and parts of records, that the fit does not use."""
+    """Objectives of one material in the coordinates of one law; outlines is the one among them that
+    photographs feed, pokes the one that rods feed, if any. ignored: trials, and parts of records, that the
+    fit does not use."""
 
     material: str
+    law: Parametrisation
     density: float | None
     objectives: tuple[Objective, ...]
-    outlines: OutlineObjective | None
+    outlines: ModelObjective[OutlineModel] | None
     ignored: tuple[str, ...]
-    pokes: PokeObjective | None = None
+    pokes: ModelObjective[IndentationModel] | None = None
 
 
 def measurements(
     experiment: Experiment,
     material: str,
+    law: Parametrisation,
     *,
     workers: int | None = None,
-    fidelity: Fidelity = COARSE,
-    reference: Fidelity | None = REFERENCE,
+    simulator: Simulator = OURS,
     objective: ObjectiveName = "likelihood",
 ) -> Measurements:
-    """All that the static fit of a material can use. ignored: trials that it cannot, each with the reason.
+    """All that the static fit of a material can use. simulator: of beams.
 
     InputError where nothing is left, or where the experiment's setup (`OnSetup`) cannot be applied.
     """
@@ -68,40 +75,60 @@ def measurements(
         # no chi-square: nothing else can be added to it
         return Measurements(
             material=material,
+            law=law,
             density=belief.density,
-            objectives=(DiceObjective(beams, belief, workers=workers),),
+            objectives=(OfMaterial(law, DiceObjective(beams, belief, workers=workers)),),
             outlines=None,
             ignored=tuple(f"{t.id}: only traced beams have a Dice" for t in mine if t not in beams),
         )
     objectives: list[Objective] = []
     outlines = None
+    if not beams:  # nothing else sees K/G
+        law = law.holding("bulk_ratio")
     if beams:
-        outlines = OutlineObjective(
-            beams, belief, fidelity=fidelity, reference=reference, setup=setup, workers=workers
+        model = OutlineModel(
+            replace(experiment, trials=tuple(beams)),
+            simulator=simulator,
+            workers=workers,
+            baseline=Baseline.of_law(beams, law),
+            setup=setup,
         )
+        outlines = ModelObjective(model, name=f"outlines of {material}")
         objectives.append(outlines)
-    objectives += [CouponObjective(trial=t) for t in mine if isinstance(t, CouponTrial)]
+    coupons = [t for t in mine if isinstance(t, CouponTrial)]
+    if coupons:
+        own = replace(experiment, trials=tuple(coupons))
+        # cylinders between platens are compared as a diagnosis compares them
+        pulled = kind_of(own).load()(own, baseline=Baseline.of_law(coupons, law))
+        objectives.append(ModelObjective(pulled, name=_named("coupons", coupons)))
     rods = [t for t in mine if isinstance(t, PokeTrial) and t.inclusion_mesh is None]
-    pokes = PokeObjective(rods, workers=workers) if rods else None
-    if pokes is not None:
+    pokes = None
+    if rods:
+        own = replace(experiment, trials=tuple(rods))
+        pushed = IndentationModel(own, baseline=Baseline.of_law(rods, law), workers=workers)
+        pokes = ModelObjective(pushed, name=_named("pokes", rods))
         objectives.append(pokes)
     marked = [t for t in mine if isinstance(t, BeamTrial) and t.markers]
     if setup is not None and marked:
         raise InputError(
             f"trial {marked[0].id}: markers: a known rig corrects outlines, not markers: fit them apart"
         )
-    objectives += [settled_markers(t, belief, workers=workers) for t in marked]
+    objectives += [OfMaterial(law, settled_markers(t, belief, workers=workers)) for t in marked]
     if not objectives:
         raise InputError(
             f"{experiment.folder / 'experiment.yaml'}: material {material}: expected at least one traced"
             " outline, marker, poke or coupon to fit (photographs: run calibration.reconstruct first)"
         )
-    used = {t.id for t in mine if t in beams or t in rods or t in marked or isinstance(t, CouponTrial)}
+    used = {t.id for t in mine if t in beams or t in rods or t in marked or t in coupons}
     ignored = tuple(f"{t.id}: {_why(t)}" for t in mine if t.id not in used)
-    parts = [f"{t.id}: the motion of its markers (calibration.motion fits it, with damping)" for t in marked]
-    parts += [] if pokes is None else pokes.left_out
+    parts = [
+        f"{t.id}: the motion of its markers (calibration.measurements.release fits it, with damping)"
+        for t in marked
+    ]
+    parts += [] if pokes is None else pokes.model.left_out
     return Measurements(
         material=material,
+        law=law,
         density=belief.density,
         objectives=tuple(objectives),
         outlines=outlines,
@@ -118,6 +145,10 @@ def settled_markers(
     last = min(float(m.time[-1]) for m in trial.markers)
     window = 2.0 / 3.0 * (last - first)
     return MarkerObjective(trial, belief, stages=("settled",), window=window, workers=workers)
+
+
+def _named(kind: str, trials: Sequence[CouponTrial] | Sequence[PokeTrial]) -> str:
+    return f"{kind} {', '.join(t.id for t in trials)}"
 
 
 def _why(trial: object) -> str:

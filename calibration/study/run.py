@@ -2,35 +2,62 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import multiprocessing
 import os
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
-from functools import partial
 from multiprocessing import connection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from calibration.errors import InputError
 from calibration.experiment import Experiment, read
-from calibration.outlines.setup import Setup
+from calibration.inference import Generation, HistoryError
+from calibration.measurements.outlines.setup import Setup
 from calibration.parameters import parametrisation
-from calibration.search import Generation
-from calibration.study._store import FitStore
+from calibration.progress import FitProgress, OnProgress
+from calibration.study import parts
+from calibration.study._store import FitStore, locked
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
-from calibration.study.measurements import ObjectiveName, OnSetup, measurements
+from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
+from tisim import laws
+
+log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 2
+FORMAT = 3
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """One fit of a study. setup: what is known of rig and camera."""
+    """One fit of a study.
+
+    Attributes
+    ----------
+    experiment : Path
+        Folder, absolute.
+    digest : str
+        Of the experiment's files.
+    material, law : str
+    terms : int
+        Of a series law.
+    options : FitOptions
+    folder : Path
+        Where the fit is kept while it runs and when it has ended.
+    objective : str
+        "likelihood" or "dice".
+    setup : Setup, optional
+        What is known of rig and camera.
+    parts : tuple of str
+        What the material has beside the law (`calibration.study.parts`).
+    """
 
     experiment: Path
     digest: str
@@ -41,14 +68,27 @@ class Task:
     folder: Path
     objective: ObjectiveName = "likelihood"
     setup: Setup | None = None
+    parts: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
-        return parametrisation(self.law, terms=self.terms).label
+        return parts.label(parametrisation(self.law, terms=self.terms).label, self.parts)
+
+    @property
+    def alternatives(self) -> list[Task]:
+        """Fits among which the data choose; itself where there is no choice."""
+        return [replace(self, parts=specs) for specs in parts.alternatives(self.parts)]
 
     @property
     def name(self) -> str:
         return f"{self.material}-{self.label}"
+
+    def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
+        """What of the experiment it fits."""
+        law = parts.with_parts(
+            parametrisation(self.law, terms=self.terms), self.parts, experiment, self.material
+        )
+        return measurements(experiment, self.material, law, workers=workers, objective=self.objective)
 
     def store(self) -> FitStore:
         header: dict[str, Any] = {
@@ -65,38 +105,89 @@ class Task:
             "held_out": self.options.leave_one_out,
             "rig": None if self.setup is None else self.setup.digest,
         }
+        if self.parts:
+            header["parts"] = list(self.parts)
         return FitStore(self.folder, self.name, header)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Progress:
-    """Where each fit stands: generations done and best cost so far by name, and what has ended."""
+def tasks_for(
+    experiment: Experiment,
+    *,
+    law_names: Sequence[str],
+    materials: Sequence[str],
+    folder: Path,
+    options: FitOptions | None = None,
+    terms: int = 1,
+    objective: ObjectiveName = "likelihood",
+    setup: Setup | None = None,
+    specs: Sequence[str] = (),
+) -> list[Task]:
+    """Every law for every material, law by law, in the order given; specs : of parts beside each law."""
+    return [
+        Task(
+            experiment=experiment.folder.resolve(),
+            digest=experiment.digest,
+            material=material,
+            law=law,
+            terms=terms if law == "ogden" else 1,
+            options=options or FitOptions(),
+            folder=folder,
+            objective=objective,
+            setup=setup,
+            parts=tuple(specs),
+        )
+        for law in law_names
+        for material in materials
+    ]
 
-    generations: dict[str, int]
-    best: dict[str, float]
-    ended: dict[str, Calibration]
-    total: int
+
+def by_cost(names: Sequence[str]) -> list[str]:
+    """Laws in the order in which fits of all are useful soonest: few constants first, and last the law that
+    has no equilibrium in many trials and needs most steps in the others."""
+    return sorted(
+        names,
+        key=lambda n: (n == "st-venant-kirchhoff", len(parametrisation(n).coordinates), n != "neo-hookean"),
+    )
 
 
 def run(
-    tasks: Sequence[Task], *, workers: int, told: Callable[[Progress], None] = lambda _: None
+    tasks: Sequence[Task], *, workers: int, on_progress: OnProgress = lambda _: None
 ) -> list[Calibration]:
-    """Fit all tasks; those already on disk are read. Results in the order of the tasks.
+    """Fit all tasks; those already on disk are read.
 
-    A KeyboardInterrupt stops all workers; what their searches had found stays on disk (`stopped` reads it).
-    InputError where a fit on disk is of other data or options.
+    Parameters
+    ----------
+    tasks : sequence of Task
+    workers : int
+        Processes.
+    on_progress : callable
+        Called with a `FitProgress`, about twice a second.
+
+    Returns
+    -------
+    list of Calibration
+        In the order of the tasks.
+
+    Raises
+    ------
+    InputError
+        A fit on disk is damaged, or of other data or options, or another process is at work in the folder.
+    KeyboardInterrupt
+        All workers are stopped; what their searches had found stays on disk (`stopped` reads it).
     """
-    ended: dict[str, Calibration] = {}
-    for task in tasks:
-        task.folder.mkdir(parents=True, exist_ok=True)
-        found = task.store().result()
-        task.store().history()  # refuses another study's before anything is computed
-        if found is not None:
-            ended[task.name] = found
-    waiting = [t for t in tasks if t.name not in ended]
-    if waiting:
-        _run(waiting, workers, ended, len(tasks), told)
-    return [ended[t.name] for t in tasks]
+    with contextlib.ExitStack() as held:
+        for folder in dict.fromkeys(task.folder for task in tasks):
+            held.enter_context(locked(folder))
+        ended: dict[str, Calibration] = {}
+        for task in tasks:
+            found = task.store().result()
+            task.store().history()  # refuses another study's before anything is computed
+            if found is not None:
+                ended[task.name] = found
+        waiting = [t for t in tasks if t.name not in ended]
+        if waiting:
+            _run(waiting, workers, ended, len(tasks), on_progress)
+        return [ended[t.name] for t in tasks]
 
 
 def _run(
@@ -104,15 +195,35 @@ def _run(
     workers: int,
     ended: dict[str, Calibration],
     total: int,
-    told: Callable[[Progress], None],
+    on_progress: OnProgress,
 ) -> None:
-    if min(workers, len(waiting)) == 1:
-        for task in waiting:
-            show = partial(_show, waiting, ended, total, told)
-            show()
-            ended[task.name] = fit_task(task, workers=workers, watch=show)
-            show()
-        return
+    def show() -> None:
+        on_progress(_progress(waiting, ended, total))
+
+    # a law of the caller's own is known to this process only
+    own = [t for t in waiting if _from_outside(t.law)]
+    spread = [t for t in waiting if t not in own]
+    if min(workers, len(spread)) == 1:
+        own, spread = waiting, []
+    for task in own:
+        show()
+        ended[task.name] = fit_task(task, workers=workers, on_generation=show)
+        log.info("%r", ended[task.name])
+        show()
+    if spread:
+        _run_spread(spread, workers, ended, show)
+
+
+def _from_outside(law: str) -> bool:
+    """Whether a law was registered outside of tisim."""
+    added = getattr(laws, "added", None)  # tisim before its registry of laws has none
+    return added is not None and added(law) is not None
+
+
+def _run_spread(
+    waiting: list[Task], workers: int, ended: dict[str, Calibration], show: Callable[[], None]
+) -> None:
+    """Fits in processes of their own."""
     # each fit alone on one core: BLAS threads that spin while they wait cost a factor
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
@@ -128,7 +239,8 @@ def _run(
             done, open_ones = wait(open_ones, timeout=0.5, return_when=FIRST_COMPLETED)
             for future in done:
                 ended[futures[future].name] = future.result()
-            told(_progress(waiting, ended, total))
+                log.info("%r", ended[futures[future].name])
+            show()
     except BaseException:
         for process in list((pool._processes or {}).values()):
             process.terminate()
@@ -137,40 +249,47 @@ def _run(
     pool.shutdown()
 
 
-def _show(
-    waiting: list[Task], ended: dict[str, Calibration], total: int, told: Callable[[Progress], None]
-) -> None:
-    told(_progress(waiting, ended, total))
-
-
-def fit_task(task: Task, *, workers: int | None, watch: Callable[[], None] = lambda: None) -> Calibration:
-    """One fit, going on from its history, written down when it ends; watch is called each generation."""
+def fit_task(
+    task: Task, *, workers: int | None, on_generation: Callable[[], None] = lambda: None
+) -> Calibration:
+    """One fit, going on from its history, written down when it ends."""
     store = task.store()
+    if len(task.alternatives) > 1:
+        found = [
+            t.store().result() or fit_task(t, workers=workers, on_generation=on_generation)
+            for t in task.alternatives
+        ]
+        result = parts.choose(found)
+        store.finish(result)
+        return result
     experiment = OnSetup.of(read(task.experiment), task.setup)
 
-    def told(generation: Generation) -> None:
+    def keep(generation: Generation) -> None:
         if not generation.replayed:
             store.append(generation)
-        watch()
+        on_generation()
 
-    result = calibrate(
-        parametrisation(task.law, terms=task.terms),
-        measurements(experiment, task.material, workers=workers, objective=task.objective),
-        options=task.options,
-        history=store.history(),
-        told=told,
-    )
-    result = _as_asked(result, task)
+    try:
+        result = calibrate(
+            task.measurements(experiment, workers=workers),
+            options=task.options,
+            history=store.history(),
+            on_progress=keep,
+        )
+    except HistoryError as error:
+        raise InputError(
+            f"{store.history_path}: {error} (--overwrite starts anew, --out writes elsewhere)"
+        ) from error
+    result = _with_setup(result, task)
     store.finish(result)
     return result
 
 
-def _as_asked(result: Calibration, task: Task) -> Calibration:
-    """The result with what was asked for on it."""
-    if task.setup is not None:
-        note = "; ".join(n for n in (task.setup.sentence, result.note) if n)
-        result = replace(result, note=note)
-    return replace(result, objective=task.objective)
+def _with_setup(result: Calibration, task: Task) -> Calibration:
+    """The result with a note on the rig that it was corrected for."""
+    if task.setup is None:
+        return result
+    return replace(result, note="; ".join(n for n in (task.setup.sentence, result.note) if n))
 
 
 def _end_with_parent() -> None:
@@ -191,22 +310,23 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
     for task in tasks:
         store = task.store()
         result = store.result()
-        if result is None:
+        if result is None and len(task.alternatives) > 1:
+            ended = stopped(task.alternatives, experiment)
+            if not ended:
+                continue
+            result = parts.choose(ended)
+        elif result is None:
             history = [g for g in store.history() if np.isfinite(g.costs).any()]
             if not history:
                 continue
-            data = measurements(
-                OnSetup.of(experiment, task.setup), task.material, workers=1, objective=task.objective
-            )
-            if data.outlines is not None:
-                data.outlines.reference = None
-            result = best_so_far(parametrisation(task.law, terms=task.terms), data, history)
-            result = _as_asked(result, task)
+            data = task.measurements(OnSetup.of(experiment, task.setup), workers=1)
+            result = best_so_far(data, history)
+            result = _with_setup(result, task)
         found.append(result)
     return found
 
 
-def _progress(waiting: Sequence[Task], ended: dict[str, Calibration], total: int) -> Progress:
+def _progress(waiting: Sequence[Task], ended: dict[str, Calibration], total: int) -> FitProgress:
     generations: dict[str, int] = {}
     best: dict[str, float] = {}
     for task in waiting:
@@ -217,7 +337,14 @@ def _progress(waiting: Sequence[Task], ended: dict[str, Calibration], total: int
         costs = [c for line in lines[1:] for c in _costs(line)]
         if costs:
             best[task.name] = min(costs)
-    return Progress(generations=generations, best=best, ended=dict(ended), total=total)
+    return FitProgress(
+        message=", ".join(f"{name} generation {n}" for name, n in generations.items() if n),
+        done=len(ended),
+        total=total,
+        generations=generations,
+        best=best,
+        ended=dict(ended),
+    )
 
 
 def _lines(path: Path) -> list[str]:
@@ -225,5 +352,8 @@ def _lines(path: Path) -> list[str]:
 
 
 def _costs(line: str) -> list[float]:
-    tail = line.rpartition('"costs": [')[2].rstrip("]}")
-    return [float(c) for c in tail.split(",") if c.strip() not in ("", "null")]
+    """Costs in a line of a history; none in one that is being written just now."""
+    tail = line.rpartition('"costs": [')[2]
+    if not tail.endswith("]}"):
+        return []
+    return [float(c) for c in tail.rstrip("]}").split(",") if c.strip() not in ("", "null")]

@@ -1,9 +1,9 @@
-"""Which pokes train, which choose the epoch, which test."""
+"""The parts of a dataset: training, validation (chooses the epoch) and test."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ FOLDS = 5
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Frames (rows of the store) of each part, in the store's order; groups: what was split, by name."""
+    """Frames of each part (rows of the store, in its order); groups: names of the shapes or sites in each."""
 
     train: NDArray[np.int64]
     validation: NDArray[np.int64]
@@ -40,7 +40,8 @@ def split_pokes(
     2509.10125 and its successor): no tested shape was trained on. by "site": groups are sites (in random
     order), for stores of few shapes; pokes of one site under several softness levels stay together, since
     they move alike. train_softness, train_depth [m]: training and validation see only these; the test
-    part keeps everything. InputError where a part would be empty.
+    part keeps everything. Frames in which the rod, drawn back, does not press are in no part: there is no
+    force to predict. InputError where a part would be empty.
     """
     if not 0 <= fold < FOLDS:
         raise InputError(f"fold {fold}: expected 0 to {FOLDS - 1}")
@@ -55,7 +56,7 @@ def split_pokes(
     order = (np.arange(count) + fold * held) % count
     parts = {"train": order[2 * held :], "validation": order[held : 2 * held], "test": order[:held]}
     seen = _seen(store, train_softness, train_depth)
-    of_frame = group[store.frame_poke]
+    of_frame = np.where(store.presses, group[store.frame_poke], -1)
     rows = {}
     for part, members in parts.items():
         keep = np.isin(of_frame, members) & (seen if part != "test" else True)
@@ -67,6 +68,30 @@ def split_pokes(
         validation=rows["validation"],
         test=rows["test"],
         groups={part: [names[i] for i in sorted(members)] for part, members in parts.items()},
+    )
+
+
+class SplitRecipe(Protocol):
+    """The keys of a training recipe that a split depends on."""
+
+    @property
+    def split(self) -> SplitBy: ...
+
+    @property
+    def fold(self) -> int: ...
+
+    @property
+    def train_softness(self) -> list[str] | None: ...
+
+    @property
+    def train_depth_mm(self) -> float | None: ...
+
+
+def split_of(store: Store, recipe: SplitRecipe) -> Split:
+    """The parts that a recipe trains and tests on."""
+    depth = recipe.train_depth_mm * 1e-3 if recipe.train_depth_mm else None
+    return split_pokes(
+        store, fold=recipe.fold, by=recipe.split, train_softness=recipe.train_softness, train_depth=depth
     )
 
 

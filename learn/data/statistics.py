@@ -8,16 +8,24 @@ from typing import Any
 
 import torch
 
-from learn.data.batch import Batch
+from learn.data.loaders import Batch
 from learn.errors import InputError
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """frames: how many. displacement: root mean square over all points [m]. depth_mean, depth_max [m].
+    """Statistics of a training part.
 
-    log_force_mean, log_force_sd: of ln(force / (shear modulus x rod radius x depth)), which has no units.
-    force_rms [N]. log_modulus_mean: of ln(modulus / Pa).
+    Attributes
+    ----------
+    frames : number of frames.
+    displacement : root mean square over all points [m].
+    depth_mean, depth_max : of the depth [m].
+    log_force_mean, log_force_sd : of ln(force / (shear modulus x rod radius x depth)).
+    force_rms : root mean square of the force [N].
+    log_modulus_mean : mean of ln(modulus / Pa).
+    log_time_mean, log_speed_mean : of ln(time since contact / s) and ln(speed of approach / (m/s)); None
+        where the dataset has no time.
     """
 
     frames: int
@@ -28,28 +36,38 @@ class Statistics:
     log_force_sd: float
     force_rms: float
     log_modulus_mean: float
+    log_time_mean: float | None = None
+    log_speed_mean: float | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        return asdict(self)
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
 
 def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
     """One pass over the training part. rod_radius [m]. InputError for a force of zero or less."""
     squares = 0.0
     points = 0
-    depth, force, modulus = [], [], []
+    depth, force, modulus, clock = [], [], [], []
     for batch in batches:
         squares += float(batch.displacement.double().square().sum())
         points += batch.displacement.shape[0] * batch.displacement.shape[1]
         depth.append(batch.depth)
         force.append(batch.force.double())
         modulus.append(batch.modulus)
+        clock.append(batch.clock)
     if not depth:
         raise InputError("the training part is empty")
     d, f, g = torch.cat(depth), torch.cat(force), torch.cat(modulus)
     if not bool((f > 0).all()):
         raise InputError("a training frame has a rod force of zero")
     scaled = torch.log(f / (g * rod_radius * d))
+    times = torch.cat(clock)
+    timed = {}
+    if times.shape[1]:
+        timed = {
+            "log_time_mean": float(torch.log(times[:, 0]).mean()),
+            "log_speed_mean": float(torch.log(times[:, 2]).mean()),
+        }
     return Statistics(
         frames=len(d),
         displacement=(squares / points) ** 0.5,
@@ -59,4 +77,5 @@ def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
         log_force_sd=float(scaled.std(unbiased=False)),
         force_rms=float(f.square().mean().sqrt()),
         log_modulus_mean=float(torch.log(g).mean()),
+        **timed,
     )

@@ -1,22 +1,35 @@
-"""Evaluation: cases, summaries, symmetry, clouds, intervals, the report."""
+"""Evaluation: metrics of trained runs beside baselines, conformal intervals, the report."""
 
-from learn.evaluation.evaluation import Evaluation, ensembles, evaluate, together
-from learn.evaluation.intervals import Intervals, coverage, fit_intervals
-from learn.evaluation.kept import load_intervals, save_intervals
-from learn.evaluation.parts import parts_of, split_of
-from learn.evaluation.report import write_report
+from learn.evaluation.evaluation import (
+    Evaluation,
+    Value,
+    by_softness,
+    ensembles,
+    evaluate,
+    join_runs,
+    over_folds,
+    parts_of,
+    summarise,
+)
+from learn.evaluation.intervals import Intervals, coverage, fit_intervals, load_intervals, save_intervals
+from learn.evaluation.predictions import predict_on, predict_part, symmetry_error
 
 __all__ = [
     "Evaluation",
     "Intervals",
+    "Value",
+    "by_softness",
     "coverage",
     "ensembles",
     "evaluate",
     "fit_intervals",
+    "join_runs",
     "load_intervals",
+    "over_folds",
     "parts_of",
+    "predict_on",
+    "predict_part",
     "save_intervals",
-    "split_of",
-    "together",
-    "write_report",
+    "summarise",
+    "symmetry_error",
 ]

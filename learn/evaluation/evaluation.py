@@ -1,35 +1,126 @@
-"""Everything a report says of one or more runs, as numbers."""
+"""The numbers of a report on one or more runs: metrics on test parts, baselines beside, intervals."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import logging
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store
+from learn.data import MemoryDataset, Split, Store, split_of
+from learn.data.clouds import SurfaceField, scattered
 from learn.errors import InputError
-from learn.evaluation.across import Answered, across_folds
-from learn.evaluation.cases import cases_of
-from learn.evaluation.clouds import cases_on, grid_floor_mm, scattered
-from learn.evaluation.intervals import Coverage, Intervals, coverage, fit_intervals, rank_correlation
-from learn.evaluation.kept import load_intervals
-from learn.evaluation.parts import parts_of
-from learn.evaluation.summary import Value, by_softness, over_folds, summarise
-from learn.evaluation.symmetry import TurnError, turn_error
-from learn.metrics import Cases
+from learn.evaluation.intervals import (
+    LEAST_POKES,
+    Coverage,
+    Intervals,
+    Predicted,
+    across_folds,
+    coverage,
+    fit_intervals,
+    load_intervals,
+    rank_correlation,
+    too_few,
+)
+from learn.evaluation.predictions import (
+    SymmetryError,
+    interpolation_error_mm,
+    predict_on,
+    predict_part,
+    symmetry_error,
+)
+from learn.metrics import METRICS, Metric, Predictions
 from learn.models import Ensemble, pokes_of, scene_of
+from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run
 
 CLOUD_SIZES = (512, 1024, 4096)
+CLOUD_SEEDS = 3  # clouds of each size: one cloud has a single point near the tip
 _CLOUD_POKES = 6
-Say = Callable[[str], None]
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Value:
+    """Mean and standard deviation of a metric over frames (or pokes, or folds); NaN where there were none."""
+
+    mean: float
+    sd: float
+
+    def text(self, metric: Metric, *, sd: bool = True) -> str:
+        """As printed in a table, without the unit; "-" where there is no value."""
+        scale = 100 if metric.percent else 1
+        if not np.isfinite(self.mean):
+            return "-"
+        first = f"{round(self.mean * scale, metric.digits) + 0.0:.{metric.digits}f}"
+        return f"{first} ± {self.sd * scale:.{metric.digits}f}" if sd else first
+
+
+Row = dict[str, Value]  # by metric
+
+
+def summarise(predictions: Predictions) -> Row:
+    """Every metric of `METRICS`."""
+    return {name: _value(metric, predictions) for name, metric in METRICS.items()}
+
+
+def by_softness(predictions: Predictions) -> dict[str, Row]:
+    """The same for each softness level, in the order of their names, and for "all"."""
+    names = sorted({str(s) for s in predictions.softness})
+    rows = {name: summarise(predictions.where(predictions.softness == name)) for name in names}
+    return {**rows, "all": summarise(predictions)}
+
+
+def over_folds(folds: list[Row]) -> Row:
+    """Mean and standard deviation of the folds' means; for one fold, its own values."""
+    if len(folds) == 1:
+        return folds[0]
+    return {name: _joined([fold[name].mean for fold in folds]) for name in folds[0]}
+
+
+def _joined(means: list[float]) -> Value:
+    known = np.array([v for v in means if np.isfinite(v)])
+    if not len(known):
+        return Value(float("nan"), float("nan"))
+    return Value(float(known.mean()), float(known.std(ddof=1)) if len(known) > 1 else float("nan"))
+
+
+def _value(metric: Metric, predictions: Predictions) -> Value:
+    values = np.asarray(metric.values(predictions), dtype=float)
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return Value(float("nan"), float("nan"))
+    return Value(float(values.mean()), float(values.std()))
+
+
+def parts_of(store: Store, run: Run) -> Split:
+    """The run's own parts of its own dataset; for another dataset, all frames of shapes that it has not seen.
+
+    Shapes are known by their names. A run that was split by site has seen all its shapes at some sites: all
+    frames of the other dataset are tested then. InputError where every shape was seen.
+    """
+    if store.uuid == run.uuid:
+        return split_of(store, run.recipe)
+    used = store.done & (store.frame_count > 0)
+    names = np.array(store.shapes)[store.shape]
+    seen = run.groups["train"] + run.groups["validation"] if run.recipe.split == "shape" else []
+    test = used & ~np.isin(names, seen)
+    if not test.any():
+        known = ", ".join(sorted(set(names[used].tolist())))
+        raise InputError(
+            f"{store.location}: {run.folder} was trained on all its shapes ({known}), expected one that it "
+            "has not seen"
+        )
+    none = np.zeros(0, dtype=np.int64)
+    rows = np.flatnonzero(test[store.frame_poke])
+    groups = {"train": [], "validation": [], "test": sorted(set(names[test].tolist()))}
+    return Split(train=none, validation=none, test=rows, groups=groups)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Covered:
-    """Intervals of a run and how they did on its test part. radius_mm: mean over points."""
+    """Intervals of a run and their coverage on its test part. radius_mm: mean over points."""
 
     intervals: Intervals
     found: Coverage
@@ -39,31 +130,43 @@ class Covered:
 
 @dataclass(eq=False, kw_only=True)
 class Evaluation:
-    """What was found. models: names of what was trained, in `folds` beside baselines. tables: by name of a
-    model, over folds, by softness. deeper: beyond the trained depth.
+    """Results of `evaluate`.
 
-    covered, across: by intervals from the run's own validation part, and from the other folds' test parts.
-    intervals: the latter where there are any; of which run (or runs together). clouds: by size of the cloud.
-    floor_mm: what interpolation of the surface meshes alone is off. cases: of the first run, for pictures.
+    Attributes
+    ----------
+    runs, store : evaluated, on this dataset.
+    models : names of the trained models, which stand in `folds` beside baselines.
+    folds : by name, one entry a fold: metrics by softness level.
+    frames, pokes : of the test parts together.
+    symmetry, symmetry_vertical : by run; random motions, and quarter turns about the vertical.
+    covered, across : coverage of intervals from the run's own validation part, and from the other folds.
+    no_intervals : by run, the sentence that says why it has none.
+    intervals : of each run (or ensemble): those across folds where there are any.
+    clouds : metrics by point cloud; interpolation_mm: error of their truth alone.
+    deeper : metrics up to and beyond the depth that was trained on.
+    predictions : of the first run, for pictures.
     """
 
     runs: list[Run]
     store: Store
     models: list[str] = field(default_factory=list)
-    folds: dict[str, list[dict[str, dict[str, Value]]]] = field(default_factory=dict)
-    turned: dict[str, TurnError] = field(default_factory=dict)
-    turned_flat: dict[str, TurnError] = field(default_factory=dict)
+    folds: dict[str, list[dict[str, Row]]] = field(default_factory=dict)
+    frames: int = 0
+    pokes: int = 0
+    symmetry: dict[str, SymmetryError] = field(default_factory=dict)
+    symmetry_vertical: dict[str, SymmetryError] = field(default_factory=dict)
     covered: dict[str, Covered] = field(default_factory=dict)
     across: dict[str, Covered] = field(default_factory=dict)
+    no_intervals: dict[str, str] = field(default_factory=dict)
     intervals: list[tuple[Run, Intervals]] = field(default_factory=list)
-    clouds: dict[str, dict[str, Value]] = field(default_factory=dict)
-    floor_mm: float = float("nan")
-    deeper: dict[str, dict[str, Value]] = field(default_factory=dict)
-    cases: Cases | None = None
+    clouds: dict[str, Row] = field(default_factory=dict)
+    interpolation_mm: float = float("nan")
+    deeper: dict[str, Row] = field(default_factory=dict)
+    predictions: Predictions | None = None
 
     @property
-    def tables(self) -> dict[str, dict[str, dict[str, Value]]]:
-        """Mean over folds, and sd over folds where there is more than one."""
+    def tables(self) -> dict[str, dict[str, Row]]:
+        """Mean over folds, and standard deviation over folds where there is more than one."""
         joined = {}
         for name, folds in self.folds.items():
             levels = [level for level in folds[0] if all(level in fold for fold in folds)]
@@ -78,44 +181,67 @@ def evaluate(
     baselines: bool = True,
     clouds: bool = True,
     ensemble: bool = False,
-    say: Say = lambda _text: None,
+    on_progress: OnProgress = ignore,
 ) -> Evaluation:
-    """Answers of every run to its own test part; baselines fitted to each distinct training part.
+    """Every run on its own test part; baselines fitted to each distinct training part.
 
-    ensemble: runs of one model and training part, from different seeds, are evaluated as one as well, before
-    they are alone. InputError where no two runs can be joined so. On another dataset than a run was trained
-    on (`parts_of`) there are no baselines, and the intervals are those that were kept with the run.
+    Parameters
+    ----------
+    runs, store : to evaluate, on this dataset. On another than a run was trained on (`parts_of`) there are no
+        baselines, and the intervals are those that were kept with the run.
+    baselines, clouds : whether to fit baselines, and to predict on other point clouds.
+    ensemble : evaluate runs of one model and training part, from different seeds, as one as well, before they
+        are evaluated alone. InputError where no two runs can be joined so.
+    on_progress : called before each step.
     """
     found = Evaluation(runs=runs, store=store)
     scene = scene_of(store)
     fitted: set[str] = set()
-    answers: list[Answered] = []
+    predicted: list[Predicted] = []
     joined = ensembles(runs) if ensemble else []
-    for run, name in [*joined, *((run, run.recipe.model) for run in runs)]:
+    every = [*joined, *((run, run.recipe.model) for run in runs)]
+    steps = _Steps(len(every) + (len(BASELINES) if baselines else 0), on_progress)
+    for run, name in every:
         split = parts_of(store, run)
         test = MemoryDataset(store, split.test)
-        say(f"{run.folder}: {len(test)} test frames")
-        cases = cases_of(run.model, scene, test)
-        found.folds.setdefault(name, []).append(by_softness(cases))
+        steps.next(f"{run.folder}: {len(test)} test frames")
+        predictions = predict_part(run.model, scene, test)
+        found.folds.setdefault(name, []).append(by_softness(predictions))
         found.models += [name] if name not in found.models else []
-        if found.cases is None:
-            found.cases = cases
-        answers.append(Answered(run, name, cases))
-        _look_closer(found, run, name, split, cases, clouds=clouds and not found.clouds)
+        if run in runs:
+            found.frames += len(test)
+            found.pokes += predictions.pokes
+        if found.predictions is None:
+            found.predictions = predictions
+        predicted.append(Predicted(run, name, predictions))
+        _look_closer(found, run, name, split, predictions, clouds=clouds and not found.clouds)
         key = _part(run.recipe)
         if not baselines or key in fitted or not len(split.train):
             continue
         fitted.add(key)
         train = MemoryDataset(store, split.train)
         for title, kind in BASELINES.items():
-            say(f"fitting: {title}")
+            steps.next(f"fitting: {title}")
             baseline = kind()
             baseline.fit(train, scene)
-            found.folds.setdefault(title, []).append(by_softness(cases_of(baseline, scene, test)))
-    for one, intervals in across_folds([a for a in answers if a.run.uuid == store.uuid]):
-        found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one.cases)
-        found.intervals = [(r, intervals if r is one.run else i) for r, i in found.intervals]
+            found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, scene, test)))
+    for one, intervals in across_folds([p for p in predicted if p.run.uuid == store.uuid]):
+        found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one.predictions)
+        found.intervals = [(r, i) for r, i in found.intervals if r is not one.run] + [(one.run, intervals)]
     return found
+
+
+class _Steps:
+    """Counts steps for the callback and the log."""
+
+    def __init__(self, total: int, on_progress: OnProgress) -> None:
+        self._done, self._total, self._on_progress = 0, total, on_progress
+
+    def next(self, text: str) -> None:
+        log.info(text)
+        total = max(self._total, self._done + 1)
+        self._on_progress(Progress(stage="evaluation", done=self._done, total=total, text=text))
+        self._done += 1
 
 
 def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
@@ -124,19 +250,19 @@ def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
     for run in runs:
         groups.setdefault(f"{run.recipe.model} {_part(run.recipe)}", []).append(run)
     joined = [
-        (together(group), f"{group[0].recipe.model}, {len(group)} together")
+        (join_runs(group), f"{group[0].recipe.model}, {len(group)} together")
         for group in groups.values()
         if len({run.recipe.seed for run in group}) == len(group) > 1
     ]
     if not joined:
         raise InputError(
-            "an ensemble wants two or more runs of one model and training part, each of another seed"
+            "an ensemble needs two or more runs of one model and training part, each of another seed"
         )
     return joined
 
 
-def together(runs: list[Run]) -> Run:
-    """Runs as one, of the first one's folder."""
+def join_runs(runs: list[Run]) -> Run:
+    """Runs as one, an ensemble, of the first one's folder."""
     return replace(
         runs[0],
         model=Ensemble([run.model for run in runs]).eval(),
@@ -145,54 +271,73 @@ def together(runs: list[Run]) -> Run:
 
 
 def _part(recipe: Recipe) -> str:
-    """What the parts of a store depend on."""
+    """The keys that the parts of a store depend on."""
     return repr((recipe.fold, recipe.split, recipe.train_softness, recipe.train_depth_mm))
 
 
-def _covered(intervals: Intervals, cases: Cases) -> Covered:
+def _covered(intervals: Intervals, predictions: Predictions) -> Covered:
     return Covered(
         intervals=intervals,
-        found=coverage(intervals, cases),
-        rank=rank_correlation(intervals, cases),
-        radius_mm=float(intervals.radius_mm(cases).mean()),
+        found=coverage(intervals, predictions),
+        rank=rank_correlation(intervals, predictions),
+        radius_mm=float(intervals.radius_mm(predictions).mean()),
     )
 
 
 def _look_closer(
-    found: Evaluation, run: Run, title: str, split: Split, cases: Cases, *, clouds: bool
+    found: Evaluation, run: Run, title: str, split: Split, predictions: Predictions, *, clouds: bool
 ) -> None:
     """Symmetry, intervals, depth and clouds of one run."""
     store, scene, model = found.store, scene_of(found.store), run.model
     name = f"{title}, fold {run.recipe.fold}"
-    name += f", seed {run.recipe.seed}" if name in found.turned else ""
+    name += f", seed {run.recipe.seed}" if name in found.symmetry else ""
     own = store.uuid == run.uuid
     validation = MemoryDataset(store, split.validation if own else split.test)
     few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
     part = scene.only(few.geometry.numpy())
-    found.turned[name] = turn_error(model, part, few)
-    found.turned_flat[name] = turn_error(model, part, few, about_normal=True)
-    intervals: Intervals | None = None
-    if not own:
-        intervals = load_intervals(run)
-    elif len(np.unique((held := cases_of(model, scene, validation)).poke)) >= 2:
-        intervals = fit_intervals(held)
+    found.symmetry[name] = symmetry_error(model, part, few)
+    found.symmetry_vertical[name] = symmetry_error(model, part, few, about_normal=True)
+    intervals = _own_intervals(found, run, name, predict_part(model, scene, validation) if own else None)
     if intervals is not None:
         found.intervals.append((run, intervals))
-        found.covered[name] = _covered(intervals, cases)
+        found.covered[name] = _covered(intervals, predictions)
     if run.recipe.train_depth_mm is not None:
         limit = run.recipe.train_depth_mm * 1e-3
         found.deeper[f"{name}, to {run.recipe.train_depth_mm:g} mm"] = summarise(
-            cases.where(cases.depth <= limit)
+            predictions.where(predictions.depth <= limit)
         )
-        if bool((cases.depth > limit).any()):
-            found.deeper[f"{name}, deeper"] = summarise(cases.where(cases.depth > limit))
+        if bool((predictions.depth > limit).any()):
+            found.deeper[f"{name}, deeper"] = summarise(predictions.where(predictions.depth > limit))
     if clouds:
-        pokes = np.unique(store.frame_poke[split.test])
-        pokes = pokes[np.linspace(0, len(pokes) - 1, min(_CLOUD_POKES, len(pokes))).astype(int)]
-        rows = split.test[np.isin(store.frame_poke[split.test], pokes)]
-        found.clouds["1024, the grid"] = summarise(cases_on(model, store, rows, store.points))
-        for size in CLOUD_SIZES:
-            found.clouds[f"{size}, scattered"] = summarise(
-                cases_on(model, store, rows, scattered(store, size))
-            )
-        found.floor_mm = grid_floor_mm(store, rows)
+        _clouds(found, run, split)
+
+
+def _own_intervals(
+    found: Evaluation, run: Run, name: str, validation: Predictions | None
+) -> Intervals | None:
+    """From the validation part, or kept with a run of another dataset; None, with the reason noted."""
+    if validation is None:
+        kept = load_intervals(run)
+        if kept is None:
+            found.no_intervals[name] = f"{run.folder} has no intervals of its own dataset yet"
+        return kept
+    if validation.pokes < LEAST_POKES:
+        found.no_intervals[name] = too_few(validation.pokes)
+        return None
+    return fit_intervals(validation)
+
+
+def _clouds(found: Evaluation, run: Run, split: Split) -> None:
+    store = found.store
+    pokes = np.unique(store.frame_poke[split.test])
+    pokes = pokes[np.linspace(0, len(pokes) - 1, min(_CLOUD_POKES, len(pokes))).astype(int)]
+    rows = split.test[np.isin(store.frame_poke[split.test], pokes)]
+    surfaces = SurfaceField(store, pokes.tolist())
+    found.clouds["1024, the grid"] = summarise(predict_on(run.model, store, rows, store.points, surfaces))
+    for size in CLOUD_SIZES:
+        each = [
+            summarise(predict_on(run.model, store, rows, scattered(store, size, seed=seed), surfaces))
+            for seed in range(CLOUD_SEEDS)
+        ]
+        found.clouds[f"{size}, scattered"] = over_folds(each)
+    found.interpolation_mm = interpolation_error_mm(store, rows)

@@ -3,37 +3,56 @@
 The score of a point is its distance error over a scale: the root of the squares of a fitted error and of the
 ensemble's spread, where there is one (normalised conformal prediction; Lei et al., JASA 113, 2018). The
 fitted error is a regression of the error's logarithm on what the rod, the depth and the prediction say, from
-one half of the validation pokes; the other half calibrates, in rings around first touch. Points of a poke
+one half of the validation pokes; the other half calibrates, in rings around first contact. Points of a poke
 are not independent: each poke is one draw, whose points say how its errors are distributed. The quantile is
 taken of the mean of k pokes' distributions, with a share of 1 / (k + 1) beyond all of them for the poke to
 come (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling CDFs). Fewer than 9 pokes cannot promise 90 %: the
 largest score is taken then, and `promised` says what it promises. Unseen shapes are not exchangeable with
 seen ones, so that the coverage is measured, never presumed.
+
+The shapes that a run was validated on are two, and do not say how a third will do. The test parts of the
+other folds are each predicted by a model that had not seen their shapes, so that they are more draws of the
+error on an unseen shape (cross-conformal prediction: Vovk, Ann. Math. Artif. Intell. 74, 2015; Barber et al.,
+Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals (`across_folds`).
 """
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from learn._yaml import first_fault
 from learn.errors import InputError
-from learn.metrics import Cases
-from learn.metrics.rings import EDGES_MM
+from learn.metrics import RING_EDGES_MM, Predictions, join_predictions
+from learn.training import Run
+from learn.training.run_folder import write_whole
 
 Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
 LEVEL = 0.9
+LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
+LEAST_FOLDS = 3
 
 
 @dataclass(frozen=True)
 class Intervals:
-    """level: of the coverage that was asked for; promised: what so few pokes can promise at most.
+    """Intervals of one run.
 
-    scale: coefficients of ln(fitted error / mm); factors: of the scale, by ring of distance from first touch
-    (`learn.metrics.rings.EDGES_MM`). force_scale: fitted error of ln(force); force: factor of it.
+    Attributes
+    ----------
+    level : coverage that was asked for.
+    promised : coverage that so few pokes can promise at most.
+    pokes : that calibrated.
+    scale : coefficients of ln(fitted error / mm).
+    factors : of the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
+    force_scale, force : fitted error of ln(force), and its factor.
     """
 
     level: float
@@ -44,13 +63,15 @@ class Intervals:
     force_scale: float
     force: float
 
-    def radius_mm(self, cases: Cases) -> Floats:
+    def radius_mm(self, predictions: Predictions) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n)."""
-        return np.asarray(np.array(self.factors)[_ring(cases)] * _scale_mm(cases, np.array(self.scale)))
+        return np.asarray(
+            np.array(self.factors)[_ring(predictions)] * _scale_mm(predictions, np.array(self.scale))
+        )
 
-    def force_log(self, cases: Cases) -> Floats:
+    def force_log(self, predictions: Predictions) -> Floats:
         """The true force lies within predicted e^-x and predicted e^x, (f,)."""
-        return np.asarray(self.force * np.hypot(self.force_scale, cases.force_spread))
+        return np.asarray(self.force * np.hypot(self.force_scale, predictions.force_spread))
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -58,8 +79,14 @@ class Intervals:
 
 @dataclass(frozen=True)
 class Coverage:
-    """Shares of points and of forces that lie within their intervals; rings: the points by ring, NaN where
-    there are none; pokes: share of pokes of whose points at least the promised share is covered."""
+    """Fractions of points and of forces that lie within their intervals.
+
+    Attributes
+    ----------
+    points, force : over all points and over all frames.
+    rings : of the points by ring of distance from first contact; NaN where there are none.
+    pokes : fraction of pokes of whose points at least the promised fraction is covered.
+    """
 
     points: float
     force: float
@@ -67,14 +94,14 @@ class Coverage:
     pokes: float
 
 
-def fit_intervals(cases: Cases, *, level: float = LEVEL, seed: int = 0) -> Intervals:
-    """From answers to the validation part. InputError where it has fewer than two pokes."""
-    pokes = np.unique(cases.poke)
-    if len(pokes) < 2:
-        raise InputError(f"intervals need at least two validation pokes, there is {len(pokes)}")
+def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int = 0) -> Intervals:
+    """From predictions of the validation part. InputError where it has fewer than two pokes."""
+    pokes = np.unique(predictions.poke)
+    if len(pokes) < LEAST_POKES:
+        raise InputError(too_few(len(pokes)))
     order = np.random.default_rng(seed).permutation(pokes)
-    first = np.isin(cases.poke, order[: len(order) // 2])
-    fitting, held = cases.where(first), cases.where(~first)
+    first = np.isin(predictions.poke, order[: len(order) // 2])
+    fitting, held = predictions.where(first), predictions.where(~first)
     scale = _fit_scale(fitting)
     scores = held.distance_mm / _scale_mm(held, scale)
     force_scale = float(np.sqrt((_force_error(fitting) ** 2).mean()))
@@ -83,7 +110,7 @@ def fit_intervals(cases: Cases, *, level: float = LEVEL, seed: int = 0) -> Inter
     anywhere = pooled_quantile(scores.reshape(-1), poke.reshape(-1), level)
     factors = [
         pooled_quantile(scores[ring == k], poke[ring == k], level) if (ring == k).any() else anywhere
-        for k in range(len(EDGES_MM) - 1)
+        for k in range(len(RING_EDGES_MM) - 1)
     ]
     k = len(np.unique(held.poke))
     return Intervals(
@@ -97,17 +124,17 @@ def fit_intervals(cases: Cases, *, level: float = LEVEL, seed: int = 0) -> Inter
     )
 
 
-def coverage(intervals: Intervals, cases: Cases) -> Coverage:
-    """How the intervals did on these cases."""
-    inside = cases.distance_mm <= intervals.radius_mm(cases)
-    ring = _ring(cases)
-    each = [inside[cases.poke == p].mean() for p in np.unique(cases.poke)]
+def coverage(intervals: Intervals, predictions: Predictions) -> Coverage:
+    """Coverage of the intervals on these predictions."""
+    inside = predictions.distance_mm <= intervals.radius_mm(predictions)
+    ring = _ring(predictions)
+    each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
     return Coverage(
         points=float(inside.mean()),
-        force=float((_force_error(cases) <= intervals.force_log(cases)).mean()),
+        force=float((_force_error(predictions) <= intervals.force_log(predictions)).mean()),
         rings=[
             float(inside[ring == k].mean()) if (ring == k).any() else float("nan")
-            for k in range(len(EDGES_MM) - 1)
+            for k in range(len(RING_EDGES_MM) - 1)
         ],
         pokes=float((np.array(each) >= intervals.promised).mean()),
     )
@@ -122,35 +149,122 @@ def pooled_quantile(scores: Floats, poke: NDArray[np.int64], level: float) -> fl
     return float(scores[order[min(found, len(scores) - 1)]])
 
 
-def rank_correlation(intervals: Intervals, cases: Cases) -> float:
+def rank_correlation(intervals: Intervals, predictions: Predictions) -> float:
     """Spearman's, of radius and error over all points: 1 where wide intervals are where large errors are."""
-    radius = intervals.radius_mm(cases).reshape(-1).argsort().argsort()
-    error = cases.distance_mm.reshape(-1).argsort().argsort()
+    radius = intervals.radius_mm(predictions).reshape(-1).argsort().argsort()
+    error = predictions.distance_mm.reshape(-1).argsort().argsort()
     return float(np.corrcoef(radius, error)[0, 1])
 
 
-def _ring(cases: Cases) -> NDArray[np.int64]:
-    return np.asarray(np.searchsorted(np.array(EDGES_MM[1:-1]), cases.away * 1e3, side="right"))
+def _ring(predictions: Predictions) -> NDArray[np.int64]:
+    return np.asarray(np.searchsorted(np.array(RING_EDGES_MM[1:-1]), predictions.away * 1e3, side="right"))
 
 
-def _force_error(cases: Cases) -> Floats:
-    return np.asarray(np.abs(np.log(cases.force_predicted / cases.force)))
+def _force_error(predictions: Predictions) -> Floats:
+    return np.asarray(np.abs(np.log(predictions.force_predicted / predictions.force)))
 
 
-def _scale_mm(cases: Cases, scale: Floats) -> Floats:
-    return np.asarray(np.hypot(np.exp(_features(cases) @ scale), cases.spread * 1e3))
+def _scale_mm(predictions: Predictions, scale: Floats) -> Floats:
+    return np.asarray(np.hypot(np.exp(_features(predictions) @ scale), predictions.spread * 1e3))
 
 
-def _features(cases: Cases) -> Floats:
-    away = np.log1p(cases.away / 2.5e-3)
-    depth = np.broadcast_to(np.log(cases.depth / 5e-3)[:, None], away.shape)
-    size = np.log(np.linalg.norm(cases.predicted, axis=2) / cases.depth[:, None] + 1e-4)
+def _features(predictions: Predictions) -> Floats:
+    away = np.log1p(predictions.away / 2.5e-3)
+    depth = np.broadcast_to(np.log(predictions.depth / 5e-3)[:, None], away.shape)
+    size = np.log(np.linalg.norm(predictions.predicted, axis=2) / predictions.depth[:, None] + 1e-4)
     parts = [np.ones_like(away), away, away**2, away**3, depth, depth**2, depth * away, size, size**2]
     return np.stack(parts, axis=-1)
 
 
-def _fit_scale(cases: Cases) -> Floats:
-    a = _features(cases).reshape(-1, _features(cases).shape[-1])
-    target = np.log(np.maximum(cases.distance_mm.reshape(-1), _LEAST_MM))
+def _fit_scale(predictions: Predictions) -> Floats:
+    a = _features(predictions).reshape(-1, _features(predictions).shape[-1])
+    target = np.log(np.maximum(predictions.distance_mm.reshape(-1), _LEAST_MM))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
     return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ target))
+
+
+def too_few(pokes: int) -> str:
+    """The sentence that says why there are no intervals."""
+    there = "there is 1" if pokes == 1 else f"there are {pokes}"
+    return f"intervals need at least two validation pokes, {there}: train on a dataset of more pokes"
+
+
+class Predicted(NamedTuple):
+    """A run, its name in tables, and its predictions of its test part."""
+
+    run: Run
+    name: str
+    predictions: Predictions
+
+
+def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Intervals]]:
+    """Each run that has two or more others like it but for the fold, with intervals from those alone."""
+    groups: dict[str, list[Predicted]] = {}
+    for one in predicted:
+        alike = one.run.recipe.model_copy(update={"fold": 0})
+        groups.setdefault(f"{one.name} {alike!r}", []).append(one)
+    found = []
+    for group in groups.values():
+        folds = {one.run.recipe.fold for one in group}
+        if len(folds) != len(group) or len(folds) < LEAST_FOLDS:
+            continue
+        for one in group:
+            others = [other.predictions for other in group if other is not one]
+            found.append((one, fit_intervals(join_predictions(others))))
+    return found
+
+
+def save_intervals(run: Run, intervals: Intervals) -> Path:
+    """Write them to the folder of the run, or of the first of an ensemble."""
+    path = _path(run)
+    content = {"members": _members(run), **intervals.as_dict()}
+    write_whole(path, (json.dumps(content) + "\n").encode())
+    return path
+
+
+def load_intervals(run: Run) -> Intervals | None:
+    """None where there are none; InputError where the file is damaged or belongs to other members."""
+    path = _path(run)
+    if not path.is_file():
+        return None
+    try:
+        content = _File.model_validate(json.loads(path.read_text(encoding="utf-8"))).model_dump()
+    except ValidationError as error:
+        raise InputError(
+            f"{path}: not readable ({first_fault(error)}); learn.evaluate writes it again"
+        ) from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{path}: not readable; learn.evaluate writes it again") from None
+    members = content.pop("members")
+    if members != _members(run):
+        raise InputError(
+            f"{path}: belongs to {', '.join(members)}; learn.evaluate --ensemble writes it again"
+        )
+    return Intervals(**content)
+
+
+_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+_Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+_N_FEATURES = 9  # of `_features`
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+    members: list[str]
+    level: _Positive
+    promised: _Positive
+    pokes: Annotated[int, Field(strict=True, ge=1)]
+    scale: Annotated[list[_Number], Field(min_length=_N_FEATURES, max_length=_N_FEATURES)]
+    factors: Annotated[
+        list[_Positive], Field(min_length=len(RING_EDGES_MM) - 1, max_length=len(RING_EDGES_MM) - 1)
+    ]
+    force_scale: _Positive
+    force: _Positive
+
+
+def _path(run: Run) -> Path:
+    return run.folder / ("intervals-together.json" if run.members else "intervals.json")
+
+
+def _members(run: Run) -> list[str]:
+    return [folder.resolve().name for folder in run.members]

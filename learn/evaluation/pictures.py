@@ -1,51 +1,79 @@
-"""Pictures of a report: best, median and worst test poke, and force against depth."""
+"""Pictures of a report: learning curve, best, median and worst test poke, force against depth.
+
+Figures are made outside pyplot: a notebook keeps its backend, and none has to be closed.
+"""
 
 from __future__ import annotations
 
 import base64
 import io
+from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from learn.data import Store
-from learn.metrics import Cases
+from learn.metrics import Predictions
+from learn.models import Pokes, Scene
 
 Floats = NDArray[np.float64]
 
 
-def ranked_pokes(cases: Cases) -> dict[str, int]:
-    """Pokes with the smallest, the middle and the largest mean distance over their frames."""
-    pokes = np.unique(cases.poke)
-    means = np.array([cases.distance_mm[cases.poke == p].mean() for p in pokes])
-    order = pokes[np.argsort(means)]
-    return {"best": int(order[0]), "median": int(order[len(order) // 2]), "worst": int(order[-1])}
+def ranked_pokes(predictions: Predictions) -> dict[str, int]:
+    """Pokes with the smallest, the middle and the largest mean distance over their frames, each once.
+
+    Of two pokes there is no median; a single poke is "only".
+    """
+    pokes = np.unique(predictions.poke)
+    means = np.array([predictions.distance_mm[predictions.poke == p].mean() for p in pokes])
+    order = [int(p) for p in pokes[np.argsort(means)]]
+    if len(order) == 1:
+        return {"only": order[0]}
+    if len(order) == 2:
+        return {"best": order[0], "worst": order[1]}
+    return {"best": order[0], "median": order[len(order) // 2], "worst": order[-1]}
 
 
-def draw_poke(store: Store, cases: Cases, poke: int, title: str) -> Figure:
+def draw_learning(logs: dict[str, list[dict[str, Any]]]) -> Figure:
+    """Training loss and validation error against the epoch; logs: lines of `log.jsonl` by run."""
+    figure = Figure(figsize=(11, 3.2), layout="constrained")
+    axes = figure.subplots(1, 2)
+    heads = {"train_loss": "training loss", "validation_mean_mm": "validation, mean distance [mm]"}
+    for axis, (key, head) in zip(axes, heads.items(), strict=True):
+        for name, lines in logs.items():
+            known = [(line["epoch"] + 1, line[key]) for line in lines if key in line]
+            if known:
+                axis.plot(*zip(*known, strict=True), label=name)
+        axis.set(title=head, xlabel="epoch")
+        axis.set_ylim(bottom=0)
+        axis.grid(alpha=0.3)
+    if len(logs) > 1:
+        axes[0].legend(fontsize=8)
+    return figure
+
+
+def draw_poke(store: Store, predictions: Predictions, poke: int, title: str) -> Figure:
     """A poke's deepest frame: the surface cut along the push, displacement of both, error from above."""
-    mine = np.flatnonzero(cases.poke == poke)
-    frame = mine[cases.depth[mine].argmax()]
+    mine = np.flatnonzero(predictions.poke == poke)
+    frame = mine[predictions.depth[mine].argmax()]
     side = round(len(store.points) ** 0.5)
     start, push = store.path_start[poke], store.direction[poke]
-    figure, axes = plt.subplots(1, 4, figsize=(15, 3.4), layout="constrained")
-    depth, shape = cases.depth[frame] * 1e3, store.shapes[store.shape[poke]]
-    error = cases.distance_mm[frame].reshape(side, side)
+    figure = Figure(figsize=(15, 3.4), layout="constrained")
+    axes = figure.subplots(1, 4)
+    depth, shape = predictions.depth[frame] * 1e3, store.shapes[store.shape[poke]]
+    error = predictions.distance_mm[frame].reshape(side, side)
     figure.suptitle(
-        f"{title}: poke {poke}, {shape}, {cases.softness[frame]}, {depth:.1f} mm deep; "
+        f"{title}: poke {poke}, {shape}, {predictions.softness[frame]}, {depth:.1f} mm deep; "
         f"error {error.mean():.3f} mm on average, {error.max():.2f} mm at most"
     )
-    _cut(axes[0], store.points, cases.truth[frame], cases.predicted[frame], start, push)
+    _cut(axes[0], store.points, predictions.truth[frame], predictions.predicted[frame], start, push)
     reach = [
         v * 1e3 for v in (store.points[0, 0], store.points[-1, 0], store.points[0, 1], store.points[-1, 1])
     ]
-    size = {"simulated |u|": cases.truth[frame], "predicted |u|": cases.predicted[frame]}
+    size = {"simulated |u|": predictions.truth[frame], "predicted |u|": predictions.predicted[frame]}
     top = max(float(np.linalg.norm(v, axis=1).max()) for v in size.values()) * 1e3
     for axis, (name, field) in zip(axes[1:3], size.items(), strict=True):
         values = np.linalg.norm(field, axis=1).reshape(side, side) * 1e3
@@ -54,35 +82,92 @@ def draw_poke(store: Store, cases: Cases, poke: int, title: str) -> Figure:
     return figure
 
 
-def draw_forces(cases: Cases) -> Figure:
-    """Force against depth: up to four pokes a softness, simulated (line) and predicted (crosses)."""
-    names = sorted({str(s) for s in cases.softness})
-    figure, axes = plt.subplots(
-        1, len(names), figsize=(4.6 * len(names), 3.4), layout="constrained", squeeze=False
-    )
+def draw_forces(predictions: Predictions) -> Figure:
+    """Force against depth: up to four pokes a softness level, simulated (line) and predicted (crosses)."""
+    names = sorted({str(s) for s in predictions.softness})
+    figure = Figure(figsize=(max(6.0, 4.6 * len(names)), 3.4), layout="constrained")
+    axes = figure.subplots(1, len(names), squeeze=False)
     for axis, name in zip(axes[0], names, strict=True):
-        pokes = np.unique(cases.poke[cases.softness == name])
+        pokes = np.unique(predictions.poke[predictions.softness == name])
         for k, poke in enumerate(pokes[np.linspace(0, len(pokes) - 1, min(4, len(pokes))).astype(int)]):
-            mine = np.flatnonzero(cases.poke == poke)
-            mine = mine[np.argsort(cases.depth[mine])]
-            axis.plot(cases.depth[mine] * 1e3, cases.force[mine], color=f"C{k}", label=f"poke {poke}")
-            axis.plot(cases.depth[mine] * 1e3, cases.force_predicted[mine], "x", color=f"C{k}")
+            mine = np.flatnonzero(predictions.poke == poke)
+            mine = mine[np.argsort(predictions.depth[mine])]
+            axis.plot(
+                predictions.depth[mine] * 1e3, predictions.force[mine], color=f"C{k}", label=f"poke {poke}"
+            )
+            axis.plot(predictions.depth[mine] * 1e3, predictions.force_predicted[mine], "x", color=f"C{k}")
         axis.set(title=f"{name}: line simulated, crosses predicted", xlabel="depth [mm]", ylabel="force [N]")
         axis.legend(fontsize=8)
     return figure
 
 
+def draw_prediction(
+    scene: Scene, pokes: Pokes, u: NDArray[np.float32], *, radius: Floats | None, title: str
+) -> Figure:
+    """One predicted poke: the cut along the push with indenter and inclusion, the displacement from above.
+
+    Parameters
+    ----------
+    scene, pokes : the model's input, one poke.
+    u, radius : displacement (n, 3) and radius of its interval (n,) [m].
+    """
+    points, start, push = scene.points.numpy(), pokes.start[0].numpy(), pokes.direction[0].numpy()
+    depth, top = float(pokes.depth[0]), scene.points[0, 2].item()
+    heading = push[:2] / np.linalg.norm(push[:2]) if np.linalg.norm(push[:2]) > 1e-6 else np.array([1.0, 0.0])
+    figure = Figure(figsize=(12, 4.2), layout="constrained")
+    cut, flat = figure.subplots(1, 2, width_ratios=[1.6, 1])
+    figure.suptitle(title)
+    offset = points[:, :2] - start[:2]
+    strip = np.flatnonzero(np.abs(offset @ np.array([-heading[1], heading[0]])) < 1.7e-3)
+    strip = strip[np.argsort(offset[strip] @ heading)]
+    rigid = scene.rigid[scene.rigid_index[pokes.geometry[0]]].numpy()
+    along, levels = offset[strip] @ heading, scene.level_depth.numpy()
+    place, level = np.nonzero(rigid[strip] > 0)
+    cut.plot(
+        along[place] * 1e3, (top - levels[level]) * 1e3, "s", color="0.75", markersize=3, label="inclusion"
+    )
+    cut.plot(along * 1e3, np.full(len(strip), top * 1e3), ":", color="0.5", label="rest surface")
+    now = points[strip] + u[strip]
+    cut.plot((now[:, :2] - start[:2]) @ heading * 1e3, now[:, 2] * 1e3, "C0.-", label="predicted surface")
+    cut.plot(*_indenter(scene, push, depth, heading, start[2]).T * 1e3, color="C3", label="indenter")
+    cut.set(
+        title="cut along the push, through the grid points next to it", xlabel="mm from first contact",
+        ylabel="height [mm]", xlim=(-30, 30), ylim=((top - levels[-1]) * 1e3, top * 1e3 + 8), aspect="equal",
+    )  # fmt: skip
+    cut.legend(fontsize=8, loc="lower right")
+    side = round(len(points) ** 0.5)
+    shown = np.linalg.norm(u, axis=1) if radius is None else radius
+    reach = [v * 1e3 for v in (points[0, 0], points[-1, 0], points[0, 1], points[-1, 1])]
+    name = "displacement" if radius is None else "radius of the 90 % interval"
+    _map(figure, flat, shown.reshape(side, side) * 1e3, reach, name, start, "viridis", None)
+    columns = (rigid.sum(axis=1) > 0).reshape(side, side).astype(float)
+    if columns.any():
+        x, y = points[:side, 0] * 1e3, points[::side, 1] * 1e3
+        flat.contour(x, y, columns, levels=[0.5], colors="white", linewidths=1, linestyles="--")
+    flat.set(ylabel="y [mm]")
+    return figure
+
+
+def _indenter(scene: Scene, push: Floats, depth: float, heading: Floats, height: float) -> Floats:
+    """Outline of the indenter in the plane of the push: along the heading, and height [m], (m, 2)."""
+    radius, edge = scene.rod_radius, scene.rod_edge
+    turn = np.linspace(0, np.pi / 2, 20)
+    aside = np.concatenate([radius - edge + edge * np.sin(turn), [radius]])
+    ahead = np.concatenate([edge * (np.cos(turn) - 1), [-0.03]])
+    outline = np.concatenate([np.column_stack([ahead, -aside])[::-1], np.column_stack([ahead, aside])])
+    axis = np.array([push[:2] @ heading, push[2]])
+    across = np.array([-axis[1], axis[0]])
+    return np.array([0.0, height]) + (depth + outline[:, :1]) * axis + outline[:, 1:] * across
+
+
 def encoded(figure: Figure) -> str:
-    """The figure as base64 of a PNG; it is closed."""
+    """The figure as base64 of a PNG."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=90)
-    plt.close(figure)
     return base64.b64encode(buffer.getvalue()).decode()
 
 
-def _cut(
-    axis: plt.Axes, points: Floats, truth: Floats, predicted: Floats, start: Floats, push: Floats
-) -> None:
+def _cut(axis: Axes, points: Floats, truth: Floats, predicted: Floats, start: Floats, push: Floats) -> None:
     """Positions of the points in a strip along the push's heading."""
     heading = push[:2] / max(float(np.linalg.norm(push[:2])), 1e-9)
     if np.linalg.norm(push[:2]) < 1e-6:
@@ -101,7 +186,7 @@ def _cut(
 
 def _map(
     figure: Figure,
-    axis: plt.Axes,
+    axis: Axes,
     values: Floats,
     reach: list[float],
     title: str,
@@ -109,7 +194,11 @@ def _map(
     colours: str,
     top: float | None,
 ) -> None:
-    picture = axis.imshow(values, origin="lower", extent=tuple(reach), cmap=colours, vmin=0, vmax=top)
+    # the square root shows the far field beside the contact
+    norm = PowerNorm(0.5, vmin=0, vmax=top if top is not None else max(float(values.max()), 1e-9))
+    picture = axis.imshow(
+        values, origin="lower", extent=(reach[0], reach[1], reach[2], reach[3]), cmap=colours, norm=norm
+    )
     axis.plot(start[0] * 1e3, start[1] * 1e3, "+", color="white")
     axis.set(title=f"{title} [mm]", xlabel="x [mm]")
     figure.colorbar(picture, ax=axis, shrink=0.85)

@@ -1,47 +1,39 @@
-"""Models that answer pokes; each has `encode(scene)` (once a geometry) and `decode(encoded, pokes)`."""
+"""Models of the poke response: `encode(scene)` once a geometry, `decode(encoded, pokes)` once a poke."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from functools import partial
-
-from learn.data.statistics import Statistics
-from learn.errors import InputError
-from learn.models._model import Model
+from learn.models import cegnn as _cegnn  # noqa: F401 - imported for the models that they register
+from learn.models import invariant_gnn as _invariant_gnn  # noqa: F401
+from learn.models.base import (
+    MODELS,
+    OLD_NAMES,
+    Ensemble,
+    Model,
+    Pokes,
+    Response,
+    Scene,
+    make_model,
+    make_scene,
+    pokes_of,
+    register_model,
+    scene_of,
+    scene_on,
+)
 from learn.models.cegnn import Cegnn
-from learn.models.ensemble import Ensemble
-from learn.models.ours import Surrogate
-from learn.models.scene import Pokes, Prediction, Scene, make_scene, pokes_of, scene_of
-
-MODELS: dict[str, Callable[[Statistics], Model]] = {
-    "ours": Surrogate,
-    # for a thousand answers a second, at a larger error
-    "ours-small": partial(Surrogate, hidden=32, messages=8, directions=4),
-    "cegnn": Cegnn,
-}
-# of the architectures: weights of another do not fit. Version 1 of ours did not know the rod's surface
-VERSIONS = {"ours": 2, "ours-small": 2, "cegnn": 1}
-
-
-def make_model(name: str, statistics: Statistics) -> Model:
-    """A fresh model by name; its weights come from torch's random state."""
-    if name not in MODELS:
-        raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
-    return MODELS[name](statistics)
-
+from learn.models.invariant_gnn import InvariantGnn
 
 __all__ = [
     "MODELS",
-    "VERSIONS",
+    "OLD_NAMES",
     "Cegnn",
     "Ensemble",
+    "InvariantGnn",
     "Model",
     "Pokes",
-    "Prediction",
+    "Response",
     "Scene",
-    "Surrogate",
     "make_model",
     "make_scene",
     "pokes_of",
+    "register_model",
     "scene_of",
+    "scene_on",
 ]

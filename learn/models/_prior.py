@@ -1,7 +1,7 @@
 """A closed form that the network corrects: fields like a point load's on an elastic layer, fitted linearly.
 
 u / depth = sum_k c_k g_k v_k: g falls as 1 / sqrt(r^2 + a^2) (Boussinesq's half space) times exp(-r / L) (the
-fixed base below); v is the surface normal, the direction from first touch, that of the push; each with
+fixed base below); v is the surface normal, the direction from first contact, that of the push; each with
 factors of inclination, depth and the soft tissue below the contact. It is fitted to the training part
 by weighted least squares before the network starts, and stays fixed.
 """
@@ -13,14 +13,14 @@ from collections.abc import Iterable
 import torch
 from torch import Tensor, nn
 
-from learn.data.batch import Batch
+from learn.data.loaders import Batch
 from learn.models._contact import Contact
 
 CORES = (1.0, 2.0, 4.0)  # a, rod radii
 RANGES = (4.0, 12.0)  # L, rod radii
 POKE_FACTORS = 7  # of the poke alone; one more varies from point to point
 _RIDGE = 1e-6
-_NEAR = 20.0  # weight of points near first touch, as in training
+_NEAR = 20.0  # weight of points near first contact, as in training
 _NEAR_WIDTH = 2.4  # rod radii
 
 
@@ -45,7 +45,7 @@ class Prior(nn.Module):
 
     @torch.no_grad()
     def fit(self, samples: Iterable[tuple[Contact, Tensor, Batch]]) -> None:
-        """Least squares over these frames, points near first touch weighing more."""
+        """Least squares over these frames, points near first contact weighing more."""
         size = self.coefficients.numel()
         normal = torch.zeros(size, size, dtype=torch.float64)
         right = torch.zeros(size, dtype=torch.float64)

@@ -19,8 +19,7 @@ from torch import Tensor, nn
 from torch.nn.functional import linear, silu
 
 from learn.data.statistics import Statistics
-from learn.models._model import Model
-from learn.models.scene import Pokes, Prediction, Scene
+from learn.models.base import Model, Pokes, Response, Scene, register_model
 
 UNIT = 1e-2  # m
 NEIGHBOURS = 5  # the point itself is one
@@ -38,6 +37,7 @@ class CegnnEncoded:
     columns: Tensor
 
 
+@register_model("cegnn", version=1)
 class Cegnn(Model):
     """The paper's model."""
 
@@ -68,8 +68,8 @@ class Cegnn(Model):
         columns = torch.cat([scene.profile.to(digits), heights[None].expand_as(scene.profile)], dim=2)
         return CegnnEncoded(scene, points, columns)
 
-    def decode(self, encoded: CegnnEncoded, pokes: Pokes) -> Prediction:
-        """The answer to b pokes."""
+    def decode(self, encoded: CegnnEncoded, pokes: Pokes) -> Response:
+        """Displacement and force of b pokes."""
         b, n = len(pokes.depth), len(encoded.points)
         digits = encoded.points.dtype
         start = (pokes.start / UNIT).to(digits)
@@ -97,7 +97,7 @@ class Cegnn(Model):
         around = columns - at_start[:, None]
         points = self.force_point(torch.cat([moved, around], dim=2))
         pooled = torch.cat([points.amax(dim=1), points.mean(dim=1)], dim=1)
-        return Prediction(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
+        return Response(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
 
     def _head(self, layers: Tensor, path: Tensor) -> Tensor:
         """The head of layers (b, n, 12) and path (b, c); what all points share is mapped once a poke."""

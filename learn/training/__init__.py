@@ -1,7 +1,19 @@
-"""Training: recipes, losses, checkpoints, the loop."""
+"""Training: recipes, the loop, a run's folder."""
 
-from learn.training.checkpoint import Run, load_run
-from learn.training.loop import DivergedError, Progress, Trainer
+from learn.training.loop import DivergedError, Trainer
+from learn.training.process_group import ProcessGroup, make_process_group
 from learn.training.recipe import RECIPES, Recipe, load_recipe
+from learn.training.run_folder import Run, load_run, read_log
 
-__all__ = ["RECIPES", "DivergedError", "Progress", "Recipe", "Run", "Trainer", "load_recipe", "load_run"]
+__all__ = [
+    "RECIPES",
+    "DivergedError",
+    "ProcessGroup",
+    "Recipe",
+    "Run",
+    "Trainer",
+    "load_recipe",
+    "load_run",
+    "make_process_group",
+    "read_log",
+]

@@ -1,4 +1,4 @@
-"""Training, epoch by epoch; after each the run can be stopped and taken up again to the same result."""
+"""Training, epoch by epoch; after each the run can be stopped and resumed to the same result."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import contextlib
 import copy
 import math
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,103 +15,136 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, split_pokes, statistics
+from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
+from learn.data.clouds import SurfaceField, jittered, nearest_columns
+from learn.data.folds import split_of
 from learn.errors import InputError
-from learn.models import VERSIONS, Scene, make_model, pokes_of, scene_of
-from learn.training._distributed import Team
-from learn.training._log import Log
-from learn.training.checkpoint import (
+from learn.models import MODELS, Scene, make_model, pokes_of, scene_of
+from learn.progress import OnProgress, Progress, ignore
+from learn.training.process_group import ProcessGroup
+from learn.training.recipe import Loss, Recipe, loss_of
+from learn.training.run_folder import (
     BEST,
     LAST,
+    Log,
     check_dataset,
-    check_version,
     load_checkpoint,
+    load_weights,
+    recipe_of,
     save_checkpoint,
 )
-from learn.training.losses import Loss, loss_of
-from learn.training.recipe import Recipe
+from learn.validity import domain_of
 
 _DIVERGED = 10.0  # times the first epoch's loss
 _WARM_FRAMES = 600  # for what is fitted before training
-_THINNEST = 0.4  # of the points
-_FLOOR = 0.01  # of the rate, at the end of a cosine
-
-Watch = Callable[["Progress"], None]
+_FEWEST = 0.4  # of the points, under point dropout
+_FLOOR = 0.01  # of the learning rate, at the end of a cosine
 
 
 class DivergedError(Exception):
     """The loss ran away; the last good checkpoint stands. Its text is one sentence."""
 
 
-@dataclass(frozen=True)
-class Progress:
-    """Where a run is: epochs done of all, frames done of this epoch's, and the last epoch's log line."""
-
-    epoch: int
-    epochs: int
-    frames: int
-    frames_all: int
-    line: dict[str, Any] | None = None
-
-
 class Trainer:
-    """One run in `folder`. The work: `train()`."""
+    """One run in `folder`; `train()` does the work.
+
+    Parameters
+    ----------
+    store : the dataset.
+    recipe : how to train.
+    folder : of the run; it is made if need be.
+    process_group : this process among those of torchrun; by default the only one, on the CPU.
+    resume : go on from the folder's `last.pt`. InputError where there is none, or it is another run's.
+    on_progress : called after each batch and each epoch.
+
+    Attributes
+    ----------
+    epoch, step : epochs and steps done.
+    split : frames of the three parts.
+    model, ema : the network that is trained, and the moving average of its weights, which is kept.
+    """
 
     def __init__(
-        self, store: Store, recipe: Recipe, folder: Path, *, team: Team, resume: bool, watch: Watch
+        self,
+        store: Store,
+        recipe: Recipe,
+        folder: Path,
+        *,
+        process_group: ProcessGroup | None = None,
+        resume: bool = False,
+        on_progress: OnProgress = ignore,
     ) -> None:
-        self.store, self.recipe, self.folder, self.team, self.watch = store, recipe, folder, team, watch
-        kept = self._found(resume)
-        self.split: Split = split_pokes(
-            store,
-            fold=recipe.fold,
-            by=recipe.split,
-            train_softness=recipe.train_softness,
-            train_depth=recipe.train_depth_mm * 1e-3 if recipe.train_depth_mm else None,
-        )
+        group = process_group or ProcessGroup(0, 1, torch.device("cpu"))
+        self.store, self.recipe, self.folder, self.group = store, recipe, folder, group
+        self.on_progress = on_progress
+        kept = self._checkpoint(resume)
+        self.split: Split = split_of(store, recipe)
         self.train_data = self._dataset()
-        self.validation = MemoryDataset(store, self.split.validation) if team.leads else None
+        self.validation = MemoryDataset(store, self.split.validation) if group.is_main else None
+        self.surfaces = (
+            SurfaceField(store, np.unique(store.frame_poke[self.split.train]).tolist())
+            if recipe.point_jitter
+            else None
+        )
         if kept is None:
             self.statistics = statistics(self._ordered(), store.rod_radius)
         else:
             self.statistics = Statistics(**kept["statistics"])
         torch.manual_seed(recipe.seed)
-        self.model = make_model(recipe.model, self.statistics).to(team.device)
+        self.model = make_model(recipe.model, self.statistics).to(group.device)
+        if store.clock is not None and not self.model.takes_clock:
+            raise InputError(
+                f"{store.location}: its frames have time, which model {recipe.model} takes no account of"
+            )
         if kept is None:
             self._warm_start()
-        self.averaged = copy.deepcopy(self.model).requires_grad_(False)
-        self.optimiser = torch.optim.Adam(self.model.parameters(), lr=recipe.rate)
+        self.ema = copy.deepcopy(self.model).requires_grad_(False)
+        self.optimiser = torch.optim.Adam(self.model.parameters(), lr=recipe.learning_rate)
         self.step, self.epoch, self.best, self.first = 0, 0, math.inf, math.inf
-        torch.manual_seed(recipe.seed + 1 + team.rank)  # dropout
+        torch.manual_seed(recipe.seed + 1 + group.rank)  # dropout
         if kept is not None:
-            self._take_up(kept)
-        scene = scene_of(store).to(team.device)
+            self._restore(kept)
+        scene = scene_of(store).to(group.device)
+        self.domain = domain_of(store, self.split.train)
         self.scene = scene.only(store.geometry[store.frame_poke[self.split.train]])
         self.scene_validation = scene.only(store.geometry[store.frame_poke[self.split.validation]])
         # neighbourhoods are of the points alone, which all scenes share
         self.prepared = self.model.prepare(scene)
 
     def train(self) -> None:
-        """To the recipe's last epoch. DivergedError where the loss is not finite or ten times the first."""
-        if self.team.leads:
+        """Train to the recipe's last epoch.
+
+        Raises
+        ------
+        DivergedError
+            The loss is not finite, or ten times the best; the last good checkpoint stands.
+        OSError
+            A checkpoint or the log could not be written; the last good checkpoint stands.
+        """
+        if self.group.is_main:
             self.folder.mkdir(parents=True, exist_ok=True)
-        log = Log(self.folder, epochs_done=self.epoch) if self.team.leads else None
+        log = Log(self.folder, epochs_done=self.epoch) if self.group.is_main else None
         try:
             while self.epoch < self.recipe.epochs:
                 begun = time.perf_counter()
                 losses = self._epoch()
                 seconds = time.perf_counter() - begun
-                line = {"epoch": self.epoch, "step": self.step, **losses, "rate": self._rate(0.0)}
-                if self.team.leads:
+                line = {
+                    "epoch": self.epoch,
+                    "step": self.step,
+                    **losses,
+                    "learning_rate": self._learning_rate(0.0),
+                }
+                if self.group.is_main:
                     line |= self._validate()
                     self._check(line)
                 self.epoch += 1
-                if self.team.leads and log is not None:
+                if self.group.is_main and log is not None:
                     self._save(line)
                     line |= {"seconds": seconds, "samples_per_second": len(self.split.train) / seconds}
                     log.add(line)
-                self.team.wait()
-                self._tell(0, line)
+                self.group.wait()
+                self._report(0, line)
         finally:
             if log is not None:
                 log.close()
@@ -121,47 +154,53 @@ class Trainer:
         some = rows[np.linspace(0, len(rows) - 1, min(len(rows), _WARM_FRAMES)).astype(int)]
         scene = scene_of(self.store).only(self.store.geometry[self.store.frame_poke[rows]])
         self.model.cpu().warm_start(MemoryDataset(self.store, some).batches(8), scene)
-        self.model.to(self.team.device)
+        self.model.to(self.group.device)
 
     def _dataset(self) -> MemoryDataset | StreamDataset:
         if self.recipe.data == "memory":
             return MemoryDataset(self.store, self.split.train)
+        blocks = len(np.unique(self.split.train // self.store.block))
+        if blocks < self.group.world:
+            raise InputError(
+                f"{self.store.location}: {blocks} shards to train on cannot be split among "
+                f"{self.group.world} processes: expected data: memory, or fewer processes"
+            )
         return StreamDataset(
             self.store,
             self.split.train,
-            batch=self._share(),
-            pool=self.recipe.pool,
+            batch=self._batch(),
+            shuffle_buffer=self.recipe.shuffle_buffer,
             seed=self.recipe.seed,
-            rank=self.team.rank,
-            world=self.team.world,
+            rank=self.group.rank,
+            world=self.group.world,
         )
 
-    def _share(self) -> int:
-        """Frames of a batch that come to this process."""
-        if self.recipe.batch % self.team.world:
+    def _batch(self) -> int:
+        """Frames of a batch that this process takes."""
+        if self.recipe.batch % self.group.world:
             raise InputError(
-                f"recipe {self.recipe.name}: key batch: {self.recipe.batch} frames cannot be shared among "
-                f"{self.team.world} processes"
+                f"recipe {self.recipe.name}: key batch: {self.recipe.batch} frames cannot be split among "
+                f"{self.group.world} processes"
             )
-        return self.recipe.batch // self.team.world
+        return self.recipe.batch // self.group.world
 
     def _ordered(self) -> Iterator[Batch]:
         if isinstance(self.train_data, MemoryDataset):
             return self.train_data.batches(256)
-        return iter(StreamDataset(self.store, self.split.train, batch=256, pool=1, seed=None))
+        return iter(StreamDataset(self.store, self.split.train, batch=256, shuffle_buffer=1, seed=None))
 
     def _batches(self) -> Iterator[Batch]:
-        data, team = self.train_data, self.team
+        data, group = self.train_data, self.group
         if isinstance(data, MemoryDataset):
             yield from data.batches(
-                self._share(), seed=self.recipe.seed, epoch=self.epoch, rank=team.rank, world=team.world
+                self._batch(), seed=self.recipe.seed, epoch=self.epoch, rank=group.rank, world=group.world
             )
             return
         data.epoch = self.epoch
         source = iter(data)
         while True:
             batch = next(source, None)
-            if not team.all_agree(batch is not None):
+            if not group.all_true(batch is not None):
                 return
             assert batch is not None
             yield batch
@@ -171,74 +210,88 @@ class Trainer:
         done, total = 0, len(self.split.train)
         sums = torch.zeros(3, dtype=torch.float64)
         for batch in self._batches():
-            loss = self._update(batch.to(self.team.device), done / total)
+            loss = self._update(batch.to(self.group.device), done / total)
             parts = torch.stack([loss.total, loss.displacement, loss.force]).detach().double().cpu()
             if not bool(torch.isfinite(parts).all()):
                 raise DivergedError(f"epoch {self.epoch}: the loss is not finite")
             sums += parts * len(batch)
-            done = min(done + len(batch) * self.team.world, total)
-            self._tell(done, None)
-        means = [self.team.mean(float(v)) * self.team.world / max(done, 1) for v in sums]
+            done = min(done + len(batch) * self.group.world, total)
+            self._report(done, None)
+        means = [self.group.mean(float(v)) * self.group.world / max(done, 1) for v in sums]
         return dict(zip(("train_loss", "train_displacement_mm", "train_force"), means, strict=True))
 
     def _update(self, batch: Batch, within: float) -> Loss:
         for group in self.optimiser.param_groups:
-            group["lr"] = self._rate(within)
-        scene, prepared, batch = self._thinned(batch)
-        mixed = self.recipe.mixed_precision and self.team.device.type == "cuda"
+            group["lr"] = self._learning_rate(within)
+        scene, prepared, batch = self._augmented(batch)
+        mixed = self.recipe.mixed_precision and self.group.device.type == "cuda"
         with torch.autocast("cuda", torch.bfloat16) if mixed else contextlib.nullcontext():
             prediction = self.model.decode(self.model.encode(scene, prepared), pokes_of(batch))
         loss = loss_of(prediction, batch, scene, self.recipe, self.statistics)
         self.optimiser.zero_grad(set_to_none=True)
         loss.total.backward()
-        self.team.average_gradients(self.model)
+        self.group.average_gradients(self.model)
         if self.recipe.clip:
             nn.utils.clip_grad_norm_(self.model.parameters(), self.recipe.clip)
         self.optimiser.step()
         self.step += 1
-        self._average()
+        self._update_ema()
         return loss
 
-    def _thinned(self, batch: Batch) -> tuple[Scene, Any, Batch]:
-        """The batch as it is, or on some of its points; a function of seed and step alone."""
-        if not self.recipe.thin:
-            return self.scene, self.prepared, batch
-        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(1, self.step))
-        random = np.random.default_rng(key)
-        if random.uniform() >= self.recipe.thin:
-            return self.scene, self.prepared, batch
-        n = len(self.scene.points)
-        some = np.sort(random.choice(n, int(n * random.uniform(_THINNEST, 1)), replace=False))
-        scene = self.scene.at(some)
-        index = torch.from_numpy(some).to(batch.displacement.device)
-        return scene, self.model.prepare(scene), replace(batch, displacement=batch.displacement[:, index])
+    def _augmented(self, batch: Batch) -> tuple[Scene, Any, Batch]:
+        """The batch with its points jittered, or on some of its points; a function of seed and step alone."""
+        scene, prepared, recipe = self.scene, self.prepared, self.recipe
+        device = batch.displacement.device
+        jitter = self._random(2)
+        if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
+            points = jittered(self.store, jitter)
+            scene = replace(
+                scene.at(nearest_columns(self.store, points)), points=torch.from_numpy(points).to(device)
+            )
+            moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
+            batch, prepared = replace(batch, displacement=moved.to(device)), None
+        dropout = self._random(1)
+        if dropout.uniform() < recipe.point_dropout:
+            n = len(scene.points)
+            some = np.sort(dropout.choice(n, int(n * dropout.uniform(_FEWEST, 1)), replace=False))
+            scene = scene.at(some)
+            index = torch.from_numpy(some).to(device)
+            batch, prepared = replace(batch, displacement=batch.displacement[:, index]), None
+        if scene is not self.scene:
+            prepared = self.model.prepare(scene)
+        return scene, prepared, batch
 
-    def _rate(self, within: float) -> float:
-        """The rate at a share of the current epoch: warm-up, then constant or a cosine."""
+    def _random(self, stream: int) -> np.random.Generator:
+        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(stream, self.step))
+        return np.random.default_rng(key)
+
+    def _learning_rate(self, within: float) -> float:
+        """At a fraction of the current epoch: warm-up, then constant or a cosine."""
         recipe = self.recipe
-        share = (self.epoch + within) / recipe.epochs
-        if share < recipe.warmup:
-            return recipe.rate * max(share / recipe.warmup, _FLOOR)
+        done = (self.epoch + within) / recipe.epochs
+        if done < recipe.warmup:
+            return recipe.learning_rate * max(done / recipe.warmup, _FLOOR)
         if recipe.schedule == "constant":
-            return recipe.rate
-        turn = (share - recipe.warmup) / (1 - recipe.warmup)
-        return recipe.rate * (_FLOOR + (1 - _FLOOR) * 0.5 * (1 + math.cos(math.pi * turn)))
+            return recipe.learning_rate
+        turn = (done - recipe.warmup) / (1 - recipe.warmup)
+        return recipe.learning_rate * (_FLOOR + (1 - _FLOOR) * 0.5 * (1 + math.cos(math.pi * turn)))
 
     @torch.no_grad()
-    def _average(self) -> None:
-        decay = min(self.recipe.average, (1 + self.step) / (10 + self.step)) if self.recipe.average else 0.0
-        for mean, now in zip(self.averaged.parameters(), self.model.parameters(), strict=True):
+    def _update_ema(self) -> None:
+        most = self.recipe.ema_decay
+        decay = min(most, (1 + self.step) / (10 + self.step)) if most else 0.0
+        for mean, now in zip(self.ema.parameters(), self.model.parameters(), strict=True):
             mean.lerp_(now, 1 - decay)
 
     @torch.no_grad()
     def _validate(self) -> dict[str, float]:
         assert self.validation is not None
-        self.averaged.eval()
-        encoded = self.averaged.encode(self.scene_validation, self.prepared)
+        self.ema.eval()
+        encoded = self.ema.encode(self.scene_validation, self.prepared)
         sums, frames = torch.zeros(3, dtype=torch.float64), 0
         for batch in self.validation.batches(64):
-            batch = batch.to(self.team.device)
-            found = self.averaged.decode(encoded, pokes_of(batch))
+            batch = batch.to(self.group.device)
+            found = self.ema.decode(encoded, pokes_of(batch))
             loss = loss_of(found, batch, self.scene_validation, self.recipe, self.statistics)
             distance = (found.displacement - batch.displacement).norm(dim=2).mean() * 1e3
             wrong = ((found.force - batch.force).abs() / batch.force).mean()
@@ -257,12 +310,13 @@ class Trainer:
                 f"epoch {self.epoch}: the loss is {line['train_loss'] / self.first:.0f} times its best"
             )
 
-    def _tell(self, frames: int, line: dict[str, Any] | None) -> None:
-        self.watch(Progress(self.epoch, self.recipe.epochs, frames, len(self.split.train), line))
+    def _report(self, frames: int, line: dict[str, Any] | None) -> None:
+        done = self.epoch + frames / len(self.split.train)
+        self.on_progress(Progress(stage="training", done=done, total=self.recipe.epochs, values=line))
 
     def _save(self, line: dict[str, Any]) -> None:
         about = {
-            "version": VERSIONS[self.recipe.model],
+            "version": MODELS[self.recipe.model].version,
             "uuid": self.store.uuid,
             "law": self.store.law,
             "location": self.store.location,
@@ -270,13 +324,14 @@ class Trainer:
             "statistics": self.statistics.as_dict(),
             "groups": self.split.groups,
             "epoch": self.epoch,
+            "domain": self.domain.model_dump(mode="json"),
         }
         if line["validation_loss"] < self.best:
             self.best = line["validation_loss"]
-            save_checkpoint(self.folder / BEST, {**about, "model": self.averaged.state_dict()})
+            save_checkpoint(self.folder / BEST, {**about, "model": self.ema.state_dict()})
         state = {
             "model": self.model.state_dict(),
-            "averaged": self.averaged.state_dict(),
+            "averaged": self.ema.state_dict(),
             "optimiser": self.optimiser.state_dict(),
             "random": torch.get_rng_state(),
             "step": self.step,
@@ -285,8 +340,8 @@ class Trainer:
         }
         save_checkpoint(self.folder / LAST, {**about, **state})
 
-    def _found(self, resume: bool) -> dict[str, Any] | None:
-        """The checkpoint to go on from; InputError where it is another run's, or would be overwritten."""
+    def _checkpoint(self, resume: bool) -> dict[str, Any] | None:
+        """The checkpoint to resume from; InputError where it is another run's, or would be overwritten."""
         path = self.folder / LAST
         if not resume:
             if path.exists():
@@ -296,20 +351,23 @@ class Trainer:
             return None
         content = load_checkpoint(path)
         check_dataset(content, path, self.store)
-        check_version(content, path)
-        mine = self.recipe.model_dump(mode="json")
-        different = [key for key in mine if content["recipe"].get(key) != mine[key]]
+        before, now = recipe_of(content, path).model_dump(), self.recipe.model_dump()
+        different = [key for key in now if before[key] != now[key]]
         if different:
             key = different[0]
-            raise InputError(
-                f"{path}: was trained with {key} {content['recipe'].get(key)}, the recipe now has {mine[key]}"
-            )
+            raise InputError(f"{path}: was trained with {key} {before[key]}, the recipe now has {now[key]}")
         return content
 
-    def _take_up(self, content: dict[str, Any]) -> None:
-        self.model.load_state_dict(content["model"])
-        self.averaged.load_state_dict(content["averaged"])
-        self.optimiser.load_state_dict(content["optimiser"])
-        torch.set_rng_state(content["random"])
+    def _restore(self, content: dict[str, Any]) -> None:
+        path = self.folder / LAST
+        load_weights(self.model, content["model"], path, self.recipe.model)
+        load_weights(self.ema, content["averaged"], path, self.recipe.model)
+        try:
+            self.optimiser.load_state_dict(content["optimiser"])
+            torch.set_rng_state(content["random"])
+        except (ValueError, KeyError, TypeError, RuntimeError) as error:
+            raise InputError(
+                f"{path}: not a readable checkpoint ({' '.join(str(error).split())[:120]})"
+            ) from None
         self.step, self.epoch = content["step"], content["epoch"]
         self.best, self.first = content["best"], content["first"]

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from factory import _build
-from factory._build import build
-from factory._manifest import LEDGER
+from factory._build import build_dataset
+from factory._execution import run_poke
 from factory._record import Outcome
-from factory._worker import run_poke
+from factory._store import LEDGER
 from factory.plan import Plan, PlannedPoke, make_plan
 from factory.recipe import Recipe, load_recipe
 
@@ -27,7 +27,8 @@ COMMAND = """
 import functools, sys
 import factory._build, factory.build
 if __name__ == "__main__":
-    factory.build.build = functools.partial(factory._build.build, simulator="standin:simulate")
+    build = factory._build.build_dataset
+    factory._build.build_dataset = functools.partial(build, simulator="tests.factory.standin:simulate")
     factory.build.app()
 """
 
@@ -80,16 +81,16 @@ def quick() -> Plan:
     return make_plan(load_recipe("quick"), "ogden")
 
 
+def _run_here(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> Generator[Outcome]:
+    """Pokes are simulated in this process, one after the other: no process has to start."""
+    del workers
+    for poke in pokes:
+        yield run_poke(poke, simulator)
+
+
 @pytest.fixture
 def serial(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pokes are simulated in this process, one after the other: no process has to start."""
-
-    def run(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> Generator[Outcome]:
-        del workers
-        for poke in pokes:
-            yield run_poke(poke, simulator)
-
-    monkeypatch.setattr(_build, "run_local", run)
+    monkeypatch.setattr(_build, "run_local", _run_here)
 
 
 Builder = Callable[..., _build.Built]
@@ -101,9 +102,21 @@ def standin_build(serial: None) -> Builder:
     del serial
 
     def run(plan: Plan, target: Path, **options: object) -> _build.Built:
-        return build(plan, target, **{"simulator": "standin:simulate", **options})  # type: ignore[arg-type]
+        return build_dataset(plan, target, **{"simulator": "tests.factory.standin:simulate", **options})  # type: ignore[arg-type]
 
     return run
+
+
+@pytest.fixture(scope="session")
+def finished_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of `plan`, built once: whoever changes it takes a copy."""
+    folder = tmp_path_factory.mktemp("finished")
+    (folder / "tiny.yaml").write_text(TINY)
+    four_pokes = make_plan(load_recipe(str(folder / "tiny.yaml")), "ogden")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_build, "run_local", _run_here)
+        build_dataset(four_pokes, folder / "store.zarr", simulator="tests.factory.standin:simulate")
+    return folder / "store.zarr"
 
 
 def digest(store: Path) -> dict[str, str]:
@@ -118,7 +131,7 @@ def digest(store: Path) -> dict[str, str]:
 
 def environment(**more: str) -> dict[str, str]:
     """For a process that must find the repository and the stand-in."""
-    return {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{HERE}", **more}
+    return {**os.environ, "PYTHONPATH": str(ROOT), **more}
 
 
 @pytest.fixture

@@ -66,6 +66,12 @@ def _poke(scene: Poke) -> Result:
     mesh = block_mesh(scene.block.size, (6 + abs(site_code(scene)) % 3, 6, 2))
     frames = 3 + abs(site_code(scene)) % 4
     depth = scene.frame_spacing * np.arange(1, frames + 1)
+    course: dict[str, np.ndarray] = {}
+    if scene.course is not None:  # all frames of the course, with an energy that grows with the travel
+        moments = np.array(scene.course.frames)
+        depth = np.array([scene.course.value(t) for t in moments])
+        lost = np.cumsum(np.abs(np.diff(depth, prepend=0.0))) * 1e-3
+        course, frames = {"time": moments, "dissipated": lost}, len(moments)
     direction = np.asarray(scene.direction)
     distance = np.linalg.norm(mesh.nodes[:, :2] - np.asarray(scene.site), axis=1)
     sink = np.exp(-((distance / 0.02) ** 2)) * mesh.nodes[:, 2] / scene.block.size[2]
@@ -86,6 +92,7 @@ def _poke(scene: Poke) -> Result:
         min_jacobian=np.full(frames, 0.5),
         residual=np.full(frames, 1e-8),
         nominal_stress=np.zeros(frames),
+        **course,
         cost=Cost(core_seconds=time.process_time(), steps=frames, newton_iterations=3 * frames),
     )
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import zarr
-from small_store import write_arrays, write_manifest
+
+from tests.learn.small_store import write_arrays, write_manifest
 
 PACKED = Path(__file__).parent / "data" / "pokes.npz"
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from tisim.mesh._elements import TET_EDGES
 from tisim.mesh._mesh import ELEMENT_FACETS, Mesh, boundary_facets
-from tisim.mesh._reference import TET_EDGES
 from tisim.mesh.quality import nodal_determinants, volumes
 
 
@@ -26,7 +26,7 @@ def assert_conforming(mesh: Mesh) -> None:
 
 
 def assert_closed(facets: np.ndarray, mesh: Mesh, euler: int = 2) -> None:
-    """A closed surface turned outwards, of the Euler number of a ball's surface unless told."""
+    """A closed surface turned outwards, of the Euler number of a ball's surface unless stated."""
     corners = facets[:, :4] if mesh.kind == "hex8" else facets[:, :3]
     directed = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     assert len(np.unique(directed, axis=0)) == len(directed)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from tisim.bodies import Block, BoxInclusion, CylinderInclusion, SphereInclusion
+from tisim.mesh._elements import det_jacobian, quadrature
 from tisim.mesh._mesh import ELEMENT_FACETS, Mesh, boundary_facets
-from tisim.mesh._reference import det_jacobian, quadrature
 
 
 def gauss_jacobians(mesh: Mesh) -> np.ndarray:

@@ -7,12 +7,10 @@ from hypothesis import strategies as st
 from mesh_checks import assert_conforming, assert_positive, facet_set
 
 from tisim.bodies import Circle, Rectangle
-from tisim.mesh._errors import MeshError
-from tisim.mesh._mesh import boundary_facets
-from tisim.mesh._reference import NODE_PLACES, TET_EDGES
+from tisim.mesh._elements import NODE_PLACES, TET_EDGES
+from tisim.mesh._mesh import MeshError, boundary_facets
 from tisim.mesh._section import half, moments
-from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, beam_mesh, plane_section
-from tisim.mesh.outline import outline
+from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, beam_mesh, outline, plane_section
 from tisim.mesh.quality import quality, volumes
 
 R = 0.010
@@ -30,7 +28,9 @@ def test_default_half_beam_has_the_few_nodes_that_the_answer_needs(length, suppo
 
 
 def test_paper_like_mesh_has_about_its_7257_nodes():
-    mesh = beam_mesh(length=0.1, section=CIRCLE, kind="tet4", rings=PAPER_RINGS, layer=PAPER_LAYER)
+    mesh = beam_mesh(
+        length=0.1, section=CIRCLE, kind="tet4", radial_elements=PAPER_RINGS, axial_element_size=PAPER_LAYER
+    )
     assert abs(mesh.n_nodes - 7257) < 50
 
 
@@ -89,7 +89,7 @@ def _area(mesh, name):
     [("tet10", 1, 3e-6), ("tet10", 2, 2e-8), ("tet10", 4, 1e-9), ("tet4", 6, 6e-6), ("hex8", 2, 2e-4)],
 )
 def test_circular_section_has_the_true_area_and_inertia(kind, rings, tolerance):
-    section = plane_section(CIRCLE, kind=kind, rings=rings)
+    section = plane_section(CIRCLE, kind=kind, radial_elements=rings)
     area, about_z, about_y = moments(section, quadratic=kind == "tet10")
     assert area == pytest.approx(np.pi * R**2, rel=1e-12)
     assert about_z == pytest.approx(np.pi * R**4 / 4, rel=tolerance)
@@ -127,8 +127,8 @@ def test_no_element_is_turned_over(length, radius, layer, rings, kind, mirror, b
         length=length,
         section=Circle(radius=radius),
         supports="clamped-clamped" if both else "clamped-free",
-        layer=layer,
-        rings=rings,
+        axial_element_size=layer,
+        radial_elements=rings,
         kind=kind,
         mirror=mirror,
     )
@@ -193,8 +193,8 @@ def test_outline_follows_the_beam(kind, mirror):
     [
         ({"length": 0.0}, "length must be a positive length"),
         ({"length": float("nan")}, "length must be a positive length"),
-        ({"layer": -1.0}, "layer must be a positive length"),
-        ({"rings": 0}, "at least 1 ring"),
+        ({"axial_element_size": -1.0}, "axial element size must be a positive length"),
+        ({"radial_elements": 0}, "at least 1 element from axis"),
         ({"section": Circle(radius=-1.0)}, "radius must be a positive length"),
         ({"section": Rectangle(width=0.01, height=0.0)}, "height must be a positive length"),
         ({"grading": (0.0,)}, "grading must be positive"),

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from tisim.mesh._elements import NODE_PLACES, quadrature, shape_gradients
 from tisim.mesh._mesh import Mesh
-from tisim.mesh._reference import NODE_PLACES, quadrature, shape_gradients
 from tisim.mesh.quality import nodal_determinants, quality, scaled_jacobian, volumes
 
 REGULAR = np.array([[1.0, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]])[[0, 1, 3, 2]]

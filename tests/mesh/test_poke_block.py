@@ -6,10 +6,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from poke_cases import assert_good, assert_matching_facets, gauss_jacobians, random_poke
 
-from tisim._quadrature import reference
 from tisim.bodies import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion
-from tisim.mesh._errors import MeshError
-from tisim.mesh.poke_block import poke_mesh
+from tisim.discretisation.quadrature import reference
+from tisim.mesh._mesh import MeshError
+from tisim.mesh.indentation import poke_mesh
 
 BLOCK, ROD = Block(), Rod()
 DOWN, TILTED = (0.0, 0.0, -1.0), (0.6, 0.37, -0.709)
@@ -184,13 +184,16 @@ def test_what_cannot_be_meshed_is_said_in_one_sentence(change, words):
     ("inclusion", "words"),
     [
         (SphereInclusion(radius=0.016, centre=(0, 0, 0.0155)), "leaves less than 1 mm of soft material"),
-        (SphereInclusion(radius=0.0, centre=(0, 0, 0)), "sphere radius must be a length above 0"),
+        (SphereInclusion(radius=0.0, centre=(0, 0, 0)), "sphere radius: expected a length above 0"),
         (SphereInclusion(radius=0.01, centre=LOW), "the sphere lies below the block's base"),
         (SphereInclusion(radius=0.01, centre=(0.045, 0, 0)), "within 1 mm of the block's side"),
         (BoxInclusion(size=(0.01, 0.01, 0.01), centre=LOW), "at or below the block's base"),
-        (BoxInclusion(size=(0.01, float("nan"), 0.01), centre=LOW), "box size b must be"),
-        (CylinderInclusion(radius=0.01, height=-1, centre=LOW), "cylinder height must be"),
-        (CylinderInclusion(radius=0.01, height=0.01, centre=(0, 0)), "expected three finite coordinates"),
+        (BoxInclusion(size=(0.01, float("nan"), 0.01), centre=LOW), "box size: expected 3 finite numbers"),
+        (CylinderInclusion(radius=0.01, height=-1, centre=LOW), "cylinder height: expected a length above 0"),
+        (
+            CylinderInclusion(radius=0.01, height=0.01, centre=(0, 0)),
+            "cylinder centre: expected 3 finite numbers",
+        ),
     ],
 )
 def test_an_inclusion_that_cannot_be_met_is_refused(inclusion, words):

@@ -7,15 +7,11 @@ from hypothesis import strategies as st
 from mesh_checks import assert_conforming, assert_positive, facet_set
 
 from tisim.bodies import Circle, Rectangle
-from tisim.mesh._errors import MeshError
-from tisim.mesh._mesh import Mesh, boundary_facets
-from tisim.mesh._reference import TET_EDGES
+from tisim.mesh._elements import TET_EDGES
+from tisim.mesh._mesh import Mesh, MeshError, boundary_facets, with_facet_set, with_node_set
 from tisim.mesh.beam import beam_mesh
-from tisim.mesh.quadratic import to_quadratic
-from tisim.mesh.quality import nodal_determinants, quality
-from tisim.mesh.refine import refine, refine_around
-from tisim.mesh.sets import with_facet_set, with_node_set
-from tisim.mesh.smooth import smooth
+from tisim.mesh.quality import nodal_determinants, quality, smooth
+from tisim.mesh.refine import refine, refine_around, to_quadratic
 
 CENTRE = (0.025, 0.0, 0.01)
 
@@ -23,7 +19,11 @@ CENTRE = (0.025, 0.0, 0.01)
 @pytest.fixture(scope="module")
 def block():
     mesh = beam_mesh(
-        length=0.05, section=Rectangle(width=0.04, height=0.02), kind="tet4", layer=0.01, grading=(1.0,)
+        length=0.05,
+        section=Rectangle(width=0.04, height=0.02),
+        kind="tet4",
+        axial_element_size=0.01,
+        grading=(1.0,),
     )
     mesh = with_facet_set(mesh, "top", lambda x: x[:, 2] > 0.01 - 1e-9)
     return with_node_set(mesh, "base", lambda x: x[:, 2] < -0.01 + 1e-9)
@@ -83,7 +83,13 @@ def test_refining_again_and_again_does_not_spoil_the_angles(block):
 @settings(max_examples=15, deadline=None)
 def test_conforming_on_irregular_meshes_and_any_size(seed, h):
     rng = np.random.default_rng(seed)
-    mesh = beam_mesh(length=2.0, section=Rectangle(width=1.0, height=1.0), kind="tet4", layer=0.7, rings=1)
+    mesh = beam_mesh(
+        length=2.0,
+        section=Rectangle(width=1.0, height=1.0),
+        kind="tet4",
+        axial_element_size=0.7,
+        radial_elements=1,
+    )
     mesh = Mesh(
         kind="tet4", nodes=mesh.nodes + rng.uniform(-0.05, 0.05, mesh.nodes.shape), elements=mesh.elements
     )

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from tisim.mesh._crossing import crossing_faces
-from tisim.mesh._errors import MeshError
-from tisim.mesh.surface import checked_surface
+from tisim.mesh._mesh import MeshError
+from tisim.mesh.surface import checked_surface, crossing_faces
 
 
 def ball(radius=0.01, at=(0.0, 0.0, 0.0), subdivisions=2):

@@ -6,8 +6,7 @@ import trimesh
 from mesh_checks import assert_closed, assert_conforming, assert_positive, facet_set
 
 from tisim.mesh import tetrahedralise
-from tisim.mesh._errors import MeshError
-from tisim.mesh._mesh import Mesh, boundary_facets
+from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
 from tisim.mesh.block_around import _onto_planes, block_around
 from tisim.mesh.quality import quality
 from tisim.mesh.refine import refine_around

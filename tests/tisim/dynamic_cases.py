@@ -8,28 +8,30 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import eigsh
 
-from tisim import _explicit, _implicit
-from tisim._beam_system import beam_layout, beam_system
-from tisim._body import Body, Layout
-from tisim._mass import consistent_mass, lumped_mass
 from tisim.bodies import Circle
+from tisim.discretisation.body import Discretisation, DiscretisedBody
+from tisim.discretisation.mass import consistent_mass, lumped_mass
+from tisim.problems.beam.system import beam_discretisation, beam_system
+from tisim.problems.dynamics import explicit, implicit
 from tisim.scene import Beam, Material, Solver
 
 MU, LAM, DENSITY = 40e3, 800e3, 1000.0
 SOFT = Material(law="neo-hookean", parameters={"mu": MU, "lam": LAM}, density=DENSITY)
-SHORT = Beam(material=SOFT, length=0.03, layer=0.01, rings=1)
+SHORT = Beam(material=SOFT, length=0.03, axial_element_size=0.01, radial_elements=1)
 SLENDER = Beam(material=SOFT, length=0.1, section=Circle(radius=0.005))
-MARCH = {"implicit": _implicit.march, "explicit": _explicit.march}
+MARCH = {"implicit": implicit.march, "explicit": explicit.march}
 
 
-def body_of(scene: Beam, *, loaded: bool = True) -> Body:
-    body = beam_system(scene, beam_layout(scene)).body
-    return body if loaded else Body(body.layout, scene.material)
+def body_of(scene: Beam, *, loaded: bool = True) -> DiscretisedBody:
+    body = beam_system(scene, beam_discretisation(scene)).body
+    return body if loaded else DiscretisedBody(body.discretisation, scene.material)
 
 
-def free_body(scene: Beam) -> Body:
+def free_body(scene: Beam) -> DiscretisedBody:
     """The beam's mesh with nothing held and no load."""
-    return Body(Layout.build(beam_layout(scene).mesh, np.zeros(0, dtype=np.int32)), scene.material)
+    return DiscretisedBody(
+        Discretisation.build(beam_discretisation(scene).mesh, np.zeros(0, dtype=np.int32)), scene.material
+    )
 
 
 def tip(mesh, x):
@@ -52,12 +54,12 @@ class Mode:
         return float(np.vdot(weight, x - mesh.nodes) / np.vdot(weight, self.shape))
 
 
-def first_mode(body: Body, *, lumped: bool) -> Mode:
+def first_mode(body: DiscretisedBody, *, lumped: bool) -> Mode:
     """By the tangent at rest; lumped: with the explicit method's mass."""
-    layout = body.layout
-    mesh, p = layout.mesh, layout.pattern
+    discretisation = body.discretisation
+    mesh, p = discretisation.mesh, discretisation.pattern
     blocks = body.stiffness(mesh.nodes)[0]
-    layout.hold(blocks)
+    discretisation.hold(blocks)
     size = 3 * len(p.free)
     upper = sparse.triu(sparse.bsr_matrix((blocks, p.indices, p.indptr), shape=(size, size)))
     stiffness = sparse.csc_matrix(upper + sparse.triu(upper, 1).T)
@@ -93,7 +95,7 @@ def timoshenko_frequency(length: float, radius: float) -> tuple[float, float]:
 
 def swing(
     method: str,
-    body: Body,
+    body: DiscretisedBody,
     mode: Mode,
     *,
     periods: float,
@@ -113,7 +115,7 @@ def swing(
         stiffness_damping=stiffness,
         tolerance=1e-7,
     )
-    mesh = body.layout.mesh
+    mesh = body.discretisation.mesh
     run = MARCH[method](body, solver, start=mesh.nodes + amplitude * mode.shape)
     assert run.status == "converged", run.message
     assert np.isclose(run.frames.time[-1], duration, rtol=1e-12)

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from tisim import laws
-from tisim._beam_system import BeamSystem
-from tisim._body import Body, Layout
-from tisim._newton import newton
+from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.mesh import Mesh, boundary_facets
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.refine import to_quadratic
+from tisim.nonlinear.newton import newton
+from tisim.problems.beam.system import BeamSystem
 from tisim.result import Result, Status
 from tisim.scene import Beam, Material
 
@@ -96,13 +96,17 @@ def boundary(mesh: Mesh) -> np.ndarray:
     return np.unique(boundary_facets(mesh.kind, mesh.elements))
 
 
-def body_of(mesh: Mesh, law: str, fixed: Any, *, ratio: float = 50.0, held: Any = None, **kw: Any) -> Body:
+def body_of(
+    mesh: Mesh, law: str, fixed: Any, *, ratio: float = 50.0, held: Any = None, **kw: Any
+) -> DiscretisedBody:
     """A body of G = 10 kPa and K = ratio * G."""
     material = Material(law=law, parameters=laws.get(law).from_moduli(1e4, ratio * 1e4))
-    return Body(Layout.build(mesh, np.asarray(fixed, dtype=np.int32), held), material, **kw)
+    return DiscretisedBody(
+        Discretisation.build(mesh, np.asarray(fixed, dtype=np.int32), held), material, **kw
+    )
 
 
-def settle(body: Body, start: np.ndarray, pressure: np.ndarray | None = None) -> np.ndarray:
+def settle(body: DiscretisedBody, start: np.ndarray, pressure: np.ndarray | None = None) -> np.ndarray:
     """Equilibrium without load from `start`, whose fixed nodes stay where they are, down to rounding.
 
     pressure: of the elements, to iterate as unknowns first (quick); then the potential is minimised.

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from static_cases import awkward, body_of
 
-from tisim import _linear
-from tisim._beam import solve_beam
-from tisim._linear import DirectSolver
+from tisim.linear import direct
+from tisim.linear.direct import DirectSolver
+from tisim.problems.beam.solve import solve_beam
 from tisim.scene import Beam
 
 CASES = [
@@ -32,7 +32,7 @@ def case(kind, law, ratio, *, held=False, cells=(2, 1, 1)):
 
 def dense(body, blocks):
     """The whole symmetric matrix (3 n_free, 3 n_free)."""
-    p = body.layout.pattern
+    p = body.discretisation.pattern
     n = len(p.free)
     K = np.zeros((n, 3, n, 3))
     rows = np.repeat(np.arange(n), np.diff(p.indptr))
@@ -43,7 +43,7 @@ def dense(body, blocks):
 
 def hessian(body, x, h=1e-7):
     """Central differences of the internal forces over the free nodes."""
-    free = body.layout.pattern.free
+    free = body.discretisation.pattern.free
     columns = []
     for node in free:
         for axis in range(3):
@@ -71,12 +71,12 @@ def test_forces_are_the_slope_of_the_energy(kind, law, ratio):
 def test_blocks_are_the_hessian_of_the_energy(kind, law, ratio):
     body, x = case(kind, law, ratio)
     if kind == "hex8":
-        conn = body.layout.mesh.elements
+        conn = body.discretisation.mesh.elements
         assert (np.diff(np.sort(conn, axis=1), axis=1) == 0).any()  # wedges are among them
     blocks = body.stiffness(x)[0]
     K = dense(body, blocks)
     assert np.abs(K - hessian(body, x)).max() < 1e-6 * np.abs(K).max()
-    diagonal = blocks[body.layout.pattern.indptr[:-1]]
+    diagonal = blocks[body.discretisation.pattern.indptr[:-1]]
     assert np.abs(diagonal - np.swapaxes(diagonal, 1, 2)).max() < 1e-12 * np.abs(K).max()
 
 
@@ -85,8 +85,8 @@ def test_held_components_leave_the_system(kind):
     body, x = case(kind, "neo-hookean", 50.0, held=True)
     blocks = body.stiffness(x)[0]
     full = dense(body, blocks)
-    body.layout.hold(blocks)
-    held = body.layout.held.ravel()
+    body.discretisation.hold(blocks)
+    held = body.discretisation.held.ravel()
     assert 3 < held.sum() < held.size / 2
     K = dense(body, blocks)
     assert np.array_equal(K[~held][:, ~held], full[~held][:, ~held])
@@ -99,15 +99,15 @@ def test_held_components_leave_the_system(kind):
 @pytest.mark.parametrize("pardiso", [True, False])
 @pytest.mark.parametrize("kind", ["tet10", "hex8"])
 def test_both_solvers_solve_and_refactorise(kind, pardiso, monkeypatch):
-    if pardiso and not _linear.HAVE_PARDISO:
+    if pardiso and not direct.HAVE_PARDISO:
         pytest.skip("MKL is not here")
-    monkeypatch.setattr(_linear, "HAVE_PARDISO", pardiso)
+    monkeypatch.setattr(direct, "HAVE_PARDISO", pardiso)
     body, x = case(kind, "neo-hookean", 50.0, held=True)
-    p = body.layout.pattern
+    p = body.discretisation.pattern
     solver = DirectSolver(p.indptr, p.indices)
     for scale in (1.0, 3.0):
         blocks = scale * body.stiffness(x)[0]
-        body.layout.hold(blocks)
+        body.discretisation.hold(blocks)
         rhs = np.random.default_rng(2).normal(size=(len(p.free), 3))
         solver.factorise(blocks)
         found = solver.solve(rhs)
@@ -122,8 +122,8 @@ def test_beam_is_the_same_without_pardiso(monkeypatch):
 
     scene = Beam(material=neo_hookean(2e4, 1000.0), length=0.05)
     fast = solve_beam(scene)
-    monkeypatch.setattr(_linear, "HAVE_PARDISO", False)
-    # its own mesh object has its own layout, and so its own solver
+    monkeypatch.setattr(direct, "HAVE_PARDISO", False)
+    # its own mesh object has its own discretisation, and so its own solver
     slow = solve_beam(Beam(material=scene.material, length=0.05, mesh=fast.mesh))
     assert fast.ok
     assert slow.ok

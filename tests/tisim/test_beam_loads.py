@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from static_cases import deflection, neo_hookean
 
-from tisim._beam import solve_beam
-from tisim._beam_system import beam_layout
 from tisim.bodies import Circle, Rectangle
 from tisim.mesh import Mesh
 from tisim.mesh.beam import beam_mesh
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.refine import to_quadratic
+from tisim.problems.beam.solve import solve_beam
+from tisim.problems.beam.system import beam_discretisation
 from tisim.scene import Beam, Material, Solver
 
 SOFT = neo_hookean(2e4, 100.0)
@@ -38,7 +38,13 @@ def test_linear_elements_come_near_as_the_mesh_gets_finer():
     right = deflection(solve_beam(scene))[2]
     errors = {}
     for element, rings in (("tet4", 2), ("tet4", 4), ("hex8", 2), ("hex8", 4)):
-        finer = Beam(material=scene.material, length=0.05, element=element, rings=rings, layer=0.014 / rings)
+        finer = Beam(
+            material=scene.material,
+            length=0.05,
+            element=element,
+            radial_elements=rings,
+            axial_element_size=0.014 / rings,
+        )
         errors[element, rings] = 1 - deflection(solve_beam(finer))[2] / right
     assert 0.5 < errors["tet4", 4] < errors["tet4", 2] < 0.75
     assert abs(errors["hex8", 4]) < 0.03
@@ -127,7 +133,7 @@ def test_rectangle_is_stiffer_on_edge_by_the_square_of_its_sides():
 def test_own_unstructured_mesh_of_the_same_beam():
     """A beam of jittered, renumbered tetrahedra."""
     section = Rectangle(width=0.016, height=0.016)
-    plain = beam_mesh(length=0.05, section=section, kind="tet4", rings=3, layer=0.004)
+    plain = beam_mesh(length=0.05, section=section, kind="tet4", radial_elements=3, axial_element_size=0.004)
     rng = np.random.default_rng(4)
     x = plain.nodes.copy()
     inside = (np.abs(x[:, 1:]).max(axis=1) < 0.0079) & (x[:, 0] > 1e-6) & (x[:, 0] < 0.05 - 1e-6)
@@ -163,5 +169,5 @@ def test_scene_that_cannot_be_built_says_why():
 
 def test_candidates_on_one_mesh_share_its_layout():
     one, two = Beam(material=SOFT, length=0.07), Beam(material=neo_hookean(1e4, 20), length=0.07)
-    assert beam_layout(one) is beam_layout(two)
-    assert beam_layout(one) is not beam_layout(Beam(material=SOFT, length=0.08))
+    assert beam_discretisation(one) is beam_discretisation(two)
+    assert beam_discretisation(one) is not beam_discretisation(Beam(material=SOFT, length=0.08))

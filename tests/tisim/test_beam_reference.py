@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from static_cases import beam_of, deflection, neo_hookean, of_reference, references, settle
 
-from tisim._beam import solve_beam
-from tisim._body import Body, Layout
 from tisim.bodies import Circle, Rectangle
+from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.mesh import Mesh
 from tisim.mesh.beam import beam_mesh
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.refine import to_quadratic
+from tisim.problems.beam.solve import solve_beam
 from tisim.scene import Beam
 
 BEAMS = references("beams.json")["beams"]
@@ -35,7 +35,12 @@ def test_error_falls_with_the_mesh_at_a_steady_order():
     values = []
     for n in (1, 2, 4):
         mesh = beam_mesh(
-            length=0.05, section=Circle(radius=0.01), rings=n, layer=0.0125 / n, mirror=True, grading=(1.0,)
+            length=0.05,
+            section=Circle(radius=0.01),
+            radial_elements=n,
+            axial_element_size=0.0125 / n,
+            mirror=True,
+            grading=(1.0,),
         )
         values.append(deflection(solve_beam(Beam(material=neo_hookean(1e6, 20), length=0.05, mesh=mesh)))[2])
     order = np.log2((values[0] - values[1]) / (values[1] - values[2]))
@@ -64,7 +69,7 @@ def graded_cube(side, rings):
     """Half a cube, y > 0, as a beam along x, which is the cube's z; graded towards all faces."""
     mesh = beam_mesh(
         length=side, section=Rectangle(width=side, height=side), supports="clamped-clamped",
-        rings=rings, layer=side / 2 / rings, mirror=True, kind="tet4", grading=(1.0,),
+        radial_elements=rings, axial_element_size=side / 2 / rings, mirror=True, kind="tet4", grading=(1.0,),
     )  # fmt: skip
     share = mesh.nodes / side + [-0.5, 0.0, 0.0]  # -1/2 to 1/2
     x = side * (0.25 * share + 0.75 * np.sin(np.pi * share) / 2 + [0.5, 0.0, 0.0])
@@ -87,7 +92,7 @@ def plate_forces(entry, rings):
     side, push, shear = about["side"], about["push"], about["shear"]
     mesh = graded_cube(side, rings)
     near, far = mesh.node_sets["clamp"], mesh.node_sets["far_clamp"]
-    body = Body(Layout.build(mesh, np.concatenate([near, far])), of_reference(entry))
+    body = DiscretisedBody(Discretisation.build(mesh, np.concatenate([near, far])), of_reference(entry))
     x, at, found = mesh.nodes, np.zeros(2), []
     path = [(push * k / 2, 0.0) for k in (1, 2)] + [(push, shear * k / 3) for k in (1, 2, 3)]
     for travel in path:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from static_cases import neo_hookean
 
-from tisim import _beam_equilibrium
-from tisim._beam import solve_beam
-from tisim._beam_system import beam_layout, beam_system
+from tisim.problems.beam import equilibrium
+from tisim.problems.beam.solve import solve_beam
+from tisim.problems.beam.system import beam_discretisation, beam_system
 from tisim.result import Status
 from tisim.scene import Beam, Material, Solver
 
@@ -19,7 +19,7 @@ BEAMS = [("clamped-free", 0.05), ("clamped-free", 0.1), ("clamped-clamped", 0.15
 def test_load_steps_from_rest_give_the_same_answer(supports, length, mu, ratio, monkeypatch):
     scene = Beam(material=neo_hookean(mu, ratio), length=length, supports=supports)
     quick = solve_beam(scene)
-    monkeypatch.setattr(_beam_equilibrium, "rod_shape", lambda *_: None)
+    monkeypatch.setattr(equilibrium, "rod_shape", lambda *_: None)
     slow = solve_beam(scene)
     assert quick.ok
     assert slow.ok
@@ -34,9 +34,9 @@ def test_load_steps_without_element_pressures(monkeypatch):
     """Where the mixed iteration fails the potential with its line search takes over."""
     scene = Beam(material=neo_hookean(4e4, 100.0), length=0.1, solver=Solver(max_iterations=100))
     quick = solve_beam(scene)
-    monkeypatch.setattr(_beam_equilibrium, "rod_shape", lambda *_: None)
-    failed = _beam_equilibrium.Outcome(quick.mesh.nodes, Status.NOT_CONVERGED, 1.0, 1)
-    monkeypatch.setattr(_beam_equilibrium, "mixed_newton", lambda *_: failed)
+    monkeypatch.setattr(equilibrium, "rod_shape", lambda *_: None)
+    failed = equilibrium.Outcome(quick.mesh.nodes, Status.NOT_CONVERGED, 1.0, 1)
+    monkeypatch.setattr(equilibrium, "mixed_newton", lambda *_: failed)
     slow = solve_beam(scene)
     assert slow.ok
     size = np.abs(quick.positions - quick.mesh.nodes).max()
@@ -81,15 +81,15 @@ def test_no_load_is_rest():
 def test_bent_rods_sections_keep_their_volume(supports, length, monkeypatch):
     """Flat sections change in volume by the bending strain."""
     scene = Beam(material=neo_hookean(2e4, 1000.0), length=length, supports=supports)
-    layout = beam_layout(scene)
-    body = beam_system(scene, layout).body
-    middle = layout.mesh.nodes[layout.mesh.elements].mean(axis=1)[:, 0]
+    discretisation = beam_discretisation(scene)
+    body = beam_system(scene, discretisation).body
+    middle = discretisation.mesh.nodes[discretisation.mesh.elements].mean(axis=1)[:, 0]
     free = (middle > 0.015) & (middle < length - (0.015 if supports == "clamped-clamped" else 0.0))
 
     def largest_change():
-        guess = _beam_equilibrium.rod_shape(scene, body)
-        return np.abs(body.pressures(guess)[free]).max() / body.moduli.bulk
+        guess = equilibrium.rod_shape(scene, body)
+        return np.abs(body.pressures(guess)[free]).max() / body.moduli.bulk_modulus
 
     bent = largest_change()
-    monkeypatch.setattr(_beam_equilibrium, "HELD", 1e3)  # clamps hold all sections flat
+    monkeypatch.setattr(equilibrium, "HELD", 1e3)  # clamps hold all sections flat
     assert bent < 0.25 * largest_change()

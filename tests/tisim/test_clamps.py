@@ -7,14 +7,14 @@ import pytest
 from static_cases import deflection, neo_hookean
 
 import tisim
-from tisim import _imperfect
-from tisim._batch import make_chunks
-from tisim._beam import solve_beam
-from tisim._beam_system import beam_layout
-from tisim._imperfect import clamp_moments, imperfect_system
 from tisim.bodies import Circle
+from tisim.parallel.chunks import make_chunks
+from tisim.problems.beam import imperfect
+from tisim.problems.beam.imperfect import clamp_moments, imperfect_system
+from tisim.problems.beam.solve import solve_beam
+from tisim.problems.beam.system import beam_discretisation
 from tisim.result import Status
-from tisim.scene import Beam, Clamps, Material, Solver, Specimen, Void
+from tisim.scene import Beam, ClampImperfections, Imperfections, Material, Solver, Void
 
 G, DENSITY = 9.81, 1000.0
 SOFT = neo_hookean(1.5e4, 50.0)
@@ -28,13 +28,19 @@ BRIDGE = {"length": 0.15, "supports": "clamped-clamped"}
 
 
 def soft(**kw):
-    return Beam(**({"material": SOFT, "length": 0.1, "rings": 1} | kw))
+    return Beam(**({"material": SOFT, "length": 0.1, "radial_elements": 1} | kw))
 
 
 def slender(**kw):
     return Beam(
         **(
-            {"material": STIFF, "length": 0.1, "section": Circle(radius=RADIUS), "rings": 1, "layer": 0.005}
+            {
+                "material": STIFF,
+                "length": 0.1,
+                "section": Circle(radius=RADIUS),
+                "radial_elements": 1,
+                "axial_element_size": 0.005,
+            }
             | kw
         )
     )
@@ -48,8 +54,8 @@ def turn(angle):
 
 def moments(result):
     scene = result.scene
-    layout = beam_layout(scene)
-    return clamp_moments(scene, layout, imperfect_system(scene, layout), result.positions[0])
+    discretisation = beam_discretisation(scene)
+    return clamp_moments(scene, discretisation, imperfect_system(scene, discretisation), result.positions[0])
 
 
 def near_angle(result):
@@ -61,7 +67,7 @@ def near_angle(result):
 
 @pytest.mark.parametrize("angle", [0.1, -0.3])
 def test_tilted_cantilever_is_a_cantilever_under_turned_gravity(angle):
-    result = solve_beam(soft(clamps=Clamps(tilt=angle)))
+    result = solve_beam(soft(clamp_imperfections=ClampImperfections(tilt=angle)))
     gravity = tuple(turn(-angle) @ [0.0, 0.0, -G])
     same = solve_beam(soft(gravity=gravity))
     assert result.ok
@@ -73,47 +79,53 @@ def test_tilted_cantilever_is_a_cantilever_under_turned_gravity(angle):
 def test_bridge_with_both_clamps_turned_and_moved_alike_is_a_turned_bridge():
     angle = 0.08
     shift = (0.15 * (np.cos(angle) - 1), 0.15 * np.sin(angle))
-    result = solve_beam(soft(**BRIDGE, clamps=Clamps(tilt=angle, far_tilt=angle, far_shift=shift)))
+    result = solve_beam(
+        soft(**BRIDGE, clamp_imperfections=ClampImperfections(tilt=angle, far_tilt=angle, far_shift=shift))
+    )
     same = solve_beam(soft(**BRIDGE, gravity=tuple(turn(-angle) @ [0.0, 0.0, -G])))
     assert result.ok
     assert np.abs(result.positions[0] - same.positions[0] @ turn(angle).T).max() < 1e-6 * 0.1
 
 
 def test_shift_of_the_far_clamp_pulls_with_the_stretching_stiffness():
-    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(far_shift=(5e-4, 0.0)))
+    scene = slender(
+        **BRIDGE, gravity=(0.0, 0.0, 0.0), clamp_imperfections=ClampImperfections(far_shift=(5e-4, 0.0))
+    )
     result = solve_beam(scene)
     assert result.ok
     assert np.abs(result.support_force).max() < 1e-6  # of both clamps together
-    layout = beam_layout(scene)
-    body = imperfect_system(scene, layout).body
+    discretisation = beam_discretisation(scene)
+    body = imperfect_system(scene, discretisation).body
     near = body.internal_forces(result.positions[0])[0][result.mesh.node_sets["clamp"]].sum(axis=0)
     pull = YOUNG * np.pi * RADIUS**2 * 5e-4 / 0.15
     # ends that cannot contract are stiffer, over a radius or so
-    assert layout.multiplicity * near[0] == pytest.approx(-pull, rel=0.02)
+    assert discretisation.multiplicity * near[0] == pytest.approx(-pull, rel=0.02)
 
 
 def test_shift_across_bends_both_ends():
-    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(far_shift=(0.0, 1e-3)))
+    scene = slender(
+        **BRIDGE, gravity=(0.0, 0.0, 0.0), clamp_imperfections=ClampImperfections(far_shift=(0.0, 1e-3))
+    )
     moment = 6 * BENDING * 1e-3 / 0.15**2
     # the far end is lifted: the rod would lift the near clamp's side and, as much, turn the far one alike
     assert moments(solve_beam(scene)) == pytest.approx([moment, moment], rel=0.02)
 
 
 def test_turned_clamp_carries_four_and_two_of_the_bending_stiffness():
-    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamps=Clamps(tilt=0.01))
+    scene = slender(**BRIDGE, gravity=(0.0, 0.0, 0.0), clamp_imperfections=ClampImperfections(tilt=0.01))
     unit = BENDING / 0.15 * 0.01
     assert moments(solve_beam(scene)) == pytest.approx([-4 * unit, -2 * unit], rel=0.03)
 
 
 def test_yielding_clamp_of_a_cantilever_turns_by_compliance_times_the_weights_moment():
-    result = solve_beam(soft(clamps=Clamps(compliance=8.0, tilt=0.05)))
+    result = solve_beam(soft(clamp_imperfections=ClampImperfections(compliance=8.0, tilt=0.05)))
     assert result.ok
     # statics: the weight of every node at its place; the held ones stand on x = 0 nearly
-    layout = beam_layout(result.scene)
-    weight = DENSITY * G * layout.nodal_volume() * layout.multiplicity
+    discretisation = beam_discretisation(result.scene)
+    weight = DENSITY * G * discretisation.nodal_volume() * discretisation.multiplicity
     moment = weight @ result.positions[0][:, 0]
     assert near_angle(result) - 0.05 == pytest.approx(-8.0 * moment, rel=1e-3)
-    tilted = solve_beam(soft(clamps=Clamps(tilt=near_angle(result))))
+    tilted = solve_beam(soft(clamp_imperfections=ClampImperfections(tilt=near_angle(result))))
     assert np.abs(tilted.positions - result.positions).max() < 1e-6 * 0.1
     assert result.support_force[0] == pytest.approx([0, 0, weight.sum()], rel=1e-5, abs=1e-6)
 
@@ -126,7 +138,7 @@ def test_yielding_clamps_of_a_bridge_as_beam_theory_has_them():
     little = BRIDGE | {"gravity": (0.0, 0.0, -G / 10)}
     compliance = 0.15 / (2 * BENDING)
     ideal = solve_beam(slender(**little))
-    result = solve_beam(slender(**little, clamps=Clamps(compliance=compliance)))
+    result = solve_beam(slender(**little, clamp_imperfections=ClampImperfections(compliance=compliance)))
     moment = LINE / 10 * 0.15**2 / 24
     assert moments(result) == pytest.approx([-moment, moment], rel=0.02)
     assert near_angle(result) == pytest.approx(-compliance * moment, rel=0.02)
@@ -135,8 +147,8 @@ def test_yielding_clamps_of_a_bridge_as_beam_theory_has_them():
 
 @pytest.mark.parametrize("compliance", [1.0, 10.0, 300.0])
 def test_both_clamps_angles_are_what_their_moments_make_them(compliance):
-    clamps = Clamps(compliance=compliance, tilt=0.03, far_tilt=-0.05, far_shift=(0.001, 0.002))
-    result = solve_beam(soft(**BRIDGE, clamps=clamps))
+    clamps = ClampImperfections(compliance=compliance, tilt=0.03, far_tilt=-0.05, far_shift=(0.001, 0.002))
+    result = solve_beam(soft(**BRIDGE, clamp_imperfections=clamps))
     assert result.ok
     near, far = moments(result)
     assert near_angle(result) - 0.03 == pytest.approx(compliance * near, rel=2e-4)
@@ -147,7 +159,7 @@ def test_both_clamps_angles_are_what_their_moments_make_them(compliance):
 
 
 def test_squeezed_sections_keep_their_area():
-    result = solve_beam(soft(**BRIDGE, clamps=Clamps(squeeze=0.1)))
+    result = solve_beam(soft(**BRIDGE, clamp_imperfections=ClampImperfections(squeeze=0.1)))
     rest, found = result.mesh.nodes, result.positions[0]
     for name in ("clamp", "far_clamp"):
         at = result.mesh.node_sets[name]
@@ -162,12 +174,14 @@ def test_squeezed_sections_keep_their_area():
 
 
 def test_clamps_hold_the_tapered_section():
-    result = solve_beam(soft(specimen=Specimen(taper=1.0), clamps=Clamps(tilt=0.1)))
+    result = solve_beam(
+        soft(imperfections=Imperfections(taper=1.0), clamp_imperfections=ClampImperfections(tilt=0.1))
+    )
     at = result.mesh.node_sets["clamp"]
     assert result.positions[0][at] == pytest.approx(0.95 * result.mesh.nodes[at] @ turn(0.1).T, abs=1e-15)
 
 
-WORST = Specimen(
+WORST = Imperfections(
     curvature=2.0,
     taper=0.5,
     axial_gradient=3.0,
@@ -196,14 +210,14 @@ def corners(n):
             ),
             length=length,
             supports=supports,
-            specimen=replace(
+            imperfections=replace(
                 WORST,
                 curvature=2.0 * sign[0],
                 taper=0.5 * sign[1],
                 axial_gradient=3.0 * sign[2],
                 transverse_gradient=40.0 * sign[3],
             ),
-            clamps=Clamps(
+            clamp_imperfections=ClampImperfections(
                 tilt=0.07 * sign[4],
                 far_tilt=0.07 * sign[5] * far,
                 far_shift=(0.002 * sign[6] * far, 0.002 * sign[7] * far),
@@ -221,7 +235,10 @@ def test_strong_imperfections_converge_at_once():
     assert max(r.cost.newton_iterations for r in alone) <= 15
     assert all(r.residual[0] <= 1e-6 and r.min_jacobian[0] > 0.0 for r in alone)
     # in a batch they start from one another, among ideal ones; each answer is its own
-    ideal = [replace(scene, specimen=Specimen(), clamps=Clamps()) for scene in scenes[:6]]
+    ideal = [
+        replace(scene, imperfections=Imperfections(), clamp_imperfections=ClampImperfections())
+        for scene in scenes[:6]
+    ]
     together = tisim.simulate([*scenes, *ideal], workers=1)
     for one, found in zip([*alone, *map(solve_beam, ideal)], together, strict=True):
         assert found.ok
@@ -234,7 +251,7 @@ def test_growing_imperfections_give_the_same_answer(monkeypatch):
     """Without a rod to start from, from the ideal beam's answer."""
     scenes = list(corners(3))
     quick = [solve_beam(scene) for scene in scenes]
-    monkeypatch.setattr(_imperfect, "solve_rod", lambda *_: None)
+    monkeypatch.setattr(imperfect, "solve_rod", lambda *_: None)
     for scene, known in zip(scenes, quick, strict=True):
         slow = solve_beam(scene)
         assert slow.ok
@@ -246,20 +263,23 @@ def test_growing_imperfections_give_the_same_answer(monkeypatch):
 def test_start_that_fails_does_not_spoil_the_next(monkeypatch):
     """The angles that a neighbour's start has been brought to are not those of the rod's."""
     # so little yield that angles which are wrong by the rod's error would pass for right
-    first, second = soft(clamps=Clamps(compliance=0.2)), soft(clamps=Clamps(compliance=0.05, tilt=0.02))
+    first, second = (
+        soft(clamp_imperfections=ClampImperfections(compliance=0.2)),
+        soft(clamp_imperfections=ClampImperfections(compliance=0.05, tilt=0.02)),
+    )
     alone = solve_beam(second)
-    layout = beam_layout(first)
-    neighbour = _imperfect.imperfect_equilibrium(first, layout).neighbour
+    discretisation = beam_discretisation(first)
+    neighbour = imperfect.imperfect_equilibrium(first, discretisation).neighbour
     assert neighbour is not None
-    newton, calls = _imperfect.mixed_newton, []
+    newton, calls = imperfect.mixed_newton, []
 
     def failing(*arguments):
         calls.append(1)
         outcome = newton(*arguments)
         return replace(outcome, status=Status.NOT_CONVERGED) if len(calls) == 2 else outcome
 
-    monkeypatch.setattr(_imperfect, "mixed_newton", failing)
-    found = _imperfect.imperfect_equilibrium(second, layout, neighbour)
+    monkeypatch.setattr(imperfect, "mixed_newton", failing)
+    found = imperfect.imperfect_equilibrium(second, discretisation, neighbour)
     assert found.outcome.status is Status.CONVERGED
     assert found.counts["steps"] == 1
     assert len(calls) > 3
@@ -267,7 +287,11 @@ def test_start_that_fails_does_not_spoil_the_next(monkeypatch):
 
 
 def test_imperfect_beams_share_the_ideal_ones_mesh():
-    scenes = [soft(), soft(clamps=Clamps(tilt=0.1)), soft(specimen=Specimen(taper=0.5))]
+    scenes = [
+        soft(),
+        soft(clamp_imperfections=ClampImperfections(tilt=0.1)),
+        soft(imperfections=Imperfections(taper=0.5)),
+    ]
     assert [chunk.indices for chunk in make_chunks(scenes)] == [(0, 1, 2)]
     ideal, *others = tisim.simulate(scenes, workers=1)
     assert all(other.mesh is ideal.mesh for other in others)
@@ -275,8 +299,8 @@ def test_imperfect_beams_share_the_ideal_ones_mesh():
 
 def test_no_answer_is_said():
     """A bridge a third shorter than its beam, squeezed to half, in few iterations."""
-    clamps = Clamps(far_shift=(-0.07, 0.0), squeeze=0.5, far_tilt=-0.8, tilt=-0.8)
-    result = solve_beam(soft(**BRIDGE, clamps=clamps, solver=Solver(max_iterations=3)))
+    clamps = ClampImperfections(far_shift=(-0.07, 0.0), squeeze=0.5, far_tilt=-0.8, tilt=-0.8)
+    result = solve_beam(soft(**BRIDGE, clamp_imperfections=clamps, solver=Solver(max_iterations=3)))
     assert result.status is not Status.CONVERGED
     assert result.positions.shape[0] == 0
     assert "of the imperfections" in result.message
@@ -286,7 +310,7 @@ def test_load_across_the_mirror_plane():
     """Gravity along y: the tilt turns the ideal beam about the direction of its load."""
     scene = soft(gravity=(0.0, -G, 0.0))
     ideal = solve_beam(scene)
-    tilted = solve_beam(replace(scene, clamps=Clamps(tilt=0.2)))
+    tilted = solve_beam(replace(scene, clamp_imperfections=ClampImperfections(tilt=0.2)))
     assert tilted.ok
     assert tilted.cost.steps == 1
     assert np.abs(tilted.positions[0] - ideal.positions[0] @ turn(0.2).T).max() < 1e-6 * 0.1
@@ -295,18 +319,36 @@ def test_load_across_the_mirror_plane():
 @pytest.mark.parametrize(
     ("clamps", "message"),
     [
-        (Clamps(tilt=1.0), "clamps.tilt: expected a number between -0.8 and 0.8 rad"),
-        (Clamps(tilt=np.inf), "clamps.tilt: expected a number"),
-        (Clamps(far_tilt=0.1), "clamps.far_tilt: expected 0 on a beam without a far clamp"),
-        (Clamps(far_shift=(0.0, 0.1)), "clamps.far_shift: expected less than half the length"),
-        (Clamps(far_shift=(0.0, 0.01)), "clamps.far_shift: expected 0 on a beam without"),
-        (Clamps(far_shift=(0.0, 0.0, 0.0)), "clamps.far_shift: expected 2 finite numbers"),
-        (Clamps(compliance=-1.0), r"clamps.compliance: expected a compliance of 0 rad/\(N m\) or more"),
-        (Clamps(squeeze=0.6), "clamps.squeeze: expected a part between 0 and 0.5"),
-        (None, "clamps: expected Clamps"),
+        (
+            ClampImperfections(tilt=1.0),
+            "clamp_imperfections.tilt: expected a number between -0.8 and 0.8 rad",
+        ),
+        (ClampImperfections(tilt=np.inf), "clamp_imperfections.tilt: expected a number"),
+        (
+            ClampImperfections(far_tilt=0.1),
+            "clamp_imperfections.far_tilt: expected 0 on a beam without a far clamp",
+        ),
+        (
+            ClampImperfections(far_shift=(0.0, 0.1)),
+            "clamp_imperfections.far_shift: expected less than half the length",
+        ),
+        (
+            ClampImperfections(far_shift=(0.0, 0.01)),
+            "clamp_imperfections.far_shift: expected 0 on a beam without",
+        ),
+        (
+            ClampImperfections(far_shift=(0.0, 0.0, 0.0)),
+            "clamp_imperfections.far_shift: expected 2 finite numbers",
+        ),
+        (
+            ClampImperfections(compliance=-1.0),
+            r"clamp_imperfections.compliance: expected a compliance of 0 rad/\(N m\) or more",
+        ),
+        (ClampImperfections(squeeze=0.6), "clamp_imperfections.squeeze: expected a part between 0 and 0.5"),
+        (None, "clamp_imperfections: expected ClampImperfections"),
     ],
 )
 def test_clamps_that_cannot_be_are_refused_in_one_sentence(clamps, message):
     with pytest.raises(ValueError, match=f"scene 0: Beam.{message}") as caught:
-        tisim.simulate([soft(clamps=clamps)], workers=1)
+        tisim.simulate([soft(clamp_imperfections=clamps)], workers=1)
     assert "\n" not in str(caught.value)

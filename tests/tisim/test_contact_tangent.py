@@ -7,10 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 import tisim
-from tisim._body import Layout
-from tisim._contact import contact_kernels, pack_rod
-from tisim._poke_system import PokeSystem
-from tisim.mesh.poke_block import poke_mesh
+from tisim.discretisation.body import Discretisation
+from tisim.kernels.contact import contact_kernels, pack_rod
+from tisim.mesh.indentation import poke_mesh
+from tisim.problems.indentation.system import PokeSystem
 
 Array = NDArray[np.float64]
 AXIS = np.array([0.3, -0.2, -0.9]) / np.linalg.norm([0.3, -0.2, -0.9])
@@ -61,7 +61,7 @@ def test_distance_is_that_of_the_rod(rod: tisim.Rod) -> None:
 def system(friction: float) -> tuple[PokeSystem, Array]:
     """A rod 0.2 mm into a block that is pushed out of shape a little, part of the contact slipping."""
     scene = tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         friction=friction,
         direction=tuple(AXIS),  # type: ignore[arg-type]
         depth=0.002,
@@ -69,7 +69,7 @@ def system(friction: float) -> tuple[PokeSystem, Array]:
     mesh = poke_mesh(
         block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod, refinement=0.5
     )
-    it = PokeSystem(scene, Layout.build(mesh, mesh.node_sets["base"]))
+    it = PokeSystem(scene, Discretisation.build(mesh, mesh.node_sets["base"]))
     it.move_to(0.0008)
     rng = np.random.default_rng(2)
     x = mesh.nodes + 2e-5 * rng.standard_normal(mesh.nodes.shape)
@@ -90,10 +90,10 @@ def tangent_times(it: PokeSystem, v: Array) -> Array:
 def test_tangent_is_the_derivative_of_the_residual(friction: float) -> None:
     it, x = system(friction)
     rng = np.random.default_rng(3)
-    free = it.layout.pattern.free
+    free = it.discretisation.pattern.free
     touched = np.unique(it.facets)
     v = np.zeros((len(free), 3))
-    rows = it.layout.pattern.index[touched]
+    rows = it.discretisation.pattern.index[touched]
     v[rows[rows >= 0]] = rng.standard_normal((int((rows >= 0).sum()), 3))
     h = 2e-10
     step = np.zeros_like(x)
@@ -109,7 +109,7 @@ def test_force_is_the_derivative_of_the_energy_without_friction() -> None:
     it, x = system(0.0)
     r = residual(it, x)
     rng = np.random.default_rng(4)
-    free = it.layout.pattern.free
+    free = it.discretisation.pattern.free
     v = rng.standard_normal((len(free), 3))
     h = 1e-9
     step = np.zeros_like(x)

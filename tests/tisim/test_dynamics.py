@@ -18,13 +18,13 @@ from dynamic_cases import (
     tip,
 )
 
-from tisim import _explicit, _implicit
-from tisim._beam import solve_beam
-from tisim._dynamics import solve_dynamic
-from tisim._mass import consistent_mass, lumped_mass
+from tisim import paper_stop
 from tisim.bodies import Circle, Rectangle
+from tisim.discretisation.mass import consistent_mass, lumped_mass
 from tisim.mesh.beam import beam_mesh
-from tisim.paper_stop import paper_stop
+from tisim.problems.beam.solve import solve_beam
+from tisim.problems.dynamics import explicit, implicit
+from tisim.problems.dynamics.solve import solve_dynamic
 from tisim.result import Status
 from tisim.scene import Beam, Solver
 
@@ -77,10 +77,10 @@ def test_a_swing_through_equilibrium_is_not_rest():
     body = body_of(SHORT)
     mode = first_mode(body, lumped=False)
     equilibrium = solve_beam(SHORT).positions[-1]
-    sag = abs(tip(body.layout.mesh, equilibrium)[2])
+    sag = abs(tip(body.discretisation.mesh, equilibrium)[2])
     period = 2.0 * np.pi / mode.w
     solver = Solver(duration=2.0 * period, time_step=period / 200, until_rest=True, tolerance=0.1)
-    run = _implicit.march(body, solver, start=equilibrium + 0.5 * sag * mode.shape)
+    run = implicit.march(body, solver, start=equilibrium + 0.5 * sag * mode.shape)
     assert min(run.frames.residual) < solver.tolerance  # it passes by
     assert run.status is Status.UNFINISHED
     assert "nothing damps" in run.message
@@ -136,7 +136,7 @@ def test_steps_of_changing_length_keep_the_order():
     rng = np.random.default_rng(1)
     for _ in range(20):
         h, before = rng.uniform(0.5, 2.0, 2)
-        c = np.array(_implicit.difference(h, before))
+        c = np.array(implicit.difference(h, before))
         times = np.array([0.0, -h, -h - before])
         moments = [c.sum(), c @ times, c @ times**2]
         np.testing.assert_allclose(moments, [0.0, 1.0, 0.0], atol=1e-12)
@@ -163,8 +163,8 @@ def test_damped_explicit_run_accounts_for_what_damping_took():
 def test_the_stable_step_is_sharp_and_a_longer_one_is_reported(stiffness_damping):
     solver = Solver(duration=0.02, time_step=0.01, stiffness_damping=stiffness_damping)
     body = body_of(SHORT)
-    below = _explicit.march(body, solver, safety=0.98)
-    above = _explicit.march(body, solver, safety=1.03)
+    below = explicit.march(body, solver, safety=0.98)
+    above = explicit.march(body, solver, safety=1.03)
     assert below.status is Status.CONVERGED
     assert below.drift < 1e-4
     assert above.status is Status.DIVERGED
@@ -174,7 +174,7 @@ def test_the_stable_step_is_sharp_and_a_longer_one_is_reported(stiffness_damping
 
 
 def test_a_diverged_run_shows_in_the_result(monkeypatch):
-    monkeypatch.setattr(_explicit.march, "__kwdefaults__", _explicit.march.__kwdefaults__ | {"safety": 1.1})
+    monkeypatch.setattr(explicit.march, "__kwdefaults__", explicit.march.__kwdefaults__ | {"safety": 1.1})
     result = solve_dynamic(replace(SHORT, solver=Solver(method="explicit", duration=0.1)))
     assert result.status is Status.DIVERGED
     assert result.message
@@ -201,7 +201,9 @@ def test_a_mode_decays_at_half_of_the_rayleigh_rate(method, mass, stiffness):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_turning_the_world_about_the_axis_turns_the_answer(method):
-    mesh = beam_mesh(length=0.03, section=Rectangle(width=0.012, height=0.008), layer=0.01, rings=1)
+    mesh = beam_mesh(
+        length=0.03, section=Rectangle(width=0.012, height=0.008), axial_element_size=0.01, radial_elements=1
+    )
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
     solver = Solver(method=method, duration=0.02, time_step=1e-3, stiffness_damping=1e-4, tolerance=1e-10)
@@ -218,10 +220,12 @@ def test_turning_the_world_about_the_axis_turns_the_answer(method):
 
 def test_a_free_body_keeps_its_momentum_and_its_spin():
     scene = Beam(
-        material=SOFT, length=0.03, mesh=beam_mesh(length=0.03, section=Circle(radius=0.01), rings=1)
+        material=SOFT,
+        length=0.03,
+        mesh=beam_mesh(length=0.03, section=Circle(radius=0.01), radial_elements=1),
     )
     body = free_body(scene)
-    mesh = body.layout.mesh
+    mesh = body.discretisation.mesh
     x = mesh.nodes - [0.015, 0.0, 0.0]
     velocity = np.array([0.3, -0.2, 0.1]) + np.cross([3.0, 40.0, 20.0], x)
     velocity[:, 2] += 20.0 * x[:, 0] ** 2 / 0.03  # bent too
@@ -242,8 +246,10 @@ def test_a_free_body_keeps_its_momentum_and_its_spin():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_free_flight_strains_nothing(method):
-    body = free_body(replace(SHORT, mesh=beam_mesh(length=0.03, section=Circle(radius=0.01), rings=1)))
-    nodes = body.layout.mesh.nodes
+    body = free_body(
+        replace(SHORT, mesh=beam_mesh(length=0.03, section=Circle(radius=0.01), radial_elements=1))
+    )
+    nodes = body.discretisation.mesh.nodes
     velocity = np.tile([0.5, -0.2, 0.1], (len(nodes), 1))
     run = MARCH[method](body, Solver(duration=0.1, stiffness_damping=1e-4, time_step=0.01), velocity=velocity)
     assert run.status is Status.CONVERGED
@@ -275,7 +281,7 @@ def test_an_implicit_run_without_convergence_says_so_after_cutting_its_step():
     result = solve_dynamic(replace(SHORT, solver=solver))
     assert result.status is Status.NOT_CONVERGED
     assert "converges" in result.message
-    assert result.cost.step_cuts == _implicit.MOST_HALVINGS
+    assert result.cost.step_cuts == implicit.MOST_HALVINGS
     assert len(result.load) == 0
 
 
@@ -290,7 +296,7 @@ def test_a_step_that_is_too_long_is_cut_and_frames_stay_on_time():
 
 
 def test_cut_steps_grow_again_only_where_they_meet_the_frames(monkeypatch):
-    real, calls = _implicit.newton, []
+    real, calls = implicit.newton, []
 
     def failing(system, x, **options):
         calls.append(1)
@@ -298,7 +304,7 @@ def test_cut_steps_grow_again_only_where_they_meet_the_frames(monkeypatch):
         bad = len(calls) in (1, 2, 4)  # down to a quarter, one step, down to an eighth
         return replace(outcome, status=Status.NOT_CONVERGED) if bad else outcome
 
-    monkeypatch.setattr(_implicit, "newton", failing)
+    monkeypatch.setattr(implicit, "newton", failing)
     solver = Solver(method="implicit", duration=0.1, time_step=0.01)
     result = solve_dynamic(replace(SHORT, solver=solver))
     assert result.ok
@@ -341,7 +347,7 @@ def test_many_steps_keep_at_most_500_frames_and_the_end():
 
 
 def test_the_papers_rule_stops_before_equilibrium():
-    scene = Beam(material=SOFT, length=0.05, layer=0.01, rings=1)
+    scene = Beam(material=SOFT, length=0.05, axial_element_size=0.01, radial_elements=1)
     static = solve_beam(scene)
     solver = Solver(method="implicit", time_step=1e-3, duration=0.25, mass_damping=0.1, stiffness_damping=0.1)
     run = solve_dynamic(replace(scene, solver=solver))

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_bvp
 from static_cases import deflection, neo_hookean
 
-from tisim._beam import solve_beam
 from tisim.bodies import Circle, Rectangle
+from tisim.problems.beam.solve import solve_beam
 from tisim.scene import Beam
 
 LENGTH, RATIO, DENSITY, G = 0.1, 1000.0, 1000.0, 9.81
@@ -50,7 +50,7 @@ def test_thin_cantilever_is_the_elastica(section, mu, tip):
         length=LENGTH,
         section=section,
         tip_force=(0.0, 0.0, -tip),
-        layer=0.004,
+        axial_element_size=0.004,
     )
     result = solve_beam(scene)
     found = deflection(result)[[0, 2]]

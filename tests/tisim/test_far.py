@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from tisim._far import FarField
-from tisim._pattern import build
+from tisim.linear.blocks import pattern_of
+from tisim.problems.indentation.far_field import FarField
 
 Array = NDArray[np.float64]
 NODES = 12
@@ -18,7 +18,7 @@ FREE_ROWS = 9
 def field(rng: np.random.Generator) -> tuple[FarField, Array, NDArray[np.int32]]:
     """On the last five nodes of a chain, its stiffness, and the rows of the five."""
     conn = np.array([[k, k + 1] for k in range(NODES - 1)], dtype=np.int32)
-    pattern = build(conn, NODES, np.array([0, 1, 2], dtype=np.int32))
+    pattern = pattern_of(conn, NODES, np.array([0, 1, 2], dtype=np.int32))
     nodes = np.arange(7, 12, dtype=np.int32)
     it = FarField(nodes, pattern)
     root = rng.standard_normal((15, 15))
@@ -70,7 +70,7 @@ def test_the_factor_is_positive_where_distant_pairs_are_left_out() -> None:
     others on the diagonal they are positive, and the spectrum of one by the other is narrow."""
     line = np.linspace(0.0, 1.0, 40)
     conn = np.array([[k, k + 1] for k in range(39)], dtype=np.int32)
-    pattern = build(conn, 40, np.zeros(0, dtype=np.int32))
+    pattern = pattern_of(conn, 40, np.zeros(0, dtype=np.int32))
     it = FarField(np.arange(40, dtype=np.int32), pattern)
     away = np.abs(line[:, None] - line)
     stiffness = np.kron(np.exp(-away / 0.1) + 0.1 * np.eye(40), np.eye(3))
@@ -88,7 +88,7 @@ def test_the_factor_is_positive_whatever_is_left_out() -> None:
     """A band of which the outer diagonals carry the balance, (1 + cos t)^2: three tenths of what is left out
     do not make up for it, and the share grows until it does."""
     conn = np.array([[k, k + 1] for k in range(39)], dtype=np.int32)
-    it = FarField(np.arange(40, dtype=np.int32), build(conn, 40, np.zeros(0, dtype=np.int32)))
+    it = FarField(np.arange(40, dtype=np.int32), pattern_of(conn, 40, np.zeros(0, dtype=np.int32)))
     band = sum(v * np.eye(40, k=k) for k, v in ((0, 1.51), (1, 1.0), (-1, 1.0), (2, 0.25), (-2, 0.25)))
     stiffness = np.kron(band, np.eye(3))
     it.set_stiffness(stiffness.astype(np.float32))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tisim import _pattern
-from tisim._krylov import SMALLEST_SHIFT, FactorGMRES
+from tisim.linear.blocks import pattern_of
+from tisim.linear.krylov import SMALLEST_SHIFT, FactorGMRES
 
 Array = NDArray[np.float64]
 NODES = 6
@@ -28,7 +28,7 @@ def positive(rng: np.random.Generator) -> Array:
 def test_solution_is_that_of_the_dense_matrix(stiffened: bool) -> None:
     rng = np.random.default_rng(5)
     conn = np.arange(NODES, dtype=np.int32)[None]  # one element: every pair of nodes
-    solver = FactorGMRES(_pattern.build(conn, NODES, np.zeros(0, dtype=np.int32)))
+    solver = FactorGMRES(pattern_of(conn, NODES, np.zeros(0, dtype=np.int32)))
     old, now = positive(rng), positive(rng)
     unsymmetric = rng.standard_normal((3 * NODES, 3 * NODES))
     rhs = rng.standard_normal((NODES, 3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tisim._newton import newton
+from tisim.nonlinear.newton import newton
 from tisim.result import Status
 
 Array = NDArray[np.float64]

@@ -10,16 +10,26 @@ import pytest
 
 import tisim
 
-TABLE = json.loads((Path(__file__).parents[1] / "blind" / "blind_pokes.json").read_text(encoding="utf-8"))
+TABLE = json.loads(
+    (Path(__file__).parents[2] / "benchmarks" / "blind" / "indentation" / "forces.json").read_text(
+        encoding="utf-8"
+    )
+)
 SHEAR = 1e4
 BLOCK = tisim.Block(size=(0.1, 0.1, 0.012))
 ROD = tisim.Rod(radius=4e-3, edge_radius=1.6e-3)
 
 
 def poke(friction: float, *, depth: float = 3e-3, back: float | None = 0.5e-3) -> tisim.Result:
-    soft = tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=300.0 * SHEAR)
+    soft = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
     scene = tisim.Poke(
-        material=soft, block=BLOCK, rod=ROD, depth=depth, back=back, friction=friction, frame_spacing=0.25e-3
+        material=soft,
+        block=BLOCK,
+        rod=ROD,
+        depth=depth,
+        retract_to=back,
+        friction=friction,
+        frame_spacing=0.25e-3,
     )
     (result,) = tisim.simulate([scene], workers=1)
     return result
@@ -35,7 +45,8 @@ def missing(result: tisim.Result, depth: np.ndarray) -> np.ndarray:
 
 
 def test_what_sliding_takes_agrees_with_axisymmetric_elements() -> None:
-    """FElupe at a friction of 0.1 (`python tests/blind/make_poke_table.py --only "thin friction 0.1"`): up to
+    """FElupe at a friction of 0.1 (`python -m benchmarks.blind.indentation.make_table --only "thin
+    friction 0.1"`): up to
     3.5 % of the force is missing. The default mesh is off by 1 % of the force, 1.5 times finer by 0.5 %."""
     result = poke(0.1)
     assert result.status is tisim.Status.CONVERGED
@@ -65,5 +76,5 @@ def test_frames_of_the_way_back_are_equilibria_at_even_depths() -> None:
 
 @pytest.mark.parametrize("back", [-1e-4, 3e-3, float("nan")])
 def test_a_rod_is_drawn_back_to_between_the_surface_and_its_depth(back: float) -> None:
-    with pytest.raises(ValueError, match="back: expected a depth"):
+    with pytest.raises(ValueError, match="retract_to: expected a depth"):
         poke(0.1, back=back)

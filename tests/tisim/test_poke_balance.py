@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tisim._poke_newton import contact_newton
+from tisim.nonlinear.contact_newton import contact_newton
 from tisim.result import Status
 
 Array = NDArray[np.float64]

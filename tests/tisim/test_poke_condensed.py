@@ -9,14 +9,14 @@ import pytest
 from numpy.typing import NDArray
 
 import tisim
-from tisim import _poke_condensed
-from tisim._body import Layout
-from tisim._newton import Outcome
-from tisim._poke import solve_poke
-from tisim._poke_condensed import CondensedBlock
-from tisim._poke_newton import contact_newton
-from tisim._poke_system import PokeSystem
-from tisim.mesh.poke_block import poke_mesh
+from tisim.discretisation.body import Discretisation
+from tisim.mesh.indentation import poke_mesh
+from tisim.nonlinear.contact_newton import contact_newton
+from tisim.nonlinear.newton import Outcome
+from tisim.problems.indentation import condensed as condensed_module
+from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.solve import solve_poke
+from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 def scene(depth: float = 0.002) -> tisim.Poke:
     return tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         direction=(0.3, 0.0, -0.9),
         depth=depth,
         refinement=0.5,
@@ -38,7 +38,7 @@ def pressed(depth: float = 0.0003) -> tuple[PokeSystem, Array]:
     mesh = poke_mesh(
         block=poke.block, site=poke.site, direction=poke.direction, rod=poke.rod, refinement=poke.refinement
     )
-    it = PokeSystem(poke, Layout.build(mesh, mesh.node_sets["base"]))
+    it = PokeSystem(poke, Discretisation.build(mesh, mesh.node_sets["base"]))
     it.move_to(depth)
     x = mesh.nodes.copy()
     it.touch(x)
@@ -52,7 +52,7 @@ def test_a_step_is_newtons_on_the_whole_block() -> None:
     """Far tissue eliminated and brought along again: the same linear system, solved in two parts."""
     it, x = pressed()
     rng = np.random.default_rng(3)
-    free = it.layout.pattern.free
+    free = it.discretisation.pattern.free
     x[free] += 2e-5 * rng.standard_normal((len(free), 3))
     residual, _ = it.linearise(x)
     whole = it.step(residual, forcing=1e-9)
@@ -61,7 +61,7 @@ def test_a_step_is_newtons_on_the_whole_block() -> None:
     block._choose(x)
     split = block._split
     assert split is not None
-    assert 30 < len(split.near.body.layout.pattern.free) < 0.6 * len(free)
+    assert 30 < len(split.near.body.discretisation.pattern.free) < 0.6 * len(free)
     it.residual(x)
     left = block._place(split, x)
     part = it.restricted(split.near, split.far)
@@ -85,7 +85,7 @@ def test_equilibrium_is_that_of_the_whole_block() -> None:
     assert outcome.residual == pytest.approx(np.linalg.norm(residual) / load)
     whole = contact_newton(it, x, tolerance=1e-6, max_iterations=40, kept=True)
     assert whole.status is Status.CONVERGED
-    free = it.layout.pattern.free
+    free = it.discretisation.pattern.free
     moved = np.abs(whole.x - x)[free].max()
     assert np.abs(outcome.x - whole.x)[free].max() < 0.02 * moved
 
@@ -139,7 +139,7 @@ def test_trying_a_part_leaves_the_state_of_contact_alone() -> None:
 
 @pytest.mark.parametrize("reach", [-1.0, 100.0], ids=["nothing near", "all near"])
 def test_a_block_without_two_parts_is_solved_whole(monkeypatch: pytest.MonkeyPatch, reach: float) -> None:
-    monkeypatch.setattr(_poke_condensed, "REACH", reach)
+    monkeypatch.setattr(condensed_module, "REACH", reach)
     it, x = pressed()
     block = CondensedBlock(it)
     outcome = block.solve(x, **OPTIONS)
@@ -157,7 +157,7 @@ def test_iterations_end_at_their_limit(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(max_iterations)
         return Outcome(x, Status.NOT_CONVERGED, 1.0, max_iterations)
 
-    monkeypatch.setattr(_poke_condensed, "contact_newton", slow)
+    monkeypatch.setattr(condensed_module, "contact_newton", slow)
     outcome = CondensedBlock(it).solve(x, tolerance=5e-4, max_iterations=20, kept=True)
     assert outcome.status is Status.NOT_CONVERGED
     assert outcome.iterations == 20
@@ -167,13 +167,13 @@ def test_iterations_end_at_their_limit(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("status", [Status.SINGULAR, Status.INVERTED])
 def test_a_near_part_that_fails_says_why(monkeypatch: pytest.MonkeyPatch, status: Status) -> None:
     it, x = pressed()
-    monkeypatch.setattr(_poke_condensed, "contact_newton", lambda _part, x, **_: Outcome(x, status, 1.0, 3))
+    monkeypatch.setattr(condensed_module, "contact_newton", lambda _part, x, **_: Outcome(x, status, 1.0, 3))
     assert CondensedBlock(it).solve(x, **OPTIONS).status is status
 
 
 def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.MonkeyPatch) -> None:
     condensed = solve_poke(scene())
-    monkeypatch.setattr(_poke_condensed, "REACH", -1.0)
+    monkeypatch.setattr(condensed_module, "REACH", -1.0)
     whole = solve_poke(scene())
     assert condensed.ok
     assert whole.ok
@@ -185,7 +185,7 @@ def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.Mon
     it, x = pressed()
     block = CondensedBlock(it)
     far = x.copy()
-    top = np.unique(it.layout.mesh.facet_sets["top"])
+    top = np.unique(it.discretisation.mesh.facet_sets["top"])
     while it.potential(far)[1] > 0.0:
         far = far.copy()
         far[top, 2] -= 1e-3

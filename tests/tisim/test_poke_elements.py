@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 
 import tisim
-from tisim._body import Layout
-from tisim._hexahedra import LARGEST_PART, TetrahedralParts
-from tisim._poke_system import PokeSystem
-from tisim._quadrature import TETRAHEDRAL_PART, Reference, reference
+from tisim.discretisation.body import Discretisation
+from tisim.discretisation.quadrature import (
+    LARGEST_PART,
+    TETRAHEDRAL_PART,
+    Reference,
+    TetrahedralParts,
+    reference,
+)
 from tisim.mesh import Mesh
-from tisim.mesh.poke_block import poke_mesh
+from tisim.mesh.indentation import poke_mesh
+from tisim.problems.indentation.system import PokeSystem
 
 
 def block_mesh() -> Mesh:
@@ -49,10 +54,12 @@ def test_parts_rise_where_a_hexahedron_is_bent_only_and_stay() -> None:
 
 def system() -> tuple[PokeSystem, np.ndarray]:
     scene = tisim.Poke(
-        material=tisim.material_from_moduli("ogden", shear=30e3, bulk=600e3), depth=0.001, refinement=0.5
+        material=tisim.material_from_moduli("ogden", shear_modulus=30e3, bulk_modulus=600e3),
+        depth=0.001,
+        refinement=0.5,
     )
     mesh = block_mesh()
-    it = PokeSystem(scene, Layout.build(mesh, mesh.node_sets["base"]))
+    it = PokeSystem(scene, Discretisation.build(mesh, mesh.node_sets["base"]))
     it.move_to(0.0003)
     x = mesh.nodes.copy()
     it.touch(x)
@@ -84,22 +91,23 @@ def test_a_shift_shortens_the_step_and_fades() -> None:
 
 
 def test_a_layout_is_left_as_it_was() -> None:
-    """Pokes that share a layout do not see each other's distortions."""
+    """Pokes that share a discretisation do not see each other's distortions."""
     scene = tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3), depth=0.001
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
+        depth=0.001,
     )
     mesh = block_mesh()
-    layout = Layout.build(mesh, mesh.node_sets["base"])
-    before = layout.reference.weights.copy()
-    it = PokeSystem(scene, layout)
+    discretisation = Discretisation.build(mesh, mesh.node_sets["base"])
+    before = discretisation.reference.weights.copy()
+    it = PokeSystem(scene, discretisation)
     bent = mesh.nodes.copy()
     bent[:, 2] -= 0.008 * np.exp(-1e5 * (bent[:, :2] ** 2).sum(axis=1)) * (bent[:, 2] / 0.032) ** 8
     it.accept(bent)
-    assert np.abs(it.layout.reference.weights / before - 1.0).max() > 0.1
-    assert np.array_equal(layout.reference.weights, before)
+    assert np.abs(it.discretisation.reference.weights / before - 1.0).max() > 0.1
+    assert np.array_equal(discretisation.reference.weights, before)
     # a rod on its way down does not give them their shape back, one that is drawn back does
     it.accept(mesh.nodes)
-    assert np.abs(it.layout.reference.weights / before - 1.0).max() > 0.1
+    assert np.abs(it.discretisation.reference.weights / before - 1.0).max() > 0.1
     it.turn(-1.0)
     it.accept(mesh.nodes)
-    assert it.layout.reference.weights / before == pytest.approx(1.0, rel=1e-9)
+    assert it.discretisation.reference.weights / before == pytest.approx(1.0, rel=1e-9)

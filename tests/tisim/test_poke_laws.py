@@ -7,7 +7,7 @@ import pytest
 
 import tisim
 from tisim import laws
-from tisim._poke import solve_poke
+from tisim.problems.indentation.solve import solve_poke
 
 SHEAR, BULK = 20e3, 600e3
 
@@ -18,7 +18,7 @@ def poked(law: str) -> tuple[tisim.Result, tisim.Result]:
     shallow, deep = (
         solve_poke(
             tisim.Poke(
-                material=tisim.material_from_moduli(law, shear=SHEAR, bulk=BULK),
+                material=tisim.material_from_moduli(law, shear_modulus=SHEAR, bulk_modulus=BULK),
                 direction=(float(np.sin(angle)), 0.0, -float(np.cos(angle))),
                 depth=depth,
                 frame_spacing=depth / 2,

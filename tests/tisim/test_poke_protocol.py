@@ -11,14 +11,14 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import tisim
-from tisim._poke import solve_poke
-from tisim._poke_system import rod_start
+from tisim.problems.indentation.solve import solve_poke
+from tisim.problems.indentation.system import rod_start
 
 REFERENCE = json.loads(
     (Path(__file__).parents[2] / "benchmarks" / "references" / "poke.json").read_text(encoding="utf-8")
 )
 SHEAR, BULK = 30e3, 600e3
-SOFT = tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=BULK)
+SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=BULK)
 _YOUNG = 9 * BULK * SHEAR / (3 * BULK + SHEAR)
 _POISSON = (3 * BULK - 2 * SHEAR) / (2 * (3 * BULK + SHEAR))
 PLANE_MODULUS = _YOUNG / (1 - _POISSON**2)

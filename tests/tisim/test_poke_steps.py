@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 
 import tisim
-from tisim._newton import Outcome
-from tisim._poke import solve_poke
-from tisim._poke_condensed import CondensedBlock
+from tisim.nonlinear.newton import Outcome
+from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.solve import solve_poke
 from tisim.result import Status
 
 
 def shallow(depth: float) -> tisim.Poke:
     return tisim.Poke(
-        material=tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3),
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         depth=depth,
         frame_spacing=0.0003,
         refinement=0.5,

@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 import tisim
-from tisim import _press
-from tisim._body import Body, Layout
-from tisim._quadrature import reference
-from tisim.mesh.press import press_mesh
+from tisim.discretisation.body import Discretisation, DiscretisedBody
+from tisim.discretisation.quadrature import reference
+from tisim.mesh.compression import press_mesh
+from tisim.problems.compression import solve as compression
 
 REFERENCE = json.loads((Path(__file__).parents[2] / "benchmarks" / "references" / "press.json").read_text())
 RADIUS, HEIGHT, SHEAR = 0.025, 0.030, 10e3
 
 
 def material(law: str = "neo-hookean", *, ratio: float = 300.0) -> tisim.Material:
-    return tisim.material_from_moduli(law, shear=SHEAR, bulk=ratio * SHEAR)
+    return tisim.material_from_moduli(law, shear_modulus=SHEAR, bulk_modulus=ratio * SHEAR)
 
 
 def press(**changes: Any) -> tisim.Press:
@@ -116,7 +116,9 @@ def test_force_is_the_derivative_of_the_energy(platens: Any) -> None:
     d = 5e-4
     stretches = (0.9 + d, 0.9, 0.9 - d, 0.6 + d, 0.6, 0.6 - d)
     found = solve(platens=platens, stretches=stretches, refinement=0.7)
-    body = Body(Layout.build(found.mesh, np.zeros(0, dtype=np.int32)), found.scene.material)
+    body = DiscretisedBody(
+        Discretisation.build(found.mesh, np.zeros(0, dtype=np.int32)), found.scene.material
+    )
     energy = [8.0 * body.energy(x)[0] for x in found.positions]
     for i in (1, 4):
         slope = (energy[i - 1] - energy[i + 1]) / (2.0 * d * HEIGHT)
@@ -138,9 +140,9 @@ def test_default_mesh_is_near_a_finer_one_to_two_thirds() -> None:
 
 @pytest.mark.slow
 def test_half_the_step_changes_next_to_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = _press.solve_press(press(stretches=(0.7, 0.5, 1 / 3)))
-    monkeypatch.setattr(_press, "LARGEST_STEP", 0.5 * _press.LARGEST_STEP)
-    half = _press.solve_press(press(stretches=(0.7, 0.5, 1 / 3)))
+    whole = compression.solve_press(press(stretches=(0.7, 0.5, 1 / 3)))
+    monkeypatch.setattr(compression, "LARGEST_STEP", 0.5 * compression.LARGEST_STEP)
+    half = compression.solve_press(press(stretches=(0.7, 0.5, 1 / 3)))
     assert half.cost.steps > 1.8 * whole.cost.steps
     np.testing.assert_allclose(whole.nominal_stress, half.nominal_stress, rtol=1e-3)
 
@@ -259,6 +261,6 @@ def test_no_tetrahedron_lies_on_platen_and_side_at_once() -> None:
 def test_picture_of_a_pressed_cylinder(tmp_path: Path) -> None:
     found = solve(stretches=(0.7,), refinement=0.5)
     assert tisim.picture(found, tmp_path / "press.png").stat().st_size > 10_000
-    from tisim.picture import describe
+    from tisim.io.picture import describe
 
     assert "bonded platens, stretch 0.7" in describe(found)

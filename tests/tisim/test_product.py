@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tisim._pattern import build
-from tisim._product import FullMatrix
+from tisim.linear.blocks import FullMatrix, pattern_of
 
 
 def test_triangle_and_unsymmetric_pairs_make_the_dense_matrix() -> None:
     rng = np.random.default_rng(1)
     nodes = 7
     conn = np.array([[0, 1, 2, 3], [2, 3, 4, 5], [4, 5, 6, 6]], dtype=np.int32)  # the last repeats a node
-    pattern = build(conn, nodes, np.array([3], dtype=np.int32))
+    pattern = pattern_of(conn, nodes, np.array([3], dtype=np.int32))
     n = len(pattern.free)
     blocks = rng.standard_normal((pattern.n_blocks, 3, 3))
     rows = np.repeat(np.arange(n), np.diff(pattern.indptr))

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tisim import _linear, _schur
-from tisim._linear import LinearSolveError
-from tisim._pattern import build
-from tisim._schur import Condensation
+from tisim.linear import direct
+from tisim.linear.blocks import pattern_of
+from tisim.linear.direct import Condensation, LinearSolveError
 
 Array = NDArray[np.float64]
 NODES = 9
@@ -19,7 +18,7 @@ KEPT = np.array([1, 4, 8])
 def chained(rng: np.random.Generator) -> tuple[Condensation, Array, Array]:
     """The condensation of a chain of elements, its blocks, and the same as a dense matrix."""
     conn = np.array([[k, k + 1, k + 2] for k in range(NODES - 2)], dtype=np.int32)
-    pattern = build(conn, NODES, np.zeros(0, dtype=np.int32))
+    pattern = pattern_of(conn, NODES, np.zeros(0, dtype=np.int32))
     blocks = rng.standard_normal((pattern.n_blocks, 3, 3))
     rows = np.repeat(np.arange(NODES), np.diff(pattern.indptr))
     own = np.flatnonzero(rows == pattern.indices)
@@ -36,9 +35,9 @@ def chained(rng: np.random.Generator) -> tuple[Condensation, Array, Array]:
 @pytest.fixture(params=[True, False], ids=["PARDISO", "SuperLU"])
 def solver(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
     """Whether PARDISO solves."""
-    if request.param and not _linear.HAVE_PARDISO:
+    if request.param and not direct.HAVE_PARDISO:
         pytest.skip("pypardiso is for x86-64")
-    monkeypatch.setattr(_schur, "HAVE_PARDISO", request.param)
+    monkeypatch.setattr(direct, "HAVE_PARDISO", request.param)
     return bool(request.param)
 
 
@@ -62,7 +61,7 @@ def test_complement_and_both_halves_of_a_solve() -> None:
 
 
 def test_a_singular_matrix_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_schur, "HAVE_PARDISO", False)
+    monkeypatch.setattr(direct, "HAVE_PARDISO", False)
     it, blocks, _ = chained(np.random.default_rng(3))
     with pytest.raises(LinearSolveError):
         it.factorise(0.0 * blocks)

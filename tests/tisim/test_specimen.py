@@ -6,11 +6,11 @@ from scipy.integrate import cumulative_trapezoid
 from static_cases import deflection, neo_hookean
 
 import tisim
-from tisim._beam import solve_beam
-from tisim._beam_system import beam_layout
-from tisim._imperfect import clamp_moments, imperfect_system
 from tisim.bodies import Circle, Rectangle
-from tisim.scene import Beam, Specimen, Void
+from tisim.problems.beam.imperfect import clamp_moments, imperfect_system
+from tisim.problems.beam.solve import solve_beam
+from tisim.problems.beam.system import beam_discretisation
+from tisim.scene import Beam, Imperfections, Void
 
 MU, RATIO, DENSITY, G = 2e6, 200.0, 1000.0, 9.81
 YOUNG = 9 * RATIO / (3 * RATIO + 1) * MU
@@ -20,7 +20,12 @@ NONE = (0.0, 0.0, 0.0)
 
 
 def slender(**kw):
-    kw = {"length": LENGTH, "section": Circle(radius=RADIUS), "rings": 1, "layer": 0.005} | kw
+    kw = {
+        "length": LENGTH,
+        "section": Circle(radius=RADIUS),
+        "radial_elements": 1,
+        "axial_element_size": 0.005,
+    } | kw
     return Beam(material=STIFF, **kw)
 
 
@@ -54,17 +59,17 @@ def ramp(slope, power=1):
 @pytest.mark.parametrize(
     ("specimen", "stiffness", "weight"),
     [
-        (Specimen(taper=2.0), ramp(2.0, 4), ramp(2.0, 2)),
-        (Specimen(taper=-0.5), ramp(-0.5, 4), ramp(-0.5, 2)),
-        (Specimen(axial_gradient=5.0), ramp(5.0), one),
-        (Specimen(axial_gradient=-3.0), ramp(-3.0), one),
-        (Specimen(density_gradient=5.0), one, ramp(5.0)),
+        (Imperfections(taper=2.0), ramp(2.0, 4), ramp(2.0, 2)),
+        (Imperfections(taper=-0.5), ramp(-0.5, 4), ramp(-0.5, 2)),
+        (Imperfections(axial_gradient=5.0), ramp(5.0), one),
+        (Imperfections(axial_gradient=-3.0), ramp(-3.0), one),
+        (Imperfections(density_gradient=5.0), one, ramp(5.0)),
     ],
 )
 def test_taper_and_gradients_change_the_sag_as_beam_theory_says(specimen, stiffness, weight):
     ratio = tip_sag(stiffness, weight) / tip_sag(one, one)
     assert abs(ratio - 1.0) > 0.02
-    assert sag(specimen=specimen) / sag() == pytest.approx(ratio, rel=0.01)
+    assert sag(imperfections=specimen) / sag() == pytest.approx(ratio, rel=0.01)
 
 
 @pytest.mark.parametrize(("edge", "layer"), [(0.003, 0.0025), (0.015, 0.005)])
@@ -77,17 +82,17 @@ def test_void_is_a_drop_of_stiffness_and_weight_over_its_length(edge, layer):
 
     ratio = tip_sag(left, left) / tip_sag(one, one)
     assert ratio > 1.1
-    result = solve_beam(slender(specimen=Specimen(void=void), layer=layer))
-    assert -deflection(result)[2] / sag(layer=layer) == pytest.approx(ratio, rel=0.01)
+    result = solve_beam(slender(imperfections=Imperfections(void=void), axial_element_size=layer))
+    assert -deflection(result)[2] / sag(axial_element_size=layer) == pytest.approx(ratio, rel=0.01)
     lost = 0.6 * 0.015 / LENGTH  # fraction times length
     weight = DENSITY * G * np.pi * RADIUS**2 * LENGTH
-    ideal = solve_beam(slender(layer=layer)).support_force[0, 2]
+    ideal = solve_beam(slender(axial_element_size=layer)).support_force[0, 2]
     assert ideal - result.support_force[0, 2] == pytest.approx(lost * weight, rel=0.02)
 
 
 def test_weight_is_that_of_the_tapered_body():
     taper = 4.0
-    found = solve_beam(slender(specimen=Specimen(taper=taper))).support_force[0, 2]
+    found = solve_beam(slender(imperfections=Imperfections(taper=taper))).support_force[0, 2]
     more = 1.0 + (taper * LENGTH) ** 2 / 12.0  # mean of (1 + taper x)^2 about the middle
     assert found / solve_beam(slender()).support_force[0, 2] == pytest.approx(more, rel=1e-4)
 
@@ -103,35 +108,41 @@ def test_weight_is_that_of_the_tapered_body():
 )
 def test_skin_adds_its_stiffness_in_bending_and_in_stretching(section, rings, element):
     depth, excess = 0.0005, 0.6
-    specimen = Specimen(skin=excess, skin_thickness=depth)
-    shape = {"section": section, "rings": rings, "element": element}
+    specimen = Imperfections(skin=excess, skin_thickness=depth)
+    shape = {"section": section, "radial_elements": rings, "element": element}
     if isinstance(section, Circle):
         core = 1 - depth / RADIUS
         area, inertia = 1 - core**2, 1 - core**4
     else:
         area = 1 - 0.007 * 0.005 / (0.008 * 0.006)
         inertia = 1 - 0.007 * 0.005**3 / (0.008 * 0.006**3)
-    bent = sag(**shape) / sag(**shape, specimen=specimen)
+    bent = sag(**shape) / sag(**shape, imperfections=specimen)
     assert bent == pytest.approx(1 + excess * inertia, rel=0.01)
-    assert strain(**shape) / strain(**shape, specimen=specimen) == pytest.approx(1 + excess * area, rel=0.01)
+    assert strain(**shape) / strain(**shape, imperfections=specimen) == pytest.approx(
+        1 + excess * area, rel=0.01
+    )
 
 
 def test_transverse_gradient_bends_a_pulled_beam_and_softens_it():
     gradient, pull = 60.0, 0.01
     result = solve_beam(
-        slender(gravity=NONE, tip_force=(pull, 0.0, 0.0), specimen=Specimen(transverse_gradient=gradient))
+        slender(
+            gravity=NONE,
+            tip_force=(pull, 0.0, 0.0),
+            imperfections=Imperfections(transverse_gradient=gradient),
+        )
     )
     # E (1 + g z): no moment about the axis where the curvature is g times the strain; the stiff side is up
     strain = pull / (YOUNG * np.pi * RADIUS**2)
     assert deflection(result)[2] == pytest.approx(gradient * strain * LENGTH**2 / 2, rel=0.05)
-    thick = {"section": Circle(radius=0.008), "specimen": Specimen(transverse_gradient=gradient)}
+    thick = {"section": Circle(radius=0.008), "imperfections": Imperfections(transverse_gradient=gradient)}
     softer = 1 / (1 - gradient**2 * 0.008**2 / 4)  # the neutral axis moves by g I / A
     assert sag(**thick) / sag(section=Circle(radius=0.008)) == pytest.approx(softer, rel=0.01)
 
 
 @pytest.mark.parametrize("curvature", [2.0, -5.0])
 def test_curved_cantilever_without_load_is_its_arc(curvature):
-    scene = slender(gravity=NONE, specimen=Specimen(curvature=curvature))
+    scene = slender(gravity=NONE, imperfections=Imperfections(curvature=curvature))
     result = solve_beam(scene)
     assert result.ok
     centre = tisim.mesh.outline(result.mesh, result.positions[0])
@@ -147,11 +158,11 @@ def test_straightened_arc_carries_bending_stiffness_times_curvature():
         length=0.15,
         supports="clamped-clamped",
         gravity=NONE,
-        specimen=Specimen(curvature=1.0),
+        imperfections=Imperfections(curvature=1.0),
     )
     result = solve_beam(scene)
-    layout = beam_layout(scene)
-    found = clamp_moments(scene, layout, imperfect_system(scene, layout), result.positions[0])
+    discretisation = beam_discretisation(scene)
+    found = clamp_moments(scene, discretisation, imperfect_system(scene, discretisation), result.positions[0])
     wanted = YOUNG * np.pi * RADIUS**4 / 4 * 1.0
     # bent upwards at rest: it would turn the near clamp down and the far one up
     assert found == pytest.approx([-wanted, wanted], rel=0.02)
@@ -159,16 +170,16 @@ def test_straightened_arc_carries_bending_stiffness_times_curvature():
 
 
 def test_nothing_wrong_is_the_ideal_beam_to_the_last_bit():
-    nothing = Specimen(skin_thickness=0.002, void=Void(position=0.01, fraction=0.0))
-    ideal, same = solve_beam(slender()), solve_beam(slender(specimen=nothing))
+    nothing = Imperfections(skin_thickness=0.002, void=Void(position=0.01, fraction=0.0))
+    ideal, same = solve_beam(slender()), solve_beam(slender(imperfections=nothing))
     assert np.array_equal(ideal.positions, same.positions)
     assert np.array_equal(ideal.support_force, same.support_force)
 
 
 @pytest.mark.parametrize(("supports", "length"), [("clamped-free", 0.1), ("clamped-clamped", 0.15)])
 def test_next_to_nothing_is_the_ideal_beam_nearly(supports, length):
-    kw = {"material": neo_hookean(1.5e4, 50.0), "length": length, "supports": supports, "rings": 1}
-    little = Specimen(
+    kw = {"material": neo_hookean(1.5e4, 50.0), "length": length, "supports": supports, "radial_elements": 1}
+    little = Imperfections(
         curvature=1e-8,
         taper=1e-8,
         axial_gradient=1e-8,
@@ -177,7 +188,7 @@ def test_next_to_nothing_is_the_ideal_beam_nearly(supports, length):
         skin=1e-8,
         void=Void(position=0.03, fraction=1e-8),
     )
-    ideal, near = solve_beam(Beam(**kw)), solve_beam(Beam(**kw, specimen=little))
+    ideal, near = solve_beam(Beam(**kw)), solve_beam(Beam(**kw, imperfections=little))
     assert not np.array_equal(ideal.positions, near.positions)
     assert np.abs(ideal.positions - near.positions).max() < 1e-6 * np.abs(deflection(ideal)).max()
     assert near.mesh is ideal.mesh
@@ -191,32 +202,44 @@ def test_ideal_rest_positions_are_the_meshs_nodes():
 @pytest.mark.parametrize(
     ("specimen", "message"),
     [
-        (Specimen(curvature=31.0), r"specimen.curvature: expected a number between -30 and 30 /m"),
-        (Specimen(taper=np.nan), "specimen.taper: expected a number between"),
-        (Specimen(axial_gradient=20.0), "specimen.axial_gradient: expected a number between -19 and 19"),
-        (Specimen(density_gradient=-20.0), "specimen.density_gradient: expected a number between"),
-        (Specimen(transverse_gradient=300.0), "specimen.transverse_gradient: expected a number between"),
-        (Specimen(skin=0.1, skin_thickness=0.005), "specimen.skin_thickness: expected a length above 0"),
-        (Specimen(skin=-1.0), "specimen.skin: expected a number not below -0.95"),
-        (Specimen(skin=20.0), "specimen.skin: expected a skin whose stiffness"),
-        (Specimen(void=Void(position=0.2, fraction=0.1)), "void.position: expected a place on the beam"),
+        (Imperfections(curvature=31.0), r"imperfections.curvature: expected a number between -30 and 30 /m"),
+        (Imperfections(taper=np.nan), "imperfections.taper: expected a number between"),
         (
-            Specimen(void=Void(position=0.05, fraction=0.96)),
+            Imperfections(axial_gradient=20.0),
+            "imperfections.axial_gradient: expected a number between -19 and 19",
+        ),
+        (Imperfections(density_gradient=-20.0), "imperfections.density_gradient: expected a number between"),
+        (
+            Imperfections(transverse_gradient=300.0),
+            "imperfections.transverse_gradient: expected a number between",
+        ),
+        (
+            Imperfections(skin=0.1, skin_thickness=0.005),
+            "imperfections.skin_thickness: expected a length above 0",
+        ),
+        (Imperfections(skin=-1.0), "imperfections.skin: expected a number not below -0.95"),
+        (Imperfections(skin=20.0), "imperfections.skin: expected a skin whose stiffness"),
+        (Imperfections(void=Void(position=0.2, fraction=0.1)), "void.position: expected a place on the beam"),
+        (
+            Imperfections(void=Void(position=0.05, fraction=0.96)),
             "void.fraction: expected a part between 0 and 0.95",
         ),
-        (Specimen(void=Void(position=0.05, fraction=0.1, length=0.0)), "void.length: expected a length"),
-        (Specimen(void=Void(position=0.05, fraction=0.1, edge=0.02)), "void.edge: expected a length above 0"),
-        (None, "specimen: expected Specimen"),
+        (Imperfections(void=Void(position=0.05, fraction=0.1, length=0.0)), "void.length: expected a length"),
+        (
+            Imperfections(void=Void(position=0.05, fraction=0.1, edge=0.02)),
+            "void.edge: expected a length above 0",
+        ),
+        (None, "imperfections: expected Imperfections"),
     ],
 )
 def test_specimens_that_cannot_be_are_refused_in_one_sentence(specimen, message):
     with pytest.raises(ValueError, match=f"scene 0: Beam.*{message}") as caught:
-        tisim.simulate([slender(specimen=specimen)], workers=1)
+        tisim.simulate([slender(imperfections=specimen)], workers=1)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])
 def test_dynamics_refuses_what_it_does_not_know(method):
-    scene = slender(specimen=Specimen(curvature=1.0), solver=tisim.Solver(method=method))
+    scene = slender(imperfections=Imperfections(curvature=1.0), solver=tisim.Solver(method=method))
     with pytest.raises(ValueError, match=r"solver.method: expected static, the only one offered where"):
         tisim.simulate([scene], workers=1)

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tisim._linear import HAVE_PARDISO
-from tisim._pardiso import _file_of_mkl
-from tisim._ti import ensure_runtime, ti
+from tisim.kernels._taichi import ensure_runtime, ti
+from tisim.linear.direct import HAVE_PARDISO
+from tisim.linear.pardiso import _file_of_mkl
 
 
 @pytest.mark.skipif(not HAVE_PARDISO, reason="pypardiso is for x86-64")

@@ -15,14 +15,16 @@ SHEAR, BULK, RADIUS, LENGTH, MASS = 100e3, 2e6, 0.005, 0.1, 0.020
 def light_beam(**changes):
     """A slender cantilever of 0.08 g with 20 g on its end, sinking by 0.6 mm."""
     return tisim.Beam(
-        material=tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=BULK, density=10.0),
+        material=tisim.material_from_moduli(
+            "neo-hookean", shear_modulus=SHEAR, bulk_modulus=BULK, density=10.0
+        ),
         length=LENGTH,
         section=tisim.Circle(radius=RADIUS),
         gravity=(0.0, 0.0, 0.0),
         tip_force=(0.0, 0.0, -1e-4),
         tip_mass=MASS,
-        layer=0.014,
-        rings=1,
+        axial_element_size=0.014,
+        radial_elements=1,
         **changes,
     )
 
@@ -66,14 +68,14 @@ def test_half_and_whole_model_move_alike():
 
 def test_explicit_and_implicit_agree():
     solver = tisim.Solver(method="implicit", duration=0.04, time_step=2.5e-4)
-    material = tisim.material_from_moduli("neo-hookean", shear=40e3, bulk=400e3)
+    material = tisim.material_from_moduli("neo-hookean", shear_modulus=40e3, bulk_modulus=400e3)
     beam = tisim.Beam(
         material=material,
         length=0.03,
         tip_mass=0.02,
         tip_force=(0, 0, -0.1),
-        layer=0.01,
-        rings=1,
+        axial_element_size=0.01,
+        radial_elements=1,
         solver=solver,
     )
     bare = replace(beam, tip_mass=0.0)

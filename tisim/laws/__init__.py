@@ -1,6 +1,38 @@
-"""Constitutive laws: one file each, one line here that registers it."""
+"""Constitutive laws: one file each, one registration each.
+
+A law is a `Law` that is registered. A whole one, in a file of one's own (Neo-Hookean, isochoric):
+
+>>> import numpy as np
+>>> from tisim import laws
+>>> from tisim.laws import Law, Moduli, by_invariants, first_isochoric, ti
+>>>
+>>> @ti.func
+... def energy(I1, I2, J, prm: "ti.template()"):
+...     i1, slope = first_isochoric(I1, J)
+...     return by_invariants(0.5 * prm[0] * (i1 - 3.0), 0.5 * prm[0], 0.0, i1, slope, J)
+>>>
+>>> mine = Law(
+...     name="isochoric-neo-hookean",
+...     title="Neo-Hookean, isochoric",
+...     parameters={"mu": ("Pa", "scalar"), "bulk": ("Pa", "scalar")},
+...     family="invariant",
+...     theta="log",
+...     energy=energy,
+...     pack=lambda p: np.array([p["mu"]]),
+...     kappa=lambda p: p["bulk"],
+...     moduli=lambda p: Moduli(shear_modulus=p["mu"], bulk_modulus=p["bulk"]),
+...     from_moduli=lambda shear_modulus, bulk_modulus: {"mu": shear_modulus, "bulk": bulk_modulus},
+... )
+>>> _ = laws.register(mine)
+
+From then on `tisim.Material(law="isochoric-neo-hookean", ...)` is solved, in other processes too.
+`laws.check_law("isochoric-neo-hookean")` compares its derivatives, frame indifference, rest state and moduli.
+"""
 
 from __future__ import annotations
+
+import re
+from dataclasses import replace
 
 from tisim.laws import (
     arruda_boyce,
@@ -12,8 +44,11 @@ from tisim.laws import (
     stable_neo_hookean,
     yeoh,
 )
+from tisim.laws._check import LawReport, check_law, evaluate
+from tisim.laws._energy import by_invariants, first_isochoric, lazy, ti
 from tisim.laws._law import Law, Moduli, Parameters
 
+# The paper's laws, in its order, then those of tisim that are not searched for by default.
 _PAPER = (
     st_venant_kirchhoff.LAW,
     neo_hookean.LAW,
@@ -22,32 +57,95 @@ _PAPER = (
     ogden.LAW,
     arruda_boyce.LAW,
 )
-_LAWS: dict[str, Law] = {
-    law.name: law
-    for law in (
-        *_PAPER,
-        yeoh.LAW,
-        eight_chain.LAW,
-    )
-}
+_BUILT_IN: dict[str, Law] = {law.name: law for law in (*_PAPER, yeoh.LAW, eight_chain.LAW)}
+_ADDED: dict[str, Law] = {}
+_NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
+
+
+def register(law: Law) -> Law:
+    """Add a law; one of the same name that was added before is replaced.
+
+    Parameters
+    ----------
+    law : Law
+
+    Returns
+    -------
+    Law
+        The law as registered.
+
+    Raises
+    ------
+    TypeError
+        If it is no `Law`.
+    ValueError
+        If its name is taken by a law of tisim's own or not of lower-case letters, digits and hyphens, or if
+        the parameters that `from_moduli` makes do not pass its own check or do not have those moduli.
+    """
+    if not isinstance(law, Law):
+        raise TypeError(f"law: expected a Law, got {type(law).__name__}")
+    if not _NAME.fullmatch(law.name):
+        raise ValueError(f"law: expected a name of lower-case letters, digits and hyphens, got {law.name!r}")
+    if law.name in _BUILT_IN:
+        raise ValueError(f"law: {law.name!r} is a law of tisim's own; choose another name")
+    parameters = law.from_moduli(2e4, 6e6)
+    law.check(parameters)
+    found = law.moduli(parameters)
+    if max(abs(found.shear_modulus / 2e4 - 1.0), abs(found.bulk_modulus / 6e6 - 1.0)) > 1e-6:
+        raise ValueError(f"{law.name}: from_moduli(2e4, 6e6) has other moduli, {found}")
+    made = replace(law, energy=lazy(law.energy))
+    _ADDED[law.name] = made
+    return made
+
+
+def unregister(name: str) -> None:
+    """Take out a law that was added."""
+    _ADDED.pop(name, None)
+
+
+def added(name: str) -> Law | None:
+    """The law of that name if it was registered from outside, None for tisim's own."""
+    return _ADDED.get(name)
 
 
 def names() -> tuple[str, ...]:
-    """Names of the paper's laws, in its order: what is calibrated, compared and written on cards."""
-    return tuple(law.name for law in _PAPER)
+    """Names of the laws that are calibrated and compared: the paper's, in its order, then those added."""
+    return tuple(law.name for law in _PAPER) + tuple(_ADDED)
 
 
 def all_names() -> tuple[str, ...]:
-    """Names of all laws that a scene may have."""
-    return tuple(_LAWS)
+    """Names of all laws that a scene may have: tisim's own, then those added."""
+    return tuple(_BUILT_IN) + tuple(_ADDED)
 
 
 def get(name: str) -> Law:
-    """The law of that name; ValueError names the ones there are."""
-    try:
-        return _LAWS[name]
-    except KeyError:
-        raise ValueError(f"law: expected one of {', '.join(_LAWS)}, got {name!r}") from None
+    """The law of that name.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name; the sentence names the laws there are.
+    """
+    law = _BUILT_IN.get(name) or _ADDED.get(name)
+    if law is None:
+        raise ValueError(f"law: expected one of {', '.join(all_names())}, got {name!r}")
+    return law
 
 
-__all__ = ["Law", "Moduli", "Parameters", "all_names", "get", "names"]
+__all__ = [
+    "Law",
+    "LawReport",
+    "Moduli",
+    "Parameters",
+    "added",
+    "all_names",
+    "by_invariants",
+    "check_law",
+    "evaluate",
+    "first_isochoric",
+    "get",
+    "names",
+    "register",
+    "ti",
+    "unregister",
+]

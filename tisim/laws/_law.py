@@ -1,16 +1,4 @@
-"""What a constitutive law is: parameters, small-strain moduli, and derivatives of its energy.
-
-A law's energy is split into W(C) and a volumetric part U = kappa/2 theta^2 with theta one of
-ln J, J - 1 or tr E. The split is exact (W + U is the law's energy); it lets an element with a constant
-pressure take theta by its mean, and only theta.
-
-W comes in one of two families:
-  invariant: W(I1, I2, J), returned with its derivatives as a 10-vector
-      (W, W1, W2, WJ, W11, W22, WJJ, W12, W1J, W2J);
-  principal: W(l1, l2, l3) of the principal stretches, as
-      (W, W_1, W_2, W_3, W_11, W_22, W_33, W_12, W_13, W_23).
-I1 = tr C, I2 = (I1^2 - tr C^2)/2, J = det F.
-"""
+"""What a constitutive law is: parameters, small-strain moduli, and derivatives of its energy."""
 
 from __future__ import annotations
 
@@ -26,25 +14,57 @@ Parameters = Mapping[str, "float | tuple[float, ...]"]
 
 @dataclass(frozen=True, kw_only=True)
 class Moduli:
-    """Small-strain moduli [Pa]."""
+    """Small-strain moduli.
 
-    shear: float
-    bulk: float
+    Attributes
+    ----------
+    shear_modulus, bulk_modulus : float
+        [Pa].
+    """
+
+    shear_modulus: float
+    bulk_modulus: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Law:
-    """A constitutive law, as the kernels need it.
+    """A hyperelastic law, as the kernels need it.
 
-    name: what scenes and cards call it. title: what people read.
-    parameters: name -> (unit, "scalar" | "series").
-    family, theta: see the module's text.
-    energy: Taichi function (I1, I2, J, prm) or (l1, l2, l3, prm) -> 10-vector; prm is the packed array.
-    pack: parameters -> the numbers `energy` reads, shape (n,).
-    kappa: parameters -> the factor of theta^2 / 2 [Pa].
-    moduli: parameters -> small-strain moduli.
-    from_moduli: (shear, bulk) [Pa] -> parameters with these moduli (other constants at a plain default).
-    fault: parameters -> what is wrong with them beyond numbers and moduli, or "".
+    The energy per rest volume is split into W(C) and a volumetric part U = kappa/2 theta^2 with theta one of
+    ln J, J - 1 or tr E. The split is exact (W + U is the law's energy); it lets an element with a constant
+    pressure take theta by its mean, and only theta.
+
+    W comes in one of two families:
+
+    - "invariant": W(I1, I2, J), I1 = tr C, I2 = (I1^2 - tr C^2)/2, J = det F, returned with its derivatives
+      as the 10-vector (W, W1, W2, WJ, W11, W22, WJJ, W12, W1J, W2J);
+    - "principal": W(l1, l2, l3) of the principal stretches, as
+      (W, W_1, W_2, W_3, W_11, W_22, W_33, W_12, W_13, W_23).
+
+    Attributes
+    ----------
+    name : str
+        What scenes and cards call it: lower case, digits and hyphens.
+    title : str
+        What people read.
+    parameters : mapping of str to (str, "scalar" or "series")
+        Unit and shape of each parameter.
+    family : "invariant" or "principal"
+    theta : "log", "linear" or "trace"
+        ln J, J - 1 or tr E.
+    energy : Taichi function
+        (I1, I2, J, prm) or (l1, l2, l3, prm) to the 10-vector; prm is the packed array. Decorated by
+        `tisim.laws.ti.func` (Taichi is then imported when the law is first evaluated) or by Taichi's own.
+    pack : callable (parameters) -> ndarray of float, shape (n,)
+        The numbers that `energy` reads.
+    kappa : callable (parameters) -> float
+        Factor of theta^2 / 2 [Pa].
+    moduli : callable (parameters) -> Moduli
+        Small-strain moduli.
+    from_moduli : callable (shear modulus, bulk modulus) -> dict
+        Parameters with these moduli [Pa]; other constants at a plain default.
+    fault : callable (parameters) -> str
+        What is wrong with the parameters beyond numbers and moduli, or "".
     """
 
     name: str
@@ -85,10 +105,10 @@ class Law:
         if fault := self.fault(parameters):
             raise ValueError(f"{self.name}: {fault}")
         moduli = self.moduli(parameters)
-        if not (moduli.shear > 0 and moduli.bulk > 0):
+        if not (moduli.shear_modulus > 0 and moduli.bulk_modulus > 0):
             raise ValueError(
                 f"{self.name}: small-strain shear and bulk modulus must be positive,"
-                f" got {moduli.shear:.4g} and {moduli.bulk:.4g} Pa"
+                f" got {moduli.shear_modulus:.4g} and {moduli.bulk_modulus:.4g} Pa"
             )
 
 

@@ -14,10 +14,11 @@ SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.085
 # mypy: disable-error-code="no-untyped-def,valid-type"
 # (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
+from __future__ import annotations
+
 import numpy as np
 
-from tisim._ti import ti
-from tisim.laws._isochoric import by_invariants, first_isochoric
+from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 C = (1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673750.0)
@@ -47,7 +48,9 @@ def _shear_factor(locking: float) -> float:
 
 
 def _moduli(p: Parameters) -> Moduli:
-    return Moduli(shear=scalar(p, "mu") * _shear_factor(scalar(p, "locking")), bulk=scalar(p, "bulk"))
+    return Moduli(
+        shear_modulus=scalar(p, "mu") * _shear_factor(scalar(p, "locking")), bulk_modulus=scalar(p, "bulk")
+    )
 
 
 LAW = Law(

@@ -11,9 +11,11 @@ does not: integer division in its exponents).
 # mypy: disable-error-code="no-untyped-def,valid-type"
 # (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
+from __future__ import annotations
+
 import numpy as np
 
-from tisim._ti import ti
+from tisim.laws._energy import ti
 from tisim.laws._law import Law, Moduli, scalar
 
 
@@ -51,8 +53,8 @@ LAW = Law(
     pack=lambda p: np.array([scalar(p, "c10"), scalar(p, "c01")]),
     kappa=lambda p: scalar(p, "bulk"),
     moduli=lambda p: Moduli(
-        shear=2.0 * (scalar(p, "c10") + scalar(p, "c01")),
-        bulk=scalar(p, "bulk"),
+        shear_modulus=2.0 * (scalar(p, "c10") + scalar(p, "c01")),
+        bulk_modulus=scalar(p, "bulk"),
     ),
     from_moduli=lambda shear, bulk: {"c10": 0.4 * shear, "c01": 0.1 * shear, "bulk": bulk},
 )

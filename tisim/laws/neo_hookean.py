@@ -9,9 +9,11 @@ SOFA: `NeoHookean`, ParameterSet "mu lambda", the same energy.
 # mypy: disable-error-code="no-untyped-def,valid-type"
 # (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
+from __future__ import annotations
+
 import numpy as np
 
-from tisim._ti import ti
+from tisim.laws._energy import ti
 from tisim.laws._law import Law, Moduli, scalar
 
 
@@ -43,6 +45,8 @@ LAW = Law(
     energy=energy,
     pack=lambda p: np.array([scalar(p, "mu")]),
     kappa=lambda p: scalar(p, "lam"),
-    moduli=lambda p: Moduli(shear=scalar(p, "mu"), bulk=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0),
+    moduli=lambda p: Moduli(
+        shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0
+    ),
     from_moduli=lambda shear, bulk: {"mu": shear, "lam": bulk - 2.0 * shear / 3.0},
 )

@@ -15,9 +15,11 @@ Older SOFA computes a stress that is not the derivative of its energy (SOFA issu
 # mypy: disable-error-code="no-untyped-def,valid-type"
 # (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
+from __future__ import annotations
+
 import numpy as np
 
-from tisim._ti import ti
+from tisim.laws._energy import ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar, series
 
 
@@ -71,8 +73,8 @@ LAW = Law(
     pack=_pack,
     kappa=lambda p: scalar(p, "bulk"),
     moduli=lambda p: Moduli(
-        shear=0.5 * float(series(p, "mu") @ series(p, "alpha")),
-        bulk=scalar(p, "bulk"),
+        shear_modulus=0.5 * float(series(p, "mu") @ series(p, "alpha")),
+        bulk_modulus=scalar(p, "bulk"),
     ),
     from_moduli=lambda shear, bulk: {"mu": (shear / 2.0,), "alpha": (4.0,), "bulk": bulk},
     fault=lambda p: (

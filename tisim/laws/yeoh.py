@@ -10,10 +10,11 @@ Stress-free at rest. Not among the paper's laws.
 # mypy: disable-error-code="no-untyped-def,valid-type"
 # (Taichi compiles `energy`; its annotations mean something to Taichi only)
 
+from __future__ import annotations
+
 import numpy as np
 
-from tisim._ti import ti
-from tisim.laws._isochoric import by_invariants, first_isochoric
+from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 
@@ -42,7 +43,7 @@ LAW = Law(
     energy=energy,
     pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "stiffening")]),
     kappa=lambda p: scalar(p, "bulk"),
-    moduli=lambda p: Moduli(shear=scalar(p, "mu"), bulk=scalar(p, "bulk")),
+    moduli=lambda p: Moduli(shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "bulk")),
     from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "bulk": bulk},
     fault=_fault,
 )

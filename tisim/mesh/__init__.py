@@ -1,6 +1,5 @@
 """Meshes: the data type, structured beams and blocks, bodies from surfaces."""
 
-from tisim.mesh._errors import MeshError
 from tisim.mesh._mesh import (
     ELEMENT_FACETS,
     FACET_KIND,
@@ -9,18 +8,18 @@ from tisim.mesh._mesh import (
     ElementKind,
     FacetKind,
     Mesh,
+    MeshError,
     boundary_facets,
+    unfold,
+    with_facet_set,
+    with_node_set,
 )
-from tisim.mesh.beam import beam_mesh
+from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, Outline, beam_mesh, outline
 from tisim.mesh.block_around import block_around
-from tisim.mesh.mirror import unfold
-from tisim.mesh.outline import Outline, outline
-from tisim.mesh.poke_block import poke_mesh
-from tisim.mesh.quadratic import to_quadratic
-from tisim.mesh.quality import Quality, quality
-from tisim.mesh.refine import refine_around
-from tisim.mesh.sets import with_facet_set, with_node_set
-from tisim.mesh.smooth import smooth
+from tisim.mesh.indentation import poke_mesh
+from tisim.mesh.quality import Quality, quality, smooth, volumes
+from tisim.mesh.refine import refine_around, to_quadratic
+from tisim.mesh.surface import checked_surface
 from tisim.mesh.tetrahedralise import body_from_surface
 
 __all__ = [
@@ -28,6 +27,8 @@ __all__ = [
     "FACET_KIND",
     "NODES_PER_ELEMENT",
     "NODES_PER_FACET",
+    "PAPER_LAYER",
+    "PAPER_RINGS",
     "ElementKind",
     "FacetKind",
     "Mesh",
@@ -38,6 +39,7 @@ __all__ = [
     "block_around",
     "body_from_surface",
     "boundary_facets",
+    "checked_surface",
     "outline",
     "poke_mesh",
     "quality",
@@ -45,6 +47,7 @@ __all__ = [
     "smooth",
     "to_quadratic",
     "unfold",
+    "volumes",
     "with_facet_set",
     "with_node_set",
 ]

@@ -1,4 +1,4 @@
-"""Stands columns on a plane grid, around, above and below a rigid inclusion."""
+"""Columns of elements over a plane grid: around, above and below a rigid inclusion, with graded layers."""
 
 from __future__ import annotations
 
@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh._inclusion import THINNEST_GAP, Outline
-from tisim.mesh._layers import graded, layer_count
 from tisim.mesh._mesh import ElementKind, Mesh, boundary_facets
-from tisim.mesh._prisms import tetrahedra
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh.refine import to_quadratic
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -135,3 +133,61 @@ def _named(
         },
         facet_sets={"top": surface[top], "surface": surface},
     )
+
+
+def graded(length: Floats, first: Floats | float, n: int) -> Floats:
+    """Distances of n + 1 points along lines of given lengths, spacing growing by a constant factor.
+
+    length [m], shape (...); first: first spacing [m], a scalar or of the same shape; where n first spacings
+    overshoot, the spacing is uniform. Returns shape (..., n + 1), from 0 to exactly the length.
+    """
+    length = np.asarray(length, dtype=np.float64)
+    first = np.minimum(np.broadcast_to(first, length.shape), length / n)
+    target = length / first
+    low, high = np.ones_like(length), np.full_like(length, 8.0)
+    powers = np.arange(n)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        short = (middle[..., None] ** powers).sum(axis=-1) < target
+        low, high = np.where(short, middle, low), np.where(short, high, middle)
+    steps = (0.5 * (low + high))[..., None] ** powers
+    at = np.concatenate([np.zeros((*length.shape, 1)), np.cumsum(steps, axis=-1)], axis=-1)
+    return at * (length / at[..., -1])[..., None]
+
+
+def layer_count(*, height: float, top: float, bottom: float, total: float, start: float = 0.0) -> int:
+    """Layers that fill `height` [m] starting `start` below the top, at least one.
+
+    The thickness wanted grows linearly from `top` at the top to `bottom` at depth `total` [m].
+    """
+    slope = (bottom - top) / total
+    at_start, at_end = top + slope * start, top + slope * (start + height)
+    wanted = height / at_start if abs(slope) < 1e-12 else np.log(at_end / at_start) / slope
+    return max(1, round(float(wanted)))
+
+
+def tetrahedra(elements: Ints, column: Ints) -> NDArray[np.int32]:
+    """Three tetrahedra for each wedge and six for each hexahedron, shape (t, 4).
+
+    elements: hex8 that stand upright, shape (m, 8), a wedge with its third node repeated.
+    column: per node, the rank of the column it belongs to; a diagonal starts in the column of lower rank,
+    below, so that both elements at a facet cut it the same way.
+    """
+    c = column[elements[:, :4]]
+    turn = (c.argmin(axis=1)[:, None] + np.arange(4)) % 4
+    rows = np.arange(len(elements))[:, None]
+    wedge = c[:, 2] == c[:, 3]
+    quad, turn = elements[~wedge], turn[~wedge]
+    rows = rows[: len(quad)]
+    below, above = quad[:, :4][rows, turn], quad[:, 4:][rows, turn]
+    bottom = np.concatenate([elements[wedge, :3], below[:, [0, 1, 2]], below[:, [0, 2, 3]]])
+    top = np.concatenate([elements[wedge][:, 4:7], above[:, [0, 1, 2]], above[:, [0, 2, 3]]])
+
+    c = column[bottom]
+    turn = (c.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    rows = np.arange(len(bottom))[:, None]
+    (p0, q0, r0), (p1, q1, r1), (_, cq, cr) = bottom[rows, turn].T, top[rows, turn].T, c[rows, turn].T
+    first = cq < cr
+    last = np.where(first[:, None], np.stack([p0, q0, r0, r1], axis=1), np.stack([p0, q0, r0, q1], axis=1))
+    middle = np.where(first[:, None], np.stack([p0, q0, r1, q1], axis=1), np.stack([p0, r0, r1, q1], axis=1))
+    return np.concatenate([np.stack([p1, r1, q1, p0], axis=1), middle, last]).astype(np.int32)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.bodies import BoxInclusion, Inclusion, SphereInclusion
-from tisim.mesh._errors import MeshError
+from tisim.inclusions import Inclusion, Spheroid
+from tisim.mesh._mesh import MeshError
 
 Floats = NDArray[np.float64]
 
@@ -18,12 +18,21 @@ THINNEST_COVER = 0.001
 
 
 @dataclass(frozen=True, kw_only=True)
+class Dome:
+    """A spheroid with a vertical axis: half axes and the height of its centre [m]."""
+
+    radius: float
+    half_height: float
+    middle: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Outline:
     """The plan view of an inclusion: a circle, or a convex polygon, counter-clockwise.
 
     centre (2,), radius of the inscribed circle and reach of the circumscribed one [m]; corners: shape (c, 2),
-    none for a circle. low, high: heights of the flat faces [m]; for a sphere both are the height of the
-    outline. dome: radius of the sphere and height of its centre [m], None where the faces are flat.
+    none for a circle. low, high: heights of the flat faces [m]; for a spheroid both are the height of the
+    outline. dome: the spheroid, None where the faces are flat.
     """
 
     centre: Floats
@@ -32,7 +41,7 @@ class Outline:
     corners: Floats
     low: float
     high: float
-    dome: tuple[float, float] | None = None
+    dome: Dome | None = None
 
     @property
     def area(self) -> float:
@@ -44,7 +53,7 @@ class Outline:
     @property
     def apex(self) -> float:
         """The highest point of the inclusion [m]."""
-        return self.high if self.dome is None else self.dome[0] + self.dome[1]
+        return self.high if self.dome is None else self.dome.half_height + self.dome.middle
 
     def signed(self, points: Floats) -> Floats:
         """Below 0 inside, 0 on the outline, above 0 outside; the distance [m] but near corners outside."""
@@ -77,9 +86,10 @@ class Outline:
         """Heights of the lower and upper surface over points (n, 2); outside, those of the outline [m]."""
         low, high = np.full(len(points), self.low), np.full(len(points), self.high)
         if self.dome is not None:
-            radius, height = self.dome
+            radius, height = self.dome.radius, self.dome.middle
             away = points - self.centre
             rise = np.sqrt(np.maximum(radius**2 - np.sum(away**2, axis=1), 0.0))
+            rise *= self.dome.half_height / radius
             inside = self.signed(points) < -1e-9 * radius
             high = np.where(inside, height + rise, high)
             low = np.where(inside, height - rise, low)
@@ -88,40 +98,47 @@ class Outline:
 
 def outline_of(inclusion: Inclusion, *, size: tuple[float, float, float]) -> Outline:
     """The outline of an inclusion in a block of that size, or a MeshError that says why it cannot be met."""
+    try:
+        inclusion.check()
+    except ValueError as error:
+        raise MeshError(f"inclusion: {inclusion.kind} {error}") from None
     centre = np.array(inclusion.centre, dtype=np.float64)
-    if centre.shape != (3,) or not np.isfinite(centre).all():
-        raise MeshError(f"inclusion centre: expected three finite coordinates [m], got {inclusion.centre}")
-    corners = np.zeros((0, 2))
-    dome = None
-    if isinstance(inclusion, SphereInclusion):
-        _positive("sphere radius", inclusion.radius)
-        low = high = max(0.0, float(centre[2]))
-        if centre[2] <= -inclusion.radius + THINNEST_GAP:
-            raise MeshError(f"inclusion: the sphere lies below the block's base (centre z {centre[2]} m)")
-        radius = float(np.sqrt(inclusion.radius**2 - min(0.0, float(centre[2])) ** 2))
-        reach, dome = radius, (float(inclusion.radius), float(centre[2]))
-    elif isinstance(inclusion, BoxInclusion):
-        for name, length in zip("abc", inclusion.size, strict=True):
-            _positive(f"box size {name}", length)
-        a, b = 0.5 * inclusion.size[0], 0.5 * inclusion.size[1]
-        c, s = np.cos(inclusion.angle), np.sin(inclusion.angle)
-        corners = np.array([[-a, -b], [a, -b], [a, b], [-a, b]]) @ np.array([[c, s], [-s, c]]) + centre[:2]
-        radius, reach = float(min(a, b)), float(np.hypot(a, b))
-        low, high = centre[2] - 0.5 * inclusion.size[2], centre[2] + 0.5 * inclusion.size[2]
+    geometry = inclusion.mesh_geometry()
+    if isinstance(geometry, Spheroid):
+        outline = _of_spheroid(inclusion.kind, geometry, centre)
     else:
-        _positive("cylinder radius", inclusion.radius)
-        _positive("cylinder height", inclusion.height)
-        radius = reach = float(inclusion.radius)
-        low, high = centre[2] - 0.5 * inclusion.height, centre[2] + 0.5 * inclusion.height
-    if dome is None:
-        low = 0.0 if low < THINNEST_GAP else float(low)
-        if high < THINNEST_GAP:
-            raise MeshError(f"inclusion: its top, z = {1e3 * high:.1f} mm, is at or below the block's base")
-    outline = Outline(
-        centre=centre[:2], radius=radius, reach=reach, corners=corners, low=low, high=float(high), dome=dome
-    )
+        low = 0.0 if geometry.low < THINNEST_GAP else float(geometry.low)
+        if geometry.high < THINNEST_GAP:
+            top = 1e3 * geometry.high
+            raise MeshError(f"inclusion: its top, z = {top:.1f} mm, is at or below the block's base")
+        outline = Outline(
+            centre=centre[:2],
+            radius=float(geometry.inscribed),
+            reach=float(geometry.circumscribed),
+            corners=np.asarray(geometry.corners, dtype=np.float64),
+            low=low,
+            high=float(geometry.high),
+        )
     _fits(outline, size)
     return outline
+
+
+def _of_spheroid(kind: str, geometry: Spheroid, centre: Floats) -> Outline:
+    """The widest section of a spheroid that lies in the block."""
+    radius, half, middle = float(geometry.radius), float(geometry.half_height), float(centre[2])
+    if middle <= -half + THINNEST_GAP:
+        raise MeshError(f"inclusion: the {kind} lies below the block's base (centre z {middle} m)")
+    widest = float(np.sqrt(radius**2 - (radius / half * min(0.0, middle)) ** 2))
+    height = max(0.0, middle)
+    return Outline(
+        centre=centre[:2],
+        radius=widest,
+        reach=widest,
+        corners=np.zeros((0, 2)),
+        low=height,
+        high=height,
+        dome=Dome(radius=radius, half_height=half, middle=middle),
+    )
 
 
 def _fits(outline: Outline, size: tuple[float, float, float]) -> None:
@@ -140,8 +157,3 @@ def _fits(outline: Outline, size: tuple[float, float, float]) -> None:
             "inclusion: its outline comes within 1 mm of the block's side, or leaves the block "
             f"(centre {tuple(outline.centre)} m, block {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm)"
         )
-
-
-def _positive(name: str, value: float) -> None:
-    if not (np.isfinite(value) and value > 0.0):
-        raise MeshError(f"inclusion: {name} must be a length above 0 [m], got {value}")

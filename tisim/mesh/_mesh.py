@@ -1,9 +1,9 @@
-"""The mesh that every solver of tisim works on: nodes, one kind of element, named sets."""
+"""The mesh that every solver works on: nodes, one kind of element, named sets, mirror planes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -30,19 +30,37 @@ ELEMENT_FACETS: Mapping[ElementKind, tuple[tuple[int, ...], ...]] = MappingProxy
         "hex8": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
     }
 )
+# a mask over the nodes (n,), or a function of their positions (n, 3) [m] that gives one
+NodeMask = NDArray[np.bool_] | Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+# Nodes of an element in the order that keeps its volume positive when it is seen in a mirror.
+_TURNED = {"tet4": (0, 2, 1, 3), "tet10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8), "hex8": (0, 3, 2, 1, 4, 7, 6, 5)}
+_TURNED_FACET = {3: (0, 2, 1), 4: (0, 3, 2, 1), 6: (0, 2, 1, 5, 4, 3)}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mesh:
     """A body in its stress-free rest shape.
 
-    kind: the element kind of all elements.
-    nodes: rest positions [m], shape (n, 3), float64.
-    elements: node indices, shape (m, nodes per element), int32, positive volume.
-    node_sets: named node indices, for example "clamp", "far_clamp", "tip", "base".
-    facet_sets: named facets, shape (f, nodes per facet), outward; "surface" is the whole boundary.
-    symmetry: mirror planes the mesh is cut by, as axis names ("y"): the nodes in node_sets["mirror_y"]
-        keep their y; forces and volumes of the whole body are twice those of the mesh.
+    Attributes
+    ----------
+    kind : "tet4", "tet10" or "hex8"
+        Kind of all elements.
+    nodes : ndarray of float, shape (n, 3)
+        Rest positions [m].
+    elements : ndarray of int32, shape (m, nodes per element)
+        Node indices, in the order of VTK; positive volume.
+    node_sets : mapping of str to ndarray of int32
+        Named node indices, for example "clamp", "far_clamp", "tip", "base".
+    facet_sets : mapping of str to ndarray of int32, shape (f, nodes per facet)
+        Named facets, outward; "surface" is the whole boundary.
+    symmetry : tuple of str
+        Mirror planes the mesh is cut by, as axis names ("y"): the nodes in node_sets["mirror_y"] keep their
+        y; forces and volumes of the whole body are twice those of the mesh.
+
+    Raises
+    ------
+    ValueError
+        For arrays of another shape, coordinates that are not finite, or node indices out of range.
     """
 
     kind: ElementKind
@@ -69,10 +87,12 @@ class Mesh:
 
     @property
     def n_nodes(self) -> int:
+        """Number of nodes."""
         return len(self.nodes)
 
     @property
     def n_elements(self) -> int:
+        """Number of elements."""
         return len(self.elements)
 
 
@@ -105,3 +125,124 @@ def _row_keys(rows: NDArray[np.int64]) -> NDArray[np.int64]:
             keys = np.unique(keys, return_inverse=True)[1]  # ranks: fewer than there are rows
         keys = keys * base + column + 1
     return keys
+
+
+class MeshError(ValueError):
+    """A body cannot be meshed; the message is one sentence that says what to change."""
+
+
+def with_node_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
+    """The mesh with one more node set.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    name : str
+    mask : ndarray of bool, shape (n,), or callable
+        Nodes to take, or a function of their positions (n, 3) [m] that gives the mask.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MeshError
+        If the set would be empty, or the mask is not one boolean a node.
+    """
+    chosen = np.flatnonzero(_mask(mesh, name, mask)).astype(np.int32)
+    if not len(chosen):
+        raise MeshError(f"node set {name!r} would be empty: no node lies where it was asked for")
+    return replace(mesh, node_sets={**mesh.node_sets, name: chosen})
+
+
+def with_facet_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
+    """The mesh with one more facet set: the boundary facets all of whose nodes the mask takes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    name : str
+    mask : ndarray of bool, shape (n,), or callable
+        Nodes to take, or a function of their positions (n, 3) [m] that gives the mask.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MeshError
+        If the set would be empty, or the mask is not one boolean a node.
+    """
+    facets = mesh.facet_sets.get("surface")
+    if facets is None:
+        facets = boundary_facets(mesh.kind, mesh.elements)
+    chosen = facets[_mask(mesh, name, mask)[facets].all(axis=1)]
+    if not len(chosen):
+        raise MeshError(f"facet set {name!r} would be empty: no boundary facet lies where it was asked for")
+    return replace(mesh, facet_sets={**mesh.facet_sets, name: chosen})
+
+
+def _mask(mesh: Mesh, name: str, mask: NodeMask) -> NDArray[np.bool_]:
+    result = np.asarray(mask(mesh.nodes) if callable(mask) else mask)
+    if result.shape != (mesh.n_nodes,) or result.dtype != np.bool_:
+        raise MeshError(
+            f"set {name!r}: the mask must be {mesh.n_nodes} booleans, one a node, "
+            f"got shape {result.shape} of {result.dtype}"
+        )
+    return result
+
+
+def unfold(mesh: Mesh, positions: NDArray[np.float64]) -> tuple[Mesh, NDArray[np.float64]]:
+    """The whole body of a mesh cut by mirror planes, and its node positions.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    positions : ndarray, shape (..., n, 3)
+        Node positions of the mesh [m].
+
+    Returns
+    -------
+    mesh : Mesh
+        The whole body; the nodes of the given mesh come first, in their order. Node and facet sets hold both
+        halves; sets of the mirror planes are dropped.
+    positions : ndarray, shape (..., whole n, 3)
+    """
+    for name in mesh.symmetry:
+        mesh, positions = _unfold_once(mesh, positions, name)
+    return mesh, positions
+
+
+def _unfold_once(mesh: Mesh, positions: NDArray[np.float64], name: str) -> tuple[Mesh, NDArray[np.float64]]:
+    axis, n = "xyz".index(name), mesh.n_nodes
+    plane = f"mirror_{name}"
+    copied = np.ones(n, dtype=bool)
+    copied[mesh.node_sets[plane]] = False
+    twin = np.arange(n)
+    twin[copied] = n + np.arange(copied.sum())
+    sign = np.ones(3)
+    sign[axis] = -1.0
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[copied] * sign])
+    moved = np.concatenate([positions, positions[..., copied, :] * sign], axis=-2)
+    elements = np.concatenate([mesh.elements, twin[mesh.elements[:, _TURNED[mesh.kind]]]])
+    facets = {
+        key: np.concatenate([f, twin[f[:, _TURNED_FACET[f.shape[1]]]]]).astype(np.int32)
+        for key, f in mesh.facet_sets.items()
+        if key != plane
+    }
+    sets = {
+        key: np.unique(np.concatenate([s, twin[s]])).astype(np.int32)
+        for key, s in mesh.node_sets.items()
+        if key != plane
+    }
+    whole = replace(
+        mesh,
+        nodes=nodes,
+        elements=elements.astype(np.int32),
+        node_sets=sets,
+        facet_sets=facets,
+        symmetry=tuple(s for s in mesh.symmetry if s != name),
+    )
+    return whole, moved

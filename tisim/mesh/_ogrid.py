@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.mesh._layers import graded
+from tisim.mesh._columns import graded
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.mesh._errors import MeshError
+from tisim.mesh._mesh import MeshError
 
 # Seven-point rule of degree 5 on the triangle (Radon 1948): barycentric points, weights that sum to 1.
 _A, _B = (6 - 15**0.5) / 21, (6 + 15**0.5) / 21

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from tisim.mesh._inclusion import Outline
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -80,6 +83,8 @@ def snap(*, points: Floats, cells: Ints, border: Ints, outline: Outline) -> Snap
 
 def _averaging(points: Floats, edges: Ints) -> csr_array:
     """The matrix that gives each node the mean over its neighbours, near ones counting more."""
+    from scipy.sparse import csr_array  # takes longer to import than tisim itself
+
     i, j = edges.T
     weight = 1.0 / np.hypot(*(points[i] - points[j]).T)
     total = np.bincount(np.r_[i, j], np.r_[weight, weight], minlength=len(points))

@@ -6,9 +6,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tisim.mesh._errors import MeshError
-from tisim.mesh._mesh import Mesh, boundary_facets
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
+from tisim.mesh.refine import to_quadratic
 from tisim.mesh.surface import Units, checked_surface
 from tisim.mesh.tetrahedralise import body_from_surface
 
@@ -27,13 +26,29 @@ def block_around(
 ) -> Mesh:
     """A block, x and y centred on 0 and z from 0 to size[2], without the inclusion inside `surface`.
 
-    surface: closed surface of the rigid inclusion in the block's coordinates (a file, a trimesh.Trimesh,
-        or None for a plain block); what reaches below z = 0 does not count, and it may not reach the top
-        or the sides.
-    size, edge_length, tolerance: [m], the last two as in `body_from_surface`; units: of the surface.
+    Parameters
+    ----------
+    surface : path, trimesh.Trimesh or None
+        Closed surface of the rigid inclusion in the block's coordinates; None for a plain block. What reaches
+        below z = 0 does not count, and it may not reach the top or the sides.
+    size : (float, float, float)
+        Of the block [m].
+    edge_length, tolerance : float
+        [m], as in `body_from_surface`.
+    units : "m" or "mm"
+        Of the surface's coordinates.
+    kind : "tet4" or "tet10"
 
-    node_sets: "base" (the plane z = 0 and the inclusion's surface, which a poke holds fixed) and
-    "inclusion" (its surface only); facet_sets: "surface", "top", "base", "inclusion".
+    Returns
+    -------
+    Mesh
+        Node sets: "base" (the plane z = 0 and the inclusion's surface, which a poke holds fixed) and
+        "inclusion" (its surface only). Facet sets: "surface", "top", "base", "inclusion".
+
+    Raises
+    ------
+    MeshError
+        In one sentence, for a surface or lengths that give no mesh.
     """
     import trimesh  # takes longer to import than tisim itself
 

@@ -1,4 +1,4 @@
-"""Local refinement of a tetrahedral mesh, around the place where a rod will touch.
+"""Finer tetrahedra: local refinement, and 10-node elements from 4-node ones.
 
 Edges are halved, longest first (Rivara 1984; Plaza and Carey 2000 for tetrahedra): a tetrahedron with an
 edge to halve has its longest edge halved too, which keeps the angles from getting worse with each pass.
@@ -14,16 +14,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.mesh._errors import MeshError
-from tisim.mesh._inherit import edge_keys, inherited_sets
-from tisim.mesh._mesh import Mesh
-from tisim.mesh._reference import TET_EDGES
-from tisim.mesh.smooth import smooth
+from tisim.mesh._elements import NODE_PLACES, TET_EDGES, det_jacobian
+from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
+from tisim.mesh.quality import smooth
 
 # wanted edge length [m] at points (k, 3) [m]
 Size = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 _TRIANGLE_EDGES = np.array([(0, 1), (1, 2), (2, 0)])
+Projection = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 def refine_around(
@@ -38,9 +37,30 @@ def refine_around(
 ) -> Mesh:
     """Refine a tet4 mesh until no edge is longer than h(r) = edge_length + growth * max(r - radius, 0).
 
-    centre, radius: the ball to be fine throughout [m]; edge_length: longest edge wanted in it [m].
-    growth: how fast the wanted length grows with the distance from the ball.
-    smoothing: rounds of `smooth` afterwards (0: none).
+    Parameters
+    ----------
+    mesh : Mesh
+        Of tet4 elements.
+    centre : (float, float, float)
+    radius : float
+        The ball that is fine throughout [m].
+    edge_length : float
+        Longest edge wanted in it [m].
+    growth : float
+        Increase of the wanted length per distance from the ball.
+    smoothing : int
+        Rounds of `smooth` afterwards (0: none).
+    max_nodes : int
+
+    Returns
+    -------
+    Mesh
+        Node and facet sets follow; the boundary keeps its shape.
+
+    Raises
+    ------
+    MeshError
+        For another element kind, lengths that cannot be, or more than max_nodes nodes.
     """
     if edge_length <= 0 or radius < 0 or growth <= 0:
         raise MeshError("refinement needs a positive edge length and growth and a radius not below 0")
@@ -133,3 +153,93 @@ class _Cut:
         # edges with a new node are never cut in the same pass, though their key might match by chance
         found = (self.keys[at] == key) & (pairs.max(axis=-1) < self.n)
         return at, np.where(found, self.rank[at], -1)
+
+
+def edge_keys(pairs: NDArray[np.integer], n_nodes: int) -> NDArray[np.int64]:
+    """One number for each edge, whatever its direction; pairs (..., 2)."""
+    low, high = pairs.min(axis=-1).astype(np.int64), pairs.max(axis=-1).astype(np.int64)
+    return low * n_nodes + high
+
+
+def facet_edges(facets: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Edges (f, 3, 2) of triangles by their corners (f, 3 or 6): first-second, second-third, third-first."""
+    return facets[:, [[0, 1], [1, 2], [2, 0]]]
+
+
+def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict[str, NDArray[np.int32]]:
+    """Node sets of a tet4 mesh extended by the nodes first_new + k in the middle of edges (k, 2).
+
+    A set that lies on the boundary passes on only along boundary facets that lie in it as a whole: an
+    edge through the body from the base to the inclusion has both ends held, yet its middle is free. (A
+    facet between two faces of the set, one element from each other, counts as in it.) Any
+    other set (a gripped volume) passes on along every edge with both ends in it.
+    """
+    boundary = boundary_facets(mesh.kind, mesh.elements)
+    on_boundary = np.zeros(mesh.n_nodes, dtype=bool)
+    on_boundary[boundary] = True
+    keys = edge_keys(edges, mesh.n_nodes)
+    result = {}
+    for name, old in mesh.node_sets.items():
+        member = np.zeros(mesh.n_nodes, dtype=bool)
+        member[old] = True
+        if on_boundary[old].all():
+            inside = boundary[member[boundary].all(axis=1)]
+            new: NDArray[np.bool_] = np.isin(keys, edge_keys(facet_edges(inside), mesh.n_nodes).ravel())
+        else:
+            new = np.asarray(member[edges].all(axis=1))
+        result[name] = np.concatenate([old, first_new + np.flatnonzero(new)]).astype(np.int32)
+    return result
+
+
+def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
+    """The mesh with a node in the middle of each edge; corners keep their numbers, sets are extended.
+
+    project: puts points (k, 3) [m] of the boundary's edges onto the true curved surface. Where that
+    would turn an element over, or nearly (det J below a tenth of the straight element's), the element's
+    edges stay straight.
+    """
+    if mesh.kind != "tet4":
+        raise MeshError(f"only a tet4 mesh can be made quadratic, this one is {mesh.kind}")
+    n = mesh.n_nodes
+    pairs = mesh.elements[:, TET_EDGES].astype(np.int64)
+    keys, first, place = np.unique(edge_keys(pairs, n), return_index=True, return_inverse=True)
+    edges = pairs.reshape(-1, 2)[first]
+    elements = np.concatenate([mesh.elements, n + place.reshape(-1, 6)], axis=1).astype(np.int32)
+    straight = mesh.nodes[edges].mean(axis=1)
+    middles = straight.copy()
+    boundary = boundary_facets("tet4", mesh.elements)
+    if project is not None:
+        outer = np.flatnonzero(np.isin(keys, edge_keys(facet_edges(boundary), n).ravel()))
+        middles[outer] = project(straight[outer])
+        _straighten(mesh.nodes, elements, middles, straight)
+    facets = {}
+    for name, old in mesh.facet_sets.items():
+        middle = n + np.searchsorted(keys, edge_keys(facet_edges(old), n))
+        facets[name] = np.concatenate([old, middle], axis=1).astype(np.int32)
+    return Mesh(
+        kind="tet10",
+        nodes=np.concatenate([mesh.nodes, middles]),
+        elements=elements,
+        node_sets=inherited_sets(mesh, edges, n),
+        facet_sets=facets,
+        symmetry=mesh.symmetry,
+    )
+
+
+def _straighten(
+    corners: NDArray[np.float64],
+    elements: NDArray[np.int32],
+    middles: NDArray[np.float64],
+    straight: NDArray[np.float64],
+) -> None:
+    """Set back (in place) the middles of elements that the curve turns over."""
+    n = len(corners)
+    plain = det_jacobian("tet4", corners, elements[:, :4], NODE_PLACES["tet4"][:1])[:, 0]
+    while True:  # each round straightens an edge at least, and straight elements are good
+        nodes = np.concatenate([corners, middles])
+        det = det_jacobian("tet10", nodes, elements, NODE_PLACES["tet10"])
+        bad = det.min(axis=1) < 0.1 * plain
+        if not bad.any():
+            return
+        back = np.unique(elements[bad, 4:]) - n
+        middles[back] = straight[back]

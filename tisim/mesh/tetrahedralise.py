@@ -14,9 +14,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tisim.mesh._errors import MeshError
-from tisim.mesh._mesh import Mesh, boundary_facets
-from tisim.mesh.quadratic import to_quadratic
+from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
+from tisim.mesh.refine import to_quadratic
 from tisim.mesh.surface import Units, checked_surface
 
 # A body of more elements than this (a regular tetrahedron holds 0.118 edge lengths cubed) is a mistake.
@@ -36,18 +35,36 @@ def body_from_surface(
 ) -> Mesh:
     """The body inside a closed surface, as tetrahedra (another mesh of the same kind on each call).
 
-    surface: a file that trimesh reads (STL, PLY, OBJ, OFF), or a trimesh.Trimesh.
-    edge_length: wanted length of the edges [m]; units: of the surface's coordinates.
-    kind: "tet10" puts a node in the middle of each (straight) edge.
-    tolerance: how far the mesh's surface may lie from the given one [m]; edge_length / 50 by default.
-        Smaller takes longer.
-    stop_energy: shape at which the optimisation stops; 3 is a regular tetrahedron, smaller than the
-        default of 10 gives better shapes and takes longer.
-    time_limit: seconds after which to give up.
-    allow_cavities: whether the surface may have inner pieces, turned inwards.
+    Parameters
+    ----------
+    surface : path or trimesh.Trimesh
+        A file that trimesh reads (STL, PLY, OBJ, OFF), or a surface.
+    edge_length : float
+        Wanted length of the edges [m].
+    units : "m" or "mm"
+        Of the surface's coordinates.
+    kind : "tet4" or "tet10"
+        "tet10" puts a node in the middle of each (straight) edge.
+    tolerance : float, optional
+        Largest distance of the mesh's surface from the given one [m]; edge_length / 50 by default. Smaller
+        takes longer.
+    stop_energy : float
+        Shape at which the optimisation stops; 3 is a regular tetrahedron, smaller than the default of 10
+        gives better shapes and takes longer.
+    time_limit : float
+        Seconds after which to give up.
+    allow_cavities : bool
+        The surface may have inner pieces, turned inwards.
 
-    node_sets and facet_sets "surface": the boundary. Raises MeshError with one sentence that says what
-    is wrong with the surface.
+    Returns
+    -------
+    Mesh
+        With node and facet set "surface", the boundary.
+
+    Raises
+    ------
+    MeshError
+        In one sentence, for a surface or an edge length that gives no body.
     """
     shell = checked_surface(surface, units=units, allow_cavities=allow_cavities)
     extent = float(np.linalg.norm(shell.extents))

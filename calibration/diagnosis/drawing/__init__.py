@@ -3,32 +3,36 @@
 from calibration.diagnosis.drawing._bars import AFTER, BEFORE, paired_bars
 from calibration.diagnosis.drawing._curves import (
     DrawnCurve,
+    before_and_after,
     legend_of,
-    missing,
     most_telling,
-    shown_explanation,
 )
-from calibration.diagnosis.drawing._domain import Figure, noise_of, pictures_of
+from calibration.diagnosis.drawing._domain import Figure
 from calibration.diagnosis.drawing._labels import label, label_of_causes
-from calibration.diagnosis.drawing._panels import dots, draw_rms, legend, panels, titled
+from calibration.diagnosis.drawing._panels import (
+    dots,
+    draw_rms,
+    legend_handles,
+    measured_and_simulated,
+    per_trial,
+    titled,
+)
 
 __all__ = [
     "AFTER",
     "BEFORE",
     "DrawnCurve",
     "Figure",
+    "before_and_after",
     "dots",
     "draw_rms",
     "label",
     "label_of_causes",
-    "legend",
+    "legend_handles",
     "legend_of",
-    "missing",
+    "measured_and_simulated",
     "most_telling",
-    "noise_of",
     "paired_bars",
-    "panels",
-    "pictures_of",
-    "shown_explanation",
+    "per_trial",
     "titled",
 ]

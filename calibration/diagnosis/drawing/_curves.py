@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.explanation import Explanation
-from calibration.diagnosis.search import Finding
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.search import Finding
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,33 @@ def shown_explanation(finding: Finding, chosen: Explanation | None) -> Explanati
     if chosen is not None:
         return chosen
     best = finding.explanations[0] if finding.explanations else None
-    return best if finding.verdict == "unexplained" and finding.chance < 0.01 else None
+    return best if finding.verdict == "unexplained" and finding.p_value < 0.01 else None
+
+
+Evaluated = TypeVar("Evaluated")
+
+
+def before_and_after(
+    diagnosis: Diagnosis, evaluate: Callable[[State], Sequence[Evaluated]]
+) -> list[tuple[Evaluated, Evaluated | None]]:
+    """What a model predicts of each record by the baseline and by the extension (`shown_explanation`).
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    evaluate : callable
+        Predictions at a state, one a record.
+
+    Returns
+    -------
+    list of tuple
+        One pair a record; the second is None, for all records alike, where nothing stands for the extension.
+    """
+    before = evaluate(diagnosis.finding.baseline.state)
+    shown = shown_explanation(diagnosis.finding, diagnosis.chosen)
+    if shown is None:
+        return [(b, None) for b in before]
+    return list(zip(before, evaluate(shown.fit.state), strict=True))
 
 
 def legend_of(diagnosis: Diagnosis) -> str:

@@ -2,18 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from calibration.diagnosis.drawing._bars import AFTER, BEFORE, paired_bars
-from calibration.diagnosis.drawing._curves import DrawnCurve, missing, most_telling, rms_of_all
-from calibration.diagnosis.drawing._domain import Figure
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.diagnosis.drawing._curves import Drawn, DrawnCurve, missing, most_telling, rms_of_all
+from calibration.diagnosis.drawing._domain import Figure, Section
+from calibration.diagnosis.drawing._labels import label
+from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.report import INK, paper, plain, significant
 
+Array = NDArray[np.float64]
+
 COLUMNS = 3
+TITLE = 26  # characters of a trial's name
+
+
+def per_trial(
+    curves: Sequence[Drawn],
+    draw: Callable[[Any, Drawn], None],
+    *,
+    name: str,
+    caption: str,
+    handles: Sequence[Line2D],
+    section: Section = "shapes",
+) -> Figure:
+    """A picture of one panel a trial, of those that depart most (`most_telling`).
+
+    Parameters
+    ----------
+    curves : sequence of DrawnCurve
+        All trials.
+    draw : callable
+        Draws a curve into its panel's axes.
+    name, section : see `Figure`.
+    caption : str
+        A sentence on trials without a panel is added.
+    handles : sequence of Line2D
+        Of the legend above the panels (`legend_handles`).
+    """
+    shown, unshown = most_telling(curves)
+    figure, each = panels(len(shown))
+    for axes, curve in zip(each, shown, strict=True):
+        draw(axes, curve)
+    figure.legend(handles=handles, loc="outside upper left", ncols=4, fontsize=8.5, frameon=False)
+    return Figure(name=name, caption=caption + missing(unshown), figure=figure, section=section)
 
 
 def panels(count: int) -> tuple[Any, list[Any]]:
@@ -33,27 +70,59 @@ def dots(axes: Any, x: Any, y: Any, colour: str, *, hollow: bool) -> None:
     axes.plot(x, y, "o", ms=2.6, mew=0.6, mfc=face, mec=colour, zorder=3)
 
 
-def titled(axes: Any, curve: DrawnCurve, name: str, across: str, up: str, *, unit: tuple[str, float]) -> None:
-    """A panel's title with what is left of its curve, and its axes; unit: of that, and how many are one SI
-    unit."""
+def measured_and_simulated(
+    axes: Any,
+    x: Array,
+    measured: Array,
+    before: Array,
+    after: Array | None,
+    branches: Iterable[tuple[NDArray[np.bool_], bool]],
+) -> None:
+    """Dots of the measured curve and lines of the simulated ones, branch by branch.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    x, measured, before, after : ndarray, shape (k,)
+        In the units of the axes; after is None where there is no extension.
+    branches : iterable of (ndarray of bool, shape (k,), bool)
+        Points that a line joins, and whether their dots are hollow.
+    """
+    for mine, hollow in branches:
+        dots(axes, x[mine], measured[mine], INK, hollow=hollow)
+        axes.plot(x[mine], before[mine], color=BEFORE, lw=1.6, zorder=2)
+        if after is not None:
+            axes.plot(x[mine], after[mine], color=AFTER, lw=1.6, zorder=2.5)
+
+
+def titled(
+    axes: Any, curve: DrawnCurve, across: str, up: str, *, unit: tuple[str, float], note: str = ""
+) -> None:
+    """Title a panel with its trial's name, a note, and the rms of its residuals; label its axes.
+
+    unit: of the rms, and how many of it are one SI unit.
+    """
     plain(axes)
     shown, per_si = unit
     rms = significant(per_si * curve.rms("before"), 3)
     if curve.extended:
         rms += f" → {significant(per_si * curve.rms('after'), 3)}"
-    axes.set_title(f"{name}\nrms {rms} {shown}", fontsize=8.5, loc="left")
+    axes.set_title(f"{label(curve.name, TITLE)}{note}\nrms {rms} {shown}", fontsize=8.5, loc="left")
     axes.set_xlabel(across, fontsize=8)
     axes.set_ylabel(up, fontsize=8)
 
 
-def legend(figure: Any, curves: Sequence[DrawnCurve], after: str, *, measured: bool = True) -> None:
-    """What dots and lines are. after: see `legend_of`. measured: whether all dots are one colour."""
+def legend_handles(curves: Sequence[DrawnCurve], after: str, *, measured: bool = True) -> list[Line2D]:
+    """Dots of the measured curve and lines of the simulated ones.
+
+    after: see `legend_of`. measured: False leaves out the dots, where they are not all of one colour.
+    """
     handles = [Line2D([], [], color=BEFORE, lw=2, label="baseline")]
     if measured:
         handles.insert(0, Line2D([], [], ls="", marker="o", ms=4, color=INK, label="measured"))
     if any(c.extended for c in curves):
         handles.append(Line2D([], [], color=AFTER, lw=2, label=after))
-    figure.legend(handles=handles, loc="outside upper left", ncols=3, fontsize=8.5, frameon=False)
+    return handles
 
 
 def draw_rms(
@@ -72,7 +141,7 @@ def draw_rms(
     """
     shown, unshown = most_telling(curves)
     name, per_si = unit
-    gain = diagnosis.gain
+    gain = diagnosis.held_out
 
     def each(which: str) -> list[float]:
         return [per_si * v for v in (*(c.rms(which) for c in shown), rms_of_all(curves, which))]

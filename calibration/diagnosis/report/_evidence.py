@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from calibration.diagnosis.drawing import label_of_causes
-from calibration.diagnosis.explanation import Explanation
+from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.search import Finding, Rules
 from calibration.diagnosis.report._words import HEADLINE
-from calibration.diagnosis.search import Finding, Rules
 from calibration.report import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
 
 CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
-ALARM, RARE = 0.05, Rules().alarm  # chances of noise alone, drawn as lines
+ALARM, RARE = 0.05, Rules().false_alarm_rate  # chances of noise alone, drawn as lines
 RIVAL = 6.0  # of chi-square: what comes as near to the best is not told from it
 _MOST = 40  # bars
 
@@ -44,7 +44,7 @@ def bars(finding: Finding) -> list[Bar]:
     for e in sorted(finding.explanations, key=lambda e: e.score):
         if e.names not in found:
             found[e.names] = _confirmed(e, finding, best)
-    gains = finding.screened.promises(finding.baseline.z)
+    gains = finding.screened.penalised(finding.baseline.z)
     for k in np.argsort(-gains):
         c = finding.screened.candidates[k]
         if (c.effect,) not in found:
@@ -54,10 +54,10 @@ def bars(finding: Finding) -> list[Bar]:
 
 def _confirmed(e: Explanation, finding: Finding, best: float) -> Bar:
     return Bar(
-        name=e.fit.reports(),
-        gain=max(0.0, finding.baseline.chi2 - e.fit.chi2 - e.choice),
+        name=e.fit.label,
+        gain=max(0.0, finding.baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty),
         behind=e.score - best,
-        named=e.names in finding.rivals,
+        named=e.names in finding.equivalent,
         converged=e.fit.converged,
     )
 
@@ -68,7 +68,7 @@ def draw_evidence(finding: Finding) -> Picture:
     shown = everything[:_MOST]
     confirmed = [b for b in shown if b.behind is not None]
     figure = paper(11.0, 1.5 + 0.27 * len(shown))
-    if finding.rivals and confirmed:
+    if finding.equivalent and confirmed:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
         _behind(right, shown)
     else:
@@ -82,7 +82,7 @@ def draw_evidence(finding: Finding) -> Picture:
         " to choose from, which is written at their ends), each effect at the place where it explains most."
         " Grey bars were screened to first order, coloured ones fitted in the simulator. Left of the lines is"
         " what noise alone gives the best of all causes tried."
-        + (" Right: what the best explains and this cause does not." if finding.rivals else "")
+        + (" Right: what the best explains and this cause does not." if finding.equivalent else "")
         + (f" {left_out} weaker ones are not drawn." if left_out else "")
     )
     return picture(figure, "evidence", caption)
@@ -101,7 +101,7 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
         here = np.array(wanted, dtype=bool)
         if here.any():
             axes.barh(rows[here], drawn[here], height=0.7, color=colour, label=text, zorder=2)
-    noise = finding.null.gains(finding.screened)
+    noise = finding.null.max_improvement(finding.screened)
     for chance, line in ((ALARM, ":"), (RARE, "--")):
         axes.axvline(
             np.sqrt(noise.threshold(chance)),

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from calibration.diagnosis.nested import Nested
-from calibration.diagnosis.null import Departure
+from calibration.diagnosis.engine.null import LackOfFit
+from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._evidence import ALARM, RARE
 from calibration.diagnosis.report._words import SUSPECT, chance, pattern, tiny
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.measurements._model import MeasurementModel
 from calibration.report import listed, significant
 
 
 def alarm(diagnosis: Diagnosis) -> str:
     """What chance alone has to do with the best cause."""
     finding = diagnosis.finding
-    noise = finding.null.gains(finding.screened)
+    noise = finding.null.max_improvement(finding.screened)
     limits = (
         f"In this design noise alone gives the best of all {len(finding.screened.candidates)} candidates more"
         f" than {significant(noise.threshold(ALARM))} in {ALARM:.0%} and more than"
@@ -22,31 +22,32 @@ def alarm(diagnosis: Diagnosis) -> str:
     single = [e for e in finding.explanations if len(e.candidates) == 1]
     if not single:
         return f"{limits} No cause explained enough to be fitted in the simulator."
-    gain = max(finding.baseline.chi2 - e.fit.chi2 - e.choice for e in single)
+    gain = max(finding.baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty for e in single)
     return (
         f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, the choice of"
-        f" its place taken off: the chance that noise alone does so is {tiny(finding.chance)}."
+        f" its place taken off: the chance that noise alone does so is {tiny(finding.p_value)}."
     )
 
 
-def departure(diagnosis: Diagnosis) -> str:
+def lack_of_fit(diagnosis: Diagnosis) -> str:
     """Which test of the residuals fails worst, at the baseline and with the best of the library taken out."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)
-    base = finding.departure
-    text = f"Against the baseline {_failing(base)} (all tests together: p {chance(base.p, draws)})."
-    if not finding.explanations or finding.chance > RARE:
+    base = finding.lack_of_fit
+    text = f"Against the baseline {_failing(base)} (all tests together: p {chance(base.p_value, draws)})."
+    if not finding.explanations or finding.p_value > RARE:
         return f"{text} No effect of the library improves χ² by more than noise alone would."
     best = finding.explanations[0]
     return (
-        f"{text} The best that the library offers ({best.fit.reports()}) improves χ² by"
+        f"{text} The best that the library offers ({best.fit.label}) improves χ² by"
         f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"
-        f" {_failing(best.departure)} (all tests together: p {chance(best.departure.p, draws)}). So it is not"
+        f" {_failing(best.lack_of_fit)} (all tests together: p"
+        f" {chance(best.lack_of_fit.p_value, draws)}). So it is not"
         " named as the cause."
     )
 
 
-def _failing(found: Departure) -> str:
+def _failing(found: LackOfFit) -> str:
     """The tests of residuals that fail; the one nearest to it where none does alone."""
     worst = [n for n, p in found.each.items() if p < SUSPECT] or [found.worst]
     return f"more than noise is found in the {listed([pattern(n) for n in worst])}"
@@ -60,14 +61,14 @@ def troubles(diagnosis: Diagnosis) -> list[str]:
         found.append(f"The baseline's fit did not converge: {finding.baseline.message}.")
     stopped = [e.fit for e in finding.explanations if not e.fit.converged]
     if stopped:
-        named = "; ".join(f"{f.reports()} ({f.message})" for f in stopped)
+        named = "; ".join(f"{f.label} ({f.message})" for f in stopped)
         found.append(
             f"{len(stopped)} of {len(finding.explanations)} fits of causes did not converge: {named}."
         )
     return found
 
 
-def method(diagnosis: Diagnosis, model: Nested, noise: str) -> list[str]:
+def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[str]:
     """Noise model, bootstrap, screening, confirmation, time."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)

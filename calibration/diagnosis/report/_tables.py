@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._units import quantity_and_unit
 from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
-from calibration.diagnosis.verdict import Diagnosis
 from calibration.report import NOTHING, Cell, significant, with_sd
 
 Rows = list[list[Cell]]
@@ -49,7 +49,7 @@ def alternative_rows(diagnosis: Diagnosis) -> Rows:
     finding = diagnosis.finding
     best = finding.explanations[0].score if finding.explanations else 0.0
     rows = []
-    for k, names in enumerate(finding.rivals):
+    for k, names in enumerate(finding.equivalent):
         score = min(e.score for e in finding.explanations if e.names == names)
         parts = [diagnosis.effects[n] for n in names]
         rows.append(
@@ -134,8 +134,8 @@ def test_rows(diagnosis: Diagnosis) -> Rows:
     """Chance of each test of the residuals, at the baseline and with the best explanation."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)
-    best = finding.explanations[0].departure if finding.explanations else None
-    both = [finding.departure, best]
+    best = finding.explanations[0].lack_of_fit if finding.explanations else None
+    both = [finding.lack_of_fit, best]
 
     def cell(p: float | None) -> Cell:
         if p is None:
@@ -144,15 +144,15 @@ def test_rows(diagnosis: Diagnosis) -> Rows:
 
     rows = [
         [Cell(text=pattern(n)), *(cell(None if d is None else d.each[n]) for d in both)]
-        for n in finding.departure.each
+        for n in finding.lack_of_fit.each
     ]
-    whole = [cell(None if d is None else d.p) for d in both]
+    whole = [cell(None if d is None else d.p_value) for d in both]
     return [*rows, [Cell(text="all tests together, their number accounted for", mark="chosen"), *whole]]
 
 
 def invisible_rows(diagnosis: Diagnosis) -> Rows:
     rows = []
-    for i in diagnosis.invisible:
+    for i in diagnosis.undetectable:
         seen = math.isfinite(i.threshold)
         amount = _amplitude(i.parameter, i.threshold, 0.0) if seen else "no amplitude shows"
         effect = diagnosis.effects[i.effect]

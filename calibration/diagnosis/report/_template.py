@@ -40,9 +40,9 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 {% endfor %}
 </section>
 {% if verdict == "unexplained" %}
-<section id="departure">
+<section id="lack-of-fit">
 <h2>What nothing in the library explains</h2>
-<p>{{ departure }}</p>
+<p>{{ lack_of_fit }}</p>
 {{ table(test_headings, tests) }}
 {% for p in residuals %}
 {{ figure(p) }}

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from calibration.diagnosis._rig_file import corrects
-from calibration.diagnosis.effect import Effect, Scope
-from calibration.diagnosis.null import EVERYTHING
-from calibration.diagnosis.specimens import SPECIMENS
+from calibration.diagnosis.engine.null import EVERYTHING
+from calibration.measurements._baseline import SPECIMENS
+from calibration.measurements._effect import EffectModel, Owner
 from calibration.report import significant
 
 SUSPECT = 0.005  # a chance below is no accident
 
-MEANING: dict[Scope, str] = {
+MEANING: dict[Owner, str] = {
     "specimen": "a property of the specimen: it may enter a simulated dataset",
     "rig": "a fault of the rig: it corrects the calibration, and must not enter a simulated dataset",
     "camera": "a fault of the camera: it corrects the calibration, and must not enter a simulated dataset",
@@ -44,7 +44,7 @@ def pattern(name: str) -> str:
     return _PATTERNS.get(name, name)
 
 
-def meaning(effect: Effect) -> str:
+def meaning(effect: EffectModel) -> str:
     """What it means that an effect belongs where it does."""
     if effect.belongs_to in ("rig", "camera") and corrects([effect]) == "nothing":
         return UNREAD.format(effect.belongs_to)

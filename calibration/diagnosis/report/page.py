@@ -6,20 +6,20 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
-from calibration.diagnosis.drawing import Figure, noise_of, pictures_of
-from calibration.diagnosis.nested import Nested
+from calibration.diagnosis.drawing import Figure
+from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report import _tables as tables
 from calibration.diagnosis.report._evidence import draw_evidence
-from calibration.diagnosis.report._method import alarm, departure, method, troubles
+from calibration.diagnosis.report._method import alarm, lack_of_fit, method, troubles
 from calibration.diagnosis.report._template import PAGE
 from calibration.diagnosis.report._words import HEADLINE
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.measurements._model import MeasurementModel
 from calibration.report import Picture, file_name, picture, template
 
 LONGEST = 60  # letters of a picture's file name
 
 
-def write_report(diagnosis: Diagnosis, model: Nested, folder: Path, *, title: str) -> list[Path]:
+def write_report(diagnosis: Diagnosis, model: MeasurementModel, folder: Path, *, title: str) -> list[Path]:
     """Write `folder/report.html` and its pictures (`folder/*.png`); their paths, the page first.
 
     model: the one that was diagnosed, its nuisances taken at the baseline; what type it has decides whose
@@ -28,7 +28,7 @@ def write_report(diagnosis: Diagnosis, model: Nested, folder: Path, *, title: st
     evidence = draw_evidence(diagnosis.finding)
     extra: list[str] = []
     try:
-        figures = pictures_of(model, diagnosis)
+        figures = model.pictures(diagnosis)
     except ValueError as problem:  # a simulation that has no answer: the rest of the page still stands
         figures, extra = [], [f"The pictures of shapes and residuals are missing: {problem}."]
     pictures = _pictures(figures, taken={evidence.name})
@@ -42,7 +42,7 @@ def write_report(diagnosis: Diagnosis, model: Nested, folder: Path, *, title: st
 
 def render(
     diagnosis: Diagnosis,
-    model: Nested,
+    model: MeasurementModel,
     evidence: Picture,
     pictures: list[tuple[Figure, Picture]],
     *,
@@ -65,7 +65,7 @@ def render(
         troubles=[*troubles(diagnosis), *extra],
         shapes=[p for f, p in pictures if f.section == "shapes"],
         residuals=[p for f, p in pictures if f.section == "residuals"],
-        departure=departure(diagnosis),
+        lack_of_fit=lack_of_fit(diagnosis),
         test_headings=tables.TESTS,
         tests=tables.test_rows(diagnosis),
         evidence=evidence,
@@ -77,7 +77,7 @@ def render(
         invisible_headings=tables.INVISIBLE,
         invisible=tables.invisible_rows(diagnosis),
         notes=diagnosis.notes,
-        method=method(diagnosis, model, noise_of(model)),
+        method=method(diagnosis, model, model.noise_sentence()),
     )
 
 

@@ -14,9 +14,12 @@ from _folders import beam_entry, capture_entry, outline_columns, write_experimen
 from numpy.typing import NDArray
 
 import tisim
+from calibration.diagnosis.catalogue import effects_of
 from calibration.experiment import read
 from calibration.experiment.model import Experiment
-from calibration.outlines import COARSE
+from calibration.measurements.outlines import COARSE
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.simulators import OURS, Simulator
 from tisim.mesh import outline
 
 Array = NDArray[np.float64]
@@ -52,12 +55,12 @@ def tiny(
             identifier = f"{name}-{'bridge' if bridge else 'cantilever'}-{length:.0f}"
             supports = "clamped-clamped" if bridge else "clamped-free"
             beam = tisim.Beam(
-                material=tisim.material_from_moduli("yeoh", shear=shear, bulk=300.0 * shear),
+                material=tisim.material_from_moduli("yeoh", shear_modulus=shear, bulk_modulus=300.0 * shear),
                 length=length / 1e3,
                 supports=supports,  # type: ignore[arg-type]
                 element=COARSE.element,  # type: ignore[arg-type]
-                layer=COARSE.layer,
-                rings=COARSE.rings,
+                axial_element_size=COARSE.layer,
+                radial_elements=COARSE.rings,
                 solver=COARSE.solver,
             )
             captures = []
@@ -114,3 +117,15 @@ def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) 
         traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
         found.append(scale * traced @ turn.T + shift)
     return found[0], found[1]
+
+
+def beam_model(
+    made: Experiment,
+    *,
+    simulator: Simulator = OURS,
+    without: Sequence[str] = (),
+    workers: int | None = None,
+) -> OutlineModel:
+    """With the catalogue's effects."""
+    effects = {n: e for n, e in effects_of("outlines").items() if n not in without}
+    return OutlineModel(made, effects=effects, simulator=simulator, workers=workers)  # type: ignore[arg-type]

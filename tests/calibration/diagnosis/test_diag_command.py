@@ -33,7 +33,7 @@ def _no_diagnosis(monkeypatch: pytest.MonkeyPatch) -> None:
     def stop(*_: object, **__: object) -> None:
         raise AssertionError("the search began with input that cannot be used")
 
-    monkeypatch.setattr("calibration.diagnose.diagnose", stop)
+    monkeypatch.setattr("calibration.diagnosis.engine.run.diagnose", stop)
 
 
 def refused(done: Result, *said: str) -> None:
@@ -92,7 +92,7 @@ def test_two_kinds_and_none_said(tmp_path: Path) -> None:
             "c.csv": {"stretch": stretch, "nominal_stress_kPa": 30.0 * (stretch - stretch**-2)},
         },
     )
-    refused(diagnose(both, "--out", tmp_path / "out"), "--kind", "beams", "coupons")
+    refused(diagnose(both, "--out", tmp_path / "out"), "--kind", "outlines", "homogeneous")
     assert not (tmp_path / "out").exists()
 
 
@@ -117,7 +117,7 @@ def test_a_baseline_that_cannot_be_calibrated(
     def nowhere(*_: object, **__: object) -> None:
         raise ValueError("no shear modulus gives an equilibrium")
 
-    monkeypatch.setattr("calibration.diagnose.diagnose", nowhere)
+    monkeypatch.setattr("calibration.diagnosis.engine.run.diagnose", nowhere)
     refused(diagnose(beam, "--out", tmp_path / "out"), "no shear modulus")
     assert not (tmp_path / "out").exists()
 

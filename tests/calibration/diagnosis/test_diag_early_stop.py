@@ -4,21 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diag_beams import SHEAR, tiny
+from diag_beams import SHEAR, beam_model, tiny
 
-from calibration.diagnosis.beams import BeamModel, simulators
-from calibration.diagnosis.beams.simulators import SIMULATORS
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.nested import Linear, State
-from tisim import Beam, Status, material_from_moduli, simulate
-from tisim.paper_stop import paper_stop
+from calibration.measurements._effect import Candidate
+from calibration.measurements._state import Linearisation, State
+from calibration.measurements.outlines import simulators
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.simulators import SIMULATORS
+from tisim import Beam, Status, material_from_moduli, paper_stop, simulate
 
 EARLY = SIMULATORS["early-stop"]
 
 
 def released(shear: float, length: float) -> Beam:
-    material = material_from_moduli("neo-hookean", shear=shear, bulk=100.0 * shear)
-    return Beam(material=material, length=length, rings=1, layer=0.01, solver=EARLY.fidelity.solver)
+    material = material_from_moduli("neo-hookean", shear_modulus=shear, bulk_modulus=100.0 * shear)
+    return Beam(
+        material=material,
+        length=length,
+        radial_elements=1,
+        axial_element_size=0.01,
+        solver=EARLY.fidelity.solver,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -53,20 +59,20 @@ def test_a_beam_that_the_rule_never_stops_says_so(beams: list[Beam], monkeypatch
 
 
 @pytest.fixture(scope="module")
-def early(tmp_path_factory: pytest.TempPathFactory) -> BeamModel:
+def early(tmp_path_factory: pytest.TempPathFactory) -> OutlineModel:
     """Two short beams, as they hang at rest."""
     experiment = tiny(tmp_path_factory.mktemp("rest"), lengths_mm=(50.0, 60.0))
-    model = BeamModel(experiment, simulator=EARLY, workers=1)
-    model.retake(State(u=np.full(1, np.log(SHEAR))))
+    model = beam_model(experiment, simulator=EARLY, workers=1)
+    model.update_nuisances(State(u=np.full(1, np.log(SHEAR))))
     return model
 
 
-def columns(model: BeamModel, names: list[str]) -> tuple[Linear, list[Candidate]]:
+def columns(model: OutlineModel, names: list[str]) -> tuple[Linearisation, list[Candidate]]:
     some = [next(c for c in model.candidates if c.effect == n and c.at == "all") for n in names]
     return model.linearise(State(u=np.full(1, np.log(SHEAR))), some), some
 
 
-def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: BeamModel) -> None:
+def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: OutlineModel) -> None:
     """All of the way from the stop to equilibrium ends where the experiment was photographed, which the
     stopped beams are far from; it is the column of the fault, in the residuals themselves."""
     linear, (fault,) = columns(early, ["not-at-equilibrium"])
@@ -77,12 +83,12 @@ def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: BeamModel) -> None:
     assert rested @ rested < 0.05 * (stopped @ stopped)
 
 
-def test_what_else_may_be_is_seen_in_beams_at_rest(early: BeamModel) -> None:
+def test_what_else_may_be_is_seen_in_beams_at_rest(early: OutlineModel) -> None:
     """Columns by moduli and effects are those of a simulator that solves for rest on the same mesh."""
     names = ["residual-curvature", "coarse-mesh"]
     guided, some = columns(early, names)
-    still = BeamModel(early.experiment, simulator=replace(EARLY.guiding, name="still"), workers=1)
-    still._known, still._root = early._known, early._root
+    still = beam_model(early.experiment, simulator=replace(EARLY.as_surrogate, name="still"), workers=1)
+    still.noise, still._updated = early.noise, True
     plain = still.linearise(guided.state, some)
     np.testing.assert_allclose(guided.columns, plain.columns, atol=1e-6 * np.abs(plain.columns).max())
     np.testing.assert_allclose(guided.by_u, plain.by_u, atol=1e-6 * np.abs(plain.by_u).max())

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diag_beams import SHEAR, tiny
+from diag_beams import SHEAR, beam_model, tiny
 
-from calibration.diagnosis.beams._scenes import Nudge
-from calibration.diagnosis.beams.effects import EFFECTS, Situation
-from calibration.diagnosis.beams.model import BeamModel
-from calibration.diagnosis.beams.simulators import OURS
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.nested import Linear, State
-from calibration.outlines import COARSE
+from calibration.diagnosis.effects.outlines import EFFECTS
+from calibration.measurements._effect import Candidate
+from calibration.measurements._state import Linearisation, State
+from calibration.measurements.outlines import COARSE
+from calibration.measurements.outlines._effect import Situation
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.simulators import OURS
 
 # The catalogue's names.
 CATALOGUE = [
@@ -58,20 +58,22 @@ STATE = State(u=np.array([np.log(SHEAR)]))
 
 
 @pytest.fixture(scope="module")
-def model(tmp_path_factory: pytest.TempPathFactory) -> BeamModel:
+def model(tmp_path_factory: pytest.TempPathFactory) -> OutlineModel:
     experiment = tiny(tmp_path_factory.mktemp("beams"), lengths_mm=(50.0, 100.0), bridges_mm=(150.0,))
-    found = BeamModel(experiment, simulator=BARE, workers=1)
-    found.retake(STATE)
+    found = beam_model(experiment, simulator=BARE, workers=1)
+    found.update_nuisances(STATE)
     return found
 
 
 @pytest.fixture(scope="module")
-def linear(model: BeamModel) -> Linear:
+def linear(model: OutlineModel) -> Linearisation:
     return model.linearise(STATE, model.candidates)
 
 
-def nudge(name: str, part: float = 1.0) -> Nudge:
-    return Nudge(kind=(name, EFFECTS[name].places[0]), step=part * EFFECTS[name].step)
+def stepped(name: str, part: float = 1.0, on: State = STATE) -> State:
+    """A state with one step of an effect more, in all beams."""
+    more = Candidate(effect=name, position=EFFECTS[name].positions[0], alternatives=0)
+    return State(u=on.u, amplitudes={**on.amplitudes, more: part * EFFECTS[name].step})
 
 
 def test_the_effects_are_those_of_the_catalogue() -> None:
@@ -87,7 +89,7 @@ def test_an_effect_is_described(name: str) -> None:
     assert effect.name == name
     low, high = effect.bounds
     assert low <= 0.0 < high
-    assert 0.0 < abs(effect.step) < effect.plausible <= high
+    assert 0.0 < abs(effect.step) < effect.prior_scale <= high
     assert low <= effect.step <= high
     assert effect.sentence
     assert effect.remedy
@@ -102,16 +104,16 @@ def test_an_effect_is_described(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_none_of_an_effect_leaves_the_scene_as_it_is(model: BeamModel, name: str) -> None:
+def test_none_of_an_effect_leaves_the_scene_as_it_is(model: OutlineModel, name: str) -> None:
     effect = EFFECTS[name]
-    none = State(u=STATE.u, amplitudes={Candidate(effect=name, place=effect.places[0]): 0.0})
+    none = State(u=STATE.u, amplitudes={Candidate(effect=name, position=effect.positions[0]): 0.0})
     for i, t in enumerate(model.trials):
         ideal = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE)
         assert model.scenes.beam(i, none, time=10.0, fidelity=COARSE) == ideal
         assert model.scenes.key(i, none, time=10.0) == model.scenes.key(i, STATE, time=10.0)
         assert model.scenes.images(i, none, time=10.0) == []
-        situation = Situation(trial=t, time=10.0, place=effect.places[0])
-        if effect.touches(t) and name not in ("strain-stiffening", "void", "compressibility", "creep"):
+        situation = Situation(trial=t, time=10.0, position=effect.positions[0])
+        if effect.applies_to(t) and name not in ("strain-stiffening", "void", "compressibility", "creep"):
             assert effect.bend(ideal, 0.0, situation) == ideal
         points = np.array([[0.01, 0.02], [0.05, -0.01]])
         if effect.image is not None:
@@ -119,9 +121,8 @@ def test_none_of_an_effect_leaves_the_scene_as_it_is(model: BeamModel, name: str
 
 
 @pytest.mark.parametrize("name", ["strain-stiffening", "void", "compressibility", "creep"])
-def test_very_little_of_an_effect_is_very_little(model: BeamModel, name: str) -> None:
-    tiny_bit = Nudge(kind=(name, EFFECTS[name].places[0]), step=1e-5 * EFFECTS[name].step)
-    before, after = model.bank.solve([(STATE, None), (STATE, tiny_bit)])
+def test_very_little_of_an_effect_is_very_little(model: OutlineModel, name: str) -> None:
+    before, after = model.solutions.solve([STATE, stepped(name, 1e-5)])
     for p, q in zip(before, after, strict=True):
         assert p is not None
         assert q is not None
@@ -129,83 +130,83 @@ def test_very_little_of_an_effect_is_very_little(model: BeamModel, name: str) ->
 
 
 @pytest.mark.parametrize("name", sorted(CAMERA))
-def test_what_the_camera_does_needs_no_other_scene(model: BeamModel, name: str) -> None:
+def test_what_the_camera_does_needs_no_other_scene(model: OutlineModel, name: str) -> None:
     for i in range(len(model.trials)):
         key = model.scenes.key(i, STATE, time=10.0)
-        assert model.scenes.key(i, STATE, time=10.0, nudge=nudge(name)) == key
-        assert len(model.scenes.images(i, STATE, time=10.0, nudge=nudge(name))) == 1
+        assert model.scenes.key(i, stepped(name), time=10.0) == key
+        assert len(model.scenes.images(i, stepped(name), time=10.0)) == 1
 
 
 @pytest.mark.parametrize("name", [n for n in CATALOGUE if n not in CAMERA])
-def test_what_bends_the_beam_is_another_scene(model: BeamModel, name: str) -> None:
+def test_what_bends_the_beam_is_another_scene(model: OutlineModel, name: str) -> None:
     effect = EFFECTS[name]
     for i, t in enumerate(model.trials):
-        other = model.scenes.key(i, STATE, time=10.0, nudge=nudge(name))
-        assert (other != model.scenes.key(i, STATE, time=10.0)) == effect.touches(t)
+        other = model.scenes.key(i, stepped(name), time=10.0)
+        assert (other != model.scenes.key(i, STATE, time=10.0)) == effect.applies_to(t)
 
 
-def test_only_creep_differs_by_time(model: BeamModel) -> None:
+def test_only_creep_differs_by_time(model: OutlineModel) -> None:
     for name in CATALOGUE:
         effect = EFFECTS[name]
-        early = model.scenes.key(0, STATE, time=10.0, nudge=nudge(name))
-        late = model.scenes.key(0, STATE, time=1000.0, nudge=nudge(name))
+        early = model.scenes.key(0, stepped(name), time=10.0)
+        late = model.scenes.key(0, stepped(name), time=1000.0)
         assert (early != late) == effect.timed == (name == "creep")
-    beams = [
-        model.scenes.beam(0, STATE, time=t, fidelity=COARSE, nudge=nudge("creep")) for t in (1, 10, 1000)
-    ]
+    beams = [model.scenes.beam(0, stepped("creep"), time=t, fidelity=COARSE) for t in (1, 10, 1000)]
     shear = [b.material.parameters["mu"] for b in beams]
     assert shear == pytest.approx([SHEAR, SHEAR * (1.0 - 0.01), SHEAR * (1.0 - 0.03)])
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_a_step_moves_the_outlines_that_it_may_and_no_others(
-    model: BeamModel, linear: Linear, name: str
+    model: OutlineModel, linear: Linearisation, name: str
 ) -> None:
     effect = EFFECTS[name]
     for k, c in enumerate(linear.candidates):
         if c.effect != name:
             continue
         for i, t in enumerate(model.trials):
-            rows = np.concatenate([np.full(p.basis.shape[1], p.trial == i) for p in model.pictures])
-            may = effect.touches(t) and c.at in ("all", t.id)
+            rows = np.concatenate([np.full(p.basis.shape[1], p.beam == i) for p in model.records])
+            may = effect.applies_to(t) and c.at in ("all", t.id)
             size = np.linalg.norm(linear.columns[rows, k]) if rows.any() else 0.0
             # whitening mixes photographs through what they share only: none here, all is known exactly
             assert (size > 1e-6) == may, (c.label, t.id, size)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_half_a_step_does_half(model: BeamModel, name: str) -> None:
-    whole, half = nudge(name), nudge(name, 0.5)
-    base, one, less = model.bank.solve([(STATE, None), (STATE, whole), (STATE, half)])
-    at = model.bank.values_of(base, STATE)
-    full = (model.bank.values_of(one, STATE, whole) - at) / whole.step
-    part = (model.bank.values_of(less, STATE, half) - at) / half.step
+def test_half_a_step_does_half(model: OutlineModel, name: str) -> None:
+    step, whole, half = EFFECTS[name].step, stepped(name), stepped(name, 0.5)
+    base, one, less = model.solutions.solve([STATE, whole, half])
+    at = model.solutions.values_of(base, STATE)
+    full = (model.solutions.values_of(one, whole) - at) / step
+    part = (model.solutions.values_of(less, half) - at) / (0.5 * step)
     assert np.linalg.norm(full - part) < 0.1 * np.linalg.norm(part)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_what_is_there_and_a_step_add_up(model: BeamModel, name: str) -> None:
+def test_what_is_there_and_a_step_add_up(model: OutlineModel, name: str) -> None:
     """A state with an amplitude and a step on it is the state with their sum: scene, picture and all."""
     effect = EFFECTS[name]
-    place = effect.places[0]
+    place = effect.positions[0]
     for i, t in enumerate(model.trials):
-        if not effect.touches(t):
+        if not effect.applies_to(t):
             continue
-        at = t.id if effect.reach == "trial" else "all"
-        c = Candidate(effect=name, at=at, place=place)
+        at = "all" if effect.in_all else t.id
+        c = Candidate(effect=name, at=at, position=place)
         there = State(u=STATE.u, amplitudes={c: 2.0 * effect.step})
         summed = State(u=STATE.u, amplitudes={c: 3.0 * effect.step})
-        assert model.scenes.inside(i, there, nudge(name)) == pytest.approx(model.scenes.inside(i, summed))
+        assert model.scenes.inside(i, stepped(name, on=there)) == pytest.approx(
+            model.scenes.inside(i, summed)
+        )
         points = np.array([[0.01, 0.02], [0.05, -0.01]])
-        stepped, whole = points, points
-        for image in model.scenes.images(i, there, time=10.0, nudge=nudge(name)):
-            stepped = image(stepped)
+        both, whole = points, points
+        for image in model.scenes.images(i, stepped(name, on=there), time=10.0):
+            both = image(both)
         for image in model.scenes.images(i, summed, time=10.0):
             whole = image(whole)
-        assert stepped == pytest.approx(whole)
+        assert both == pytest.approx(whole)
 
 
-def test_effects_compose(model: BeamModel) -> None:
+def test_effects_compose(model: OutlineModel) -> None:
     amplitudes = {
         Candidate(effect="residual-curvature"): 0.5,
         Candidate(effect="residual-curvature", at="S0"): 0.25,
@@ -215,17 +216,17 @@ def test_effects_compose(model: BeamModel) -> None:
         Candidate(effect="density"): 0.02,
     }
     beam = model.scenes.beam(0, State(u=STATE.u, amplitudes=amplitudes), time=100.0, fidelity=COARSE)
-    assert beam.specimen.curvature == pytest.approx(0.75)
-    assert beam.clamps.tilt == pytest.approx(0.01)
+    assert beam.imperfections.curvature == pytest.approx(0.75)
+    assert beam.clamp_imperfections.tilt == pytest.approx(0.01)
     assert beam.material.law == "yeoh"
     assert beam.material.parameters["stiffening"] == pytest.approx(0.3)
     assert beam.material.density == pytest.approx(1020.0)
     from tisim import laws
 
-    assert laws.get("yeoh").moduli(beam.material.parameters).shear == pytest.approx(0.9 * SHEAR)
+    assert laws.get("yeoh").moduli(beam.material.parameters).shear_modulus == pytest.approx(0.9 * SHEAR)
 
 
-def test_signs_are_those_that_are_written(model: BeamModel) -> None:
+def test_signs_are_those_that_are_written(model: OutlineModel) -> None:
     """Which way the free end goes, by effect: up or down, for a positive amplitude."""
     up = ["clamp-tilt", "residual-curvature", "camera-roll"]
     down = ["added-mass", "creep", "density", "grip-length", "free-length", "clamp-compliance", "taper"]
@@ -235,41 +236,42 @@ def test_signs_are_those_that_are_written(model: BeamModel) -> None:
         i = next(
             k for k, t in enumerate(model.trials) if t.free_length == 0.1 and t.supports == "clamped-free"
         )
-        photo = next(p for p, q in enumerate(model.pictures) if q.trial == i)
+        photo = next(p for p, q in enumerate(model.records) if q.beam == i)
         ends = []
-        for n in (None, nudge(name, np.sign(EFFECTS[name].step))):
-            (results,) = model.bank.solve([(STATE, n)])
+        for state in (STATE, stepped(name, float(np.sign(EFFECTS[name].step)))):
+            (results,) = model.solutions.solve([state])
             result = results[photo]
             assert result is not None
             tip = result.positions[-1]
             rest = result.mesh.nodes
             end = tip[rest[:, 0] > rest[:, 0].max() - 1e-9].mean(axis=0)[[0, 2]][None]
-            for image in model.scenes.images(i, STATE, time=10.0, nudge=n):
+            for image in model.scenes.images(i, state, time=10.0):
                 end = image(end)
             ends.append(end[0, 1])
         assert (ends[1] > ends[0]) == (name in up), name
 
 
-def test_density_is_a_modulus(linear: Linear) -> None:
+def test_density_is_a_modulus(linear: Linearisation) -> None:
     k = linear.candidates.index(Candidate(effect="density"))
     density, modulus = linear.columns[:, k], linear.by_u[:, 0]
     cosine = abs(density @ modulus) / np.linalg.norm(density) / np.linalg.norm(modulus)
     assert cosine > 0.9999
 
 
-def test_a_bridge_is_slack_where_its_clamps_are_nearer_than_its_length(model: BeamModel) -> None:
+def test_a_bridge_is_slack_where_its_clamps_are_nearer_than_its_length(model: OutlineModel) -> None:
     i = next(k for k, t in enumerate(model.trials) if t.supports == "clamped-clamped")
-    beam = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE, nudge=nudge("clamp-gap"))
+    beam = model.scenes.beam(i, stepped("clamp-gap"), time=10.0, fidelity=COARSE)
     assert beam.length == pytest.approx(0.1502)
-    assert beam.length + beam.clamps.far_shift[0] == pytest.approx(0.150)  # where the clamp is seen
-    assert replace(beam, length=0.15, clamps=replace(beam.clamps, far_shift=(0.0, 0.0))) == model.scenes.beam(
-        i, STATE, time=10.0, fidelity=COARSE
-    )
+    seen = beam.length + beam.clamp_imperfections.far_shift[0]
+    assert seen == pytest.approx(0.150)  # of the far clamp
+    still = replace(beam.clamp_imperfections, far_shift=(0.0, 0.0))
+    ideal = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE)
+    assert replace(beam, length=0.15, clamp_imperfections=still) == ideal
 
 
-def test_a_grip_that_holds_deeper_frees_both_ends_of_a_bridge(model: BeamModel) -> None:
+def test_a_grip_that_holds_deeper_frees_both_ends_of_a_bridge(model: OutlineModel) -> None:
     for i, t in enumerate(model.trials):
-        beam = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE, nudge=nudge("grip-length"))
+        beam = model.scenes.beam(i, stepped("grip-length"), time=10.0, fidelity=COARSE)
         ends = 2 if t.supports == "clamped-clamped" else 1
         assert beam.length == pytest.approx(t.free_length + ends * EFFECTS["grip-length"].step)
 
@@ -277,7 +279,7 @@ def test_a_grip_that_holds_deeper_frees_both_ends_of_a_bridge(model: BeamModel) 
 def test_photographs_share_what_they_can(tmp_path: Path) -> None:
     """Photographs at several times are of one solved scene, unless what is there differs in time."""
     experiment = tiny(tmp_path, lengths_mm=(50.0,), times=(10.0, 100.0, 1000.0))
-    model = BeamModel(experiment, simulator=BARE, workers=1)
+    model = beam_model(experiment, simulator=BARE, workers=1)
     same = model.results(STATE)
     assert same[0] is same[1] is same[2]
     creeping = model.results(State(u=STATE.u, amplitudes={Candidate(effect="creep"): 0.05}))
@@ -286,12 +288,12 @@ def test_photographs_share_what_they_can(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.1, 0.3, 0.6, 0.85])
-def test_a_void_bends_as_much_as_one_with_sharp_ends(model: BeamModel, loss: float) -> None:
+def test_a_void_bends_as_much_as_one_with_sharp_ends(model: OutlineModel, loss: float) -> None:
     """By beam theory: the same flexibility is added along the beam as by 15 mm that lack this part of E I."""
     trial = model.trials[0]
     ideal = model.scenes.beam(0, STATE, time=10.0, fidelity=COARSE)
-    situation = Situation(trial=trial, time=10.0, place=0.5)
-    hole = EFFECTS["void"].bend(ideal, loss, situation).specimen.void  # type: ignore[misc]
+    situation = Situation(trial=trial, time=10.0, position=0.5)
+    hole = EFFECTS["void"].bend(ideal, loss, situation).imperfections.void  # type: ignore[misc]
     assert hole is not None
     assert hole.position == pytest.approx(0.5 * trial.free_length)
     x = np.linspace(-hole.length, hole.length, 40001)

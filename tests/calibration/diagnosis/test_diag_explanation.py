@@ -6,17 +6,17 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fake_nested import FakeNested, effect, library, noise, sigmas
+from fake_model import FakeModel, effect, library, noise, sigmas
 
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.explanation import Explanation, confidence, explain, rivals
-from calibration.diagnosis.fitting import fit
-from calibration.diagnosis.nested import State
-from calibration.diagnosis.null import Null
+from calibration.diagnosis.engine.explanation import Explanation, confidence, equivalent_explanations, explain
+from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.null import Null
+from calibration.measurements._effect import Candidate
+from calibration.measurements._state import State
 
 
-def explained(model: FakeNested, *sets: tuple[Candidate, ...]) -> tuple[list[Explanation], Null]:
-    null = Null(model.points, model.patterns())
+def explained(model: FakeModel, *sets: tuple[Candidate, ...]) -> tuple[list[Explanation], Null]:
+    null = Null(model.points, model.discrepancy_basis())
     baseline = fit(model, State(u=model.start()))
     found = [explain(model, baseline, s, [0.0] * len(s), null) for s in sets]
     assert all(e is not None for e in found)
@@ -28,9 +28,9 @@ def of(*names: str) -> tuple[Candidate, ...]:
 
 
 def test_each_amplitude_and_each_choice_of_a_place_costs() -> None:
-    model = FakeNested(scoped=("bend",), noise=noise(1))
+    model = FakeModel(scoped=("bend",), drawn=noise(1))
     (one, two, scoped), _ = explained(
-        model, of("bend"), of("bend", "slope"), (Candidate(effect="bend", at="S0", rivals=2),)
+        model, of("bend"), of("bend", "slope"), (Candidate(effect="bend", at="S0", alternatives=2),)
     )
     assert one.cost == pytest.approx(np.log(72))
     assert two.cost == pytest.approx(2.0 * np.log(72))
@@ -40,7 +40,7 @@ def test_each_amplitude_and_each_choice_of_a_place_costs() -> None:
 
 
 def test_a_first_guess_outside_of_what_makes_sense_is_brought_inside() -> None:
-    model = FakeNested(effects={"bend": effect("bend", bounds=(0.0, 4.0))}, hidden=3.0 * library()["bend"])
+    model = FakeModel(effects={"bend": effect("bend", bounds=(0.0, 4.0))}, hidden=3.0 * library()["bend"])
     null = Null(model.points, {})
     baseline = fit(model, State(u=model.start()))
     found = explain(model, baseline, of("bend"), [1e6], null)
@@ -50,12 +50,12 @@ def test_a_first_guess_outside_of_what_makes_sense_is_brought_inside() -> None:
 
 def test_a_guess_without_an_answer_is_tried_nearer_to_the_baseline() -> None:
     (bend,) = of("bend")
-    far = FakeNested(hidden=2.0 * library()["bend"], no_answer=lambda s: s.amplitudes.get(bend, 0.0) > 5.0)
+    far = FakeModel(hidden=2.0 * library()["bend"], no_answer=lambda s: s.amplitudes.get(bend, 0.0) > 5.0)
     baseline = fit(far, State(u=far.start()))
     found = explain(far, baseline, (bend,), [12.0], Null(far.points, {}))
     assert found is not None
     assert found.fit.state.amplitudes[bend] == pytest.approx(2.0, abs=1e-3)
-    never = FakeNested(no_answer=lambda s: bend in s.amplitudes)
+    never = FakeModel(no_answer=lambda s: bend in s.amplitudes)
     baseline = fit(never, State(u=never.start()))
     assert explain(never, baseline, (bend,), [12.0], Null(never.points, {})) is None
 
@@ -65,25 +65,31 @@ def made(score: float, *names: str) -> Explanation:
 
 
 def test_rivals_are_what_comes_near_the_best() -> None:
-    found = rivals([made(30.0, "c"), made(10.0, "a"), made(15.9, "b"), made(16.1, "d")], 6.0)
+    found = equivalent_explanations([made(30.0, "c"), made(10.0, "a"), made(15.9, "b"), made(16.1, "d")], 6.0)
     assert found == (("a",), ("b",))
 
 
 def test_one_effect_in_two_places_is_one_rival() -> None:
-    assert rivals([made(10.0, "a"), made(11.0, "a"), made(12.0, "b")], 6.0) == (("a",), ("b",))
+    assert equivalent_explanations([made(10.0, "a"), made(11.0, "a"), made(12.0, "b")], 6.0) == (
+        ("a",),
+        ("b",),
+    )
 
 
 def test_a_set_that_only_adds_to_a_better_one_is_none() -> None:
-    assert rivals([made(10.0, "a"), made(12.0, "a", "b"), made(13.0, "c", "b")], 6.0) == (("a",), ("b", "c"))
+    assert equivalent_explanations([made(10.0, "a"), made(12.0, "a", "b"), made(13.0, "c", "b")], 6.0) == (
+        ("a",),
+        ("b", "c"),
+    )
     # but a part of the best set is one, and so is a superset of what is worse
-    assert rivals([made(10.0, "a", "b"), made(12.0, "a")], 6.0) == (("a", "b"), ("a",))
+    assert equivalent_explanations([made(10.0, "a", "b"), made(12.0, "a")], 6.0) == (("a", "b"), ("a",))
 
 
 def test_confidence_is_high_for_what_is_clear_and_even_for_what_is_not() -> None:
     shapes = library()
     shapes["twin"] = shapes["bend"] + 1e-4 * shapes["ripple"]
-    hidden = 8.0 / sigmas(shapes["bend"], FakeNested()) * shapes["bend"]
-    model = FakeNested(shapes=shapes, hidden=hidden, noise=noise(2))
+    hidden = 8.0 / sigmas(shapes["bend"], FakeModel()) * shapes["bend"]
+    model = FakeModel(shapes=shapes, hidden=hidden, drawn=noise(2))
     (bend, twin, slope), null = explained(model, of("bend"), of("twin"), of("slope"))
     assert confidence([bend, slope], null) > 0.97
     assert confidence([bend, twin], null) == pytest.approx(0.5, abs=0.1)
@@ -95,8 +101,8 @@ def test_confidence_is_high_for_what_is_clear_and_even_for_what_is_not() -> None
 def test_confidence_is_how_often_the_first_would_be_first_again(size: float) -> None:
     """Against noise drawn here and fits made one by one, of the truth that the best explanation predicts."""
     shapes = library()
-    hidden = size / sigmas(shapes["bend"], FakeNested()) * shapes["bend"]
-    model = FakeNested(hidden=hidden)
+    hidden = size / sigmas(shapes["bend"], FakeModel()) * shapes["bend"]
+    model = FakeModel(hidden=hidden)
     both, null = explained(model, of("bend"), of("slope"))
     best, other = sorted(both, key=lambda e: e.score)
     again = 0

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_nested import FakeNested, effect, library, noise
+from fake_model import FakeModel, effect, library, noise
 
-from calibration.diagnosis.effect import Candidate
-from calibration.diagnosis.fitting import TOLERANCE, fit
-from calibration.diagnosis.nested import State
+from calibration.diagnosis.engine.fitting import TOLERANCE, fit
+from calibration.measurements._effect import Candidate
+from calibration.measurements._state import State
 
 BEND, SLOPE = Candidate(effect="bend"), Candidate(effect="slope")
 
 
-def start(model: FakeNested) -> State:
+def start(model: FakeModel) -> State:
     return State(u=model.start())
 
 
 def test_moduli_and_amplitudes_are_those_of_least_squares() -> None:
-    model = FakeNested(hidden=6.0 * library()["bend"], noise=noise(1))
+    model = FakeModel(hidden=6.0 * library()["bend"], drawn=noise(1))
     found = fit(model, start(model), (BEND, SLOPE))
     whole = np.column_stack([model.by_u, library()["bend"], library()["slope"]])
     best = np.linalg.lstsq(whole, model.data, rcond=None)[0]
@@ -32,7 +32,7 @@ def test_moduli_and_amplitudes_are_those_of_least_squares() -> None:
 
 
 def test_a_curved_response_is_followed_to_its_minimum() -> None:
-    model = FakeNested(hidden=0.0, bent=0.02)
+    model = FakeModel(hidden=0.0, bent=0.02)
     model.data = model.predicted(State(u=np.array([0.8, -0.4]), amplitudes={BEND: 5.0}))
     found = fit(model, start(model), (BEND,))
     assert found.converged
@@ -42,7 +42,7 @@ def test_a_curved_response_is_followed_to_its_minimum() -> None:
 
 
 def test_a_fit_starts_from_the_amplitudes_that_are_known() -> None:
-    model = FakeNested(hidden=6.0 * library()["bend"])
+    model = FakeModel(hidden=6.0 * library()["bend"])
     begun = State(u=model.truth, amplitudes={BEND: 6.0, SLOPE: 3.0})
     found = fit(model, begun, (BEND,))  # the slope is not asked for: it is taken out
     assert set(found.state.amplitudes) == {BEND}
@@ -54,7 +54,7 @@ def test_a_fit_starts_from_the_amplitudes_that_are_known() -> None:
 def test_an_amplitude_stays_within_its_bounds_and_the_rest_is_fitted_beside_it(
     bounds: tuple[float, float], hidden: float, ends: float
 ) -> None:
-    model = FakeNested(effects={"bend": effect("bend", bounds=bounds)}, hidden=hidden * library()["bend"])
+    model = FakeModel(effects={"bend": effect("bend", bounds=bounds)}, hidden=hidden * library()["bend"])
     found = fit(model, start(model), (BEND, SLOPE))
     held = np.column_stack([model.by_u, library()["slope"]])
     best = np.linalg.lstsq(held, model.data - ends * library()["bend"], rcond=None)[0]
@@ -64,14 +64,14 @@ def test_an_amplitude_stays_within_its_bounds_and_the_rest_is_fitted_beside_it(
 
 
 def test_a_start_out_of_bounds_is_brought_inside() -> None:
-    model = FakeNested(effects={"bend": effect("bend", bounds=(0.0, 4.0))}, hidden=3.0 * library()["bend"])
+    model = FakeModel(effects={"bend": effect("bend", bounds=(0.0, 4.0))}, hidden=3.0 * library()["bend"])
     found = fit(model, State(u=model.truth, amplitudes={BEND: 50.0}), (BEND,))
     assert found.converged
     assert found.state.amplitudes[BEND] == pytest.approx(3.0, abs=1e-6)
 
 
 def test_where_the_derivatives_lie_the_fit_says_so() -> None:
-    class Lying(FakeNested):
+    class Lying(FakeModel):
         def linearise(self, state, candidates):  # type: ignore[no-untyped-def]
             true = super().linearise(state, candidates)
             return type(true)(
@@ -90,7 +90,7 @@ def test_where_the_derivatives_lie_the_fit_says_so() -> None:
 
 
 def test_too_few_steps_are_said() -> None:
-    model = FakeNested(truth=np.array([9.0, -9.0]))  # steps of u are no longer than 0.7
+    model = FakeModel(truth=np.array([9.0, -9.0]))  # steps of u are no longer than 0.7
     found = fit(model, start(model), max_steps=3)
     assert not found.converged
     assert found.message == "not converged in 3 steps"
@@ -99,7 +99,7 @@ def test_too_few_steps_are_said() -> None:
 
 
 def test_states_without_an_answer_are_stepped_around() -> None:
-    model = FakeNested(truth=np.array([1.0, -0.5]), no_answer=lambda s: s.u[0] > 0.5)
+    model = FakeModel(truth=np.array([1.0, -0.5]), no_answer=lambda s: s.u[0] > 0.5)
     found = fit(model, start(model), max_steps=30)
     assert found.state.u[0] <= 0.5
     assert found.state.u[0] > 0.45  # as near as it can come
@@ -108,14 +108,14 @@ def test_states_without_an_answer_are_stepped_around() -> None:
 
 
 def test_a_start_without_an_answer_is_an_error() -> None:
-    model = FakeNested(no_answer=lambda _: True)
+    model = FakeModel(no_answer=lambda _: True)
     with pytest.raises(ValueError, match="no answer"):
         fit(model, start(model))
 
 
 def test_an_amplitude_that_does_nothing_stays_where_it_is() -> None:
     shapes = library() | {"nothing": np.zeros(72)}
-    model = FakeNested(shapes=shapes, noise=noise(2))
+    model = FakeModel(shapes=shapes, drawn=noise(2))
     nothing = Candidate(effect="nothing")
     found = fit(model, State(u=model.start(), amplitudes={nothing: 2.0}), (nothing,))
     assert found.converged
@@ -127,7 +127,7 @@ def test_columns_of_very_different_scale_are_fitted_together() -> None:
     shapes = library()
     shapes["bend"] = 1e-9 * shapes["bend"]
     effects = {"bend": effect("bend", bounds=(-1e12, 1e12))}
-    model = FakeNested(shapes=shapes, effects=effects, hidden=6e9 * shapes["bend"])
+    model = FakeModel(shapes=shapes, effects=effects, hidden=6e9 * shapes["bend"])
     found = fit(model, start(model), (BEND,))
     assert found.converged
     assert found.state.amplitudes[BEND] == pytest.approx(6e9, rel=1e-6)
@@ -137,7 +137,7 @@ def test_columns_of_very_different_scale_are_fitted_together() -> None:
 
 
 def test_labels() -> None:
-    model = FakeNested()
-    assert fit(model, start(model)).reports() == "baseline"
-    assert fit(model, start(model), (BEND, SLOPE)).reports() == "bend + slope"
-    assert Candidate(effect="void", at="S0-50", place=0.3).label == "void of S0-50 at 30%"
+    model = FakeModel()
+    assert fit(model, start(model)).label == "baseline"
+    assert fit(model, start(model), (BEND, SLOPE)).label == "bend + slope"
+    assert Candidate(effect="void", at="S0-50", position=0.3).label == "void of S0-50 at 30%"

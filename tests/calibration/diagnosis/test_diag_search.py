@@ -6,31 +6,31 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import pytest
-from fake_nested import MATERIALS, FakeNested, by_modulus, library, noise, of_material, sigmas, waves
+from fake_model import MATERIALS, FakeModel, by_modulus, library, noise, of_material, sigmas, waves
 from scipy.stats import binom
 
-from calibration.diagnosis.effect import Candidate, Effect
-from calibration.diagnosis.nested import State
-from calibration.diagnosis.search import Finding, Rules, calibrated, search
+from calibration.diagnosis.engine.search import Finding, Rules, fit_baseline, search
+from calibration.measurements._effect import Candidate, EffectModel
+from calibration.measurements._state import State
 
 
 def at_sigmas(name: str, size: float, *, material: str = "all") -> np.ndarray:
     """A column of an effect, of this many sigmas once the moduli are projected out."""
     raw = library()[name]
     raw = raw if material == "all" else np.where(of_material(material), raw, 0.0)
-    return np.asarray(raw * (size / sigmas(raw, FakeNested())))
+    return np.asarray(raw * (size / sigmas(raw, FakeModel())))
 
 
 def test_noise_alone_is_seldom_a_verdict() -> None:
     rules = Rules()
-    verdicts = [search(FakeNested(scoped=("bend", "slope"), noise=noise(k))).verdict for k in range(100)]
+    verdicts = [search(FakeModel(scoped=("bend", "slope"), drawn=noise(k))).verdict for k in range(100)]
     alarms = sum(v != "none" for v in verdicts)
-    assert alarms <= binom.ppf(0.999, 100, rules.alarm + rules.unlike)
+    assert alarms <= binom.ppf(0.999, 100, rules.false_alarm_rate + rules.lack_of_fit_level)
 
 
 def test_alarms_come_as_often_as_the_rules_allow() -> None:
-    loose = Rules(alarm=0.3, unlike=1e-9, second=1e-9)
-    verdicts = [search(FakeNested(noise=noise(k)), rules=loose).verdict for k in range(40)]
+    loose = Rules(false_alarm_rate=0.3, lack_of_fit_level=1e-9, extra_cause_rate=1e-9)
+    verdicts = [search(FakeModel(drawn=noise(k)), rules=loose).verdict for k in range(40)]
     alarms = sum(v != "none" for v in verdicts)
     assert binom.ppf(0.001, 40, 0.3) <= alarms <= binom.ppf(0.999, 40, 0.3)
 
@@ -39,7 +39,7 @@ def test_alarms_come_as_often_as_the_rules_allow() -> None:
 def test_an_effect_of_seven_sigmas_is_found(name: str) -> None:
     right = 0
     for k in range(4):
-        model = FakeNested(hidden=(-1.0) ** k * at_sigmas(name, 7.5), noise=noise(1000 + k))
+        model = FakeModel(hidden=(-1.0) ** k * at_sigmas(name, 7.5), drawn=noise(1000 + k))
         found = search(model)
         right += found.verdict == "found" and found.chosen.names == (name,)  # type: ignore[union-attr]
         assert found.explanations[0].names == (name,)
@@ -51,23 +51,23 @@ def test_an_effect_of_seven_sigmas_is_found(name: str) -> None:
 
 
 def test_a_curved_response_hides_nothing() -> None:
-    model = FakeNested(hidden=at_sigmas("ripple", 10.0), noise=noise(50), bent=0.003)
+    model = FakeModel(hidden=at_sigmas("ripple", 10.0), drawn=noise(50), bent=0.003)
     found = search(model)
     assert found.verdict == "found"
-    assert found.rivals == (("ripple",),)
+    assert found.equivalent == (("ripple",),)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Instant(Effect):
+class Instant(EffectModel):
     simulated = False  # type: ignore[assignment]
 
 
 def test_what_costs_no_simulation_is_fitted_whatever_it_promises() -> None:
     """A column says little of an effect that is far from linear. Promises of 49 and 400."""
     both = at_sigmas("bend", 20.0) + at_sigmas("ripple", 7.0)
-    plain = FakeNested(hidden=both, noise=noise(51))
-    instant = Instant(**{f.name: getattr(plain.effects["ripple"], f.name) for f in fields(Effect)})
-    other = FakeNested(hidden=both, noise=noise(51), effects={"ripple": instant})
+    plain = FakeModel(hidden=both, drawn=noise(51))
+    instant = Instant(**{f.name: getattr(plain.effects["ripple"], f.name) for f in fields(EffectModel)})
+    other = FakeModel(hidden=both, drawn=noise(51), effects={"ripple": instant})
     for model, fitted in ((plain, False), (other, True)):
         alone = {e.names for e in search(model).explanations if len(e.names) == 1}
         assert ("bend",) in alone
@@ -78,10 +78,10 @@ def test_causes_that_look_alike_are_both_named() -> None:
     shapes = library()
     shapes["twin"] = shapes["bend"] + 0.05 * shapes["ripple"]
     for k in range(3):
-        found = search(FakeNested(shapes=shapes, hidden=at_sigmas("bend", 8.0), noise=noise(60 + k)))
+        found = search(FakeModel(shapes=shapes, hidden=at_sigmas("bend", 8.0), drawn=noise(60 + k)))
         assert found.verdict == "ambiguous"
-        assert set(found.rivals) == {("bend",), ("twin",)}
-        assert found.rivals[0] == found.chosen.names  # type: ignore[union-attr]
+        assert set(found.equivalent) == {("bend",), ("twin",)}
+        assert found.equivalent[0] == found.chosen.names  # type: ignore[union-attr]
         assert found.confidence < 0.98
 
 
@@ -90,10 +90,10 @@ def test_smooth_structure_outside_the_library_is_unexplained() -> None:
     del shapes["ripple"], shapes["slack"]
     for k in range(3):
         hidden = 12.0 * waves(7)[:, 5] / np.linalg.norm(waves(7)[:, 5])
-        found = search(FakeNested(shapes=shapes, hidden=hidden, noise=noise(70 + k)))
+        found = search(FakeModel(shapes=shapes, hidden=hidden, drawn=noise(70 + k)))
         assert found.verdict == "unexplained"
         assert found.chosen is None
-        assert found.rivals == ()
+        assert found.equivalent == ()
         assert found.confidence == 0.0
 
 
@@ -102,23 +102,23 @@ def test_an_effect_taken_out_of_the_library_is_not_given_the_nearest_name() -> N
         shapes = library()
         hidden = at_sigmas("ripple", 12.0)
         del shapes["ripple"]
-        assert search(FakeNested(shapes=shapes, hidden=hidden, noise=noise(80 + k))).verdict == "unexplained"
+        assert search(FakeModel(shapes=shapes, hidden=hidden, drawn=noise(80 + k))).verdict == "unexplained"
 
 
 def test_two_causes_are_found_together() -> None:
     for k in range(3):
         hidden = at_sigmas("bend", 9.0) + at_sigmas("slack", -9.0)
-        found = search(FakeNested(hidden=hidden, noise=noise(90 + k)))
+        found = search(FakeModel(hidden=hidden, drawn=noise(90 + k)))
         assert found.verdict in ("found", "ambiguous")
         assert found.chosen is not None
         assert found.chosen.names == ("bend", "slack")
-        assert found.rivals[0] == ("bend", "slack")
+        assert found.equivalent[0] == ("bend", "slack")
 
 
 def test_one_cause_is_not_made_two() -> None:
     doubled = 0
     for k in range(12):
-        found = search(FakeNested(hidden=at_sigmas("bend", 10.0), noise=noise(100 + k)))
+        found = search(FakeModel(hidden=at_sigmas("bend", 10.0), drawn=noise(100 + k)))
         doubled += found.explanations[0].names != ("bend",)
     assert doubled <= 1
 
@@ -126,10 +126,10 @@ def test_one_cause_is_not_made_two() -> None:
 @pytest.mark.parametrize("place", ["all", *MATERIALS])
 def test_where_a_cause_sits_is_found(place: str) -> None:
     for k in range(2):
-        model = FakeNested(
+        model = FakeModel(
             scoped=tuple(library()),
             hidden=at_sigmas("bend", 10.0, material=place),
-            noise=noise(110 + k),
+            drawn=noise(110 + k),
         )
         found = search(model)
         assert found.verdict == "found"
@@ -140,15 +140,15 @@ def test_where_a_cause_sits_is_found(place: str) -> None:
 def test_what_the_moduli_can_do_alone_is_never_named() -> None:
     shapes = library() | {"density": by_modulus("S0")}
     for hidden in (5.0 * shapes["density"], at_sigmas("bend", 9.0)):
-        found = search(FakeNested(shapes=shapes, hidden=hidden, noise=noise(120)))
+        found = search(FakeModel(shapes=shapes, hidden=hidden, drawn=noise(120)))
         assert not any("density" in e.names for e in found.explanations)
     assert (
-        search(FakeNested(shapes=shapes, hidden=5.0 * shapes["density"], noise=noise(121))).verdict == "none"
+        search(FakeModel(shapes=shapes, hidden=5.0 * shapes["density"], drawn=noise(121))).verdict == "none"
     )
 
 
 def test_explanations_stand_in_the_order_of_their_score() -> None:
-    found = search(FakeNested(hidden=at_sigmas("bend", 6.0) + at_sigmas("slope", 6.0), noise=noise(130)))
+    found = search(FakeModel(hidden=at_sigmas("bend", 6.0) + at_sigmas("slope", 6.0), drawn=noise(130)))
     scores = [e.score for e in found.explanations]
     assert scores == sorted(scores)
     assert len(scores) >= 2
@@ -156,51 +156,55 @@ def test_explanations_stand_in_the_order_of_their_score() -> None:
 
 def test_a_search_is_the_same_again_and_other_seeds_draw_anew() -> None:
     def run(seed: int) -> Finding:
-        model = FakeNested(hidden=at_sigmas("bend", 4.0), noise=noise(140))
+        model = FakeModel(hidden=at_sigmas("bend", 4.0), drawn=noise(140))
         return search(model, rules=Rules(seed=seed))
 
     one, same, other = run(0), run(0), run(1)
-    assert (one.verdict, one.chance, one.departure.p) == (same.verdict, same.chance, same.departure.p)
+    assert (one.verdict, one.p_value, one.lack_of_fit.p_value) == (
+        same.verdict,
+        same.p_value,
+        same.lack_of_fit.p_value,
+    )
     assert (one.null.noise != other.null.noise).any()
-    assert one.chance == pytest.approx(other.chance, rel=1.0)
+    assert one.p_value == pytest.approx(other.p_value, rel=1.0)
 
 
 def test_nuisances_are_taken_anew_where_the_fit_ends() -> None:
-    model = FakeNested(truth=np.array([2.0, -2.0]))
-    found = calibrated(model)
+    model = FakeModel(truth=np.array([2.0, -2.0]))
+    found = fit_baseline(model)
     assert found.converged
-    assert len(model.retaken) == 1  # where the rough fit ended, and no further: it hardly moved again
-    assert model.retaken[-1].u == pytest.approx(found.state.u, abs=0.05)
+    assert len(model.updated) == 1  # where the rough fit ended, and no further: it hardly moved again
+    assert model.updated[-1].u == pytest.approx(found.state.u, abs=0.05)
 
 
 def test_nuisances_that_move_the_fit_are_taken_once_more() -> None:
-    class Drawn(FakeNested):
-        def retake(self, state: State, *, rough: bool = False) -> None:
-            super().retake(state, rough=rough)
-            if not rough and len(self.retaken) == 1:
+    class Drawn(FakeModel):
+        def update_nuisances(self, state: State, *, rough: bool = False) -> None:
+            super().update_nuisances(state, rough=rough)
+            if not rough and len(self.updated) == 1:
                 self.data = self.data + self.by_u @ np.array([0.3, 0.0])
 
     model = Drawn()
-    found = calibrated(model)
-    assert len(model.retaken) == 2
+    found = fit_baseline(model)
+    assert len(model.updated) == 2
     assert found.state.u == pytest.approx(model.truth + np.array([0.3, 0.0]), abs=1e-3)
 
 
 def test_a_library_of_nothing_names_nothing() -> None:
-    assert search(FakeNested(shapes={}, noise=noise(150))).verdict == "none"
-    odd = FakeNested(shapes={}, hidden=at_sigmas("ripple", 15.0), noise=noise(150))
+    assert search(FakeModel(shapes={}, drawn=noise(150))).verdict == "none"
+    odd = FakeModel(shapes={}, hidden=at_sigmas("ripple", 15.0), drawn=noise(150))
     assert search(odd).verdict == "unexplained"
 
 
 def test_no_baseline_is_an_error() -> None:
     with pytest.raises(ValueError, match="no answer"):
-        search(FakeNested(no_answer=lambda _: True))
+        search(FakeModel(no_answer=lambda _: True))
 
 
 def test_a_cause_that_the_simulator_cannot_follow_is_passed_over() -> None:
     bend = Candidate(effect="bend")
-    model = FakeNested(
-        hidden=at_sigmas("bend", 9.0), noise=noise(160), no_answer=lambda s: bend in s.amplitudes
+    model = FakeModel(
+        hidden=at_sigmas("bend", 9.0), drawn=noise(160), no_answer=lambda s: bend in s.amplitudes
     )
     found = search(model)
     assert found.verdict == "unexplained"
@@ -209,6 +213,6 @@ def test_a_cause_that_the_simulator_cannot_follow_is_passed_over() -> None:
 
 def test_what_is_done_is_told() -> None:
     told: list[str] = []
-    search(FakeNested(hidden=at_sigmas("bend", 9.0), noise=noise(170)), tell=told.append)
-    assert told[0] == "calibrating the baseline"
+    search(FakeModel(hidden=at_sigmas("bend", 9.0), drawn=noise(170)), on_progress=told.append)
+    assert told[0] == "fitting the baseline"
     assert any(t.startswith("confirming 1 of") and t.endswith(": bend") for t in told)

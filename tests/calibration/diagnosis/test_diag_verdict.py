@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fake_nested import FakeNested, by_modulus, effect, library, noise, of_length, of_material, sigmas
+from fake_model import FakeModel, by_modulus, effect, library, noise, of_length, of_material, sigmas
 
-from calibration.diagnosis.run import diagnose
-from calibration.diagnosis.verdict import Diagnosis
+from calibration.diagnosis.engine.run import diagnose
+from calibration.diagnosis.engine.verdict import Diagnosis
 
 KEYS = {
     "format",
@@ -28,7 +28,7 @@ NUMBERS = {"reduced_chi2", "p_value", "rms_mm", "shear_modulus_Pa"}
 
 
 def hidden(name: str, size: float) -> np.ndarray:
-    return np.asarray(library()[name] * (size / sigmas(library()[name], FakeNested())))
+    return np.asarray(library()[name] * (size / sigmas(library()[name], FakeModel())))
 
 
 def written(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -69,7 +69,7 @@ def check_schema(data: dict[str, Any]) -> None:
 
 
 def test_found() -> None:
-    model = FakeNested(hidden=hidden("bend", 12.0), noise=noise(1))
+    model = FakeModel(hidden=hidden("bend", 12.0), drawn=noise(1))
     diagnosis = diagnose(model)
     data = written(diagnosis)
     check_schema(data)
@@ -98,7 +98,7 @@ def test_found() -> None:
 
 def test_three_causes() -> None:
     names = ("bend", "kink", "slack")
-    model = FakeNested(hidden=np.sum([hidden(n, 14.0) for n in names], axis=0), noise=noise(1))
+    model = FakeModel(hidden=np.sum([hidden(n, 14.0) for n in names], axis=0), drawn=noise(1))
     diagnosis = diagnose(model)
     data = written(diagnosis)
     check_schema(data)
@@ -112,12 +112,14 @@ def test_three_causes() -> None:
 
 
 def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
-    most = 10.0 / sigmas(library()["bend"], FakeNested())
+    most = 10.0 / sigmas(library()["bend"], FakeModel())
     near = effect("bend", bounds=(-most, most))
     for ends, noted in (((), []), ((most,), [f"bend: {1e3 * most:.3g} size_mm is as far as it goes"])):
         found = diagnose(
-            FakeNested(
-                hidden=hidden("bend", 11.0), noise=noise(1), effects={"bend": replace(near, ends=ends)}
+            FakeModel(
+                hidden=hidden("bend", 11.0),
+                drawn=noise(1),
+                effects={"bend": replace(near, physical_limits=ends)},
             )
         )
         assert [n for n in found.notes if "as far as" in n] == noted
@@ -127,18 +129,18 @@ def test_where_else_a_cause_may_sit_is_a_note() -> None:
     """A bend in the beams of S0 alone is a candidate everywhere, and one of S0."""
     shapes = library()
     one = {"bend": np.where(of_material("S0"), shapes["bend"], 0.0), "kink": shapes["kink"]}
-    model = FakeNested(shapes=one, scoped=("bend",), hidden=20.0 * one["bend"], noise=noise(2))
+    model = FakeModel(shapes=one, scoped=("bend",), hidden=20.0 * one["bend"], drawn=noise(2))
     found = diagnose(model)
     assert found.finding.verdict == "found"
     (note,) = [n for n in found.notes if "do not tell" in n]
     assert note.startswith("the data do not tell bend from bend of S0, where it would be ")
     assert "size_mm with shear moduli of S0 " in note
-    apart = diagnose(FakeNested(scoped=("bend",), hidden=hidden("bend", 12.0), noise=noise(2)))
+    apart = diagnose(FakeModel(scoped=("bend",), hidden=hidden("bend", 12.0), drawn=noise(2)))
     assert not [n for n in apart.notes if "do not tell" in n]
 
 
 def test_reduced_chi_square_is_over_the_degrees_of_freedom() -> None:
-    model = FakeNested(hidden=hidden("bend", 12.0), noise=noise(2))
+    model = FakeModel(hidden=hidden("bend", 12.0), drawn=noise(2))
     data = written(diagnose(model, gain=False))
     fits = []
     for columns in (model.by_u, np.column_stack([model.by_u, library()["bend"]])):
@@ -152,14 +154,14 @@ def test_reduced_chi_square_is_over_the_degrees_of_freedom() -> None:
 def test_ambiguous() -> None:
     shapes = library()
     shapes["twin"] = shapes["bend"] + 0.03 * shapes["ripple"]
-    diagnosis = diagnose(FakeNested(shapes=shapes, hidden=hidden("bend", 9.0), noise=noise(3)))
+    diagnosis = diagnose(FakeModel(shapes=shapes, hidden=hidden("bend", 9.0), drawn=noise(3)))
     data = written(diagnosis)
     check_schema(data)
     assert data["verdict"] == "ambiguous"
     assert {tuple(a) for a in data["alternatives"]} == {("bend",), ("twin",)}
     assert [c["effect"] for c in data["causes"]] == data["alternatives"][0]
     first, second = data["alternatives"]
-    assert data["next_experiment"] == f"part {first[0]} and {second[0]}"
+    assert data["next_experiment"] == f"no experiment of the catalogue parts {first[0]}, {second[0]}"
     assert diagnosis.sentence().endswith(f"({first[0]}); or {second[0]}.")
 
 
@@ -167,8 +169,10 @@ def test_where_a_rival_is_the_simulators_own_fault_that_is_mended_first() -> Non
     """No specimen is measured for it: a simulator that is wrong would answer."""
     shapes = library()
     shapes["twin"] = shapes["bend"] + 0.03 * shapes["ripple"]
-    model = FakeNested(shapes=shapes, hidden=hidden("bend", 9.0), noise=noise(3))
-    model.effects = {**model.effects, "twin": replace(model.effects["twin"], belongs_to="simulator")}
+    model = FakeModel(shapes=shapes, hidden=hidden("bend", 9.0), drawn=noise(3))
+    twin = model.effects["twin"]
+    own = replace(twin, effect=replace(twin.effect, belongs_to="simulator"))
+    model.effects = {**model.effects, "twin": own}
     data = written(diagnose(model, gain=False))
     assert data["verdict"] == "ambiguous"
     assert data["next_experiment"] == "before another experiment: measure twin (twin)"
@@ -177,7 +181,7 @@ def test_where_a_rival_is_the_simulators_own_fault_that_is_mended_first() -> Non
 def test_unexplained() -> None:
     shapes = library()
     shapes.pop("ripple")
-    diagnosis = diagnose(FakeNested(shapes=shapes, hidden=hidden("ripple", 12.0), noise=noise(4)))
+    diagnosis = diagnose(FakeModel(shapes=shapes, hidden=hidden("ripple", 12.0), drawn=noise(4)))
     data = written(diagnosis)
     check_schema(data)
     assert data["verdict"] == "unexplained"
@@ -185,20 +189,20 @@ def test_unexplained() -> None:
     assert data["alternatives"] == []
     assert data["extended"] is None
     assert data["gain"] is None
-    assert "no effect in the library" in diagnosis.sentence()
+    assert "no effect of the catalogue" in diagnosis.sentence()
 
 
 def test_none_says_what_cannot_be_seen() -> None:
     shapes = library() | {"density": by_modulus("S0"), "faint": 1e-3 * library()["bend"]}
-    effects = {"faint": effect("faint", plausible=1.0), "bend": effect("bend", plausible=1e9)}
-    diagnosis = diagnose(FakeNested(shapes=shapes, effects=effects, noise=noise(5)))
+    effects = {"faint": effect("faint", prior_scale=1.0), "bend": effect("bend", prior_scale=1e9)}
+    diagnosis = diagnose(FakeModel(shapes=shapes, effects=effects, drawn=noise(5)))
     data = written(diagnosis)
     check_schema(data)
     assert data["verdict"] == "none"
     assert data["next_experiment"] == "measure density (density cannot be seen)"
     unseen = {entry["effect"]: entry for entry in data["not_visible"]}
     assert unseen["density"] == {"effect": "density", "size_mm": None, "instead": "measure density"}
-    threshold = 5.0 / (1e-3 * sigmas(library()["bend"], FakeNested()))
+    threshold = 5.0 / (1e-3 * sigmas(library()["bend"], FakeModel()))
     assert unseen["faint"]["size_mm"] == pytest.approx(1e3 * threshold, rel=1e-6)
     assert "bend" not in unseen
     assert "agrees with the measurements" in diagnosis.sentence()
@@ -206,7 +210,7 @@ def test_none_says_what_cannot_be_seen() -> None:
 
 def test_an_effect_that_only_one_beam_has_says_so_in_scope_and_gain() -> None:
     only = np.where(of_length(3.0) & of_material("S0"), library()["bend"], 0.0)
-    model = FakeNested(shapes=library() | {"bend": only}, scoped=("bend",))
+    model = FakeModel(shapes=library() | {"bend": only}, scoped=("bend",))
     model.data = model.data + 15.0 / sigmas(only, model) * only + noise(6)
     data = written(diagnose(model))
     check_schema(data)
@@ -218,9 +222,9 @@ def test_an_effect_that_only_one_beam_has_says_so_in_scope_and_gain() -> None:
 
 
 def test_fits_that_did_not_converge_are_noted() -> None:
-    class Slow(FakeNested):
+    class Slow(FakeModel):
         def start(self) -> np.ndarray:
             return np.array([40.0, -40.0])
 
-    data = written(diagnose(Slow(noise=noise(7)), gain=False))
+    data = written(diagnose(Slow(drawn=noise(7)), gain=False))
     assert any(n.startswith("fit of baseline: not converged") for n in data["notes"])

@@ -13,15 +13,15 @@ from scipy.interpolate import CubicSpline
 
 import tisim
 from calibration.diagnosis import Candidate, Diagnosis, Finding
-from calibration.diagnosis.beams.effects import EFFECTS
-from calibration.diagnosis.explanation import Explanation
-from calibration.diagnosis.fitting import Fit
-from calibration.diagnosis.heldout import Gain
-from calibration.diagnosis.nested import Linear, State
-from calibration.diagnosis.null import Departure, Null
-from calibration.diagnosis.screening import screen
-from calibration.diagnosis.verdict import Numbers
+from calibration.diagnosis.effects.outlines import EFFECTS
+from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.diagnosis.engine.held_out import HeldOut
+from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.screening import screen
+from calibration.diagnosis.engine.verdict import Numbers, Subject
 from calibration.experiment import Experiment, read
+from calibration.measurements._state import Linearisation, State
 
 MODULI = {"S0": 30e3, "S1": 10e3}
 
@@ -56,20 +56,20 @@ def diagnosis(
     baseline = _fit(u + 0.1, {})
     explanations: tuple[Explanation, ...] = ()
     if causes:
-        departure = Departure(p=0.5, each={}, worst="everything")
-        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, departure=departure),)
+        departure = LackOfFit(p_value=0.5, each={}, worst="everything")
+        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, lack_of_fit=departure),)
     finding = Finding(
         verdict=verdict,  # type: ignore[arg-type]
         baseline=baseline,
-        departure=Departure(p=0.001, each={}, worst="everything"),
-        chance=0.001,
+        lack_of_fit=LackOfFit(p_value=0.001, each={}, worst="everything"),
+        p_value=0.001,
         screened=screen(baseline.linear, EFFECTS),
         null=Null(len(baseline.z), {}),
         explanations=explanations,
-        rivals=rivals or ((explanations[0].names,) if explanations else ()),
+        equivalent=rivals or ((explanations[0].names,) if explanations else ()),
         confidence=0.9,
     )
-    gain = Gain(
+    gain = HeldOut(
         held_out="leave-one-length-out",
         kept=0.6,
         rms_before=4e-4,
@@ -85,13 +85,40 @@ def diagnosis(
         effects=dict(EFFECTS),
         baseline=Numbers(reduced_chi2=2.5, p_value=1e-4, rms=0.3, shear_modulus_Pa=before),
         extended=Numbers(reduced_chi2=1.0, p_value=0.5, rms=0.1, shear_modulus_Pa=MODULI) if causes else None,
-        gain=gain if causes else None,
-        unit=("mm", 1e3),
+        held_out=gain if causes else None,
+        subject=Subject(
+            kind="outlines",
+            unit=("mm", 1e3),
+            modulus_weights={"S0": np.array([1.0, 0.0, 0.0]), "S1": np.array([0.0, 0.5, 0.5])},
+            ranges={c: _range(c) for c in causes},
+            materials={c: frozenset(_materials(c)) for c in causes},
+        ),
         next_experiment="",
-        invisible=(),
+        undetectable=(),
         notes=(),
         seconds=1.0,
     )
+
+
+# free length [mm], material and specimen of the beams of `bench`, photographed 10 s later than their length
+# in mm
+_BEAMS = ((50.0, "S0", "S0-a"), (50.0, "S1", "S1-a"), (100.0, "S1", "S1-b"))
+
+
+def _reached(candidate: Candidate) -> list[tuple[float, str, str]]:
+    return [b for b in _BEAMS if candidate.at in ("all", *b[1:])]
+
+
+def _range(candidate: Candidate) -> dict[str, tuple[float, float]]:
+    lengths = [b[0] for b in _reached(candidate)]
+    return {
+        "free_length_mm": (min(lengths), max(lengths)),
+        "time_s": (10.0 + min(lengths), 10.0 + max(lengths)),
+    }
+
+
+def _materials(candidate: Candidate) -> list[str]:
+    return [b[1] for b in _reached(candidate)]
 
 
 def _fit(u: np.ndarray, causes: dict[Candidate, float]) -> Fit:
@@ -100,7 +127,7 @@ def _fit(u: np.ndarray, causes: dict[Candidate, float]) -> Fit:
     columns = random.standard_normal((40, len(causes))) + 30.0 * np.vstack(
         [np.ones((3, len(causes))), np.zeros((37, len(causes)))]
     )
-    linear = Linear(
+    linear = Linearisation(
         state=State(u=u, amplitudes=causes),
         z=np.zeros(40),
         by_u=by_u,
@@ -140,9 +167,9 @@ def faulty_beam(
     beam = tisim.Beam(
         material=material,
         length=(60.0 + depth_mm) / 1e3,
-        layer=0.004,
-        rings=3,
-        clamps=tisim.Clamps(tilt=np.radians(tilt_deg)),
+        axial_element_size=0.004,
+        radial_elements=3,
+        clamp_imperfections=tisim.ClampImperfections(tilt=np.radians(tilt_deg)),
     )
     (result,) = tisim.simulate([beam], workers=1)
     assert result.ok

@@ -18,7 +18,7 @@ def test_tisim_takes_an_extended_card(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    found = diagnosis({Candidate(effect="strain-stiffening", at="S1", rivals=2): 0.5})
+    found = diagnosis({Candidate(effect="strain-stiffening", at="S1", alternatives=2): 0.5})
     write_cards(tmp_path / "OUT" / "cards", found, bench(tmp_path / "bench"))
     monkeypatch.chdir(tmp_path)
     exec(compile(code, str(PAGE), "exec"), {})

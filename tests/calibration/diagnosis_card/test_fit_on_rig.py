@@ -4,6 +4,7 @@ that the faults reach scenes, pictures and error bars, not tisim."""
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +16,19 @@ import tisim
 from calibration.diagnosis.rig import read_rig
 from calibration.experiment import read
 from calibration.fit import app
-from calibration.outlines import OutlineObjective
+from calibration.inference import CmaOptions
+from calibration.measurements.outlines.simulators import OURS
 from calibration.parameters import parametrisation
-from calibration.search import CmaOptions
 from calibration.study import FitOptions, calibrate, measurements
+from calibration.study.measurements import OnSetup
 from factory.materials import load_card
 
 SHEAR = 12e3
-TRUTH = tisim.material_from_moduli("neo-hookean", shear=SHEAR, bulk=300 * SHEAR, density=1000.0)
+TRUTH = tisim.material_from_moduli(
+    "neo-hookean", shear_modulus=SHEAR, bulk_modulus=300 * SHEAR, density=1000.0
+)
+LAW = parametrisation("neo-hookean")
+BARE = replace(OURS, reference=None)
 TILT = rig_effect("clamp-tilt", "angle_deg", -2.0, 0.1)
 DEPTH = rig_effect("grip-length", "depth_mm", 1.5, 0.1)
 
@@ -62,9 +68,9 @@ def test_the_modulus_is_found_on_a_known_rig_and_missed_without(experiment: Path
     assert abs(on["shear_modulus"] - SHEAR) < on["shear_modulus_sd"]
     assert on["shear_modulus_sd"] < 0.04 * SHEAR
     assert on["rms"] < 0.03e-3
-    data = measurements(read(experiment), "S1", workers=1, reference=None)
+    data = measurements(read(experiment), "S1", LAW, workers=1, simulator=BARE)
     options = FitOptions(cma=CmaOptions(max_generations=2), leave_one_out=False)
-    off = calibrate(parametrisation("neo-hookean"), data, options=options)
+    off = calibrate(data, options=options)
     assert abs(off.shear_modulus - SHEAR) > 3.0 * off.shear_modulus_sd
 
 
@@ -72,13 +78,14 @@ def test_what_is_not_known_of_the_rig_is_a_nuisance(experiment: Path, tmp_path: 
     """One sd of the tilt, 0.1 degrees, lifts the far end by that angle times its distance from the clamp."""
     data = read(experiment)
     rig = read_rig(rig_file(tmp_path / "rig.yaml", TILT, DEPTH))
-    outlines = OutlineObjective(data.trials, data.materials["S1"], reference=None, setup=rig, workers=1)  # type: ignore[arg-type]
-    assert outlines.linearise(TRUTH)
-    assert outlines.nuisances is not None
-    names = outlines.nuisances.names
-    assert {"clamp-tilt (rig)", "grip-length (rig)"} <= set(names)
-    (photograph,) = outlines.photographs
-    lifted = photograph.root @ outlines.nuisances.columns[:, names.index("clamp-tilt (rig)")]
+    outlines = measurements(OnSetup.of(data, rig), "S1", LAW, workers=1, simulator=BARE).outlines
+    assert outlines is not None
+    assert outlines.linearise(np.log([SHEAR, 300.0]))
+    noise = outlines.model.noise
+    assert {"clamp-tilt (rig)", "grip-length (rig)"} <= set(noise.names)
+    assert set(noise.names) - {""} == set(outlines.nuisances(np.log([SHEAR, 300.0])))
+    (photograph,) = outlines.model.records
+    lifted = photograph.basis @ noise.columns[:, noise.names.index("clamp-tilt (rig)")]
     x = np.concatenate([photograph.outline.upper, photograph.outline.lower])[:, 0]
     assert np.abs(lifted).max() == pytest.approx(np.radians(0.1) * x.max(), rel=0.3)
 

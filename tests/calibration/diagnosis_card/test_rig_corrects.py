@@ -12,15 +12,15 @@ from card_cases import bench, diagnosis
 
 from calibration.diagnosis import Candidate
 from calibration.diagnosis._rig_file import USES, corrects
-from calibration.diagnosis.bars import EFFECTS as BARS
-from calibration.diagnosis.beams import EFFECTS as BEAMS
 from calibration.diagnosis.card import write_cards
-from calibration.diagnosis.coupons import EFFECTS as COUPONS
-from calibration.diagnosis.effect import Effect
-from calibration.diagnosis.pokes import EFFECTS as POKES
-from calibration.diagnosis.presses import EFFECTS as PRESSES
+from calibration.diagnosis.effects.compression import EFFECTS as PRESSES
+from calibration.diagnosis.effects.homogeneous import EFFECTS as COUPONS
+from calibration.diagnosis.effects.indentation import EFFECTS as POKES
+from calibration.diagnosis.effects.outlines import EFFECTS as BEAMS
+from calibration.diagnosis.effects.release import EFFECTS as BARS
 from calibration.diagnosis.rig import read_rig
 from calibration.errors import InputError
+from calibration.measurements._effect import Effect
 
 
 def faults(effects: Mapping[str, Effect]) -> list[Effect]:

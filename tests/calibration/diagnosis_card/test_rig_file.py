@@ -17,7 +17,7 @@ from calibration.experiment.model import BeamTrial, Experiment
 
 TILT = rig_effect("clamp-tilt", "angle_deg", 2.0, 0.2)
 DEPTH = rig_effect("grip-length", "depth_mm", 1.5, 0.1, scope="S1")
-SOFT = tisim.material_from_moduli("neo-hookean", shear=10e3, bulk=3e6)
+SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=10e3, bulk_modulus=3e6)
 
 
 def trial(experiment: Experiment, name: str) -> BeamTrial:
@@ -34,7 +34,7 @@ def test_effects_reach_the_scenes_and_pictures_that_they_are_in(tmp_path: Path) 
     one, other = trial(experiment, "S0-50"), trial(experiment, "S1-50")
     assert rig.bend(beam, one).length == 0.05
     assert rig.bend(beam, other).length == pytest.approx(0.0515)
-    assert rig.bend(beam, one).clamps.tilt == pytest.approx(np.radians(2.0))
+    assert rig.bend(beam, one).clamp_imperfections.tilt == pytest.approx(np.radians(2.0))
     np.testing.assert_array_equal(rig.image(points, one), points)
     np.testing.assert_allclose(rig.image(points, other), points - [0.0015, 0.0])
 

@@ -12,16 +12,17 @@ from card_cases import MODULI, bench, diagnosis
 
 import tisim
 from calibration.diagnosis import Candidate, Diagnosis
-from calibration.diagnosis.beams.effects import EFFECTS, Situation
 from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.rig import read_rig
 from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.experiment.model import BeamTrial
+from calibration.measurements.outlines._effect import Situation
 from factory.materials import LAWS, load_card, material_of
 
-STIFFENING = Candidate(effect="strain-stiffening", at="S1", rivals=2)
-CURVATURE = Candidate(effect="residual-curvature", at="S1-b", rivals=3)
+STIFFENING = Candidate(effect="strain-stiffening", at="S1", alternatives=2)
+CURVATURE = Candidate(effect="residual-curvature", at="S1-b", alternatives=3)
 TILT = Candidate(effect="clamp-tilt")
 SCALE = Candidate(effect="image-scale")
 
@@ -39,8 +40,8 @@ def test_the_factory_takes_the_cards_of_a_found_effect(tmp_path: Path) -> None:
     card = load_card("S1", tmp_path / "cards")
     for law in LAWS:
         moduli = tisim.laws.get(law).moduli(card.for_law(law).parameters)
-        assert moduli.shear == pytest.approx(MODULI["S1"], rel=1e-4)
-        assert moduli.bulk == pytest.approx(300.0 * MODULI["S1"], rel=1e-4)
+        assert moduli.shear_modulus == pytest.approx(MODULI["S1"], rel=1e-4)
+        assert moduli.bulk_modulus == pytest.approx(300.0 * MODULI["S1"], rel=1e-4)
     (effect,) = card.effects
     assert (effect.effect, effect.applies_to, effect.scope) == ("strain-stiffening", "material", "S1")
     assert effect.parameters["c2_over_c1"].value == 0.5
@@ -151,7 +152,7 @@ def test_a_dataset_gets_the_material_that_the_diagnosis_had(
     assert isinstance(trial, BeamTrial)
     # what stiffens is simulated as yeoh throughout; the rest of a dataset as neo-Hookean
     base = "yeoh" if name == "strain-stiffening" else "neo-hookean"
-    plain = tisim.material_from_moduli(base, shear=30e3, bulk=9e6, density=1000.0)
+    plain = tisim.material_from_moduli(base, shear_modulus=30e3, bulk_modulus=9e6, density=1000.0)
     situation = Situation(trial=trial, time=1.0)
     scene = EFFECTS[name].bend(tisim.Beam(material=plain, length=0.05), amplitude, situation)
     made = material_of(load_card("S0", tmp_path / "cards"))

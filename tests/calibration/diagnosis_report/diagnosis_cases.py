@@ -11,41 +11,49 @@ from typing import Any, Literal
 import numpy as np
 
 from calibration.diagnosis import Candidate, Diagnosis, Effect, Rules, diagnose
-from calibration.diagnosis.heldout import Gain
-from calibration.diagnosis.nested import Linear, State
+from calibration.diagnosis.engine.held_out import HeldOut
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._design import Gauge
+from calibration.measurements._effect import EffectModel
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise import Noise
+from calibration.measurements._state import Linearisation, State
+from calibration.parameters import parametrisation
 
 ROWS = 80
 Kind = Literal["none", "found", "ambiguous", "unexplained"]
 
 
-def effect(name: str, parameter: str, belongs_to: str = "specimen", *, plausible: float = 100.0) -> Effect:
-    return Effect(
+def effect(
+    name: str, parameter: str, belongs_to: str = "specimen", *, prior_scale: float = 100.0
+) -> EffectModel:
+    about = Effect(
         name=name,
         parameter=parameter,
         per_unit=1e3 if parameter.endswith("_mm") else 1.0,
         belongs_to=belongs_to,  # type: ignore[arg-type]
-        step=0.1,
-        bounds=(-50.0, 50.0),
-        plausible=plausible,
         sentence=f"the beam has too much {name}",
         remedy=f"take the {name} away",
     )
+    return EffectModel(effect=about, step=0.1, bounds=(-50.0, 50.0), prior_scale=prior_scale)
 
 
-class LinearModel:
+class LinearModel(MeasurementModel):
     """z = offset + A u + sum of amplitudes times columns. `twin` points nearly where `bend` does, nothing
     points where `blind` should."""
 
-    most_causes = 3
+    kind = "made"
+    unit = ("mm", 1e3)
+    experiments = (Gauge(name="turn", sentence="turn it over", sds={"bend": 1e-3}),)
 
     def __init__(self, kind: Kind, *, place: str = "S0") -> None:
         draws = np.random.default_rng(5)
         basis, _ = np.linalg.qr(draws.standard_normal((ROWS, 8)))
-        self.effects: Mapping[str, Effect] = {
+        self.effects: Mapping[str, EffectModel] = {
             "bend": effect("bend", "curvature_per_m"),
             "twin": effect("twin", "slip_mm", "rig"),
             "lens": effect("lens", "per_m2", "camera"),
-            "coarse-mesh": effect("coarse-mesh", "share", "simulator", plausible=1.0),
+            "coarse-mesh": effect("coarse-mesh", "share", "simulator", prior_scale=1.0),
             "blind": effect("blind", "excess"),
         }
         apart = 0.02 if kind == "ambiguous" else 0.9
@@ -58,10 +66,15 @@ class LinearModel:
         }
         self.candidates = (
             *(Candidate(effect=n) for n in self.effects),
-            Candidate(effect="lens", at=place, rivals=3),
+            Candidate(effect="lens", at=place, alternatives=3),
         )
         self.columns = {c: column[c.effect] * (0.8 if c.at != "all" else 1.0) for c in self.candidates}
-        self.names, self.points, self.unit = ("S0", "S1"), ROWS, ("mm", 1e3)
+        names = (place, "S1")
+        self.baseline = Baseline(
+            specimens=names, owners=names, law=parametrisation("neo-hookean"), bulk_ratio=300.0
+        )
+        self.noise = Noise.independent(np.ones(ROWS))
+        self.records, self.row_record, self.visible = (), np.zeros(ROWS, dtype=np.intp), {}
         self.by_u, self.odd = basis[:, :2], basis[:, 6]
         signal = {"none": 0.0, "unexplained": 15.0 * self.odd}.get(kind, 15.0 * column["bend"])
         self.offset = draws.standard_normal(ROWS) + signal
@@ -73,15 +86,16 @@ class LinearModel:
     def residuals(self, states: Sequence[State]) -> np.ndarray:
         return np.array([self._z(s) for s in states])
 
-    def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linear:
+    def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linearisation:
         columns = np.array([self.columns[c] for c in candidates]).reshape(len(candidates), ROWS).T
-        wanted = tuple(candidates)
-        return Linear(state=state, z=self._z(state), by_u=self.by_u, columns=columns, candidates=wanted)
+        return Linearisation(
+            state=state, z=self._z(state), by_u=self.by_u, columns=columns, candidates=tuple(candidates)
+        )
 
-    def retake(self, state: State, *, rough: bool = False) -> None:
+    def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         del state, rough
 
-    def patterns(self) -> Mapping[str, np.ndarray]:
+    def discrepancy_basis(self) -> Mapping[str, np.ndarray]:
         return {"odd bends": self.odd[:, None], "drifts": np.eye(ROWS)[:, :3]}
 
     def distance_rms(self, state: State) -> float:
@@ -90,11 +104,14 @@ class LinearModel:
     def noise_rms(self) -> float:
         return 1e-4
 
-    def shear_moduli(self, u: np.ndarray) -> dict[str, float]:
-        return {self.place: float(np.exp(u[0])), "S1": float(np.exp(u[1]))}
+    def _misfit(self, states: Sequence[State]) -> np.ndarray:
+        raise NotImplementedError
 
-    def advice(self, rivals: Sequence[Any]) -> str:
-        return f"turn it over: {len(rivals)} part there"
+    def _discrepancies(self) -> Mapping[str, np.ndarray]:
+        raise NotImplementedError
+
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        raise NotImplementedError
 
     def remarks(self) -> list[str]:
         return [f"a remark on <{self.place}>"]
@@ -107,11 +124,11 @@ class LinearModel:
 def diagnosis(kind: Kind, *, place: str = "S0") -> tuple[Diagnosis, LinearModel]:
     """A diagnosis that ends in this verdict, with a made gain where a cause is named, and its model."""
     model = LinearModel(kind, place=place)
-    made = diagnose(model, rules=Rules(seed=1), gain=False)  # type: ignore[arg-type]
+    made = diagnose(model, rules=Rules(seed=1), gain=False)
     assert made.finding.verdict == kind
     if made.extended is None:
         return made, model
-    gain = Gain(
+    gain = HeldOut(
         held_out="leave-one-length-out",
         kept=0.6543,
         rms_before=3.21e-4,
@@ -120,7 +137,7 @@ def diagnosis(kind: Kind, *, place: str = "S0") -> tuple[Diagnosis, LinearModel]
         log_likelihood=87.6,
         folds=3,
     )
-    return replace(made, gain=gain), model
+    return replace(made, held_out=gain), model
 
 
 class Page(HTMLParser):

@@ -10,39 +10,39 @@ from bent_beams import bent_folder
 from diagnosis_cases import Page
 
 from calibration.diagnosis import Diagnosis, Rules, diagnose
-from calibration.diagnosis.beams.effects import EFFECTS
-from calibration.diagnosis.beams.model import BeamModel
-from calibration.diagnosis.report import pictures_of, write_report
-from calibration.diagnosis.report.beams._drawn import DrawnTrial, drawn, rms_of
-from calibration.diagnosis.report.beams._grid import grid_of
-from calibration.diagnosis.report.beams._look import magnification
-from calibration.diagnosis.report.beams._residuals import middles
+from calibration.diagnosis.effects.outlines import EFFECTS
+from calibration.diagnosis.report import write_report
 from calibration.experiment import read
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.pictures._drawn import DrawnTrial, drawn, rms_of
+from calibration.measurements.outlines.pictures._grid import grid_of
+from calibration.measurements.outlines.pictures._look import magnification
+from calibration.measurements.outlines.pictures._residuals import middles
 
 LEFT = ("residual-curvature", "creep")  # of the catalogue, to keep the test short
 ODD = "a_long(%)-" + 60 * "x"
 
 
 @pytest.fixture(scope="module")
-def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, BeamModel]:
+def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, OutlineModel]:
     folder = bent_folder(tmp_path_factory.mktemp("bent") / "x", curvature=3.0, name=ODD)
-    model = BeamModel(read(folder), without=[n for n in EFFECTS if n not in LEFT], workers=1)
+    model = OutlineModel(read(folder), effects={n: e for n, e in EFFECTS.items() if n in LEFT}, workers=1)
     # an elastica differs from a thick beam by more than noise, which is not the matter here
-    return diagnose(model, rules=Rules(unlike=0.0), gain=False), model
+    return diagnose(model, rules=Rules(lack_of_fit_level=0.0), gain=False), model
 
 
 @pytest.fixture(scope="module")
-def beams(bent: tuple[Diagnosis, BeamModel]) -> list[DrawnTrial]:
+def beams(bent: tuple[Diagnosis, OutlineModel]) -> list[DrawnTrial]:
     return drawn(bent[1], bent[0])
 
 
-def test_the_case_is_what_it_should_be(bent: tuple[Diagnosis, BeamModel]) -> None:
+def test_the_case_is_what_it_should_be(bent: tuple[Diagnosis, OutlineModel]) -> None:
     found = bent[0]
     assert found.finding.chosen is not None
     assert found.finding.chosen.names == ("residual-curvature",)
 
 
-def test_rms_is_the_models(bent: tuple[Diagnosis, BeamModel], beams: list[DrawnTrial]) -> None:
+def test_rms_is_the_models(bent: tuple[Diagnosis, OutlineModel], beams: list[DrawnTrial]) -> None:
     found, model = bent
     assert found.extended is not None
     photographs = [p for b in beams for p in b.photographs]
@@ -94,7 +94,7 @@ def test_panels_are_a_grid_of_materials_and_kinds(beams: list[DrawnTrial]) -> No
     assert [[b and b.kind for b in row] for row in grid] == [["cantilever 60 mm", "cantilever 100 mm"]]
 
 
-def test_the_page_has_them(bent: tuple[Diagnosis, BeamModel], tmp_path: Path) -> None:
+def test_the_page_has_them(bent: tuple[Diagnosis, OutlineModel], tmp_path: Path) -> None:
     paths = write_report(*bent, tmp_path, title="bent")
     assert [p.name for p in paths] == [
         "report.html",
@@ -107,5 +107,5 @@ def test_the_page_has_them(bent: tuple[Diagnosis, BeamModel], tmp_path: Path) ->
     assert len(page.sources) == 4
     assert "correlated over 5.0 mm" in page.text
     assert "The mesh's error is corrected by a finer mesh" in page.text
-    shown = next(f for f in pictures_of(bent[1], bent[0]) if f.name == "shapes")
+    shown = next(f for f in bent[1].pictures(bent[0]) if f.name == "shapes")
     assert "times magnified" in shown.caption

@@ -15,7 +15,7 @@ from diagnosis_cases import Kind, LinearModel, Page, diagnosis, numbers
 from matplotlib.image import imread
 
 from calibration.diagnosis import Diagnosis
-from calibration.diagnosis.report import Figure, paired_bars, pictures_of, write_report
+from calibration.diagnosis.report import Figure, paired_bars, write_report
 
 KINDS: tuple[Kind, ...] = ("none", "found", "ambiguous", "unexplained")
 EVIL = "<script>alert(1)</script><img src=x onerror=alert(2)>\"'&"
@@ -23,27 +23,23 @@ ODD = "$\\frac{a$ _^{} 材料 \U0001f9ea \N{COMBINING ACUTE ACCENT}\t" + 60 * "l
 
 
 class DrawnModel(LinearModel):
-    """A domain that draws."""
+    """A kind that draws."""
 
-
-@pictures_of.register
-def _drawn(model: DrawnModel, made: Diagnosis) -> list[Figure]:
-    after = [2.0] if made.extended else None
-    bars = paired_bars([model.place], [3.0], after, quantity="rms / mm", noise=1.0, held_out=None)
-    return [
-        Figure(name=model.place, caption=f"shapes of {model.place}", figure=_curve()),
-        Figure(name=model.place, caption="bars", figure=bars, section="residuals"),
-    ]
+    def pictures(self, made: Diagnosis) -> list[Figure]:
+        after = [2.0] if made.extended else None
+        bars = paired_bars([self.place], [3.0], after, quantity="rms / mm", noise=1.0, held_out=None)
+        return [
+            Figure(name=self.place, caption=f"shapes of {self.place}", figure=_curve()),
+            Figure(name=self.place, caption="bars", figure=bars, section="residuals"),
+        ]
 
 
 class MuteModel(LinearModel):
-    """A domain whose beam has no equilibrium to draw."""
+    """A kind whose beam has no equilibrium to draw."""
 
-
-@pictures_of.register
-def _mute(model: MuteModel, made: Diagnosis) -> list[Figure]:
-    del model, made
-    raise ValueError("no equilibrium at this state")
+    def pictures(self, made: Diagnosis) -> list[Figure]:
+        del made
+        raise ValueError("no equilibrium at this state")
 
 
 def _curve() -> matplotlib.figure.Figure:
@@ -117,15 +113,15 @@ def test_what_a_cause_belongs_to_is_said() -> None:
     words = _page(made, model).text
     assert "a property of the specimen: it may enter a simulated dataset" in words
     assert "These data cannot tell apart" in words
-    assert made.finding.rivals == (("bend",), ("twin",))
-    assert "turn it over: 2 part there" in words
+    assert made.finding.equivalent == (("bend",), ("twin",))
+    assert "turn it over: bend, twin part there by" in words
 
 
 def test_unexplained_shows_the_test_that_fails_and_names_nothing() -> None:
     made, model = diagnosis("unexplained")
     page = _page(made, model)
     assert "more than noise is found in the size of all residuals together and odd bends" in page.text
-    assert page.raw.index('id="departure"') < page.raw.index('id="evidence"')
+    assert page.raw.index('id="lack-of-fit"') < page.raw.index('id="evidence"')
     assert "chance that noise alone departs as much ≤ 0.00025" in page.text
     assert "Found" not in page.text
 
@@ -135,7 +131,7 @@ def test_what_cannot_be_seen_is_listed_with_its_amplitude() -> None:
     assert "no amplitude shows" in page.text  # of `blind`
     assert "take the blind away" in page.text
     made, _ = diagnosis("none")
-    threshold = next(i.threshold for i in made.invisible if i.effect == "coarse-mesh")
+    threshold = next(i.threshold for i in made.undetectable if i.effect == "coarse-mesh")
     assert threshold == pytest.approx(5.0)  # its column has unit length
     assert page.shown[threshold] == "share 5.0"
 
@@ -187,8 +183,8 @@ def test_fits_that_did_not_converge_are_counted() -> None:
 
 def test_no_fold_is_said() -> None:
     made, model = diagnosis("found")
-    assert made.gain is not None
-    made = replace(made, gain=replace(made.gain, held_out="", kept=0.1, note="no fold keeps it"))
+    assert made.held_out is not None
+    made = replace(made, held_out=replace(made.held_out, held_out="", kept=0.1, note="no fold keeps it"))
     assert "Nothing was held out: no fold keeps it (at best 10 %" in _page(made, model).text
 
 

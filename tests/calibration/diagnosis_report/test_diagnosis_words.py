@@ -60,7 +60,7 @@ def test_what_was_only_screened_has_its_gain_to_first_order() -> None:
     # the model is linear, so that a fit in it gains what was screened
     for e in made.finding.explanations:
         gain = made.finding.baseline.chi2 - e.fit.chi2
-        assert linear[e.fit.reports()] == pytest.approx(gain, abs=1e-6)
+        assert linear[e.fit.label] == pytest.approx(gain, abs=1e-6)
 
 
 def test_causes_go_on_in_another_line_and_none_is_left_out() -> None:

@@ -121,6 +121,12 @@ CASES: dict[str, Case] = {
         "key trials[poke].direction:",
         "expected one into the block",
     ),
+    "out through a side": (
+        lambda s: s.poke.update(start_mm=[-49.0, 0.0, 32.0], direction=[-4.0, 0.0, -3.0]),
+        YAML,
+        "key trials[poke].direction:",
+        "expected a path within the block's sides (x within +-50, y within +-50 mm), at the 2 mm of",
+    ),
     "start beside the block": (
         put("poke", "start_mm", [60.0, 0.0, 32.0]),
         YAML,

@@ -145,8 +145,8 @@ CASES: dict[str, Case] = {
     "semicolons": (
         raw(PULL, b"stretch;nominal_stress_kPa\n1;0\n"),
         PULL,
-        "line 1: unknown column",
-        "expected stretch,nominal_stress_kPa",
+        "line 1: its columns are separated by semicolons",
+        "stretch,nominal_stress_kPa",
     ),
     "empty table": (raw(PULL, b""), PULL, "line 1: missing column", "expected stretch,nominal_stress_kPa"),
     "not text": (raw(PULL, b"\xff\xfe\x00"), PULL, "", "expected UTF-8 text"),

@@ -9,11 +9,11 @@ import sys
 
 import pytest
 
-from calibration._command import plain_ends
+from calibration.cli import plain_ends
 
 CODE = """
 import sys, time, typer
-from calibration._command import plain_ends
+from calibration.cli import plain_ends
 from calibration.errors import InputError
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 

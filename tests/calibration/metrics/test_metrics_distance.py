@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from calibration.metrics import hd95, point_to_surface, surface_distance, surface_points, volume_difference
 
 
-def cylinder(radius: float, height: float = 0.1) -> trimesh.Trimesh:
-    return trimesh.creation.cylinder(radius=radius, height=height, sections=256)
+def cylinder(radius: float, *, sections: int = 256) -> trimesh.Trimesh:
+    return trimesh.creation.cylinder(radius=radius, height=0.1, sections=sections)
 
 
 def test_point_to_surface_is_exact_below_a_tenth_of_a_millimetre() -> None:
@@ -82,14 +82,53 @@ def test_hd95_is_the_larger_direction() -> None:
 
 
 def test_a_mesh_changed_in_place_is_measured_anew() -> None:
-    a, b = cylinder(0.01), cylinder(0.009)
+    a, b = cylinder(0.01, sections=64), cylinder(0.009, sections=64)
     before = surface_distance(a, b)
     b.apply_scale(0.9)
     assert surface_distance(a, b) > 1.5 * before
 
 
 def test_figures_can_be_made_again() -> None:
-    a, b = cylinder(0.01), cylinder(0.009)
+    a, b = cylinder(0.01, sections=64), cylinder(0.009, sections=64)
     assert surface_distance(a, b) == surface_distance(a, b)
     assert surface_distance(a, b, seed=1) != surface_distance(a, b, seed=2)
     assert surface_distance(a, b, seed=1) == pytest.approx(surface_distance(a, b, seed=2), rel=1e-3)
+
+
+# As VTK's cell locator gave them (pyvista 0.46: find_closest_cell of each point), before it was replaced.
+BY_VTK = {
+    ("box", "rod"): (0.0017092104217383793, 0.004912090162183505),
+    ("ball", "far"): (0.03267246941445546, 0.048562905866707584),
+    ("rod", "ball"): (0.010235190407971126, 0.030547653594728122),
+}
+
+
+@pytest.mark.parametrize("pair", BY_VTK, ids="-".join)
+def test_distances_are_those_of_vtk(pair: tuple[str, str]) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=0.02)
+    rod = trimesh.creation.cylinder(radius=0.01, height=0.1, sections=64)
+    bodies = {
+        "box": trimesh.creation.box((0.02, 0.02, 0.1)),
+        "rod": rod.apply_translation((0.001, 0.002, 0.0)),
+        "ball": ball,
+        "far": ball.copy().apply_translation((0.05, 0.0, 0.0)),
+    }
+    first, second = (bodies[name] for name in pair)
+    assert surface_distance(first, second) == pytest.approx(BY_VTK[pair][0], rel=1e-12)
+    assert hd95(first, second) == pytest.approx(BY_VTK[pair][1], rel=1e-12)
+
+
+def test_triangles_of_all_sizes_are_searched() -> None:
+    """Against every triangle of the surface, one by one: long caps, small facets, one without area."""
+    rod = cylinder(0.01, sections=64).subdivide()
+    flat = np.vstack([rod.faces, [[0, 0, 1]]])
+    surface = trimesh.Trimesh(rod.vertices, flat, process=False)
+    points = np.random.default_rng(2).uniform(-0.06, 0.06, (40, 3))
+    grid = np.linspace(0.0, 1.0, 41)
+    u, v = (x[np.add.outer(grid, grid) <= 1.0 + 1e-12] for x in np.meshgrid(grid, grid, indexing="ij"))
+    a, b, c = (np.asarray(rod.triangles)[:, m] for m in range(3))
+    for point, found in zip(points, point_to_surface(points, surface), strict=True):
+        spread = a[:, None] + u[:, None] * (b - a)[:, None] + v[:, None] * (c - a)[:, None]
+        sampled = np.linalg.norm(spread - point, axis=2).min()
+        assert found <= sampled + 1e-12
+        assert found > sampled - 1e-3  # the grid's own coarseness

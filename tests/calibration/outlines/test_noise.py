@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 
 from calibration.experiment.model import Registration, TracedOutline
-from calibration.outlines._edges import Feet, feet
-from calibration.outlines._noise import FLOOR, Nuisances, contour_root, registration_columns, whiten
+from calibration.measurements._noise import Noise
+from calibration.measurements.outlines._edges import Feet, feet
+from calibration.measurements.outlines._noise import (
+    FLOOR,
+    Nuisances,
+    contour_root,
+    registration_columns,
+)
 
 
 def straight(n: int = 30, length: float = 0.1) -> TracedOutline:
@@ -41,7 +47,8 @@ def test_whitened_draws_have_the_chi_square_they_should() -> None:
     outline = straight()
     root = contour_root(outline)
     rng = np.random.default_rng(0)
-    chi2 = [np.sum(whiten(root, root @ rng.standard_normal(60)) ** 2) for _ in range(400)]
+    noise = Noise.correlated(root @ root.T)
+    chi2 = [np.sum(noise.whiten(root @ rng.standard_normal(60)) ** 2) for _ in range(400)]
     assert np.mean(chi2) == pytest.approx(60, abs=3 * np.sqrt(2 * 60 / 400))
 
 

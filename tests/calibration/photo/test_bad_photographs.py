@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import photo_cases as cases
 import pytest
-from photo_render import Clamp, Lens, Setting, Tube, View, photograph
 from scipy.ndimage import gaussian_filter
 
 import tisim
+from benchmarks.blind.camera import Clamp, Lens, Setting, Tube, View, photograph
 from calibration.experiment import Checkerboard
 from calibration.photo import PhotoProblem, PhotoSettings, Specimen, calibrate, find_board, trace
 
@@ -96,3 +96,9 @@ def test_front_edge_of_the_clamp_lets_the_camera_stand_left() -> None:
     settings = PhotoSettings(clamp_front_mm=-10.0)
     result = trace(image, found, calibrate([found]), SPECIMEN, settings)
     assert np.array(result.origin) * 1e3 == pytest.approx([-12.0, -26.0], abs=0.3)
+
+
+def test_inner_corners_in_place_of_squares(good: np.ndarray) -> None:
+    """OpenCV counts inner corners; the board of 9 x 6 squares has 8 x 5."""
+    with pytest.raises(PhotoProblem, match=r"counts squares, not inner corners: expected \[9, 6\]"):
+        go(good, board=Checkerboard(squares=(8, 5), square=BOARD.square))

@@ -11,11 +11,12 @@ import photo_cases as cases
 import pytest
 import trimesh
 import yaml
-from photo_render import Lens, Setting, Tube, View, photograph
 from typer.testing import CliRunner, Result
 
-from calibration import reconstruct
+from benchmarks.blind.camera import Lens, Setting, Tube, View, photograph
 from calibration.experiment import BeamTrial, read
+from calibration.photo import reconstruction
+from calibration.reconstruct import app
 
 AXIS = cases.hanging()
 
@@ -67,7 +68,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def command(*words: object) -> Result:
-    return CliRunner().invoke(reconstruct.app, [str(word) for word in words])
+    return CliRunner().invoke(app, [str(word) for word in words])
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +100,10 @@ def test_what_it_writes_is_an_experiment(done: Path) -> None:
             off = cases.normal_error(line * 1e3, cases.edge(AXIS, side))
             assert np.sqrt(np.mean(off**2)) < 0.1
     first, second, traced = (capture.outline for capture in trial.captures)
-    assert first.sd < 0.05e-3 < traced.sd
+    # of waves longer than 10 mm: what both statements mean, whatever kernel carries it
+    slow, given = (o.sd * np.sqrt(o.correlation / 0.010) for o in (first, traced))
+    assert slow < 0.03e-3 < given
+    assert (traced.sd, traced.correlation) == pytest.approx((0.1e-3, 5e-3))
     assert second.registration.shift > 0.3e-3 > first.registration.shift
     assert second.registration.roll > np.radians(0.4) > first.registration.roll
 
@@ -157,15 +161,15 @@ def test_bad_photograph(lab: Path, tmp_path: Path) -> None:
 
 def test_stopped_in_between(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out"
-    run, names = reconstruct.run, []
+    run, names = reconstruction.run, []
 
-    def stop_at_second(target: Path, job: reconstruct.Job, *rest: object) -> object:
+    def stop_at_second(target: Path, job: reconstruction.Job, *rest: object) -> object:
         names.append(job.name)
         if len(names) == 2:
             raise KeyboardInterrupt
         return run(target, job, *rest)
 
-    monkeypatch.setattr(reconstruct, "run", stop_at_second)
+    monkeypatch.setattr(reconstruction, "run", stop_at_second)
     result = command(lab, "--out", out)
     assert result.exit_code == 130
     assert not (out / "experiment.yaml").exists()

@@ -16,7 +16,7 @@ from _folders import (
 )
 from scipy.integrate import solve_bvp
 
-from calibration.search import Estimate
+from calibration.inference import Estimate
 from calibration.study import Calibration
 
 RADIUS, LENGTH = 0.010, 0.050

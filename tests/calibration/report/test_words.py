@@ -8,10 +8,8 @@ import pytest
 from report_cases import beam_folder, calibration, failed
 
 from calibration.experiment import read
-from calibration.report._compare import compare
-from calibration.report._nuisances import far_nuisances
-from calibration.report._numbers import significant, with_sd
-from calibration.report._words import verdict
+from calibration.report._compare import compare, far_nuisances
+from calibration.report._words import significant, verdict, with_sd
 
 
 def test_laws_that_are_alike() -> None:

@@ -10,14 +10,16 @@ import pytest
 import tisim
 from calibration.errors import InputError
 from calibration.shape import body_mesh
-from tisim.mesh.quality import volumes
+from tisim.mesh import volumes
 
-MATERIAL = tisim.material_from_moduli("neo-hookean", shear=30e3, bulk=600e3)
+MATERIAL = tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3)
 
 
 @pytest.fixture(scope="module")
 def half() -> tisim.Result:
-    (result,) = tisim.simulate([tisim.Beam(material=MATERIAL, length=0.05, layer=0.01, rings=1)])
+    (result,) = tisim.simulate(
+        [tisim.Beam(material=MATERIAL, length=0.05, axial_element_size=0.01, radial_elements=1)]
+    )
     assert result.ok
     assert result.mesh.symmetry == ("y",)
     return result
@@ -59,7 +61,7 @@ def test_nodes_on_the_surface_are_its_vertices(half: tisim.Result) -> None:
 
 @pytest.mark.parametrize("element", ["tet4", "hex8"])
 def test_other_elements(element) -> None:
-    beam = tisim.Beam(material=MATERIAL, length=0.03, layer=0.01, element=element)
+    beam = tisim.Beam(material=MATERIAL, length=0.03, axial_element_size=0.01, element=element)
     (result,) = tisim.simulate([beam])
     body = body_mesh(result)
     assert body.is_watertight

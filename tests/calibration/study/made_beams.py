@@ -42,8 +42,8 @@ def made(
             material=material,
             length=length / 1e3,
             supports=supports,  # type: ignore[arg-type]
-            layer=layer,
-            rings=rings,
+            axial_element_size=layer,
+            radial_elements=rings,
         )
         result = _solved(beam)
         edges = [_edge(result, side, rng) for side in (1.0, -1.0)]

@@ -12,8 +12,8 @@ from made_beams import made
 
 import tisim
 from calibration.experiment import read
+from calibration.inference import Problem, identify, polish, profile
 from calibration.parameters import parametrisation
-from calibration.search import Problem, identify, polish, profile
 from calibration.study import FitOptions, calibrate, measurements
 
 SHAPES = {"mooney-rivlin": {"second_share": 0.35}, "ogden": {"alpha": 4.0}, "arruda-boyce": {"locking": 2.5}}
@@ -25,8 +25,7 @@ def test_the_clean_bench(material: str) -> None:
     folder = measured() / "bench" / "clean"
     experiment = read(folder)
     found = calibrate(
-        parametrisation("neo-hookean"),
-        measurements(experiment, material),
+        measurements(experiment, material, parametrisation("neo-hookean")),
         options=FitOptions(),
     )
     truth = yaml.safe_load((folder / "truth.yaml").read_text())["shear_modulus_Pa"][material]
@@ -56,7 +55,7 @@ def test_intervals_hold_the_truth(law: str, tmp_path: Path) -> None:
             photographs=2,
             seed=seed,
         )
-        data = measurements(read(folder), "S0", workers=1)
+        data = measurements(read(folder), "S0", p, workers=1)
         problem = Problem(parametrisation=p, objectives=data.objectives)
         end = polish(problem, truth + 0.3 * p.spread)
         known = identify(p, end.u, end.jacobian, reduced_chi2=1.0)

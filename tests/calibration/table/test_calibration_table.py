@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 import tisim
 from calibration.experiment import read
+from calibration.study.paper_table import printed
 from calibration.table import app
-from calibration.table_of_paper import printed
 
 RUNNER = CliRunner()
 SHIFTS = {"S0": (0.5,), "S1": (1.0, 2.0)}

@@ -1,0 +1,1 @@
+"""Benchmarks: references by other solvers, costs beside other programs, and the blind laboratory."""

@@ -1,0 +1,214 @@
+"""Diagnose the blind beam experiments, and score the verdicts.
+
+    python -m benchmarks.blind.beams.run --out FOLDER              # the whole set, each by the command line
+    python -m benchmarks.blind.beams.run --out FOLDER --in-process --jobs 2 --workers 1 --told --advice \\
+        --control without-truth --control shuffled                 # with all that is scored besides
+    python -m benchmarks.blind.beams.run --out FOLDER --score      # only score the verdicts in FOLDER
+
+Each diagnosis is given the experiment in a temporary folder, never the truth. A run that was stopped goes on
+where it ended: each verdict is kept in OUT, in a file by kind, and is not asked for again. Beams that were
+photographed in another pose on advice are diagnosed in this process: the command line takes no pose.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from benchmarks.blind.beams.controls import (
+    advice_goals,
+    advice_table,
+    asked,
+    control_goals,
+    control_table,
+    follow,
+    shuffle_materials,
+    shuffled,
+    without_truth,
+)
+from benchmarks.blind.beams.experiment import write_experiment
+from benchmarks.blind.beams.held_out import gain_goals, gain_table, large
+from benchmarks.blind.beams.scores import Goal, Scored, by_size, confusion, goals, scope_goals
+from benchmarks.blind.beams.store import CASES, load_case, load_truth
+from benchmarks.blind.under_test import Diagnoser, NotDiagnosedError, Verdict, VerdictFile, catalogue
+
+CONTROLS = ("without-truth", "shuffled")
+KINDS = ("verdicts", "told", "advised", *CONTROLS)
+Answer = tuple[str, Verdict | None, str, float]  # case, what was said, why nothing was, seconds
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """Stored cases, what is true of them, how they are diagnosed, and what was said, by kind of question."""
+
+    cases: Path
+    truth: dict[str, Any]
+    finder: Diagnoser
+    kept: dict[str, VerdictFile]
+    gain_from: float  # size in sigmas from which the held-out gain is measured
+    jobs: int = 1  # cases at once
+
+    def scored(self, wanted: Iterable[str]) -> dict[str, Scored]:
+        said = self.kept["verdicts"].said
+        return {k: Scored(self.truth[k], said[k]) for k in wanted if k in said}
+
+    def ask(self, key: str, kind: str, folder: Path) -> Verdict:
+        """The answer to one kind of question about a case; folder: where its experiment is to be written."""
+        case, edges = load_case(self.cases, int(key))
+        write_experiment(case, edges, folder)
+        effects = tuple(h.effect for h in case.hidden)
+        if kind == "told":
+            others = [name for name in catalogue() if name not in effects]
+            return self.finder(folder, without=others, gain=True)
+        if kind == "advised":
+            return follow(case, self.kept["verdicts"].said[key], folder, self.finder)
+        if kind == "without-truth":
+            return self.finder(folder, without=effects)
+        if kind == "shuffled":
+            shuffle_materials(folder)
+            return self.finder(folder)
+        return self.finder(folder, gain=Scored(self.truth[key], {}).sigma >= self.gain_from)
+
+    def answer(self, kind: str, key: str) -> Answer:
+        """What is said of a case, or why nothing is."""
+        began = time.monotonic()
+        with tempfile.TemporaryDirectory() as place:
+            try:
+                said, problem = self.ask(key, kind, Path(place) / "experiment"), ""
+            except (NotDiagnosedError, ValueError) as error:
+                said, problem = None, str(error)
+        return key, said, problem, time.monotonic() - began
+
+    def answers(self, kind: str, keys: Sequence[str]) -> Iterator[Answer]:
+        """As they come; several cases at once each in a process of its own."""
+        if self.jobs == 1:
+            yield from (self.answer(kind, key) for key in keys)
+            return
+        with ProcessPoolExecutor(self.jobs, mp_context=get_context("spawn")) as pool:
+            yield from (
+                done.result() for done in as_completed(pool.submit(self.answer, kind, k) for k in keys)
+            )
+
+    def fill(self, kind: str, keys: Iterable[str]) -> list[str]:
+        """Ask what has not been asked yet; returns the cases without an answer."""
+        failed = []
+        for key, said, problem, seconds in self.answers(
+            kind, [k for k in keys if k not in self.kept[kind].said]
+        ):
+            if said is None:
+                failed.append(f"{key} ({kind})")
+                print(f"{key} {kind}: not diagnosed: {problem}", flush=True)
+            else:
+                self.kept[kind].add(key, said)
+                self.print_answer(key, kind, said, seconds)
+        return sorted(failed)
+
+    def print_answer(self, key: str, kind: str, said: Verdict, seconds: float) -> None:
+        shown = said.get("said") if kind == "advised" else said
+        case = Scored(self.truth[key], shown or {"verdict": "-", "causes": [], "alternatives": []})
+        true = "+".join(case.effects) or self.truth[key]["category"]
+        how = {"verdicts": "", "advised": f" after {said.get('advice')}"}.get(kind, f" {kind}")
+        print(
+            f"{key} {true} [{case.sigma:.1f}]{how}: {case.verdict} {'+'.join(case.named)}"
+            f" {case.said['alternatives'][1:]} {seconds:.0f} s",
+            flush=True,
+        )
+
+    def show(self, wanted: Iterable[str]) -> None:
+        """Confusion matrix, tables and goals of what has been diagnosed."""
+        cases = self.scored(wanted)
+        true_cause, advised, without, mixed = (self.kept[kind].said for kind in KINDS[1:])
+        for table in (
+            confusion(list(cases.values())),
+            by_size(list(cases.values())),
+            gain_table(cases, true_cause),
+            advice_table(cases, advised),
+            control_table(cases, without, mixed),
+        ):
+            print(f"{table}\n" if table else "", end="\n" if table else "")
+        rows: list[Goal] = [
+            *goals(list(cases.values())),
+            *scope_goals(list(cases.values())),
+            *gain_goals(cases, true_cause),
+            *advice_goals(cases, advised),
+            *control_goals(cases, without, mixed),
+        ]
+        for what, goal, count, of in rows:
+            fraction = f"{100 * count / of:5.1f} %" if of else "      -"
+            print(f"{what:66} goal {goal:>6}  {count:4} of {of:4}  {fraction}")
+
+
+def asked_for(given: argparse.Namespace) -> list[tuple[str, Callable[[Scored], bool]]]:
+    """Kinds of questions beyond the verdict, and of which cases each is asked, once that has its verdict."""
+    found: list[tuple[str, Callable[[Scored], bool]]] = []
+    if given.told:
+        found.append(("told", large))
+    if given.advice:
+        found.append(("advised", asked))
+    choices = {"without-truth": without_truth, "shuffled": shuffled}
+    found += [(name, choices[name]) for name in CONTROLS if name in given.control]
+    return found
+
+
+def parsed(arguments: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--cases", type=Path, default=CASES)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--only", default="", help="indices of cases, by commas")
+    parser.add_argument("--in-process", action="store_true")
+    parser.add_argument("--workers", type=int, default=None, help="processes of a diagnosis")
+    parser.add_argument("--jobs", type=int, default=1, help="cases diagnosed at once")
+    parser.add_argument("--no-gain", action="store_true", help="leave the held-out gain away (faster)")
+    parser.add_argument(
+        "--gain-from", type=float, default=0.0, help="held-out gain only of effects of so many sigmas"
+    )
+    parser.add_argument(
+        "--told", action="store_true", help="effects of 10 sigmas and above once more, with no other in the"
+        "\ncatalogue: what their held-out error is compared with"
+    )  # fmt: skip
+    parser.add_argument("--advice", action="store_true", help="make what is advised in ambiguous cases")
+    parser.add_argument(
+        "--control", action="append", default=[], choices=CONTROLS, help="negative controls (several times)"
+    )
+    parser.add_argument("--score", action="store_true", help="score what stands")
+    return parser.parse_args(arguments)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    given = parsed(arguments)
+    truth = load_truth(given.cases)["cases"]
+    wanted = [f"{int(k):03d}" for k in given.only.split(",") if k] or sorted(truth)
+    unknown = [k for k in wanted if k not in truth]
+    if unknown:
+        print(f"{given.cases}: no case {unknown[0]}", file=sys.stderr)
+        return 2
+    given.out.mkdir(parents=True, exist_ok=True)
+    run = Run(
+        cases=given.cases,
+        truth=truth,
+        finder=Diagnoser(in_process=given.in_process, workers=given.workers),
+        kept={kind: VerdictFile(given.out / f"{kind}.json") for kind in KINDS},
+        jobs=given.jobs,
+        gain_from=float("inf") if given.no_gain else given.gain_from,
+    )
+    failed: list[str] = []
+    if not given.score:
+        failed += run.fill("verdicts", wanted)
+        for kind, fits in asked_for(given):
+            failed += run.fill(kind, [key for key, case in run.scored(wanted).items() if fits(case)])
+    run.show(wanted)
+    if failed:
+        print(f"\n{len(failed)} not diagnosed: {', '.join(failed)}")
+    return int(bool(failed))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+"""Made indentations of a viscous layer: what was pushed, and the forces that `solve_indentation` stored."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from benchmarks.blind.timed.course import Course
+from benchmarks.blind.timed.material import Prony
+
+Array = NDArray[np.float64]
+STORE = Path(__file__).with_name("indentation.json")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A disc bonded to its base, and the rod, lengths in m.
+
+    Attributes
+    ----------
+    fine : float
+        Radius about the axis with `elements` elements along it.
+    penalty : float
+        Stiffness of the contact, in parts of the solver's own.
+    bulk_ratio : float
+        Bulk modulus over the long-time shear modulus; it does not relax.
+    """
+
+    height: float
+    side: float
+    rod: float
+    tip: str
+    fine: float
+    elements: int = 8
+    friction: float = 0.6
+    penalty: float = 1.0
+    bulk_ratio: float = 300.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Push:
+    """One indentation; finer: divides the time steps."""
+
+    layer: Layer
+    prony: Prony
+    course: Course
+    finer: float = 1.0
+
+
+LAYERS = {
+    "ball": Layer(height=0.020, side=0.050, rod=0.004, tip="hemisphere", fine=0.0025),
+    "thick": Layer(height=0.032, side=0.050, rod=0.0025, tip="flat", fine=0.0025),
+}
+DEEPEST = {"ball": 1.6e-3, "thick": 1.2e-3}  # [m]
+
+
+def _stiff(layer: Layer) -> Layer:
+    """The layer with a rigid contact and without compression, nearly."""
+    return replace(layer, penalty=8.0, bulk_ratio=3000.0)
+
+
+_PRONY = Prony(fractions=(0.5, 0.3), times=(0.4, 6.0))
+# a sphere of 10 mm radius on a disc of 300 mm: a half-space for contacts of 1.4 mm radius
+_HALF_SPACE = _stiff(
+    Layer(height=0.3, side=0.3, rod=0.010, tip="hemisphere", fine=1.5e-3, elements=10, friction=0.0)
+)
+_LOADING = Course(start=0.0).ramp(0.2e-3, 0.1e-3)
+_AT_ONCE = Course(start=0.0).ramp(1.2e-3, 1.2e-3 / 1e-4).hold(30.0)
+CHECKS = {
+    "half-space, elastic": Push(layer=_HALF_SPACE, prony=Prony(), course=_LOADING),
+    "half-space, loading": Push(layer=_HALF_SPACE, prony=_PRONY, course=_LOADING),
+    "half-space, loading, finer": Push(layer=_HALF_SPACE, prony=_PRONY, course=_LOADING, finer=2.0),
+    "ball, hold": Push(layer=_stiff(LAYERS["ball"]), prony=_PRONY, course=_AT_ONCE),
+    "thick, hold": Push(layer=_stiff(LAYERS["thick"]), prony=_PRONY, course=_AT_ONCE),
+}
+
+
+def load() -> dict[str, Any]:
+    """What is stored, by name."""
+    found: dict[str, Any] = json.loads(STORE.read_text(encoding="utf-8")) if STORE.exists() else {}
+    return found
+
+
+def save(found: dict[str, Any]) -> None:
+    """Write the store, an entry a line, in one piece."""
+    lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in found.items())
+    part = STORE.with_suffix(".part")
+    part.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
+    part.replace(STORE)
+
+
+def stored_force(name: str, course: Course, times: Array) -> Array:
+    """Force over the long-time modulus [m2] at times [s], of a stored indentation.
+
+    Raises
+    ------
+    KeyError
+        With the command that makes it, where it is not stored.
+    """
+    entry = load().get(name)
+    if entry is None:
+        raise KeyError(
+            f"{name}: not in {STORE.name}; python -m benchmarks.blind.timed.solve_indentation makes it"
+        )
+    stored_times, forces = np.array(entry["time"]), np.array(entry["force"])
+    found = np.empty_like(times)
+    corners, _ = course.corners()
+    for begin, end in itertools.pairwise(corners):
+        inside = (stored_times >= begin * (1 - 1e-8)) & (stored_times <= end * (1 + 1e-8))
+        mine = (times >= begin) & (times <= end)
+        x = np.sqrt(
+            np.maximum(stored_times[inside] - begin, 0.0)
+        )  # smooth in the root of time after a corner
+        found[mine] = PchipInterpolator(x, forces[inside])(np.minimum(np.sqrt(times[mine] - begin), x[-1]))
+    return np.maximum(found, 0.0)  # the rod does not pull; interpolation may round below 0
+
+
+def pushes_of(seed: int) -> dict[str, Push]:
+    """The indentations of a seed, by the names they are stored under."""
+    from benchmarks.blind.timed.cases import draw_indentation
+
+    case = draw_indentation(seed)
+    return {
+        f"seed {seed}, {poke.base}": Push(layer=LAYERS[poke.base], prony=case.solid.prony, course=poke.course)
+        for poke in case.pokes
+    }

@@ -1,0 +1,423 @@
+"""The Python interface: `calibration.read_experiment`, `reconstruct`, `fit` and `diagnose`.
+
+>>> import calibration
+>>> experiment = calibration.read_experiment(folder)
+>>> fits = calibration.fit(experiment, model="neo-hookean", workers=1)
+>>> fits.materials
+('rubber',)
+>>> f"{fits.best('rubber').shear_modulus / 1e3:.1f} kPa"
+'30.0 kPa'
+>>> fits
+Fits of 'made strip': 1
+  rubber: shear modulus 30.0... kPa by neo-hookean; no other law was tried.
+  Calibration(rubber, neo-hookean: converged, G 30... kPa)
+
+(`folder` holds a strip that was pulled to twice its length, made by
+`tests/calibration/interface/test_interface.py`, which runs this example.)
+
+Messages go to the log "calibration"; give `on_progress` to have them as objects.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calibration.errors import InputError, OptionError
+from calibration.experiment import BeamTrial, Experiment, read
+from calibration.progress import OnProgress, Progress, to_log
+from calibration.results import DiagnosisResult, Fits, Reconstruction
+from tisim import laws
+
+if TYPE_CHECKING:
+    from calibration.diagnosis.rig import Rig
+    from calibration.study import Task
+
+
+def read_experiment(folder: str | Path) -> Experiment:
+    """Read and check an experiment.
+
+    Parameters
+    ----------
+    folder : path
+        Holds experiment.yaml (format 1) and the files that it names.
+
+    Returns
+    -------
+    Experiment
+        In SI units.
+
+    Raises
+    ------
+    InputError
+        One sentence that names the file, the key or line, and what was expected.
+    """
+    return read(Path(folder))
+
+
+def fit(
+    experiment: str | Path | Experiment,
+    *,
+    model: str | Sequence[str] = "all",
+    materials: Sequence[str] | None = None,
+    terms: int = 1,
+    time: str | None = None,
+    damage: str | None = None,
+    fibres: bool = False,
+    objective: str = "likelihood",
+    rig: str | Path | None = None,
+    out: str | Path | None = None,
+    seed: int = 1,
+    population: int | None = None,
+    generations: int = 60,
+    restarts: int = 0,
+    polish: bool = True,
+    held_out: bool = True,
+    workers: int | None = None,
+    overwrite: bool = False,
+    on_progress: OnProgress | None = None,
+) -> Fits:
+    """Fit constitutive laws to all measurements of each material.
+
+    Parameters
+    ----------
+    experiment : path or Experiment
+    model : str or sequence of str
+        Laws; "all" for every law that is registered in `tisim.laws`.
+    materials : sequence of str, optional
+        All of the experiment where left out.
+    terms : int
+        Terms of a series law (Ogden).
+    time : str, optional
+        Relaxation beside each law, from homogeneous tests with a column time_s: "prony:1" to "prony:3" for so
+        many terms with free times, "prony" where the data choose their number, "prony:spectrum" for two
+        stated times a decade.
+    damage : str, optional
+        Softening beside each law: "mullins" (Ogden and Roxburgh).
+    fibres : bool
+        One family of fibres beside each law (Holzapfel, Gasser and Ogden), at the same angle in all
+        homogeneous tests.
+    objective : str
+        "likelihood", or "dice" for the overlap of bodies as in the paper (no error bars).
+    rig : path, optional
+        rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
+    out : path, optional
+        Folder that keeps the fits, so that the same call goes on after an interruption; in memory where
+        left out. `Fits.write_report` and `Fits.write_cards` write what people and the factory read.
+    seed, population, generations, restarts : int
+        Of CMA-ES.
+    polish : bool
+        Gauss-Newton polish and error bars.
+    held_out : bool
+        Predict each beam from the others.
+    workers : int, optional
+        Processes; all cores where left out.
+    overwrite : bool
+        Start anew instead of going on.
+    on_progress : callable, optional
+        Called with a `calibration.progress.FitProgress`, about twice a second.
+
+    Returns
+    -------
+    Fits
+
+    Raises
+    ------
+    InputError
+        An argument, the experiment or the folder cannot be used.
+    """
+    with tempfile.TemporaryDirectory(prefix="calibration-") as memory:
+        plan = plan_fit(
+            experiment,
+            model=model,
+            materials=materials,
+            terms=terms,
+            time=time,
+            damage=damage,
+            fibres=fibres,
+            objective=objective,
+            rig=rig,
+            out=out if out is not None else memory,
+            seed=seed,
+            population=population,
+            generations=generations,
+            restarts=restarts,
+            polish=polish,
+            held_out=held_out,
+            workers=workers,
+            overwrite=overwrite,
+        )
+        found = plan.run(on_progress or to_log)
+    return found if out is not None else Fits(found.results, found.experiment)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitPlan:
+    """Fits that are asked for, checked and ready to run.
+
+    Attributes
+    ----------
+    tasks : list of Task
+    experiment : Experiment
+        With the rig's corrections where a rig was given.
+    folder : Path
+    workers : int
+    rig : Rig, optional
+    """
+
+    tasks: list[Task]
+    experiment: Experiment
+    folder: Path
+    workers: int
+    rig: Rig | None = None
+
+    def run(self, on_progress: OnProgress) -> Fits:
+        """Make the fits that are missing; an exception leaves what was found on disk."""
+        from calibration.study import run
+
+        found = run(self.tasks, workers=self.workers, on_progress=on_progress)
+        return Fits(tuple(found), self.experiment, self.folder)
+
+    def stopped(self) -> Fits:
+        """Finished fits, and the best candidate of each unfinished one."""
+        from calibration.study import stopped
+
+        return Fits(tuple(stopped(self.tasks, self.experiment)), self.experiment, self.folder)
+
+
+def plan_fit(
+    experiment: str | Path | Experiment,
+    *,
+    model: str | Sequence[str],
+    materials: Sequence[str] | None,
+    terms: int,
+    time: str | None,
+    damage: str | None,
+    fibres: bool,
+    objective: str,
+    rig: str | Path | None,
+    out: str | Path,
+    seed: int,
+    population: int | None,
+    generations: int,
+    restarts: int,
+    polish: bool,
+    held_out: bool,
+    workers: int | None,
+    overwrite: bool,
+) -> FitPlan:
+    """The plan of `fit`, with its parameters; nothing is computed."""
+    from calibration.inference import CmaOptions
+    from calibration.study import FitOptions, OnSetup, parts, tasks_for
+
+    data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    names = law_names(model)
+    if not 1 <= terms <= 3:
+        raise OptionError("terms", terms, "expected 1 to 3")
+    if objective not in ("likelihood", "dice"):
+        raise OptionError("objective", objective, "expected likelihood or dice")
+    wanted = _materials(materials, data)
+    specs = parts.asked(time=time, damage=damage, fibres="fibres" if fibres else None)
+    if specs and objective != "likelihood":
+        raise OptionError(
+            parts.option_of(specs[0]),
+            specs[0],
+            "expected --objective likelihood, overlaps of bodies have no time",
+        )
+    parts.check(data, wanted, specs)
+    setup = _rig(rig, data, objective, wanted)
+    folder = Path(out)
+    options = FitOptions(
+        cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
+        gauss_newton=polish and objective == "likelihood",  # Dice is not smooth where it is best
+        leave_one_out=held_out,
+    )
+    count = processes(workers)
+    _check_folder(folder, overwrite)
+    tasks = tasks_for(
+        data,
+        law_names=names,
+        materials=wanted,
+        folder=folder / "fits",
+        options=options,
+        terms=terms,
+        objective="likelihood" if objective == "likelihood" else "dice",
+        setup=setup,
+        specs=specs,
+    )
+    return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
+
+
+def diagnose(
+    experiment: str | Path | Experiment,
+    *,
+    domain: str | None = None,
+    without: Sequence[str] = (),
+    simulator: str = "ours",
+    gain: bool = True,
+    seed: int = 0,
+    workers: int | None = None,
+    on_progress: OnProgress | None = None,
+) -> DiagnosisResult:
+    """Find what the simulation of an experiment lacks.
+
+    Parameters
+    ----------
+    experiment : path or Experiment
+    domain : str, optional
+        Kind of measurements, where the experiment has several (`calibration.diagnosis.kinds()`).
+    without : sequence of str
+        Effects to leave out of the catalogue.
+    simulator : str
+        Simulator whose own faults are looked for as well.
+    gain : bool
+        Measure the improvement on held-out data.
+    seed : int
+        Of the bootstrap.
+    workers : int, optional
+        Processes; all cores where left out.
+    on_progress : callable, optional
+        Called with a `calibration.progress.Progress`.
+
+    Returns
+    -------
+    DiagnosisResult
+
+    Raises
+    ------
+    InputError
+        An argument or the experiment cannot be used, or the baseline has no equilibrium anywhere.
+    """
+    from calibration.diagnosis import Rules, model_of
+    from calibration.diagnosis import diagnose as search
+
+    if seed < 0:
+        raise OptionError("seed", seed, "expected 0 or more")
+    processes(workers)
+    data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    report = on_progress or to_log
+    model = model_of(data, kind=domain, without=list(without), simulator=simulator, workers=workers)
+    try:
+        found = search(
+            model, rules=Rules(seed=seed), gain=gain, on_progress=lambda text: report(Progress(message=text))
+        )
+    except ValueError as error:  # no equilibrium of the baseline anywhere
+        raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error
+    return DiagnosisResult(found, data, model)
+
+
+def reconstruct(
+    experiment: str | Path,
+    *,
+    out: str | Path | None = None,
+    resume: bool = True,
+    skip_bad: bool = False,
+    on_progress: OnProgress | None = None,
+) -> Reconstruction:
+    """Trace the photographs of an experiment: outline, mid line and swept body of each.
+
+    Parameters
+    ----------
+    experiment : path
+        Folder with experiment.yaml and photographs.
+    out : path, optional
+        Folder to write; the experiment's name with -traced, in the current folder, where left out.
+    resume : bool
+        Keep what is already traced.
+    skip_bad : bool
+        Leave out photographs that cannot be used, in place of an error.
+    on_progress : callable, optional
+        Called with a `calibration.progress.Progress` after each photograph.
+
+    Returns
+    -------
+    Reconstruction
+
+    Raises
+    ------
+    InputError
+        A photograph cannot be used; what could be traced is kept.
+    """
+    from calibration.photo.reconstruction import reconstruct as trace
+
+    return trace(
+        Path(experiment),
+        out=None if out is None else Path(out),
+        resume=resume,
+        skip_bad=skip_bad,
+        on_progress=on_progress or to_log,
+    )
+
+
+def law_names(model: str | Sequence[str]) -> list[str]:
+    """Names of laws, each once; "all" for every law, those that are useful soonest first.
+
+    Raises
+    ------
+    InputError
+        One is not known, or there is none.
+    """
+    from calibration.study import by_cost
+
+    if model == "all":
+        return by_cost(laws.names())
+    names = [n.strip() for n in model.split(",")] if isinstance(model, str) else list(model)
+    names = [n for n in names if n]
+    for name in names:
+        if name not in laws.names():
+            raise OptionError("model", name, f"expected all or some of {', '.join(laws.names())}")
+    if not names:
+        raise OptionError("model", None, "expected at least one law")
+    return list(dict.fromkeys(names))
+
+
+def processes(workers: int | None) -> int:
+    """The number of processes; InputError where it is less than 1."""
+    if workers is not None and workers < 1:
+        raise OptionError("workers", workers, "expected 1 or more")
+    return workers or os.cpu_count() or 1
+
+
+def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
+    used = {t.material for t in data.trials}
+    if wanted is None:
+        return [m for m in data.materials if m in used]
+    for name in wanted:
+        if name not in used:
+            raise OptionError("material", name, f"expected some of {', '.join(sorted(used))}")
+    return list(dict.fromkeys(wanted))
+
+
+def _rig(path: str | Path | None, data: Experiment, objective: str, materials: list[str]) -> Rig | None:
+    """The rig's corrections; InputError where these fits cannot be corrected by it."""
+    if path is None:
+        return None
+    if objective != "likelihood":
+        raise OptionError("rig", path, "expected --objective likelihood, overlaps of bodies know no rig")
+    marked = [t.id for t in data.trials if isinstance(t, BeamTrial) and t.material in materials and t.markers]
+    if marked:
+        raise OptionError(
+            "rig",
+            path,
+            f"corrects outlines, not markers: expected none, but trial {marked[0]} has some",
+        )
+    from calibration.diagnosis.rig import read_rig
+
+    return read_rig(Path(path)).on(data)
+
+
+def _check_folder(folder: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds something else; with overwrite, remove our own fits only."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder to write to")
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"{folder}: expected a folder that can be written to")
+    if overwrite and (folder / "fits").is_dir():
+        from calibration.study import remove_fits
+
+        remove_fits(folder / "fits")

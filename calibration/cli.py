@@ -1,0 +1,210 @@
+"""Shared by the four commands of calibration: options, progress, tables, error sentences, exit codes."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import signal
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+from rich.box import SIMPLE
+from rich.console import Console
+from rich.live import Live
+from rich.markup import escape
+from rich.table import Table
+
+from calibration.errors import InputError, OptionError
+from tisim import laws
+
+if TYPE_CHECKING:
+    from calibration.progress import FitProgress
+    from calibration.study import Calibration
+
+# Generations that a search takes as a rule, for the time left only.
+_USUAL = 45
+
+# package: the extra of tisim that brings it
+EXTRAS = {"cv2": "photo", "trimesh": "mesh", "rtree": "mesh", "manifold3d": "mesh", "pytetwild": "mesh"}
+
+VERBS = {
+    "reconstruct": "photographs to outlines, mid lines and bodies",
+    "fit": "material parameters of constitutive laws, with error bars, cards and a report",
+    "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",
+    "table": "the paper's table of calibration results for an experiment",
+}
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"tisim {installed_version()}")
+        raise typer.Exit
+
+
+def installed_version() -> str:
+    """Version of the installed package, "not installed" in a folder of sources."""
+    try:
+        return version("tisim")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+Measured = Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")]
+Laws = Annotated[str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")]
+Workers = Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)]
+Seed = Annotated[int, typer.Option(help="Seed of the random numbers, 0 or more.")]
+Version = Annotated[
+    bool,
+    typer.Option("--version", help="Show the version and exit.", callback=_show_version, is_eager=True),
+]
+
+
+def command() -> typer.Typer:
+    """An application of one command, that shows faults of the program as Python does."""
+    return typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+
+
+def names_in(text: str) -> list[str]:
+    """Names that are separated by commas."""
+    return [n.strip() for n in text.split(",") if n.strip()]
+
+
+@contextlib.contextmanager
+def plain_ends(stopped: str = "Stopped: nothing was written.") -> Iterator[None]:
+    """Ends of a command: InputError, and a file or disk that cannot be used, become one sentence on stderr
+    and exit code 2; Ctrl-C and SIGTERM become the sentence `stopped` and exit code 130.
+
+    Use it around all that a command does, as `with plain_ends(): ...` or as a decorator below
+    `@app.command()`. Errors of any other kind are faults of the program and pass through.
+    """
+    try:
+        with _terminable():
+            yield
+    except OptionError as error:
+        _end(f"error: {error.option}", 2)
+    except ModuleNotFoundError as error:
+        extra = EXTRAS.get((error.name or "").split(".")[0])
+        if extra is None:
+            raise
+        _end(f"error: the package {error.name} is not installed: pip install 'tisim[{extra}]'", 2)
+    except InputError as error:
+        _end(f"error: {error}", 2)
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            where = f" at {error.filename}" if error.filename else ""
+            _end(f"error: no space is left on the disk{where}: free some, the same command goes on", 2)
+        where = f" {error.filename}" if error.filename else ""
+        _end(f"error: cannot use{where}: {error.strerror or error}", 2)
+    except KeyboardInterrupt:
+        _end(stopped, 130)
+
+
+def _end(sentence: str, code: int) -> NoReturn:
+    typer.echo(" ".join(sentence.split()), err=True)
+    raise typer.Exit(code)
+
+
+@contextlib.contextmanager
+def _terminable() -> Iterator[None]:
+    """Lets SIGTERM end the work as Ctrl-C does (signals reach the main thread only)."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(_number: int, _frame: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+class FitScreen:
+    """A live table: fits done, generation and best cost of the running ones, time left."""
+
+    def __init__(self, console: Console) -> None:
+        self.console = console
+        self.live = Live(console=console, refresh_per_second=2, transient=True)
+        self.begun = time.monotonic()
+        self.before: int | None = None
+        self.shown: set[str] = set()
+
+    def __enter__(self) -> FitScreen:
+        self.live.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.live.__exit__(kind, error, trace)
+
+    def update(self, progress: Any) -> None:
+        """An `on_progress` callback of fits."""
+        state: FitProgress = progress
+        if self.before is None:
+            self.before = len(state.ended)
+        for name in state.ended.keys() - self.shown:
+            self.console.print(escape(f"{name}: {_one_line(state.ended[name])}"), highlight=False)
+            self.shown.add(name)
+        table = Table(title=f"{len(state.ended)} of {state.total} fits, {self._left(state)}")
+        for column in ("fit", "generation", "best chi-square"):
+            table.add_column(column)
+        for name, count in state.generations.items():
+            if count:
+                best = state.best.get(name)
+                table.add_row(escape(name), str(count), "no answer yet" if best is None else f"{best:.1f}")
+        self.live.update(table)
+
+    def _left(self, state: FitProgress) -> str:
+        parts = sum(min(0.9, n / _USUAL) for n in state.generations.values())
+        done = len(state.ended) - (self.before or 0) + parts
+        if done < 0.3:
+            return "time left not known yet"
+        todo = state.total - len(state.ended) - parts
+        left = (time.monotonic() - self.begun) / done * todo
+        return f"about {left / 60:.0f} min left" if left > 90 else f"about {left:.0f} s left"
+
+
+def _one_line(r: Calibration) -> str:
+    modulus = f", G {r.shear_modulus / 1e3:.3f} kPa" if r.shear_modulus == r.shear_modulus else ""
+    why = "; ".join(r.lacking) if r.status == "lack of fit" else r.message
+    return f"{r.status}{modulus}" + (f"; {why}" if why else "")
+
+
+def law_table(results: Sequence[Calibration]) -> Table:
+    """Materials and laws: moduli, misfit, held-out prediction and unidentified constants (kPa and mm).
+
+    Columns of photographed beams are left out where there are none; held out is the worst of them.
+    """
+    from calibration.study.assessment import spoken
+
+    beams = any(r.rms is not None or r.held_out for r in results)
+    table = Table(title="Calibration", box=SIMPLE, pad_edge=False, collapse_padding=True)
+    for column in ("material", "law", "status", "G / kPa", "chi2/n"):
+        table.add_column(column, no_wrap=column != "status", min_width=11 if column == "status" else None)
+    for column in (*(("rms / mm", "held out / mm") if beams else ()), "not identified"):
+        table.add_column(column, min_width=5)
+    for r in results:
+        status = escape(r.status) if r.status == "converged" else f"[red]{escape(r.status)}[/red]"
+        cells = [escape(r.material), escape(r.label), status]
+        if not r.parameters:
+            table.add_row(*cells, "-", "-", *(("-", "-") if beams else ()), escape(r.message))
+            continue
+        sd = r.shear_modulus_sd
+        cells.append(f"{r.shear_modulus / 1e3:.2f}" + (f" +- {sd / 1e3:.2f}" if sd == sd else ""))
+        cells.append(f"{r.reduced_chi2:.2f}" if r.mean_dice is None else f"Dice {r.mean_dice:.4f}")
+        if beams:
+            cells.append("-" if r.rms is None else f"{r.rms * 1e3:.3f}")
+            cells.append(f"{max(h.rms for h in r.held_out) * 1e3:.2f}" if r.held_out else "-")
+        unseen = [e for e in r.estimates if e.seen != "identified"]
+        words = [f"{spoken(e.name)}{' (held)' if e.seen == 'held' else ''}" for e in unseen]
+        table.add_row(*cells, ", ".join(words))
+    return table

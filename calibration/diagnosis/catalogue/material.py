@@ -1,0 +1,125 @@
+"""What the material does beyond the baseline's law."""
+
+from __future__ import annotations
+
+from calibration.measurements._effect import Effect
+
+DENSITY = Effect(
+    name="density",
+    parameter="excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is heavier or lighter than stated",
+    remedy="weigh the specimen",
+    with_material=True,
+)
+
+STRAIN_STIFFENING = Effect(
+    name="strain-stiffening",
+    parameter="c2_over_c1",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material gets stiffer the more it is strained",
+    remedy="photograph a longer beam, or the softest mixture; pull a coupon to large strain",
+    with_material=True,
+)
+
+SECOND_INVARIANT = Effect(
+    name="second-invariant",
+    parameter="c01_share",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the stress depends on the second invariant too, so that modes of loading differ",
+    remedy="test in another mode (equibiaxial tells most), or compress as well as pull",
+    with_material=True,
+)
+
+LIMITED_EXTENSIBILITY = Effect(
+    name="limited-extensibility",
+    parameter="one_over_locking_stretch_squared",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material's chains run out of length at a finite strain",
+    remedy="pull until it locks: only there it differs from a plain stiffening",
+    with_material=True,
+)
+
+COMPRESSIBILITY = Effect(
+    name="compressibility",
+    parameter="poisson_drop",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is compressible",
+    remedy="weigh it under pressure, or compress a bonded cylinder",
+    with_material=True,
+)
+
+ANISOTROPY = Effect(
+    name="anisotropy",
+    parameter="fibre_excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is stiffer in one direction than in another",
+    remedy="cut specimens along and across, and pull both; add another mode of loading",
+    with_material=True,
+)
+
+HYSTERESIS = Effect(
+    name="hysteresis",
+    parameter="unloading_loss",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material gives back less than was put in: unloading lies below loading",
+    remedy="record the unloading too",
+    with_material=True,
+)
+
+MULLINS = Effect(
+    name="mullins",
+    parameter="softening",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the first loading softens the material (Mullins): the second one needs less force",
+    remedy="load the same specimen twice to the same strain",
+    with_material=True,
+)
+
+RATE_DEPENDENCE = Effect(
+    name="rate-dependence",
+    parameter="per_decade",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is stiffer the faster it is strained",
+    remedy="repeat a test at a tenth and at ten times the rate, or hold the largest strain, with time",
+    with_material=True,
+)
+
+CREEP = Effect(
+    name="creep",
+    parameter="per_decade",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material creeps: it gets softer with each decade of time",
+    remedy="photograph the same beam at several times",
+    with_material=True,
+)
+
+RELAXATION = Effect(
+    name="relaxation",
+    parameter="loss",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the force relaxes: it falls with time while the rod rests, and depends on its speed",
+    remedy="hold the rod at the deepest depth for a minute, or poke at a tenth and ten times the speed",
+    with_material=True,
+)
+
+RELAXATION_BRANCH = Effect(
+    name="relaxation-branch",
+    parameter="part_of_modulus",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material has a second relaxation time",
+    remedy="release it with other masses, so that it vibrates at other frequencies",
+    with_material=True,
+)

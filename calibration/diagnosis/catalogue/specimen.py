@@ -1,0 +1,122 @@
+"""How a specimen differs from what was stated: its form, its make, what sticks to it."""
+
+from __future__ import annotations
+
+from calibration.measurements._effect import Effect
+
+RADIUS = Effect(
+    name="radius",
+    parameter="excess_mm",
+    per_unit=1e3,
+    belongs_to="specimen",
+    sentence="the section is thicker or thinner than stated",
+    remedy="measure the section with callipers",
+)
+
+SECTION_SCALE = Effect(
+    name="section-scale",
+    parameter="excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the section is larger or smaller than stated, in all directions by one factor",
+    remedy="measure the section with callipers",
+)
+
+TAPER = Effect(
+    name="taper",
+    parameter="per_100mm",
+    per_unit=0.1,
+    belongs_to="specimen",
+    sentence="the section changes along the beam",
+    remedy="measure the width at both ends; swap the ends",
+)
+
+STIFFNESS_GRADIENT_AXIAL = Effect(
+    name="stiffness-gradient-axial",
+    parameter="per_100mm",
+    per_unit=0.1,
+    belongs_to="specimen",
+    sentence="the material is stiffer at one end than at the other",
+    remedy="swap the ends of the beam",
+)
+
+STIFFNESS_GRADIENT_TRANSVERSE = Effect(
+    name="stiffness-gradient-transverse",
+    parameter="per_radius",
+    per_unit=0.01,
+    belongs_to="specimen",
+    sentence="the material is stiffer on one side, above or below",
+    remedy="turn the beam by 180 degrees about its axis",
+)
+
+RESIDUAL_CURVATURE = Effect(
+    name="residual-curvature",
+    parameter="curvature_per_m",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the specimen is bent without any load, as it came out of its mould",
+    remedy="turn the beam by 180 degrees about its axis: a bend changes sign",
+)
+
+VOID = Effect(
+    name="void",
+    parameter="lost_EI",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="a void or a cut weakens the beam in one place",
+    remedy="look through the beam, or swap its ends: the kink moves along",
+)
+
+SKIN = Effect(
+    name="skin",
+    parameter="excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the surface is stiffer or softer than the core",
+    remedy="cut the beam and press both sides; refine the mesh to tell it from locking elements",
+)
+
+ADDED_MASS = Effect(
+    name="added-mass",
+    parameter="mass_g",
+    per_unit=1e3,
+    belongs_to="specimen",
+    sentence="another mass hangs on the free end than stated",
+    remedy="look at the free end; weigh the beam",
+)
+
+THICKNESS = Effect(
+    name="thickness",
+    parameter="excess_percent",
+    per_unit=100.0,
+    belongs_to="specimen",
+    sentence="the block is thicker, or thinner, than believed",
+    remedy="measure the block with callipers",
+)
+
+ADHESION = Effect(
+    name="adhesion",
+    parameter="pull_mN",
+    per_unit=1e3,
+    belongs_to="specimen",
+    sentence="the surface sticks to the rod and pulls it on the way back",
+    remedy="record the way back until the rod is free; powder the surface and repeat",
+)
+
+INCLUSION_DEBONDED = Effect(
+    name="inclusion-debonded",
+    parameter="loose_part",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the soft material has come off the inclusion",
+    remedy="pull at the surface above the inclusion, or poke a place far from it",
+)
+
+INCLUSION_MISPLACED = Effect(
+    name="inclusion-misplaced",
+    parameter="shift_mm",
+    per_unit=1e3,
+    belongs_to="specimen",
+    sentence="the inclusion lies elsewhere than believed",
+    remedy="poke around the inclusion at several places, or look at it by ultrasound",
+)

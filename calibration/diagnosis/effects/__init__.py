@@ -1,0 +1,1 @@
+"""How each effect acts in each kind of measurement."""

@@ -1,0 +1,311 @@
+"""How each effect acts on homogeneous material tests: on the stretch, or on the stress."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import erf
+
+from calibration.diagnosis import catalogue
+from calibration.measurements.homogeneous._effect import HomogeneousEffect
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
+
+Array = NDArray[np.float64]
+
+# -- rate-dependence --
+# The material is stiffer when it is strained faster: its stress grows by this part with each decade of the
+# rate, from 0.01 per second.
+
+
+REFERENCE_RATE = 0.01  # [1/s]: the shear modulus is that of this rate
+
+DISTINCT_RATES = 1.5  # quotient of two rates from which they differ
+
+
+def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array:
+    del s
+    decades = np.log10(record.rate / REFERENCE_RATE)
+    return 1.0 + amplitude * np.where(np.isfinite(decades), decades, 0.0)
+
+
+def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Two rates in one material."""
+    del everything
+    for material in {r.material for r in reached}:
+        rates = np.concatenate([r.rate for r in reached if r.material == material])
+        rates = rates[np.isfinite(rates)]
+        if rates.size and rates.max() > DISTINCT_RATES * rates.min():
+            return True
+    return False
+
+
+RATE_DEPENDENCE = HomogeneousEffect(
+    effect=catalogue.RATE_DEPENDENCE,
+    step=1e-3,
+    bounds=(0.0, 0.3),
+    prior_scale=0.15,
+    factor=_factor_rate_dependence,
+    identifiable=_identifiable_rate_dependence,
+)
+
+
+# -- hysteresis --
+# On the way back the stress lies below that of the way out: by this part once all energy is given back.
+
+
+def _factor_hysteresis(s: Array, amplitude: float, record: Record) -> Array:
+    del s
+    back = np.clip(1.0 - first_excess(record.mode, record.stretch) / record.turn, 0.0, 1.0)
+    return 1.0 - amplitude * np.where(np.isfinite(back), back, 0.0)
+
+
+def _identifiable_hysteresis(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some unloading."""
+    del everything
+    return any(r.unloads for r in reached)
+
+
+HYSTERESIS = HomogeneousEffect(
+    effect=catalogue.HYSTERESIS,
+    step=1e-3,
+    bounds=(0.0, 0.95),
+    prior_scale=0.5,
+    factor=_factor_hysteresis,
+    identifiable=_identifiable_hysteresis,
+)
+
+
+# -- mullins --
+# Once strained, the material is softer below the largest strain that it has seen: by this part at rest, by
+# nothing at that strain. The pseudo-elastic softening of Ogden and Roxburgh, Proc. R. Soc. Lond. A 455
+# (1999): 1 - erf((W_m - W) / m) / r with W_m the largest energy so far, here of a Neo-Hookean solid, and
+# with m = W_m, so that the amplitude is erf(1) / r. One record seldom tells m, by which the amplitude
+# changes a little.
+
+
+def _factor_mullins(s: Array, amplitude: float, record: Record) -> Array:
+    del s
+    if not record.reloaded:
+        return np.ones(record.points)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        below = 1.0 - first_excess(record.mode, record.stretch) / record.peak
+    left = np.where(np.isfinite(below), np.clip(below, 0.0, 1.0), 0.0)
+    return 1.0 - amplitude * erf(left) / erf(1.0)
+
+
+def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some second loading."""
+    del everything
+    return any(r.reloaded for r in reached)
+
+
+MULLINS = HomogeneousEffect(
+    effect=catalogue.MULLINS,
+    step=1e-3,
+    bounds=(0.0, 0.95),
+    prior_scale=0.5,
+    factor=_factor_mullins,
+    identifiable=_identifiable_mullins,
+)
+
+
+# -- anisotropy --
+# The material is stiffer along the direction that is pulled: W gets a term G k/8 (I4 - 1)^2, I4 the squared
+# stretch of that direction. The amplitude k is the excess of stress there, in shear moduli a unit of
+# strain.
+
+
+def _extra_anisotropy(s: Array, amplitude: float, record: Record) -> Array:
+    if record.mode == "simple-shear":
+        return np.zeros(s.size)
+    # equibiaxial: the stress is the mean over two directions, of which one has it
+    axes = 2.0 if record.mode == "equibiaxial" else 1.0
+    return np.asarray(0.5 * amplitude * s * (s**2 - 1.0) / axes)
+
+
+def _identifiable_anisotropy(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Two modes of a material, or a specimen to compare with that was not cut alike."""
+    for material in {r.material for r in reached}:
+        mine = [r for r in reached if r.material == material]
+        others = [r for r in everything if r.material == material and r not in mine]
+        if len({r.mode for r in mine}) > 1 or others:
+            return True
+    return False
+
+
+ANISOTROPY = HomogeneousEffect(
+    effect=catalogue.ANISOTROPY,
+    step=1e-3,
+    bounds=(-1.5, 6.0),
+    prior_scale=0.6,
+    extra=_extra_anisotropy,
+    identifiable=_identifiable_anisotropy,
+    scopes=("material", "specimen", "trial"),
+)
+
+
+# -- strain-offset --
+# The zero of the strain is off: the specimen was slack, or preloaded, when its stretch was called 1.
+
+
+def _shift_strain_offset(s: Array, amplitude: float, record: Record) -> Array:
+    del record
+    return np.full(s.size, amplitude)
+
+
+STRAIN_OFFSET = HomogeneousEffect(
+    effect=catalogue.STRAIN_OFFSET,
+    step=1e-4,
+    bounds=(-0.1, 0.1),
+    prior_scale=0.03,
+    shift=_shift_strain_offset,
+    scopes=("mode", "trial"),
+)
+
+
+# -- machine-compliance --
+# The rig gives way: part of the stretch that is written down is its own, in proportion to the stress.
+
+
+MACHINE_COMPLIANCE = HomogeneousEffect(
+    effect=catalogue.MACHINE_COMPLIANCE,
+    step=1e-9,
+    bounds=(0.0, 1e-5),
+    prior_scale=1e-6,
+    yields=1.0,
+    scopes=("mode", "trial"),
+)
+
+
+# -- platen-friction --
+# Platens hold a compressed cylinder by friction (slab method: the pressure grows exponentially inwards):
+# its stress is 2 (e^x - 1 - x) / x^2 times higher with x = 3 a s^(-3/2), where a is the coefficient of
+# friction times diameter over three times the height at rest, and s the stretch. For small a that is 1 + a
+# s^(-3/2).
+
+
+PRESSED = 0.97  # stretch below which platens press
+
+
+def _factor_platen_friction(s: Array, amplitude: float, record: Record) -> Array:
+    del record
+    x = 3.0 * amplitude * np.maximum(s, 1e-3) ** -1.5
+    small = np.abs(x) < 1e-2
+    large = np.where(small, 1.0, x)
+    whole = np.where(small, 1.0 + x / 3.0 + x**2 / 12.0, 2.0 * (np.expm1(large) - large) / large**2)
+    return np.where(s < 1.0, whole, 1.0)
+
+
+PLATEN_FRICTION = HomogeneousEffect(
+    effect=catalogue.PLATEN_FRICTION,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    prior_scale=0.2,
+    factor=_factor_platen_friction,
+    applies_to=lambda record: record.mode == "uniaxial" and bool(record.stretch.min() < PRESSED),
+    scopes=("mode", "trial"),
+)
+
+
+# -- strain-stiffening --
+# The material stiffens with strain: W gets a term G/2 a (I1 - 3)^2 beside the baseline's (Yeoh's law in
+# `tisim`, which refuses a < 0: its energy would have no least value).
+
+
+def _extra_strain_stiffening(s: Array, amplitude: float, record: Record) -> Array:
+    return stress_of(record.mode, s, amplitude * first_excess(record.mode, s))
+
+
+STRAIN_STIFFENING = HomogeneousEffect(
+    effect=catalogue.STRAIN_STIFFENING,
+    step=1e-3,
+    bounds=(0.0, 4.0),
+    prior_scale=0.5,
+    extra=_extra_strain_stiffening,
+    action="pull to larger strain",
+)
+
+
+# -- second-invariant --
+# The energy depends on the second invariant too (Mooney-Rivlin): the share C01 / (C10 + C01).
+
+
+def _extra_second_invariant(s: Array, amplitude: float, record: Record) -> Array:
+    return stress_of(record.mode, s, -0.5 * amplitude, 0.5 * amplitude)
+
+
+SECOND_INVARIANT = HomogeneousEffect(
+    effect=catalogue.SECOND_INVARIANT,
+    step=1e-3,
+    bounds=(-0.5, 1.5),
+    prior_scale=0.3,
+    extra=_extra_second_invariant,
+)
+
+
+# -- limited-extensibility --
+# Chains run out of length (eight Langevin chains: Arruda and Boyce, J. Mech. Phys. Solids 41, 1993;
+# `tisim`'s law `eight-chain`): the amplitude is one over the squared locking stretch; the small-strain
+# modulus stays.
+#
+# Past ENDS of the chains' length the force goes on in a straight line, as in that law: a search may step
+# there.
+
+
+LONGEST_CHAIN = 0.995
+
+_NEWTON_STEPS = 5  # of Newton's method, from a Pade form that is right to 5 %
+
+_SHORT_CHAIN = 1e-4  # part of its length up to which a chain is Gaussian to rounding errors
+
+
+def _stiffening(x: Array) -> Array:
+    """Force of a chain at the part x of its length, over that of a Gaussian one (1 for short ones): the
+    inverse Langevin function over 3 x."""
+    inside = np.clip(x, _SHORT_CHAIN, LONGEST_CHAIN)
+    b = inside * (3.0 - inside**2) / (1.0 - inside**2)
+    for _ in range(_NEWTON_STEPS):
+        value, slope = _langevin(b)
+        b = b - (value - inside) / slope
+    past = np.maximum(x - LONGEST_CHAIN, 0.0) / _langevin(b)[1]
+    return np.asarray((b + past) / (3.0 * np.maximum(x, _SHORT_CHAIN)))
+
+
+def _langevin(b: Array) -> tuple[Array, Array]:
+    """coth b - 1/b, and its slope."""
+    e = np.exp(-2.0 * b)
+    return (1.0 + e) / (1.0 - e) - 1.0 / b, 1.0 / b**2 - 4.0 * e / (1.0 - e) ** 2
+
+
+def _extra_limited_extensibility(s: Array, amplitude: float, record: Record) -> Array:
+    i1 = first_excess(record.mode, s) + 3.0
+    part = _stiffening(np.sqrt(amplitude * i1 / 3.0)) / _stiffening(np.sqrt(np.array([amplitude])))
+    return stress_of(record.mode, s, 0.5 * (part - 1.0))
+
+
+LIMITED_EXTENSIBILITY = HomogeneousEffect(
+    effect=catalogue.LIMITED_EXTENSIBILITY,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    prior_scale=0.5,
+    extra=_extra_limited_extensibility,
+)
+
+EFFECTS: dict[str, HomogeneousEffect] = {
+    e.name: e
+    for e in (
+        RATE_DEPENDENCE,
+        HYSTERESIS,
+        MULLINS,
+        ANISOTROPY,
+        STRAIN_OFFSET,
+        MACHINE_COMPLIANCE,
+        PLATEN_FRICTION,
+        STRAIN_STIFFENING,
+        SECOND_INVARIANT,
+        LIMITED_EXTENSIBILITY,
+    )
+}

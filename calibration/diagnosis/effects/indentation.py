@@ -1,0 +1,466 @@
+"""How each effect acts on indentation: on the scene, on the depth, or on the force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis import catalogue
+from calibration.measurements.indentation._effect import IndentationEffect
+from calibration.measurements.indentation._record import Record
+from calibration.measurements.indentation._scene import FRICTION as BELIEVED
+from tisim import Mesh, Poke
+
+Array = NDArray[np.float64]
+
+# -- friction --
+# The coefficient of friction is lower (or higher) than believed: the surface slides along the indenter's tip.
+
+
+NO_FRICTION, LITTLE_FRICTION = -BELIEVED, -0.5
+
+
+def _scene_friction(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
+    del variant
+    return replace(poke, friction=max(0.0, BELIEVED + amplitude), mesh=mesh)
+
+
+FRICTION = IndentationEffect(
+    effect=catalogue.FRICTION,
+    step=0.01,
+    bounds=(-BELIEVED, 0.4),
+    physical_limits=(-BELIEVED,),
+    prior_scale=BELIEVED,
+    start_fraction=1.0,  # most of what it does it does near its bound
+    scene=_scene_friction,
+    # from 0.4 on hardly anything slides
+    nodes=(NO_FRICTION, LITTLE_FRICTION, -0.35, 0.0, 0.4),
+    # without friction no force is lost in unloading, with a little friction it is
+    variants=lambda _: (LITTLE_FRICTION, NO_FRICTION),
+    variant_label=lambda variant: "some slip" if variant == LITTLE_FRICTION else "free slip",
+    chords=True,
+    straight=True,
+    finer=True,
+    retracts=True,
+    scopes=("rod", "trial"),
+)
+
+
+# -- rod-angle --
+# The indenter's axis is inclined by another angle than believed: in the plane of its travel (x and z where it
+# is upright), or across.
+
+
+ALONG, ACROSS = 0.0, 1.0
+
+STEEPEST = np.radians(45.0)
+
+DEGREE = float(np.radians(1.0))
+
+
+def _scene_rod_angle(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
+    axis = np.asarray(poke.direction) / np.linalg.norm(poke.direction)
+    level = np.array([axis[0], axis[1], 0.0])
+    away = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(level) < 1e-9 else level / np.linalg.norm(level)
+    if variant == ACROSS:
+        away = np.array([-away[1], away[0], 0.0])
+    side = away - (away @ axis) * axis
+    side /= np.linalg.norm(side)
+    turned = np.cos(amplitude) * axis + np.sin(amplitude) * side
+    return replace(poke, direction=(float(turned[0]), float(turned[1]), float(turned[2])), mesh=mesh)
+
+
+def _variants_rod_angle(records: Sequence[Record]) -> tuple[float | None, ...]:
+    """Across the plane only where some record has forces across the indenter."""
+    return (ALONG, ACROSS) if any(r.across is not None for r in records) else (ALONG,)
+
+
+def _fits_rod_angle(poke: Poke) -> bool:
+    axis = np.asarray(poke.direction) / np.linalg.norm(poke.direction)
+    return float(np.arccos(np.clip(-axis[2], -1.0, 1.0))) <= STEEPEST
+
+
+ROD_ANGLE = IndentationEffect(
+    effect=catalogue.ROD_ANGLE,
+    step=0.1 * DEGREE,
+    bounds=(-10.0 * DEGREE, 10.0 * DEGREE),
+    prior_scale=10.0 * DEGREE,
+    scene=_scene_rod_angle,
+    nodes=(-10.0 * DEGREE, -5.0 * DEGREE, 0.0, 5.0 * DEGREE, 10.0 * DEGREE),
+    chord=5.0 * DEGREE,
+    fits=_fits_rod_angle,
+    variants=_variants_rod_angle,
+    variant_label=lambda variant: "across its plane" if variant == ACROSS else "in its plane",
+    scopes=("rod", "trial"),
+)
+
+
+# -- depth-offset --
+# The zero of the depth is off: the surface was touched earlier, or later, than the record says.
+
+
+def _shift_depth_offset(amplitude: float, record: Record) -> float:
+    del record
+    return amplitude
+
+
+DEPTH_OFFSET = IndentationEffect(
+    effect=catalogue.DEPTH_OFFSET,
+    step=1e-6,
+    bounds=(-2e-3, 2e-3),
+    prior_scale=0.5e-3,
+    shift=_shift_depth_offset,
+    scopes=("rod", "trial"),
+)
+
+
+# -- force-gain --
+# The load cell shows a multiple of the force: in all records alike it cannot be separated from the modulus.
+
+
+def _force_gain(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    del record, variant
+    return (1.0 + amplitude) * force
+
+
+def _identifiable_force_gain(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Another record of the same material that it does not reach."""
+    names = {r.name for r in reached}
+    materials = {r.material for r in reached}
+    return any(r.material in materials and r.name not in names for r in everything)
+
+
+FORCE_GAIN = IndentationEffect(
+    effect=catalogue.FORCE_GAIN,
+    step=1e-3,
+    bounds=(-0.6, 0.6),
+    prior_scale=0.3,
+    force=_force_gain,
+    stage=4,
+    identifiable=_identifiable_force_gain,
+    scopes=("rod", "trial"),
+    action="hang a known weight on the load cell",
+)
+
+
+# -- force-offset --
+# The zero of the force is off, by the same all through a record.
+
+
+def _force_offset(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    del record, variant
+    return force + amplitude
+
+
+FORCE_OFFSET = IndentationEffect(
+    effect=catalogue.FORCE_OFFSET,
+    step=1e-4,
+    bounds=(-5.0, 5.0),
+    prior_scale=0.1,
+    force=_force_offset,
+    stage=5,
+    scopes=("rod", "trial"),
+)
+
+
+# -- force-drift --
+# The zero of the force wanders in proportion to time (warming load cell).
+
+
+def _force_drift(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    del variant
+    return force + amplitude * (record.time - record.time[0])
+
+
+FORCE_DRIFT = IndentationEffect(
+    effect=catalogue.FORCE_DRIFT,
+    step=1e-6,
+    bounds=(-1.0, 1.0),
+    prior_scale=0.02,
+    force=_force_drift,
+    stage=5,
+    scopes=("rod", "trial"),
+)
+
+
+# -- relaxation --
+# The force falls during a hold, and rises with the speed: linear viscoelasticity beside the elastic force.
+#
+# F(t) = Fe(t) - amplitude int h(t - s) dFe(s), where Fe is the elastic force and h(t) = log10(1 + t / 1 s),
+# the same fraction a decade; in other variants h(t) = 1 - exp(-t / tau), one relaxation time tau.
+
+
+TIMES_A_DECADE = 4  # relaxation times tried
+
+LOG_ONSET = 1.0  # of the logarithm [s]
+
+
+def _force_relaxation(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    """At least zero: an indenter that the surface does not hold leaves it."""
+    rise = np.diff(force, prepend=0.0)
+    return np.maximum(force - amplitude * (_faded(record, variant) @ rise), 0.0)
+
+
+@lru_cache(maxsize=512)
+def _faded(record: Record, variant: float | None) -> Array:
+    """(k, k): mean of h over each change's interval, as seen at each time."""
+    end = record.time
+    gap = np.diff(end)
+    start = np.r_[end[0] - (gap[0] if gap.size else 1.0), end[:-1]]
+    early = np.maximum(end[:, None] - start[None, :], 0.0)
+    late = np.maximum(end[:, None] - end[None, :], 0.0)
+    mean = (_integral(early, variant) - _integral(late, variant)) / (end - start)
+    return np.asarray(np.where(end[:, None] >= end[None, :], mean, 0.0))
+
+
+def _integral(t: Array, variant: float | None) -> Array:
+    """Of h from 0 to t."""
+    if variant is None:
+        x = t / LOG_ONSET
+        return np.asarray(LOG_ONSET * ((1.0 + x) * np.log1p(x) - x) / np.log(10.0))
+    return np.asarray(t + variant * np.expm1(-t / variant))
+
+
+def _variants_relaxation(records: Sequence[Record]) -> tuple[float | None, ...]:
+    """The logarithm, and times from a few samples to the longest record."""
+    longest = max(float(np.ptp(r.time)) for r in records)
+    shortest = min(float(np.median(np.diff(r.time))) for r in records if r.points > 1)
+    low = int(np.floor(TIMES_A_DECADE * np.log10(2.0 * shortest)))
+    high = int(np.ceil(TIMES_A_DECADE * np.log10(longest)))
+    return (None, *(float(10.0 ** (k / TIMES_A_DECADE)) for k in range(low, high + 1)))
+
+
+def _identifiable_relaxation(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """A hold, an unloading, or two rates in one material."""
+    del everything
+    if any(r.unloads or (r.direction == 0).sum() > 2 for r in reached):
+        return True
+    for material in {r.material for r in reached}:
+        times = [
+            float(np.ptp(r.time) / max(np.ptp(r.depth), 1e-9)) for r in reached if r.material == material
+        ]
+        if len(times) > 1 and max(times) > 1.5 * min(times):
+            return True
+    return False
+
+
+RELAXATION = IndentationEffect(
+    effect=catalogue.RELAXATION,
+    step=1e-3,
+    bounds=(0.0, 0.9),
+    prior_scale=0.3,
+    force=_force_relaxation,
+    stage=2,
+    variants=_variants_relaxation,
+    variant_label=lambda variant: f"in {variant:.3g} s",
+    identifiable=_identifiable_relaxation,
+)
+
+
+# -- mullins --
+# After an indentation the material is softer down to the deepest depth so far: by the fraction `amplitude`
+# near the surface, falling to zero at that depth; or, in another variant, by the same fraction at all depths
+# of later loadings.
+
+
+FADING_SOFTENING, EVEN_SOFTENING = 0.0, 1.0
+
+
+def _force_mullins(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    if variant == EVEN_SOFTENING:
+        softened = np.maximum(record.cycle > 1, record.unloaded[0])
+    else:
+        below = 1.0 - record.depth / np.maximum(record.peak, 1e-9)
+        softened = record.unloaded * np.clip(below, 0.0, 1.0)
+    return force * (1.0 - amplitude * softened)
+
+
+def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some second loading."""
+    del everything
+    return any(r.reloaded for r in reached)
+
+
+MULLINS = IndentationEffect(
+    effect=catalogue.MULLINS,
+    step=1e-3,
+    bounds=(0.0, 0.95),
+    prior_scale=0.5,
+    force=_force_mullins,
+    stage=1,
+    variants=lambda _: (FADING_SOFTENING, EVEN_SOFTENING),
+    variant_label=lambda variant: "all the way" if variant == EVEN_SOFTENING else "below the deepest depth",
+    applies_to=lambda record: record.reloaded,
+    identifiable=_identifiable_mullins,
+    action="poke the same place twice to the same depth",
+)
+
+
+# -- adhesion --
+# The surface sticks to the indenter: in unloading the force is smaller, and pulls before the indenter comes
+# free.
+#
+# The pull grows from the turning point on within a tenth of the depth, and fades above the surface; in
+# another variant it acts near the surface only.
+
+
+EVERYWHERE, SHALLOW = 0.0, 1.0
+
+ADHESION_TURNS = 0.1  # fraction of the deepest depth within which the pull grows
+
+# In radii of the indenter: above the surface until it tears, and below it (shallow).
+ADHESION_LIFT, ADHESION_DEPTH = 0.15, 0.3
+
+
+def _force_adhesion(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
+    return force - amplitude * _pull(record, variant)
+
+
+def _pull(record: Record, variant: float | None) -> Array:
+    radius = record.geometry.rod.radius
+    d = record.depth
+    grown = np.clip((record.peak - d) / np.maximum(ADHESION_TURNS * record.peak, 1e-9), 0.0, 1.0)
+    below = np.exp(-np.maximum(d, 0.0) / (ADHESION_DEPTH * radius)) if variant == SHALLOW else np.ones(d.size)
+    above = np.exp(-((np.minimum(d, 0.0) / (ADHESION_LIFT * radius)) ** 2))
+    return np.asarray((record.direction < 0) * grown * below * above)
+
+
+def _identifiable_adhesion(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some unloading."""
+    del everything
+    return any(r.unloads for r in reached)
+
+
+ADHESION = IndentationEffect(
+    effect=catalogue.ADHESION,
+    step=1e-4,
+    bounds=(0.0, 2.0),
+    prior_scale=0.1,
+    force=_force_adhesion,
+    stage=3,
+    variants=lambda _: (EVERYWHERE, SHALLOW),
+    variant_label=lambda variant: "near the surface" if variant == SHALLOW else "all the way back",
+    applies_to=lambda record: record.unloads,
+    identifiable=_identifiable_adhesion,
+)
+
+
+# -- inclusion-debonded --
+# The inclusion does not hold the soft material around it: the block answers in part as if it were soft all
+# over.
+#
+# The amplitude is that fraction; 1 is the block without its inclusion, which is softer than any loose one.
+# The force is taken to be linear in it: how a gap opens and closes is not simulated.
+
+
+def _scene_inclusion_debonded(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
+    del mesh, amplitude, variant
+    return replace(poke, block=replace(poke.block, inclusion=None))
+
+
+INCLUSION_DEBONDED = IndentationEffect(
+    effect=catalogue.INCLUSION_DEBONDED,
+    step=0.01,
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),
+    prior_scale=1.0,
+    scene=_scene_inclusion_debonded,
+    nodes=(0.0, 1.0),
+    chord=1.0,
+    applies_to=lambda record: record.geometry.block.inclusion is not None,
+)
+
+
+# -- inclusion-misplaced --
+# The rigid inclusion lies elsewhere than believed: higher, or aside along x or y.
+
+
+X, Y, Z = 0.0, 1.0, 2.0
+
+SHIFT = 1.5e-3  # [m]
+
+
+def _scene_inclusion_misplaced(
+    poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None
+) -> Poke:
+    """Meshed anew: its outline is met by other cells, which the mesh's error covers."""
+    del mesh
+    inclusion = poke.block.inclusion
+    assert inclusion is not None
+    centre = np.asarray(inclusion.centre) + amplitude * np.eye(3)[int(variant or 0.0)]
+    moved = replace(inclusion, centre=(float(centre[0]), float(centre[1]), float(centre[2])))
+    return replace(poke, block=replace(poke.block, inclusion=moved))
+
+
+def _variants_inclusion_misplaced(records: Sequence[Record]) -> tuple[float | None, ...]:
+    """Sideways only where there are several contact points."""
+    sites = {r.geometry.site for r in records if r.geometry.block.inclusion is not None}
+    return (X, Y, Z) if len(sites) > 1 else (Z,)
+
+
+INCLUSION_MISPLACED = IndentationEffect(
+    effect=catalogue.INCLUSION_MISPLACED,
+    step=0.1e-3,
+    bounds=(-3.0 * SHIFT, 3.0 * SHIFT),
+    prior_scale=3.0 * SHIFT,
+    scene=_scene_inclusion_misplaced,
+    nodes=(-3.0 * SHIFT, -2.0 * SHIFT, -SHIFT, 0.0, SHIFT, 2.0 * SHIFT, 3.0 * SHIFT),
+    chord=SHIFT,
+    finer=True,
+    variants=_variants_inclusion_misplaced,
+    variant_label=lambda variant: f"along {'xyz'[int(variant)]}",
+    applies_to=lambda record: record.geometry.block.inclusion is not None,
+)
+
+
+# -- thickness --
+# The block is higher, or lower, than believed: its base is further from the rod, or nearer.
+
+
+HEIGHT_STEP = 0.2  # of the height, between the simulated blocks
+
+
+def _scene_thickness(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
+    """On the same mesh, stretched: new elements would hide a small change."""
+    del variant
+    part = 1.0 + amplitude
+    size = poke.block.size
+    block = replace(poke.block, size=(size[0], size[1], part * size[2]))
+    moved = None if mesh is None else replace(mesh, nodes=mesh.nodes * np.array([1.0, 1.0, part]))
+    return replace(poke, block=block, mesh=moved)
+
+
+THICKNESS = IndentationEffect(
+    effect=catalogue.THICKNESS,
+    step=0.005,
+    bounds=(-2.0 * HEIGHT_STEP, 2.0 * HEIGHT_STEP),
+    prior_scale=2.0 * HEIGHT_STEP,
+    scene=_scene_thickness,
+    nodes=(-2.0 * HEIGHT_STEP, -HEIGHT_STEP, 0.0, HEIGHT_STEP, 2.0 * HEIGHT_STEP),
+    chord=HEIGHT_STEP,
+    finer=True,
+    applies_to=lambda record: record.geometry.block.inclusion is None,
+    scopes=("material", "block", "material block", "specimen"),
+)
+
+EFFECTS: dict[str, IndentationEffect] = {
+    e.name: e
+    for e in (
+        FRICTION,
+        ROD_ANGLE,
+        DEPTH_OFFSET,
+        FORCE_GAIN,
+        FORCE_OFFSET,
+        FORCE_DRIFT,
+        RELAXATION,
+        MULLINS,
+        ADHESION,
+        INCLUSION_DEBONDED,
+        INCLUSION_MISPLACED,
+        THICKNESS,
+    )
+}

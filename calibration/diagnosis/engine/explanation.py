@@ -1,0 +1,110 @@
+"""A set of causes, fitted in the simulator and judged: how well it explains, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.screening import multiplicity_penalty
+from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
+
+Array = NDArray[np.float64]
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Explanation:
+    """A set of causes with its fit.
+
+    Attributes
+    ----------
+    cost : chi-square that the number of amplitudes and the choice among alternatives cost (Bayes' information
+        criterion, and twice the logarithm of the number of alternatives).
+    lack_of_fit : test of what the fit leaves.
+    """
+
+    fit: Fit
+    cost: float
+    lack_of_fit: LackOfFit
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        return self.fit.candidates
+
+    @property
+    def names(self) -> Names:
+        return tuple(sorted({c.effect for c in self.candidates}))
+
+    @property
+    def multiplicity_penalty(self) -> float:
+        """Chi-square that the choice among alternatives costs."""
+        return sum(multiplicity_penalty(c) for c in self.candidates)
+
+    @property
+    def score(self) -> float:
+        return self.fit.chi2 + self.cost
+
+
+def explain(
+    model: MeasurementModel,
+    start: Fit,
+    candidates: Sequence[Candidate],
+    amplitudes: Sequence[float],
+    null: Null,
+) -> Explanation | None:
+    """Fit a set of causes, from another fit and first guesses of the amplitudes [SI]; None where the
+    simulator has no answer with them."""
+    known = dict(start.state.amplitudes)
+    for c, a in zip(candidates, amplitudes, strict=True):
+        effect = model.effects[c.effect]
+        low, high = effect.bounds
+        known.setdefault(c, float(np.clip(a, effect.start_fraction * low, effect.start_fraction * high)))
+    for fraction in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
+        inside = {c: fraction * known[c] for c in candidates}
+        try:
+            found = fit(model, replace(start.state, amplitudes=inside), candidates)
+        except ValueError:
+            continue
+        if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:
+            continue  # lost, so far out
+        cost = sum(np.log(len(found.z)) + multiplicity_penalty(c) for c in found.candidates)
+        left = null.lack_of_fit(found.z, found.jacobian)
+        return Explanation(fit=found, cost=float(cost), lack_of_fit=left)
+    return None
+
+
+def equivalent_explanations(explanations: Sequence[Explanation], tolerance: float) -> tuple[Names, ...]:
+    """Distinct sets of effects whose score is within this of the best, best first. A set that only adds to a
+    better one explains nothing of its own."""
+    ordered = sorted(explanations, key=lambda e: e.score)
+    found: list[Names] = []
+    for e in ordered:
+        if e.score > ordered[0].score + tolerance or e.names in found:
+            continue
+        if not any(set(better) < set(e.names) for better in found):
+            found.append(e.names)
+    return tuple(found)
+
+
+def confidence(explanations: Sequence[Explanation], null: Null) -> float:
+    """Probability that the best set of effects would be ranked first again with other noise, were it true.
+
+    Each explanation is refitted to first order to what the best one predicts plus drawn noise.
+    """
+    ordered = sorted(explanations, key=lambda e: e.score)
+    draws = null.noise[:1000]
+    scores = np.empty((len(ordered), len(draws)))
+    for row, e in zip(scores, ordered, strict=True):
+        data = e.fit.z - ordered[0].fit.z + draws
+        size = np.linalg.norm(e.fit.jacobian, axis=0)
+        q, _ = np.linalg.qr(e.fit.jacobian[:, size > 0] / size[size > 0])
+        row[:] = (data**2).sum(axis=1) - ((data @ q) ** 2).sum(axis=1) + e.cost
+    same = np.array([e.names == ordered[0].names for e in ordered])
+    return float(np.mean(same[scores.argmin(axis=0)]))

@@ -1,0 +1,306 @@
+"""Several causes at once: looked for only while what is left is more than noise would leave.
+
+To first order all pairs, and all triples, of candidates are compared; the best of them are confirmed in
+the simulator. A triple is named only where all three causes are needed, and where other effects in the place
+of one of them do as well, these are named too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from calibration.diagnosis.engine.explanation import Explanation, Names, explain
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.diagnosis.engine.null import Null
+from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.screening import Screen, multiplicity_penalty, screen
+from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._state import Linearisation
+
+Array = NDArray[np.float64]
+
+ALIKE = 0.98  # cosine from which two candidates are one
+KEPT = 200  # triples with each candidate that are kept before those of a forbidden sign, or of one name, go
+POSSIBLE = 0.1  # p-value of a second cause by the baseline's columns, below which it is looked for properly
+HOPELESS, FAR = (
+    0.35,
+    40.0,
+)  # a stand-in that promises less than this fraction, and so much less, is not fitted
+STAND_INS = 2  # of other effects that are fitted in the place of each of three
+ROUNDS = 3  # of stand-ins, each beside the best triple so far
+
+
+def with_second(
+    model: MeasurementModel,
+    best: Explanation,
+    screened: Screen,
+    columns: Array,
+    null: Null,
+    rules: Rules,
+    on_progress: Progress,
+) -> list[Explanation]:
+    """Pairs of causes, where one more beside the best improves chi-square by more than noise would.
+
+    columns: the candidates' at the baseline; where even these promise nothing, none is linearised anew.
+    """
+    # another position of an effect that has one cannot be added to it: the scene holds one
+    placed = {c.effect for c in best.candidates if c.position is not None}
+    seen = [
+        k
+        for k, c in enumerate(screened.candidates)
+        if screened.sizes[k] > 0.0 and (c.effect not in placed or c in best.candidates)
+    ]
+    candidates = tuple(screened.candidates[k] for k in seen)
+    held = best.fit.linear
+    roughly = screen(
+        replace(held, columns=columns[:, seen], candidates=candidates), model.effects, held=best.fit
+    )
+    if null.max_improvement(roughly).p_value(float(roughly.penalised(held.z).max(initial=0.0))) > POSSIBLE:
+        return []
+    linear = model.linearise(best.fit.state, candidates)
+    beside = screen(linear, model.effects, held=best.fit)
+    improvement = beside.penalised(linear.z)
+    if null.max_improvement(beside).p_value(float(improvement.max(initial=0.0))) > rules.extra_cause_rate:
+        return []
+    # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
+    target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
+    return _pairs(
+        model, best.fit, screen(linear, model.effects), linear.columns, target, null, rules, on_progress
+    )
+
+
+def hiding_each_other(
+    model: MeasurementModel,
+    baseline: Fit,
+    screened: Screen,
+    linear: Linearisation,
+    null: Null,
+    rules: Rules,
+    on_progress: Progress,
+) -> list[Explanation]:
+    """Pairs of causes of which neither alone improves chi-square by more than noise would, but both do."""
+    found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, on_progress)
+    tries = 0.5 * np.count_nonzero(screened.sizes) ** 2
+    return [e for e in found if tries * chi2.sf(baseline.chi2 - e.fit.chi2, 2) < rules.false_alarm_rate]
+
+
+def _pairs(
+    model: MeasurementModel,
+    start: Fit,
+    screened: Screen,
+    columns: Array,
+    target: Array,
+    null: Null,
+    rules: Rules,
+    on_progress: Progress,
+) -> list[Explanation]:
+    """The pairs that promise most for the residuals `target`, confirmed."""
+    found = []
+    pairs = best_pairs(screened, target, count=rules.pairs)
+    for n, (a, b) in enumerate(pairs):
+        both = (screened.candidates[a], screened.candidates[b])
+        on_progress(f"confirming pair {n + 1} of {len(pairs)}: {both[0].label} + {both[1].label}")
+        left = columns[:, [a, b]] - screened.free @ (screened.free.T @ columns[:, [a, b]])
+        guess = [float(x) for x in -np.linalg.lstsq(left, target, rcond=None)[0]]
+        pair = explain(model, start, both, guess, null)
+        if pair is not None and _inside_bounds(model, pair):
+            found.append(pair)
+    return found
+
+
+def _inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
+    """Whether no amplitude ended at a bound: at zero it is no cause, elsewhere none that makes sense, except
+    at a physical limit."""
+    return not any(
+        x in effect.bounds and x not in effect.physical_limits
+        for effect, x in ((model.effects[c.effect], x) for c, x in found.fit.state.amplitudes.items())
+    )
+
+
+def with_third(
+    model: MeasurementModel, pairs: Sequence[Explanation], null: Null, rules: Rules, on_progress: Progress
+) -> list[Explanation]:
+    """Sets of three of which all are needed: one more beside the best pairs, where it improves chi-square
+    by more than noise would, or three others that promise more. Then others are tried in the place of each,
+    so that an equivalent explanation is not left out."""
+    threes = _Triples(model, null, rules, on_progress)
+    beside: list[Names] = []
+    for pair in sorted(pairs, key=lambda e: e.score):
+        if pair.names not in beside and len(beside) < rules.triples[0]:
+            beside.append(pair.names)
+            threes.add_to(pair)
+    for _ in range(ROUNDS):
+        best = min(threes.found, key=lambda e: e.score, default=None)
+        if best is None or not threes.replace_in(best):
+            break
+    return threes.found
+
+
+class _Triples:
+    """What has been tried of three causes, and what was found. found: sets of which all three are needed."""
+
+    def __init__(self, model: MeasurementModel, null: Null, rules: Rules, on_progress: Progress) -> None:
+        self.model, self.null, self.rules, self.on_progress = model, null, rules, on_progress
+        self.found: list[Explanation] = []
+        self._tried: set[frozenset[Candidate]] = set()
+
+    def add_to(self, pair: Explanation) -> None:
+        """A third cause beside two, where one improves chi-square by more than noise would."""
+        self.on_progress(f"looking for a third cause beside {pair.fit.label}")
+        linear = self._linear(pair)
+        beside = screen(linear, self.model.effects, held=pair.fit)
+        # an effect that is there already has its position, or its scope: the scene holds one
+        free = np.array([c.effect not in pair.names for c in linear.candidates]) & (beside.sizes > 0.0)
+        promises = np.where(free, beside.penalised(linear.z), 0.0)
+        if (
+            self.null.max_improvement(beside).p_value(float(promises.max(initial=0.0)))
+            > self.rules.extra_cause_rate
+        ):
+            return
+        guesses = beside.amplitudes(linear.z)
+        for k in _best_of_each(beside, promises, self.rules.triples[1]):
+            self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
+        # the best pair may be a mixture of three others: these are sought afresh, around where it leads
+        alone = screen(linear, self.model.effects)
+        target = linear.z - linear.columns[:, : len(pair.candidates)] @ _values(pair)
+        for three in best_triples(alone, target, count=self.rules.triples[1]):
+            columns = linear.columns[:, three] - alone.free @ (alone.free.T @ linear.columns[:, three])
+            guess = -np.linalg.lstsq(columns, target, rcond=None)[0]
+            self._confirm(pair, {linear.candidates[k]: float(g) for k, g in zip(three, guess, strict=True)})
+
+    def replace_in(self, three: Explanation) -> bool:
+        """Others in the place of each of three causes, and the same elsewhere; whether one that had not been
+        tried is better."""
+        self.on_progress(f"looking for equivalents of {three.fit.label}")
+        count, best = len(three.candidates), three.score
+        linear = self._linear(three)
+        for k, out in enumerate(three.candidates):
+            kept = [j for j in range(count) if j != k]
+            there = {three.candidates[j].effect for j in kept}
+            free = [j for j, c in enumerate(linear.candidates) if j >= count and c.effect not in there]
+            without = replace(
+                linear,
+                by_u=np.column_stack([linear.by_u, linear.columns[:, kept]]),
+                columns=linear.columns[:, free],
+                candidates=tuple(linear.candidates[j] for j in free),
+            )
+            beside = screen(without, self.model.effects)
+            target = linear.z - linear.columns[:, k] * three.fit.state.amplitudes[out]
+            promises = np.where(beside.sizes > 0.0, beside.penalised(target), 0.0)
+            value, sd = three.fit.amplitude(out)
+            own = (value / sd) ** 2 - multiplicity_penalty(out)
+            same = np.array([c.effect == out.effect for c in beside.candidates], dtype=bool)
+            promises[promises < np.where(same, own, min(HOPELESS * own, own - FAR))] = 0.0
+            guesses = beside.amplitudes(target)
+            for j in _best_of_each(beside, promises, STAND_INS):
+                others = {c: a for c, a in three.fit.state.amplitudes.items() if c != out}
+                self._confirm(three, {**others, beside.candidates[j]: float(guesses[j])})
+        return min(e.score for e in self.found) < best
+
+    def _linear(self, held: Explanation) -> Linearisation:
+        """Columns of its causes, then of all others."""
+        others = tuple(c for c in self.model.candidates if c not in held.candidates)
+        return self.model.linearise(held.fit.state, (*held.candidates, *others))
+
+    def _confirm(self, start: Explanation, guess: dict[Candidate, float]) -> None:
+        if frozenset(guess) in self._tried:
+            return
+        self._tried.add(frozenset(guess))
+        self.on_progress(f"confirming {' + '.join(c.label for c in guess)}")
+        three = explain(self.model, start.fit, tuple(guess), list(guess.values()), self.null)
+        if three is not None and _inside_bounds(self.model, three) and self._all_needed(three):
+            self.found.append(three)
+
+    def _all_needed(self, three: Explanation) -> bool:
+        """Whether without any one of the causes the fit would be worse by more than noise does."""
+        least = chi2.isf(self.rules.extra_cause_rate, 1)
+        parts = [three.fit.amplitude(c) for c in three.candidates]
+        return all(value**2 >= least * sd**2 for value, sd in parts)
+
+
+def _values(found: Explanation) -> Array:
+    """Amplitudes of its causes, in their order."""
+    return np.array([found.fit.state.amplitudes[c] for c in found.candidates])
+
+
+def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
+    """Candidates with the largest promise, of each effect one."""
+    found: dict[str, int] = {}
+    for k in np.argsort(-promises):
+        if promises[k] > 0.0 and len(found) < count:
+            found.setdefault(screened.candidates[k].effect, int(k))
+    return list(found.values())
+
+
+def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int]]:
+    """Pairs of candidates (by index) of different effects with the largest improvement of chi-square, the
+    best one of each pair of names, best first."""
+    score = screened.directions.T @ z
+    cosine = screened.directions.T @ screened.directions
+    a, b = np.triu_indices(len(score), 1)
+    names = np.array([c.effect for c in screened.candidates])
+    sound = (np.abs(cosine[a, b]) < ALIKE) & (screened.sizes[a] > 0) & (screened.sizes[b] > 0)
+    sound &= names[a] != names[b]
+    a, b = a[sound], b[sound]
+    c = cosine[a, b]
+    first = (score[a] - c * score[b]) / (1.0 - c**2)  # minus the amplitudes, in directions of unit length
+    second = (score[b] - c * score[a]) / (1.0 - c**2)
+    forbidden = (screened.upwards[a] & (first > 0.0)) | (screened.upwards[b] & (second > 0.0))
+    improvement = (score[a] ** 2 + score[b] ** 2 - 2.0 * c * score[a] * score[b]) / (1.0 - c**2)
+    improvement = np.where(forbidden, 0.0, improvement)
+    penalties = np.array([multiplicity_penalty(k) for k in screened.candidates])
+    found: list[tuple[int, int]] = []
+    seen: set[frozenset[str]] = set()
+    for k in np.argsort(-(improvement - penalties[a] - penalties[b])):
+        pair = frozenset((str(names[a[k]]), str(names[b[k]])))
+        if pair not in seen:
+            seen.add(pair)
+            found.append((int(a[k]), int(b[k])))
+            if len(found) == count:
+                break
+    return found
+
+
+def best_triples(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int, int]]:
+    """The same for three causes: all are compared, by what the other two leave once the first is projected
+    out."""
+    used = np.flatnonzero(screened.sizes > 0.0)
+    directions = screened.directions[:, used]
+    score, cosine = directions.T @ z, directions.T @ directions
+    penalties = np.array([multiplicity_penalty(screened.candidates[k]) for k in used])
+    improvements, threes = [np.zeros(0)], [np.zeros((0, 3), dtype=int)]
+    for first in range(len(used) - 2):
+        rest = np.arange(first + 1, len(used))
+        along = cosine[first, rest]
+        rest, along = rest[np.abs(along) < ALIKE], along[np.abs(along) < ALIKE]
+        size = np.sqrt(1.0 - along**2)
+        left = (score[rest] - along * score[first]) / size
+        between = (cosine[np.ix_(rest, rest)] - np.outer(along, along)) / np.outer(size, size)
+        b, c = np.triu_indices(len(rest), 1)
+        apart = np.abs(between[b, c]) < ALIKE
+        b, c = b[apart], c[apart]
+        both = left[b] ** 2 + left[c] ** 2 - 2.0 * between[b, c] * left[b] * left[c]
+        improvement = score[first] ** 2 + both / (1.0 - between[b, c] ** 2)
+        improvement -= penalties[first] + penalties[rest[b]] + penalties[rest[c]]
+        most = np.argsort(-improvement)[:KEPT]
+        improvements.append(improvement[most])
+        threes.append(np.column_stack([np.full(len(most), first), rest[b[most]], rest[c[most]]]))
+    ordered = np.concatenate(threes)[np.argsort(-np.concatenate(improvements))]
+    found: list[tuple[int, int, int]] = []
+    seen: set[frozenset[str]] = set()
+    for three in ordered:
+        names = frozenset(screened.candidates[k].effect for k in used[three])
+        amplitudes = -np.linalg.solve(cosine[np.ix_(three, three)], score[three])
+        if len(names) < 3 or names in seen or (screened.upwards[used[three]] & (amplitudes < 0.0)).any():
+            continue
+        seen.add(names)
+        found.append((int(used[three[0]]), int(used[three[1]]), int(used[three[2]])))
+        if len(found) == count:
+            break
+    return found

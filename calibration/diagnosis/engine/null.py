@@ -1,0 +1,117 @@
+"""Null distributions for a design, by parametric bootstrap of whitened noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from calibration.diagnosis.engine.screening import Screen, basis_of
+from calibration.measurements._baseline import ALLOWED, SPECIMENS
+
+Array = NDArray[np.float64]
+
+DRAWS = 4000
+EVERYTHING = "everything"
+ROUNDING = 1e-7  # fraction of a column that is rounding where the rest of it is fitted
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LackOfFit:
+    """Test of residuals against noise.
+
+    Attributes
+    ----------
+    p_value : over all tests together.
+    each : p-value of each test by its name.
+    worst : name of the test with the smallest p-value.
+    """
+
+    p_value: float
+    each: Mapping[str, float]
+    worst: str
+
+
+class Null:
+    """Draws of whitened noise, shared by all tests of one experiment.
+
+    Parameters
+    ----------
+    size : m, number of residuals.
+    basis : what a lack of fit might look like, sets of columns (m, k) by name
+        (`MeasurementModel.discrepancy_basis`).
+    """
+
+    def __init__(self, size: int, basis: Mapping[str, Array], *, seed: int = 0) -> None:
+        self.noise = np.random.default_rng(seed).standard_normal((DRAWS, size))
+        self.basis = dict(basis)
+
+    def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
+        """Test residuals z (m,) of a fit with this Jacobian (m, n).
+
+        The tests are the whole squared sum, and the squared sum in each set of the basis. Their smallest
+        p-value is judged by its own distribution, which accounts for their number and for what they share.
+        Differences between the moduli of specimens are a set of their own, and part of no other.
+        """
+        free = basis_of(jacobian)
+        scatter = self.basis.get(SPECIMENS)
+        known = free if scatter is None else basis_of(np.hstack([jacobian, scatter]))
+        drawn = self.noise - (self.noise @ free) @ free.T
+        smallest = np.ones(DRAWS)
+        each: dict[str, float] = {}
+        for name in (EVERYTHING, *self.basis):
+            if name == EVERYTHING:
+                squares, here = (drawn**2).sum(axis=1), float(z @ z)
+            else:
+                columns, off = self.basis[name], free if name == SPECIMENS else known
+                left = columns - off @ (off.T @ columns)
+                own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
+                span = basis_of(left[:, own])
+                squares, here = ((drawn @ span) ** 2).sum(axis=1), float(((z @ span) ** 2).sum())
+                here *= ALLOWED.get(name, 1.0)
+            order = np.sort(squares)
+            smallest = np.minimum(smallest, _exceeding(squares, order))
+            each[name] = float(_exceeding(np.array([here]), order)[0])
+        worst = min(each, key=lambda n: each[n])
+        p = (np.count_nonzero(smallest <= each[worst]) + 1) / (DRAWS + 1)
+        return LackOfFit(p_value=float(min(1.0, p)), each=each, worst=worst)
+
+    def max_improvement(self, screened: Screen) -> MaxImprovement:
+        """Null distribution of the best candidate's improvement of chi-square, less its multiplicity penalty
+        (`Screen.penalised`)."""
+        best = np.zeros(DRAWS)
+        for part in np.array_split(np.arange(DRAWS), 8):  # in parts: it is draws times candidates
+            best[part] = screened.penalised(self.noise[part]).max(axis=1, initial=0.0)
+        return MaxImprovement(drawn=np.sort(best))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MaxImprovement:
+    """Sorted draws of the best candidate's penalised improvement of chi-square by noise alone."""
+
+    drawn: Array
+
+    def p_value(self, improvement: float) -> float:
+        """Probability that noise alone gives the best of all candidates this improvement.
+
+        Beyond what the draws reach, the tail is that of as many independent squared normals as agree with the
+        1 % quantile of the draws.
+        """
+        counted = (len(self.drawn) - np.searchsorted(self.drawn, improvement) + 1) / (len(self.drawn) + 1)
+        if counted > 20.0 / len(self.drawn):
+            return float(counted)
+        tries = 0.01 / chi2.sf(self.threshold(0.01), 1)
+        return float(min(20.0 / len(self.drawn), tries * chi2.sf(improvement, 1)))
+
+    def threshold(self, p_value: float) -> float:
+        """Improvement that noise alone exceeds with this probability."""
+        return float(np.quantile(self.drawn, 1.0 - p_value))
+
+
+def _exceeding(values: Array, order: Array) -> Array:
+    """Fraction of the sorted draws that reaches each value, never zero."""
+    above = len(order) - np.searchsorted(order, values, side="left")
+    return np.asarray((above + 1) / (len(order) + 1))

@@ -1,0 +1,71 @@
+"""The position of a cause along the specimen, between those that the search screens.
+
+An effect with a position (a void) is screened at a few. Its signature depends on the position: a large one
+fitted 3 mm beside it leaves a hundred of chi-square, which nothing else explains. So the position of a cause
+that explains much is moved to where the fit is best, by parabolas through three fits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.null import Null
+from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
+
+STEPS = (
+    0.05,
+    0.0125,
+)  # of the specimen's length: half the distance between screened positions, then a quarter of that
+FARTHEST = 1.5  # steps
+ENDS = (0.02, 0.98)
+
+
+def at_best_position(model: MeasurementModel, explanation: Explanation, null: Null) -> Explanation:
+    """The explanation with its causes where chi-square is least; itself where none has a position."""
+    found = explanation
+    for number, cause in enumerate(explanation.candidates):
+        if cause.position is None:
+            continue
+        for step in STEPS:
+            found = _improved(model, found, number, step, null)
+    return found
+
+
+def _improved(
+    model: MeasurementModel, found: Explanation, number: int, step: float, null: Null
+) -> Explanation:
+    """The best of the position, one step to either side, and the vertex of the parabola through these."""
+    here = found.candidates[number].position
+    assert here is not None
+    tried = {here: found}
+    for position in (here - step, here + step):
+        _try(model, found, number, position, null, tried)
+    if len(tried) == 3:
+        low, high = min(tried), max(tried)
+        a, b, c = (tried[p].fit.chi2 for p in (low, here, high))
+        bend = a - 2.0 * b + c
+        if bend > 0.0 and high - here == here - low:
+            way = 0.5 * (a - c) / bend
+            _try(model, found, number, here + step * min(max(way, -FARTHEST), FARTHEST), null, tried)
+    best: Explanation = min(tried.values(), key=lambda e: e.fit.chi2)
+    return best
+
+
+def _try(
+    model: MeasurementModel,
+    found: Explanation,
+    number: int,
+    position: float,
+    null: Null,
+    tried: dict[float, Explanation],
+) -> None:
+    if not ENDS[0] <= position <= ENDS[1]:
+        return
+    moved: list[Candidate] = list(found.candidates)
+    moved[number] = replace(moved[number], position=position)
+    amplitudes = [found.fit.state.amplitudes[c] for c in found.candidates]
+    there = explain(model, found.fit, moved, amplitudes, null)
+    if there is not None:
+        tried[position] = there

@@ -1,0 +1,180 @@
+"""A diagnosis from beginning to end: search, refine what was found, predict held-out data, advise."""
+
+from __future__ import annotations
+
+import time
+
+from calibration.diagnosis.engine.advice import advice
+from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.null import Null
+from calibration.diagnosis.engine.search import Finding, Progress, Rules, search
+from calibration.diagnosis.engine.verdict import Diagnosis, Numbers, Subject, reduced, undetectable
+from calibration.measurements._baseline import SPECIMENS
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._state import State
+
+# Nuisances and the mesh's error are taken at an explanation again as long as it moves by more than this
+# fraction of its standard deviation: effects next to a clamp act a third too strongly on the search's mesh.
+UPDATES, SETTLED = 4, 0.25
+
+
+def diagnose(
+    model: MeasurementModel,
+    *,
+    rules: Rules | None = None,
+    gain: bool = True,
+    on_progress: Progress = lambda _: None,
+) -> Diagnosis:
+    """Search for what the baseline lacks, and reach a verdict.
+
+    Parameters
+    ----------
+    model : measurements of one kind, with effects.
+    rules : of the search.
+    gain : predict held-out data too.
+    on_progress : called with a sentence at each step.
+
+    Raises
+    ------
+    ValueError : the baseline has no answer anywhere.
+    """
+    begun = time.monotonic()
+    finding = search(model, rules=rules, on_progress=on_progress)
+    baseline = finding.baseline
+    before = _numbers(model, baseline, finding.lack_of_fit.p_value)
+    after: Numbers | None = None
+    held_out: HeldOut | None = None
+    refined: Explanation | None = None
+    if finding.chosen is not None:
+        on_progress("refining what was found")
+        next_experiment = _advice(model, finding, on_progress)
+        refined, baseline = _refined(model, finding, rules or Rules())
+        after = _numbers(model, refined.fit, refined.lack_of_fit.p_value)
+        if gain:
+            on_progress("predicting held-out measurements")
+            held_out = held_out_improvement(model, baseline, refined.fit)
+    else:
+        next_experiment = _no_cause(model, finding)
+    return Diagnosis(
+        finding=finding,
+        chosen=refined,
+        effects=dict(model.effects),
+        baseline=before,
+        extended=after,
+        held_out=held_out,
+        subject=Subject.of(model, finding.baseline if refined is None else refined.fit),
+        next_experiment=next_experiment,
+        undetectable=undetectable(model, finding),
+        notes=tuple(_notes(model, finding, refined, rules or Rules())),
+        seconds=time.monotonic() - begun,
+    )
+
+
+def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[Explanation, Fit]:
+    """The chosen explanation and the baseline, fitted with nuisances and discretisation errors taken where
+    the explanation is; they compare with each other only, not with what the search found."""
+    chosen = finding.chosen
+    assert chosen is not None
+    again = chosen
+    for _ in range(UPDATES):
+        model.update_nuisances(again.fit.state)
+        null = Null(len(again.fit.z), model.discrepancy_basis(), seed=rules.seed)
+        before = again.fit.state.amplitudes
+        taken = explain(model, again.fit, again.candidates, list(before.values()), null)
+        assert taken is not None, "there was an answer when it was found"
+        again = taken
+        found = [(c, *again.fit.amplitude(c)) for c in again.candidates]
+        if all(abs(value - before[c]) < SETTLED * sd for c, value, sd in found):
+            break
+    return again, fit(model, State(u=finding.baseline.state.u))
+
+
+def _numbers(model: MeasurementModel, found: Fit, p: float) -> Numbers:
+    return Numbers(
+        reduced_chi2=reduced(found),
+        p_value=p,
+        rms=model.distance_rms(found.state) * model.unit[1],
+        shear_modulus_Pa=model.shear_moduli(found.state.u),
+    )
+
+
+def _advice(model: MeasurementModel, finding: Finding, on_progress: Progress) -> str:
+    chosen = finding.chosen
+    assert chosen is not None
+    if finding.verdict == "found":
+        return "; ".join(f"to confirm: {model.effects[name].remedy}" for name in chosen.names)
+    named = dict.fromkeys(name for names in finding.equivalent for name in names)
+    own = [e for e in (model.effects[name] for name in named) if e.belongs_to == "simulator"]
+    if own:  # a simulator that is wrong would answer for another experiment as well
+        return "; ".join(f"before another experiment: {e.remedy} ({e.name})" for e in own)
+    on_progress("looking for the experiment that would separate the explanations")
+    one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.equivalent]
+    return advice(model, one_each)
+
+
+def _no_cause(model: MeasurementModel, finding: Finding) -> str:
+    if finding.verdict == "unexplained":
+        left = finding.explanations[0].lack_of_fit if finding.explanations else finding.lack_of_fit
+        if left.worst == SPECIMENS:
+            return (
+                "see whether each measurement is filed under its own specimen and material: moduli within a"
+                " material differ by more than its specimens do"
+            )
+        return "look at the residuals; repeat the measurements that depart most, in another pose"
+    never = [e for name, e in model.effects.items() if _never(finding, name)]
+    return "; ".join(dict.fromkeys(f"{e.remedy} ({e.name} cannot be seen)" for e in never))
+
+
+def _never(finding: Finding, name: str) -> bool:
+    sizes = [
+        s
+        for c, s in zip(finding.screened.candidates, finding.screened.sizes, strict=True)
+        if c.effect == name
+    ]
+    return bool(sizes) and max(sizes) == 0.0
+
+
+def _notes(model: MeasurementModel, finding: Finding, chosen: Explanation | None, rules: Rules) -> list[str]:
+    found = model.remarks() + _at_limits(model, chosen) + _other_scopes(model, finding, rules)
+    for e in (finding.baseline, *(x.fit for x in finding.explanations)):
+        if not e.converged:
+            found.append(f"fit of {e.label}: {e.message}")
+    return found
+
+
+def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]:
+    """Causes at a physical limit."""
+    found = []
+    for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
+        effect = model.effects[c.effect]
+        if a in effect.physical_limits:
+            found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is as far as it goes")
+    return found
+
+
+def _other_scopes(model: MeasurementModel, finding: Finding, rules: Rules) -> list[str]:
+    """Equivalent scopes and positions of the same causes, with their amplitudes and moduli."""
+    chosen = finding.chosen
+    found: list[str] = []
+    for e in finding.explanations[1:] if chosen is not None else ():
+        assert chosen is not None
+        if e.names == chosen.names and e.score <= chosen.score + rules.score_tolerance:
+            moduli = ", ".join(
+                f"{name} {1e-3 * shear:.4g} kPa" for name, shear in model.shear_moduli(e.fit.state.u).items()
+            )
+            found.append(
+                f"the data do not tell {chosen.fit.label} from {e.fit.label}, where it would be"
+                f" {_amplitudes(model, e)} with shear moduli of {moduli}"
+            )
+    return found
+
+
+def _amplitudes(model: MeasurementModel, e: Explanation) -> str:
+    parts = []
+    for c in e.candidates:
+        effect = model.effects[c.effect]
+        value, sd = (effect.in_file(x) for x in e.fit.amplitude(c))
+        parts.append(f"{value:.3g} +- {sd:.2g} {effect.parameter}")
+    return " and ".join(parts)

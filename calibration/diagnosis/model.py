@@ -1,0 +1,52 @@
+"""The model that a diagnosis searches: measurements of one kind, with the catalogue's effects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from calibration.diagnosis.catalogue import effects_of, true_name
+from calibration.errors import InputError
+from calibration.experiment.model import Experiment
+from calibration.measurements._kinds import build, kind_of
+from calibration.measurements._model import MeasurementModel
+
+DEFAULT_SIMULATOR = "ours"
+
+
+def model_of(
+    experiment: Experiment,
+    *,
+    kind: str | None = None,
+    without: Sequence[str] = (),
+    simulator: str = DEFAULT_SIMULATOR,
+    workers: int | None = None,
+) -> MeasurementModel:
+    """The model of an experiment's measurements with all effects of the catalogue.
+
+    Parameters
+    ----------
+    kind : of measurement; may be left out where the experiment has one only.
+    without : effects taken out of the catalogue.
+    simulator : of outlines, a name of `calibration.measurements.outlines.simulators.SIMULATORS`.
+    workers : processes; None for all cores.
+
+    Raises
+    ------
+    InputError : the kind is unknown, absent or not named, or another name is unknown.
+    """
+    chosen = kind_of(experiment, kind)
+    effects = effects_of(chosen.name)
+    left_out = {true_name(chosen.name, name) for name in without}
+    for name in without:
+        if true_name(chosen.name, name) not in effects:
+            raise InputError(f"--without {name}: expected some of {', '.join(effects)}")
+    kept = {n: e for n, e in effects.items() if n not in left_out}
+    if simulator == DEFAULT_SIMULATOR:
+        return build(chosen, experiment, effects=kept, workers=workers)
+    if "simulator" not in chosen.takes:
+        raise InputError(f"--simulator {simulator}: only outlines are simulated in several ways")
+    from calibration.measurements.outlines.simulators import SIMULATORS
+
+    if simulator not in SIMULATORS:
+        raise InputError(f"--simulator {simulator}: expected one of {', '.join(SIMULATORS)}")
+    return build(chosen, experiment, effects=kept, workers=workers, simulator=SIMULATORS[simulator])

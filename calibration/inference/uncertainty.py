@@ -1,0 +1,337 @@
+"""Uncertainty of a fit: Gauss-Newton covariance, unconstrained directions, profile-likelihood intervals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.inference.polish import AT_BOUND, Polished
+from calibration.inference.problem import Problem
+from calibration.parameters import Parametrisation
+
+Array = NDArray[np.float64]
+Seen = Literal["identified", "weak", "not identified", "at a bound", "held"]
+
+# Limits of a parameter's sd: above this fraction of its prior's sd the prior decides, not the data; above
+# UNSEEN (a factor of e^0.5 or half the range) it is not a number to print.
+PRIOR_SHARE = 0.7
+WEAK, UNSEEN = 0.15, 0.5
+
+FLAT = 12.0**-0.5  # sd of a flat prior over a range, as a fraction of the range
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Estimate:
+    """One constant of a law with its uncertainty.
+
+    Attributes
+    ----------
+    name, unit : str
+        Of the search coordinate; the unit is that of its value.
+    value, low, high : float
+        Value and 95 % interval, SI.
+    sd : float
+        Standard deviation: of the logarithm where `relative`, else of the value; never more than that of a
+        flat prior over the bounds.
+    relative : bool
+    seen : str
+        How well the data determine it: "identified", "weak", "not identified" (the prior or the bounds
+        decide), "at a bound" or "held" (`Coordinate.held`: value and interval are the hold's, not measured).
+    """
+
+    name: str
+    unit: str
+    value: float
+    sd: float
+    low: float
+    high: float
+    relative: bool
+    seen: Seen
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Identification:
+    """Uncertainty of all constants of a fit.
+
+    Attributes
+    ----------
+    estimates : tuple of Estimate
+    covariance : array, shape (n, n)
+        Of u, with the priors, scaled up where the fit is worse than the noise.
+    scale : float
+        Factor of the data's covariance: reduced chi-square, at least 1 (Birge's ratio).
+    blind : tuple of dict
+        Directions that the data alone do not determine, as {coordinate: weight}.
+    shear_modulus_sd : float
+        Of the small-strain shear modulus [Pa].
+    """
+
+    estimates: tuple[Estimate, ...]
+    covariance: Array
+    scale: float
+    blind: tuple[dict[str, float], ...]
+    shear_modulus_sd: float
+
+
+def identify(
+    parametrisation: Parametrisation, u: Array, jacobian: Array, *, reduced_chi2: float
+) -> Identification:
+    """Covariance and estimates at a minimum, by linear (Gauss-Newton) theory.
+
+    Where reduced chi-square is above 1 the data's information is divided by it (the model is wrong by more
+    than the noise; Birge's ratio); it is never made larger, and the prior's is left alone.
+
+    Parameters
+    ----------
+    parametrisation : Parametrisation
+    u : array, shape (n,)
+    jacobian : array, shape (m, n)
+        Of the whitened residuals, the prior's rows last.
+    reduced_chi2 : float
+    """
+    _, prior_sd = parametrisation.prior()
+    prior = np.diag(np.where(np.isfinite(prior_sd), prior_sd, np.inf) ** -2.0)
+    data = jacobian.T @ jacobian - prior
+    bounds = parametrisation.bounds
+    span = bounds[:, 1] - bounds[:, 0]
+    # keeps undetermined directions finite, and hardly changes the others
+    floor = np.diag(span**-2.0)
+    scale = max(1.0, reduced_chi2)
+    covariance = np.asarray(np.linalg.inv(data / scale + prior + floor))
+    return Identification(
+        estimates=_estimates(parametrisation, u, covariance, prior_sd),
+        covariance=covariance,
+        scale=scale,
+        blind=_blind(parametrisation, data, span),
+        shear_modulus_sd=_shear_sd(parametrisation, u, covariance),
+    )
+
+
+def with_prior_sd(
+    known: Identification, parametrisation: Parametrisation, u: Array, name: str
+) -> Identification:
+    """The uncertainty of a fit in which one coordinate was held, with that coordinate's prior sd put back.
+
+    The data say nothing of the held coordinate, its whole prior does, and the others move along with it:
+    C + s s' (sd^2 - C_ii), s = C_i / C_ii (a "cut" posterior, which a model that misfits cannot use to repair
+    its curve).
+
+    Parameters
+    ----------
+    known : Identification
+        Of the fit with the coordinate held (`Parametrisation.holding`).
+    parametrisation : Parametrisation
+        With the coordinate's own prior.
+    u : array, shape (n,)
+    name : str
+        The coordinate.
+    """
+    i = parametrisation.names.index(name)
+    _, prior_sd = parametrisation.prior()
+    C = known.covariance
+    slope = C[:, i] / C[i, i]
+    covariance = C + np.outer(slope, slope) * (prior_sd[i] ** 2 - C[i, i])
+    return replace(
+        known,
+        estimates=_estimates(parametrisation, u, covariance, prior_sd),
+        covariance=covariance,
+        shear_modulus_sd=_shear_sd(parametrisation, u, covariance),
+    )
+
+
+def _estimates(
+    parametrisation: Parametrisation, u: Array, covariance: Array, prior_sd: Array
+) -> tuple[Estimate, ...]:
+    bounds = parametrisation.bounds
+    span = bounds[:, 1] - bounds[:, 0]
+    estimates = []
+    for i, c in enumerate(parametrisation.coordinates):
+        wide = float(np.sqrt(covariance[i, i]))
+        low, high = np.clip([u[i] - 1.96 * wide, u[i] + 1.96 * wide], *bounds[i])
+        sd = min(wide, FLAT * float(span[i]))
+        estimates.append(
+            Estimate(
+                name=c.name,
+                unit=c.unit,
+                value=c.value(u[i]),
+                sd=sd,
+                low=c.value(low),
+                high=c.value(high),
+                relative=c.log,
+                seen="held"
+                if c.held
+                else _seen(sd, prior_sd[i], u[i], bounds[i], yardstick(parametrisation, i, u[i])),
+            )
+        )
+    return tuple(estimates)
+
+
+def yardstick(parametrisation: Parametrisation, i: int, u: float) -> float:
+    """Scale of a coordinate's sd: 1 for a logarithm, else its value or a fifth of its range, the larger."""
+    low, high = parametrisation.bounds[i]
+    return 1.0 if parametrisation.coordinates[i].log else max(abs(u), 0.2 * (high - low))
+
+
+def _seen(sd: float, prior: float, u: float, bounds: Array, unit: float) -> Seen:
+    span = bounds[1] - bounds[0]
+    if min(u - bounds[0], bounds[1] - u) < AT_BOUND * span:
+        return "at a bound"
+    if sd > PRIOR_SHARE * min(prior, FLAT * span) or sd > UNSEEN * unit:
+        return "not identified"
+    return "weak" if sd > WEAK * unit else "identified"
+
+
+def _blind(parametrisation: Parametrisation, data: Array, span: Array) -> tuple[dict[str, float], ...]:
+    """Directions that the data do not determine: eigenvectors of their information, in units of each
+    coordinate's range, with an sd above a quarter of that range."""
+    values, vectors = np.linalg.eigh(data * np.outer(span, span))
+    found = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value < 16.0:
+            weights = vector / np.abs(vector).max()
+            found.append(
+                {n: float(w) for n, w in zip(parametrisation.names, weights, strict=True) if abs(w) > 0.1}
+            )
+    return tuple(found)
+
+
+def _shear_sd(parametrisation: Parametrisation, u: Array, covariance: Array) -> float:
+    """sd of the small-strain shear modulus [Pa], by linear propagation."""
+    steps = 1e-5 * np.eye(len(u))
+    slope = np.array(
+        [
+            (parametrisation.moduli(u + s).shear_modulus - parametrisation.moduli(u - s).shear_modulus) / 2e-5
+            for s in steps
+        ]
+    )
+    return float(np.sqrt(slope @ covariance @ slope))
+
+
+RISE = 1.96  # root of what chi-square rises by from the best point to the end of a 95 % interval
+ROUNDS = 8
+LINEAR = 0.03  # of a parameter: an sd below this is propagated linearly
+CLOSE = 0.1  # an end whose rise is so near to RISE stands
+
+
+def profile(problem: Problem, end: Polished, known: Identification) -> tuple[Estimate, ...]:
+    """The estimates with their intervals ending where chi-square, minimised over all other coordinates, has
+    risen by 3.84 (S. S. Wilks, Ann. Math. Stat. 9, 1938); `sd` and `seen` stay those of linear theory.
+
+    Left as they are: all of them where every coordinate's sd is under 3 % (there the linear interval serves),
+    those of a coordinate that its prior decides, and an end that no point with an answer leads to. The others
+    are taken along by simplified Newton steps with the Jacobian of `end`; each round is two batches of at
+    most two candidates a coordinate.
+    """
+    wanted = [i for i in range(len(end.u)) if not _by_prior(problem, known, i)]
+    if all(known.estimates[i].sd < LINEAR * yardstick(problem.parametrisation, i, end.u[i]) for i in wanted):
+        return known.estimates
+    ends = [_End(problem, end, known, i, side) for i in wanted for side in (-1, 1)]
+    for _ in range(ROUNDS):
+        open_ends = [e for e in ends if not e.done]
+        if not open_ends:
+            break
+        first = np.array([e.point() for e in open_ends])
+        rows = problem.residuals(first)
+        second = np.array([e.taken_along(v, r) for e, v, r in zip(open_ends, first, rows, strict=True)])
+        better = problem.residuals(second)
+        for k, e in enumerate(open_ends):
+            e.learn([(first[k], rows[k]), (second[k], better[k])])
+    found = list(known.estimates)
+    for i in wanted:
+        low, high = (e.reached() for e in ends if e.i == i)
+        value = problem.parametrisation.coordinates[i].value
+        found[i] = replace(found[i], low=value(low), high=value(high))
+    return tuple(found)
+
+
+class _End:
+    """One end of one coordinate's interval: `reach` is the distance from the best point that is tried next,
+    `course` what all coordinates move by for each unit of it."""
+
+    def __init__(self, problem: Problem, end: Polished, known: Identification, i: int, side: int) -> None:
+        self.end, self.i, self.side = end, i, side
+        self.bounds = problem.parametrisation.bounds
+        _, sd = problem.parametrisation.prior()
+        self.priors = int(np.isfinite(sd).sum())  # rows of the residuals, the last ones
+        self.scale = known.scale
+        self.room = abs(self.bounds[i, (1 + side) // 2] - end.u[i])
+        covariance = known.covariance
+        self.course = side * covariance[:, i] / covariance[i, i]
+        self.reach = min(self.room, RISE * float(np.sqrt(covariance[i, i])))
+        self.linear = self.reach
+        # reach and rise where chi-square has risen too little, and too much (inf: no answer)
+        self.inside, self.outside = (0.0, 0.0), (np.inf, np.inf)
+        self.done = self.room == 0.0
+        self.best = self._chi2(end.residuals)
+
+    def point(self) -> Array:
+        return self._held(self.end.u + self.reach * self.course)
+
+    def taken_along(self, point: Array, residuals: Array) -> Array:
+        """The point with all other coordinates moved to where the linearised chi-square is least."""
+        if not np.isfinite(residuals).all():
+            return point
+        others = [k for k in range(len(point)) if k != self.i]
+        J = self.end.jacobian[:, others] * self._weights(len(residuals))[:, None]
+        span = self.bounds[others, 1] - self.bounds[others, 0]
+        curvature = J.T @ J + np.diag(1e-6 * span**-2.0)
+        moved = point.copy()
+        moved[others] -= np.linalg.solve(curvature, J.T @ (residuals * self._weights(len(residuals))))
+        return self._held(moved)
+
+    def learn(self, tried: list[tuple[Array, Array]]) -> None:
+        """Where to try next, from (point, residuals) of this round."""
+        known = [(self._chi2(rows), v) for v, rows in tried if np.isfinite(rows).all()]
+        rise = np.inf
+        if known:
+            chi2, v = min(known, key=lambda pair: pair[0])
+            rise = float(np.sqrt(max(chi2 - self.best, 0.0)))
+            self.course = (v - self.end.u) / self.reach
+        width = self.outside[0] - self.inside[0]
+        if rise < RISE:
+            self.inside = (self.reach, rise)
+        else:
+            self.outside = (self.reach, rise)
+        if abs(rise - RISE) < CLOSE or (rise < RISE and self.reach >= self.room):
+            self.done = True
+            return
+        (near, low), (far, high) = self.inside, self.outside
+        if not np.isfinite(far):
+            self.reach = min(self.room, near * min(4.0, RISE / max(low, 1e-9)))
+        elif not np.isfinite(high) or far - near > 0.5 * width:
+            self.reach = 0.5 * (near + far)
+        else:
+            self.reach = near + (far - near) * (RISE - low) / (high - low)
+
+    def reached(self) -> float:
+        (near, _), (far, high) = self.inside, self.outside
+        if self.done:
+            reach = self.reach
+        elif near == 0.0 and not np.isfinite(high):
+            reach = self.linear
+        else:  # rounds ran out: the far end of what is left, which is wider rather than narrower
+            reach = min(far, self.room)
+        return float(np.clip(self.end.u[self.i] + self.side * reach, *self.bounds[self.i]))
+
+    def _held(self, v: Array) -> Array:
+        """Within the bounds, coordinate i where it was asked for."""
+        v = np.clip(v, self.bounds[:, 0], self.bounds[:, 1])
+        v[self.i] = np.clip(self.end.u[self.i] + self.side * self.reach, *self.bounds[self.i])
+        return np.asarray(v)
+
+    def _weights(self, rows: int) -> Array:
+        w = np.full(rows, self.scale**-0.5)
+        w[rows - self.priors :] = 1.0
+        return w
+
+    def _chi2(self, residuals: Array) -> float:
+        r = residuals * self._weights(len(residuals))
+        return float(r @ r)
+
+
+def _by_prior(problem: Problem, known: Identification, i: int) -> bool:
+    _, sd = problem.parametrisation.prior()
+    return known.estimates[i].sd > PRIOR_SHARE * sd[i]

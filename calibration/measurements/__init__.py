@@ -1,0 +1,1 @@
+"""One model a kind of measurement, for fits and diagnoses alike."""

@@ -1,0 +1,171 @@
+"""Kinds of measurement: which an experiment holds, and the model of each.
+
+A new kind is one file with a `MeasurementModel`, and one registration::
+
+    register(Kind(name="torsion", holds=lambda experiment: ..., load=lambda: TorsionModel))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from calibration.errors import InputError
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
+from calibration.measurements._effect import EffectModel
+from calibration.measurements._model import MeasurementModel
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of measurement.
+
+    Attributes
+    ----------
+    name : on the command line and in reports.
+    holds : whether an experiment has any of it.
+    load : its model's class, imported when needed. It is called with an experiment, `effects`, and those of
+        the options of `build` that `takes` names.
+    refines : a kind whose trials these are too; `claims` decides which of the two is meant where none is
+        named.
+    takes : options that its model has: workers, simulator.
+    old_name : that it had in earlier versions, still understood.
+    """
+
+    name: str
+    holds: Callable[[Experiment], bool]
+    load: Callable[[], Callable[..., MeasurementModel]]
+    refines: str = ""
+    claims: Callable[[Experiment], bool] = lambda _: False
+    takes: tuple[str, ...] = ()
+    old_name: str = ""
+
+
+_KINDS: dict[str, Kind] = {}
+
+
+def register(kind: Kind) -> None:
+    """Make a kind known. ValueError where its name is taken."""
+    if kind.name in _KINDS:
+        raise ValueError(f"kind of measurement {kind.name}: it is registered already")
+    _KINDS[kind.name] = kind
+
+
+def unregister(name: str) -> None:
+    """Forget a kind."""
+    del _KINDS[name]
+
+
+def kinds() -> tuple[str, ...]:
+    """Names of all kinds."""
+    return tuple(_KINDS)
+
+
+def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
+    """The kind that is named; where none is, the one that the experiment holds.
+
+    Raises
+    ------
+    InputError : the name is unknown, the experiment has none of it, or it has several and none is named.
+    """
+    there = [n for n, k in _KINDS.items() if k.holds(experiment)]
+    if name is not None:
+        named = next((k for k in _KINDS.values() if name in (k.name, k.old_name)), None)
+        if named is None:
+            raise InputError(f"--kind {name}: expected one of {', '.join(_KINDS)}")
+        if named.name not in there:
+            has = ", ".join(there) or "no trials"
+            raise InputError(f"--kind {name}: the experiment has none; it has {has}")
+        return named
+    if not there:
+        raise InputError(f"experiment.yaml: trials: expected some of {', '.join(_KINDS)}")
+    for kind in [_KINDS[n] for n in there]:
+        if kind.refines in there:
+            there.remove(kind.refines if kind.claims(experiment) else kind.name)
+    if len(there) > 1:
+        raise InputError(f"the experiment has {' and '.join(there)}: say which with --kind")
+    return _KINDS[there[0]]
+
+
+def build(
+    kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
+) -> MeasurementModel:
+    """The model of an experiment's measurements of a kind. options : workers, simulator; those that the kind
+    does not take are left out."""
+    own = {n: v for n, v in options.items() if n in kind.takes}
+    return kind.load()(experiment, effects=effects, **own)
+
+
+def _loader(module: str, name: str) -> Callable[[], Callable[..., MeasurementModel]]:
+    def load() -> Callable[..., MeasurementModel]:
+        found: Callable[..., MeasurementModel] = getattr(
+            import_module(f"calibration.measurements.{module}.model"), name
+        )
+        return found
+
+    return load
+
+
+def _traced(experiment: Experiment) -> bool:
+    return any(isinstance(t, BeamTrial) and any(c.outline for c in t.captures) for t in experiment.trials)
+
+
+def _marked(experiment: Experiment) -> bool:
+    return any(isinstance(t, BeamTrial) and t.markers for t in experiment.trials)
+
+
+def _compressed(experiment: Experiment) -> list[bool]:
+    from calibration.measurements.compression._record import goes_into_compression
+
+    return [goes_into_compression(t.mode, t.stretch) for t in experiment.trials if isinstance(t, CouponTrial)]
+
+
+register(
+    Kind(
+        name="outlines",
+        holds=lambda e: any(isinstance(t, BeamTrial) for t in e.trials),
+        load=_loader("outlines", "OutlineModel"),
+        takes=("workers", "simulator"),
+        old_name="beams",
+    )
+)
+register(
+    Kind(
+        name="indentation",
+        holds=lambda e: any(isinstance(t, PokeTrial) for t in e.trials),
+        load=_loader("indentation", "IndentationModel"),
+        takes=("workers",),
+        old_name="pokes",
+    )
+)
+register(
+    Kind(
+        name="homogeneous",
+        holds=lambda e: any(isinstance(t, CouponTrial) for t in e.trials),
+        load=_loader("homogeneous", "HomogeneousModel"),
+        old_name="coupons",
+    )
+)
+register(
+    Kind(
+        name="compression",
+        holds=lambda e: any(_compressed(e)),
+        load=_loader("compression", "CompressionModel"),
+        refines="homogeneous",
+        claims=lambda e: all(_compressed(e)),
+        old_name="presses",
+    )
+)
+register(
+    Kind(
+        name="release",
+        holds=_marked,
+        load=_loader("release", "ReleaseModel"),
+        refines="outlines",
+        claims=lambda e: not _traced(e),
+        takes=("workers",),
+        old_name="bars",
+    )
+)

@@ -1,0 +1,369 @@
+"""The model of a kind of measurement: what all kinds do alike, once.
+
+A kind brings its records, its forward map (`_misfit`), the nuisances of its noise, what a lack of fit might
+look like, and the experiments that a lab can do next. Jacobians, whitening, candidates, folds and held-out
+scores come from here. `calibration.diagnosis.engine` searches these models for causes,
+`calibration.study` fits them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from typing import Any, ClassVar, Literal, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._baseline import Baseline, scatter_basis
+from calibration.measurements._effect import Candidate, EffectModel, candidates_of, reaches
+from calibration.measurements._folds import folds_of
+from calibration.measurements._noise import Noise
+from calibration.measurements._state import Linearisation, State
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+
+class Record(Protocol):
+    """One trial, or one photograph of it. groups : its label at each level that effects may be scoped by.
+    ranges : between what it was measured, by a name with its unit in files."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def material(self) -> str: ...
+
+    @property
+    def specimen(self) -> str: ...
+
+    @property
+    def groups(self) -> Mapping[str, str]: ...
+
+    @property
+    def ranges(self) -> Mapping[str, tuple[float, float]]: ...
+
+
+class MeasurementModel(ABC):
+    """Measurements of one kind with a simulator in which effects are nested.
+
+    Attributes
+    ----------
+    kind : name of the kind of measurement.
+    unit : of `distance_rms` in files, and how many of them are one SI unit.
+    max_causes : that may be named together; more could stand in for a cause that is not in the catalogue.
+    coordinate_step : of a coordinate u, in a finite difference.
+    alias_tolerance : see `Linearisation`.
+    compares_specimens : whether moduli that differ between specimens of a material count as a lack of fit.
+    experiments : what a lab can do next, the cheapest first.
+    enough : improvement of chi-square from which on two explanations are separated by an experiment.
+    separates : whether advice asks for an experiment that separates "all" explanations, or "most" of them.
+    no_answer : what a ValueError says of a state without an answer.
+    records : in the order of the rows, as far as rows belong to one record each.
+    row_record : index of the record of each row, shape (rows,).
+    effects : by name. candidates : of all effects. visible : whether the records identify a candidate at all.
+    baseline : what u stands for. noise : of all rows, with the nuisances as taken last.
+    """
+
+    kind: ClassVar[str]
+    unit: ClassVar[tuple[str, float]]
+    max_causes: ClassVar[int] = 3
+    coordinate_step: ClassVar[float] = 1e-4
+    alias_tolerance: ClassVar[float | None] = None
+    compares_specimens: ClassVar[bool] = True
+    experiments: ClassVar[Sequence[Any]] = ()
+    enough: ClassVar[float] = 25.0
+    separates: ClassVar[Literal["all", "most"]] = "all"
+    no_answer: ClassVar[str] = "the simulation has no answer at this state"
+
+    records: Sequence[Any]
+    row_record: NDArray[np.intp]
+    effects: Mapping[str, EffectModel]
+    candidates: tuple[Candidate, ...]
+    visible: Mapping[Candidate, bool]
+    baseline: Baseline
+    noise: Noise
+
+    # -- what a kind brings --
+
+    @abstractmethod
+    def start(self) -> Array:
+        """Coordinates (n,) to begin the baseline's fit from. ValueError where there are none."""
+
+    @abstractmethod
+    def _misfit(self, states: Sequence[State]) -> Array:
+        """Simulated less measured [SI], shape (batch, rows); NaN where a state has no answer. Rows that the
+        noise does not use need not be right."""
+
+    @abstractmethod
+    def _discrepancies(self) -> Mapping[str, Array]:
+        """Sets of columns (rows, k) [SI] by name: what a lack of fit might look like."""
+
+    @abstractmethod
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        """Labels of all rows, for each set of folds, in order of preference."""
+
+    def update_nuisances(self, state: State, *, rough: bool = False) -> None:
+        """Take nuisances and discretisation errors at a state; linearisations from before are void. rough :
+        what is dear may be left out."""
+        del state, rough
+
+    def predicted_in(self, test: Any, state: State) -> Self | None:
+        """The same specimens in one of `experiments`, as a state predicts it; None where it cannot be."""
+        del test, state
+        return None
+
+    def remarks(self) -> list[str]:
+        """What a reader of the verdict should know of the model, a sentence each."""
+        return []
+
+    def shortcomings(self) -> list[str]:
+        """How the simulation falls short of what it should be where nuisances were taken last, a sentence
+        each, for readers of a fit."""
+        return []
+
+    def noise_sentence(self) -> str:
+        """What the noise model consists of, for people."""
+        return ""
+
+    def pictures(self, diagnosis: Any) -> list[Any]:
+        """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
+        del diagnosis
+        return []
+
+    # -- residuals and derivatives --
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the coordinates u, (n,)."""
+        return self.baseline.names
+
+    @property
+    def points(self) -> int:
+        """Rows of residuals that are measurements; rows of the prior follow them."""
+        return self.noise.points
+
+    def residuals(self, states: Sequence[State]) -> Array:
+        """Whitened residuals (batch, m), prior rows last; NaN where a state has no answer."""
+        found = np.full((len(states), self.points + len(self.baseline.prior)), np.nan)
+        for row, state, misfit in zip(found, states, self._misfit(states), strict=True):
+            if np.isfinite(misfit[self.noise.used]).all():
+                row[:] = self._whole(misfit, state)
+        return found
+
+    def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linearisation:
+        """Whitened residuals and their derivatives at a state, by finite differences in one batch.
+
+        Candidates of one form share a difference, of which each has the rows of the records that it reaches.
+        A candidate without an answer one step on has zeros there. ValueError where the state has no answer.
+        """
+        misfit, by_u, columns = self._differences(state, candidates)
+        prior = self.baseline.prior
+        return Linearisation(
+            state=state,
+            z=self._whole(misfit, state),
+            by_u=np.vstack([self.noise.whiten(by_u), prior]),
+            columns=np.vstack([self.noise.whiten(columns), np.zeros((len(prior), len(candidates)))]),
+            candidates=tuple(candidates),
+            alias_tolerance=self.alias_tolerance,
+        )
+
+    def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
+        """Misfit (rows,), its derivatives by u (rows, n) and by amplitudes (rows, c) [SI]."""
+        moved = self._beside(state)
+        probes = self._probes(state, candidates)
+        rows = self._misfit([state, *(s for s, _ in moved), *(p for p, _, _ in probes)])
+        base = rows[0]
+        if not np.isfinite(base[self.noise.used]).all():
+            raise ValueError(self.no_answer)
+        by_u = np.zeros((len(base), len(self.names)))
+        for row, (beside, parts) in zip(rows[1 : 1 + len(moved)], moved, strict=True):
+            sides = [(self.coordinate_step, row)]
+            for k, own in parts.items():
+                step, change = sides[0]
+                if not np.isfinite(change[own & self.noise.used]).all():
+                    if len(sides) == 1:
+                        back = self._misfit([replace(state, u=2.0 * state.u - beside.u)])[0]
+                        sides.append((-self.coordinate_step, back))
+                    step, change = sides[1]
+                    if not np.isfinite(change[own & self.noise.used]).all():
+                        continue  # neither side has an answer
+                by_u[:, k] = np.where(own, (change - base) / step, 0.0)
+        columns = np.zeros((len(base), len(candidates)))
+        for row, (_, step, members) in zip(rows[1 + len(moved) :], probes, strict=True):
+            change = (row - base) / step
+            for k in members:
+                columns[:, k] = np.where(self.reached(candidates[k])[self.row_record], change, 0.0)
+        return base, by_u, columns
+
+    def _beside(self, state: State) -> list[tuple[State, Mapping[int, Rows]]]:
+        """States one step on. Coordinates that no record depends on in common move together. With each state,
+        the rows (rows,) that each of its coordinates changes."""
+        depends = np.array([self._depends_on(r) for r in self.records])
+        together: list[tuple[Rows, list[int]]] = []  # records that are changed, and by which coordinates
+        for k, own in enumerate(depends.T):
+            for changed, members in together:
+                if not (changed & own).any():
+                    changed |= own
+                    members.append(k)
+                    break
+            else:
+                together.append((own.copy(), [k]))
+        found: list[tuple[State, Mapping[int, Rows]]] = []
+        for _, members in together:
+            u = state.u.copy()
+            u[members] += self.coordinate_step
+            found.append((replace(state, u=u), {k: depends[:, k][self.row_record] for k in members}))
+        return found
+
+    def _depends_on(self, record: Any) -> Rows:
+        """Coordinates u that the simulation of a record depends on, shape (n,): of its specimen and of its
+        material, and all extras."""
+        found = self.baseline.informed_by(record, whole_material=False)
+        found[self.baseline.first_extra :] = True
+        return found
+
+    def _probes(self, state: State, candidates: Sequence[Candidate]) -> list[tuple[State, float, list[int]]]:
+        """States with one effect a step on, the step, and the candidates (by index) that it is a difference
+        for."""
+        groups: dict[object, list[int]] = {}
+        for k, c in enumerate(candidates):
+            if self.visible.get(c, True):
+                groups.setdefault((c.form, self._step(c, state)), []).append(k)
+        found = []
+        for members in groups.values():
+            first = candidates[members[0]]
+            step = self._step(first, state)
+            probe = first if len(members) == 1 else replace(first, at="all", alternatives=0)
+            now = state.amplitudes.get(probe, 0.0)
+            found.append((replace(state, amplitudes={**state.amplitudes, probe: now + step}), step, members))
+        return found
+
+    def _step(self, candidate: Candidate, state: State) -> float:
+        """Of a finite difference [SI], away from the bound that the effect is at."""
+        effect = self.effects[candidate.effect]
+        now = max((a for c, a in state.amplitudes.items() if c.form == candidate.form), default=0.0)
+        return effect.step if now + effect.step <= effect.bounds[1] else -effect.step
+
+    def _whole(self, misfit: Array, state: State) -> Array:
+        return np.concatenate([self.noise.whiten(misfit), self.baseline.prior_residuals(state.u)])
+
+    # -- candidates --
+
+    def _set_candidates(self) -> None:
+        """All candidates of the records, and which of them the records identify."""
+        self.candidates = candidates_of(self.records, self.effects)
+        self.visible = self._visible(self.records)
+
+    def _visible(self, records: Sequence[Any]) -> dict[Candidate, bool]:
+        """Which candidates these records can show."""
+        found = {}
+        for c in self.candidates:
+            model = self.effects[c.effect]
+            touched = [r for r in records if reaches(c, r, model)]
+            found[c] = bool(touched) and model.identifiable(touched, records)
+        return found
+
+    def reached(self, candidate: Candidate) -> Rows:
+        """Which records a candidate is in, shape (records,)."""
+        model = self.effects[candidate.effect]
+        return np.array([reaches(candidate, r, model) for r in self.records], dtype=bool)
+
+    def acting(self, state: State, record: Any) -> dict[tuple[str, float | None, float | None], float]:
+        """Effects in a record by their form, with the sum of their amplitudes there [SI]."""
+        found: dict[tuple[str, float | None, float | None], float] = {}
+        for c, a in state.amplitudes.items():
+            if self.visible.get(c, True) and reaches(c, record, self.effects[c.effect]):
+                found[c.form] = found.get(c.form, 0.0) + a
+        return found
+
+    # -- lack of fit, folds, scores --
+
+    def discrepancy_basis(self) -> Mapping[str, Array]:
+        """Sets of whitened columns (m, k) by name: what a lack of fit might look like."""
+        prior = len(self.baseline.prior)
+        found = {
+            name: np.vstack([self.noise.whiten(raw), np.zeros((prior, raw.shape[1]))])
+            for name, raw in self._discrepancies().items()
+        }
+        if self.compares_specimens:
+            found.update(scatter_basis(self.points + prior, self.points, self.baseline.held))
+        return found
+
+    def folds(self) -> Mapping[str, Sequence[tuple[str, Rows]]]:
+        """Sets of folds by name, in order of preference: rows (rows,) that are left out together."""
+        return folds_of(self._fold_labels())
+
+    def rows(self, fold: Rows) -> Rows:
+        """Where a fold's measurements stand among the residuals, shape (m,)."""
+        prior = np.zeros(len(self.baseline.prior), dtype=bool)
+        return np.concatenate([fold[self.noise.used], prior])
+
+    def subset(self, fold: Rows, *, others: bool) -> Self:
+        """The measurements of a fold, or all others; nuisances stay as they were taken."""
+        some = copy(self)
+        some.noise = self.noise.subset(~fold if others else fold)
+        return some
+
+    def unconstrained(self, fold: Rows) -> Rows:
+        """Coordinates u that nothing outside of a fold constrains, shape (n,)."""
+        left = self.noise.used & ~fold
+        found = np.zeros(len(self.names), dtype=bool)
+        for k in np.unique(self.row_record[left]):
+            found |= self._constrains(self.records[k])
+        return np.asarray(~found)
+
+    def _constrains(self, record: Any) -> Rows:
+        """Coordinates u that a record constrains, shape (n,): its material's, those of all its specimens."""
+        return self.baseline.informed_by(record, whole_material=True)
+
+    def distance_rms(self, state: State) -> float:
+        """Root mean square of simulated less measured, the most likely nuisances removed [SI]. ValueError
+        where the state has no answer."""
+        misfit = self._misfit([state])[0]
+        if not np.isfinite(misfit[self.noise.used]).all():
+            raise ValueError(self.no_answer)
+        left = self.noise.remove(misfit)[self.noise.used]
+        return float(np.sqrt(left @ left / self._measured_points()))
+
+    def noise_rms(self) -> float:
+        """What `distance_rms` would be of the noise alone [SI]."""
+        return float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
+
+    def _measured_points(self) -> int:
+        """Measured points behind the rows that are used."""
+        return self.points
+
+    def registered(self, state: State) -> list[Array]:
+        """Simulated less measured, the most likely nuisances removed, of each record [SI]; NaN where nothing
+        is compared. ValueError where the state has no answer."""
+        misfit = self._misfit([state])[0]
+        if not np.isfinite(misfit[self.noise.used]).all():
+            raise ValueError(self.no_answer)
+        left = np.where(self.noise.used, self.noise.remove(misfit), np.nan)
+        return [left[self.row_record == k] for k in range(len(self.records))]
+
+    def nuisance_values(self, state: State) -> dict[str, float]:
+        """Most likely value of each nuisance that has a name [its sd]. ValueError where the state has no
+        answer."""
+        misfit = self._misfit([state])[0]
+        if not np.isfinite(misfit[self.noise.used]).all():
+            raise ValueError(self.no_answer)
+        values = self.noise.estimate(misfit)
+        return {name: float(b) for name, b in zip(self.noise.names, values, strict=False) if name}
+
+    def shear_moduli(self, u: Array) -> dict[str, float]:
+        """Of each material [Pa]: the geometric mean over its specimens."""
+        return self.baseline.shear_moduli(u)
+
+    def valid_range(self, candidate: Candidate) -> dict[str, tuple[float, float]]:
+        """Between what an effect was measured, by the quantity's name in files."""
+        found: dict[str, tuple[float, float]] = {}
+        for r, hit in zip(self.records, self.reached(candidate), strict=True):
+            for name, (low, high) in r.ranges.items() if hit else ():
+                old = found.get(name, (low, high))
+                found[name] = (min(low, old[0]), max(high, old[1]))
+        return found

@@ -1,0 +1,68 @@
+"""What records of all kinds share: cut into strokes, thinned by means of neighbours, listed in a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stroke:
+    """A monotone part of a driven quantity. points : where in the record, from the turning point before.
+    direction : +1 where it grows, -1 where it falls, 0 where it never moves by the tolerance."""
+
+    points: slice
+    direction: float
+
+
+def strokes(driven: Array, tolerance: float) -> list[Stroke]:
+    """Monotone parts of a driven quantity (a stretch, a depth) in the order of the record.
+
+    A reversal by no more than `tolerance` is noise. Holds belong to the stroke before them.
+    """
+    turns, directions = [0], []
+    top = bottom = 0  # where the extremes since the last turn are
+    direction = 0.0
+    for i in range(1, driven.size):
+        top = i if driven[i] > driven[top] else top
+        bottom = i if driven[i] < driven[bottom] else bottom
+        if direction >= 0.0 and driven[top] - driven[i] > tolerance:
+            if direction > 0.0:
+                turns.append(top)
+            directions.append(-1.0)
+            direction, bottom, top = -1.0, i, i
+        elif direction <= 0.0 and driven[i] - driven[bottom] > tolerance:
+            if direction < 0.0:
+                turns.append(bottom)
+            directions.append(1.0)
+            direction, bottom, top = 1.0, i, i
+    ends = [*turns, driven.size]
+    return [
+        Stroke(points=slice(a, b), direction=d)
+        for (a, b), d in zip(pairwise(ends), directions or [0.0], strict=True)
+    ]
+
+
+def bins(points: slice, most: int) -> tuple[NDArray[np.intp], Array]:
+    """First points of at most `most` bins, counted from the slice's first, and how many are in each."""
+    size = points.stop - points.start
+    first = np.unique(np.linspace(0, size, min(size, most), endpoint=False).astype(np.intp))
+    return first, np.diff(np.append(first, size)).astype(float)
+
+
+class Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+def listed(records: Sequence[Named]) -> str:
+    """Names of records, a few of them where there are many."""
+    names = [r.name for r in records]
+    return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"

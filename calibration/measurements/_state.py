@@ -1,0 +1,43 @@
+"""A point of a fit: free coordinates of the baseline, amplitudes of effects, and the derivatives there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._effect import Candidate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class State:
+    """u : free coordinates of the baseline, shape (n,). amplitudes : of the effects that are present [SI]."""
+
+    u: Array
+    amplitudes: Mapping[Candidate, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Linearisation:
+    """Whitened residuals and their derivatives at a state.
+
+    Attributes
+    ----------
+    z : whitened residuals, shape (m,); standard normal under the right model but for what is fitted.
+    by_u : derivatives by the coordinates u, shape (m, n).
+    columns : derivatives by the candidates' amplitudes [1/SI], shape (m, c).
+    candidates : of the columns.
+    alias_tolerance : fraction of a column's length that finite differences may leave of an exact alias; None
+        for the usual one (`calibration.diagnosis.engine.screening`).
+    """
+
+    state: State
+    z: Array
+    by_u: Array
+    columns: Array
+    candidates: tuple[Candidate, ...]
+    alias_tolerance: float | None = None

@@ -1,0 +1,115 @@
+"""What bonded platens add to a cylinder's force, from finite elements: writes `_bonded_table.py` beside it.
+
+    python -m calibration.measurements.compression.make_bonded_table        # four core-minutes
+
+`tisim.Press` of a bonded cylinder over the closed form of a free one, of the same law, as a logarithm; by the
+quotient of diameter and height for the Neo-Hookean law, and for others at that of the reference cylinder.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tisim
+from calibration.measurements.homogeneous import nominal_stress
+
+FILE = Path(__file__).with_name("_bonded_table.py")
+STRAINS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.63, 0.66, 0.69)
+SHEAR = 1e4
+BULK_RATIO = 1000.0  # K/G of 3000 changes the logarithm by less than 0.005 to 60 %
+HEIGHT = 0.03
+REFERENCE = 5.0 / 3.0  # diameter over height
+SLENDER = (0.8, 1.2, REFERENCE, 2.3)
+LONGEST = 0.75  # of the chains' length
+AMPLITUDES = {
+    "strain-stiffening": (0.03, 0.08, 0.15, 0.3, 0.6, 1.2),
+    "second-invariant": (-0.2, -0.1, 0.2, 0.4, 0.7, 1.0),
+    "limited-extensibility": (0.02, 0.05, 0.1, 0.2, 0.35),
+}
+HEADING = '''"""Logarithm of bonded over free force, made by `make_bonded_table.py`; nan: no equilibrium."""
+
+# fmt: off
+from math import nan
+
+STRAINS = {strains}
+REFERENCE = {reference!r}
+# by diameter over height, Neo-Hookean
+SLENDER: dict[float, tuple[float, ...]] = {{
+{slender}}}
+# by effect and amplitude, at REFERENCE
+LAWS: dict[str, dict[float, tuple[float, ...]]] = {{
+{laws}}}
+'''
+
+
+def material(effect: str | None, amplitude: float) -> tisim.Material:
+    """The law of `tisim` that an effect of coupons is, with the shear modulus SHEAR."""
+    bulk = BULK_RATIO * SHEAR
+    if effect == "strain-stiffening":
+        return tisim.Material(law="yeoh", parameters={"mu": SHEAR, "stiffening": amplitude, "bulk": bulk})
+    if effect == "second-invariant":
+        half = 0.5 * SHEAR
+        parameters = {"c10": half * (1.0 - amplitude), "c01": half * amplitude, "bulk": bulk}
+        return tisim.Material(law="mooney-rivlin", parameters=parameters)
+    if effect == "limited-extensibility":
+        chains = {"mu": SHEAR, "locking": amplitude**-0.5, "bulk": bulk}
+        return tisim.Material(law="eight-chain", parameters=chains)
+    return tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=bulk)
+
+
+def log_ratio(law: tisim.Material, slender: float) -> NDArray[np.float64]:
+    """Logarithm of the quotient at STRAINS; NaN from where no equilibrium was found."""
+    stretches = 1.0 - np.array(STRAINS)
+    scene = tisim.Press(
+        material=law, radius=0.5 * slender * HEIGHT, height=HEIGHT, stretches=tuple(stretches)
+    )
+    (result,) = tisim.simulate([scene], workers=1)
+    found = np.full(len(STRAINS), np.nan)
+    assert result.nominal_stress is not None
+    reached = len(result.nominal_stress)
+    free = nominal_stress(law, "uniaxial", stretches)
+    found[:reached] = np.log(result.nominal_stress / free[:reached])
+    print(slender, law.law, f"to strain {STRAINS[reached - 1]:g}", np.round(found, 3), flush=True)
+    return found
+
+
+def short_of_ends(effect: str, amplitude: float, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """NaN where chains of the free cylinder are past LONGEST: at the bonded ends they then are past what the
+    law is made for."""
+    if effect != "limited-extensibility":
+        return values
+    stretches = 1.0 - np.array(STRAINS)
+    first_invariant = stretches**2 + 2.0 / stretches
+    return np.where(amplitude * first_invariant / 3.0 <= LONGEST**2, values, np.nan)
+
+
+def main() -> None:
+    slender = {x: log_ratio(material(None, 0.0), x) for x in SLENDER}
+    laws = {
+        name: {a: short_of_ends(name, a, log_ratio(material(name, a), REFERENCE)) for a in amplitudes}
+        for name, amplitudes in AMPLITUDES.items()
+    }
+    text = HEADING.format(
+        strains=STRAINS,
+        reference=REFERENCE,
+        slender="".join(f"    {x!r}: {_row(v)},\n" for x, v in slender.items()),
+        laws="".join(
+            f'    "{n}": {{\n' + "".join(f"        {a!r}: {_row(v)},\n" for a, v in rows.items()) + "    },\n"
+            for n, rows in laws.items()
+        ),
+    )
+    FILE.write_text(text, encoding="utf-8")
+
+
+def _row(values: NDArray[np.float64]) -> str:
+    """In two lines."""
+    cells = ["nan" if np.isnan(v) else f"{v:.4f}" for v in values]
+    half = len(cells) // 2
+    return "(" + ", ".join(cells[:half]) + ",\n            " + ", ".join(cells[half:]) + ")"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,166 @@
+"""Compression tests: cylinders of all materials together, effects nested in their forces.
+
+The baseline is a neo-Hookean cylinder between free platens, which stays homogeneous. Bonded platens are
+interpolated between finite element solutions (`_bonded.py`); effects of the material, the rig and the record
+act as in homogeneous tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import Experiment
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._state import State
+from calibration.measurements.compression._bonded import USUAL, BondedRatio
+from calibration.measurements.compression._coordinates import Coordinates
+from calibration.measurements.compression._effect import CompressionEffect
+from calibration.measurements.compression._record import LAST, compared, is_compressed
+from calibration.measurements.compression._repeatability import FIRST, TERMS, repeatability_of
+from calibration.measurements.compression.curves import Cylinder
+from calibration.measurements.homogeneous._effect import HomogeneousEffect
+from calibration.measurements.homogeneous._forward import Acting, Loading
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.model import HomogeneousModel
+
+Array = NDArray[np.float64]
+
+COLUMNS = 16  # of a tilted cylinder
+# Chords of a disc: where they lie, from the edge that touches first (0) to the last (1), and their share
+_ANGLES = np.pi * np.arange(1, COLUMNS + 1) / (COLUMNS + 1)
+_PLACES = 0.5 * (1.0 - np.cos(_ANGLES))
+_SHARES = np.sin(_ANGLES) ** 2 / np.sum(np.sin(_ANGLES) ** 2)
+
+
+class CompressionModel(HomogeneousModel):
+    """One shear modulus a specimen; trials that name no specimen share one a material. Coupons of the
+    experiment that are not compressed are seen beside those that are.
+
+    Parameters
+    ----------
+    experiment : its coupons are used.
+    effects : by name; see `calibration.diagnosis.effects.compression`.
+    cylinder : of all compressed trials, since the format does not hold it; only diameter over height counts.
+    last : strain up to which records of compression are compared, at most LAST.
+    baseline : in place of the neo-Hookean one.
+
+    Raises
+    ------
+    InputError : nothing is compressed, or the cylinder is flatter than what was simulated.
+    """
+
+    kind = "compression"
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        *,
+        effects: Mapping[str, HomogeneousEffect] | None = None,
+        cylinder: Cylinder | None = None,
+        last: float = LAST,
+        baseline: Baseline | None = None,
+    ) -> None:
+        if not 2.0 * FIRST < last <= LAST:
+            raise ValueError(f"last: expected a strain of up to {LAST:g}, got {last:g}")
+        super().__init__(experiment, effects=effects, baseline=baseline)
+        if not any(is_compressed(r) for r in self.records):
+            raise InputError("experiment.yaml: trials: expected a uniaxial coupon in compression")
+        self.stated = cylinder
+        self.last = last
+        self.bonded = BondedRatio(cylinder=cylinder or USUAL)
+        self.whole_range = tuple(self.records)
+        self._measured_in([compared(r, last) for r in self.records])
+        self.repeatability = repeatability_of(self.records, last)
+        self.coordinates = Coordinates.of(self.records, self.baseline, self.repeatability)
+        self.baseline = self._base.baseline = self.coordinates.baseline
+        self._set_candidates()
+
+    def _stresses_of(self, some: Sequence[int], state: State) -> list[Array]:
+        found = []
+        for k, p in zip(some, super()._stresses_of(some, state), strict=True):
+            read = p * np.exp(self.coordinates.deviation(self.records[k], state.u))
+            for e, a in self._effects_in(state, k):
+                if isinstance(e, CompressionEffect) and e.reads is not None:
+                    read = e.reads(read, a)
+            found.append(read)
+        return found
+
+    def _depends_on(self, record: Record) -> NDArray[np.bool_]:
+        return self.coordinates.constrained_by(record)
+
+    def _loading(self, record: Record, state: State, acting: Acting) -> Loading:
+        """The mesh's error counts where platens hold; what load cells do does not change the stress."""
+        acting = [(e, a) for e, a in acting if not (isinstance(e, CompressionEffect) and e.reads)]
+        found = super()._loading(record, state, acting)
+        return replace(found, further=self.coordinates.mesh(state.u)) if _amount(found, "bonds") else found
+
+    def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
+        """A tilted cylinder is compressed in columns side by side, shape (COLUMNS, k). Platens push and do
+        not pull."""
+        level = []
+        for x, s in zip(loadings, stretches, strict=True):
+            gap = _amount(x, "tilts")
+            met = s + gap * _PLACES[:, None] if gap else s
+            # a column that the platen has not met yet carries nothing
+            level.append(np.minimum(met, 1.0) if is_compressed(x.record) else met)
+        found = []
+        free = super()._at_own_stretches(loadings, level)
+        for x, s, p in zip(loadings, level, free, strict=True):
+            fraction = _amount(x, "bonds")
+            if fraction:
+                law = {e.name: a for e, a in x.acting}
+                log_ratio = self.bonded.log_ratio(s, law) + self.coordinates.mesh_error(1.0 - s, x.further)
+                p = p * np.exp(fraction * log_ratio)
+            found.append(_SHARES @ p if p.ndim == 2 else p)
+        return found
+
+    def remarks(self) -> list[str]:
+        c = self.bonded.cylinder
+        size = f"{2e3 * c.radius:g} x {1e3 * c.height:g} mm"
+        unstated = "" if self.stated else ", since the format does not say"
+        found = [
+            *super().remarks(),
+            f"cylinders taken as {size} (diameter x height){unstated};"
+            " only the quotient counts, and only where platens hold",
+            "platens that hold in part are taken between free and bonded ones, which are simulated; Coulomb"
+            " friction itself is not",
+        ]
+        cut = [r for r in self.whole_range if is_compressed(r) and 1.0 - r.stretch.min() > self.last]
+        if cut:
+            furthest = max(float(1.0 - r.stretch.min()) for r in cut)
+            found.append(
+                f"compared up to a strain of {self.last:g} only, of {furthest:.2g} measured: beyond {LAST:g},"
+                " the simulation of bonded cylinders is not good enough"
+            )
+        scatter = self.repeatability
+        if scatter.repeats:
+            known = ", ".join(f"{name} {100 * s:.2g} %" for name, s in zip(TERMS, scatter.sds, strict=True))
+            found.append(
+                f"{len(scatter.repeats)} repeats differ from each other smoothly ({known}): each record may"
+                " deviate so much"
+            )
+        else:
+            found.append(
+                "too few repeats to tell how much one test differs from the next: no such scatter allowed"
+            )
+        return found
+
+    def noise_sentence(self) -> str:
+        known = (
+            "a smooth deviation of each record as large as the repeats of the experiment show"
+            if self.repeatability.repeats
+            else "no scatter from test to test, since there are too few repeats"
+        )
+        return f"{super().noise_sentence()[:-1]}; {known}; 0.3 % of mesh error in what bonded platens add."
+
+
+def _amount(loading: Loading, what: Literal["bonds", "tilts"]) -> float:
+    """Sum of the amplitudes [SI] of those of a record's effects that bond, or tilt, its platens."""
+    own = [(e, a) for e, a in loading.acting if isinstance(e, CompressionEffect)]
+    return sum((a for e, a in own if getattr(e, what)), 0.0)

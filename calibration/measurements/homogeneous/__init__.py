@@ -1,0 +1,24 @@
+"""Homogeneous material tests (coupons): stress without a mesh, a fit with its certainty."""
+
+from calibration.measurements.homogeneous._forward import predicted
+from calibration.measurements.homogeneous._record import protocol_window
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
+from calibration.measurements.homogeneous.fit import CouponFit, FitStatus, fit_coupons
+from calibration.measurements.homogeneous.misfit import percent_error
+from calibration.measurements.homogeneous.stress import MODES, nominal_stress, nominal_stresses
+
+__all__ = [
+    "MODES",
+    "SMALLEST_RELATIVE",
+    "CouponFit",
+    "FitStatus",
+    "fit_coupons",
+    "nominal_stress",
+    "nominal_stresses",
+    "percent_error",
+    "predicted",
+    "protocol_window",
+    "relative_sd",
+    "scatter_scale",
+    "slope",
+]

@@ -1,0 +1,37 @@
+"""How an effect enters a homogeneous test: the stress, or the stretch that makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._effect import EffectModel
+from calibration.measurements.homogeneous._record import Record
+
+Array = NDArray[np.float64]
+Term = Callable[[Array, float, Record], Array]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HomogeneousEffect(EffectModel):
+    """Hooks take the stretch s (k,), the amplitude and the record.
+
+    Attributes
+    ----------
+    extra : a stress beside the baseline's, over its shear modulus.
+    factor : on the whole stress.
+    shift : of the stretch.
+    yields : strain of the rig by the stress [1/Pa], which the specimen does not see.
+    """
+
+    extra: Term | None = None
+    factor: Term | None = None
+    shift: Term | None = None
+    yields: float = 0.0
+
+    @property
+    def simulated(self) -> bool:
+        return False

@@ -1,0 +1,172 @@
+"""The stress of homogeneous tests: a law a material, scaled by the modulus of each specimen, with effects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._memory import Memory
+from calibration.measurements.homogeneous._effect import HomogeneousEffect
+from calibration.measurements.homogeneous._memory_stress import stresses_along
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.stress import nominal_stresses
+from tisim import Material
+
+Array = NDArray[np.float64]
+Acting = Sequence[tuple[HomogeneousEffect, float]]  # effects in a record, with their amplitudes [SI]
+
+REMEMBERED = 2048  # curves
+STEPS = 30
+TOLERANCE = 1e-10  # of the stress, over the shear modulus or, where that is more, its record's largest
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Loading:
+    """A record at a state: what its stress depends on.
+
+    Attributes
+    ----------
+    shear_modulus : small-strain, of its specimen [Pa].
+    law : coordinates of its material's law, shape (n,).
+    acting : effects in it, with their amplitudes.
+    further : other coordinates u that the stress over the modulus depends on, shape (k,).
+    """
+
+    record: Record
+    shear_modulus: float
+    law: Array
+    acting: Acting
+    further: Array
+
+    @cached_property
+    def compliance(self) -> float:
+        """Strain of the rig by the stress over the shear modulus."""
+        return self.shear_modulus * sum(e.yields * a for e, a in self.acting)
+
+    @property
+    def key(self) -> Hashable:
+        """Of the stress over the shear modulus."""
+        effects = tuple((e.name, a) for e, a in self.acting)
+        return self.record, self.law.tobytes(), effects, self.compliance, self.further.tobytes()
+
+
+class BaseStress:
+    """Nominal stress of the baseline over the shear modulus; curves are remembered.
+
+    Parameters
+    ----------
+    baseline : of specimens, or of a law.
+    bulk_ratio : K/G of the curves where K/G is held.
+    """
+
+    def __init__(self, baseline: Baseline, *, bulk_ratio: float) -> None:
+        self.baseline = baseline
+        self._bulk_ratio = bulk_ratio
+        self._memory: Memory[Hashable, Array] = Memory(REMEMBERED)
+
+    def over_modulus(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
+        """At these stretches, shape of each; NaN where the law has none."""
+
+        def missing(some: Sequence[int]) -> list[Array]:
+            found: dict[int, Array] = {}
+            for law in {loadings[k].law.tobytes(): loadings[k].law for k in some}.values():
+                mine = [k for k in some if np.array_equal(loadings[k].law, law)]
+                curves = [(loadings[k].record, stretches[k]) for k in mine]
+                found.update(zip(mine, self._curves(law, curves), strict=True))
+            return [found[k] for k in some]
+
+        remembers = bool(self.baseline.law.parts)
+        keys = [
+            (x.law.tobytes(), x.record if remembers else x.record.mode, s.tobytes())
+            for x, s in zip(loadings, stretches, strict=True)
+        ]
+        return self._memory.fetch(keys, missing)
+
+    def _curves(self, own: Array, curves: Sequence[tuple[Record, Array]]) -> list[Array]:
+        """Of the law's coordinates (n,), at the stretches of each record."""
+        law, bounds = self.baseline.law, self.baseline.law.bounds
+        sound = bool(((own >= bounds[:, 0]) & (own <= bounds[:, 1])).all())
+        if not sound or any(not (s > 0.0).all() for r, s in curves if r.mode != "simple-shear"):
+            return [np.full(s.shape, np.nan) for _, s in curves]
+        stiff = own.copy()
+        for k, c in enumerate(law.coordinates):
+            if c.name == "bulk_ratio" and (c.held or not self.baseline.whole):
+                stiff[k] = np.log(self._bulk_ratio)
+        try:
+            material, shear_modulus = law.material(stiff), law.moduli(stiff).shear_modulus
+        except ValueError:  # outside the law's domain
+            return [np.full(s.shape, np.nan) for _, s in curves]
+        with np.errstate(all="ignore"):
+            return [p / shear_modulus for p in predicted(material, curves)]
+
+
+def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> list[Array]:
+    """Nominal stress of each record at these stretches, shape of each [Pa]: where the material has parts,
+    along the record's own course, at constant volume; NaN where there is none."""
+    if not material.has_parts:
+        return nominal_stresses(material, [(r.mode, s) for r, s in curves])
+    tests = []
+    for r, s in curves:
+        if r.course is None:
+            raise ValueError(f"record {r.name}: expected its course, for a material that remembers")
+        tests.append((r.mode, r.course, r.course.moved(s - r.stretch)))
+    found = stresses_along(material, tests)
+    return [course.means(p) for (_, course, _), p in zip(tests, found, strict=True)]
+
+
+def with_effects(loading: Loading, stretch: Array, stress: Array) -> Array:
+    """Nominal stress over the shear modulus with what effects add to it, then with their factors."""
+    with np.errstate(all="ignore"):  # a stretch out of range has no stress, and the baseline says so
+        for e, a in loading.acting:
+            if e.extra is not None:
+                stress = stress + e.extra(stretch, a, loading.record)
+        for e, a in loading.acting:
+            if e.factor is not None:
+                stress = stress * e.factor(stretch, a, loading.record)
+    return stress
+
+
+def yielding(
+    stresses: Callable[[Sequence[int], Sequence[Array]], list[Array]],
+    stretches: Sequence[Array],
+    compliances: Sequence[float],
+) -> list[Array]:
+    """Stress of each record at its stretches less its compliance times that stress, by a secant search; NaN
+    where it does not end. Records do not depend on each other.
+
+    Parameters
+    ----------
+    stresses : of some records, by index, at their specimens' own stretches.
+    stretches : of each record, shape (k,).
+    compliances : of each record.
+    """
+    found = stresses(range(len(stretches)), stretches)
+    open_ = [k for k, c in enumerate(compliances) if c]
+    before = {k: (np.zeros(stretches[k].size), -found[k]) for k in open_}  # stresses, and what is left there
+    for _ in range(STEPS):
+        if not open_:
+            break
+        answers = stresses(open_, [stretches[k] - compliances[k] * found[k] for k in open_])
+        unsettled = []
+        for k, answer in zip(open_, answers, strict=True):
+            p, left = found[k], found[k] - answer
+            if not np.isfinite(left).all():
+                found[k] = np.full(p.size, np.nan)
+                continue
+            if np.max(np.abs(left), initial=0.0) <= TOLERANCE * np.max(np.abs(p), initial=1.0):
+                continue
+            p_before, left_before = before[k]
+            change = left - left_before
+            step = -left * np.divide(p - p_before, change, out=np.zeros_like(p), where=change != 0.0)
+            before[k] = p, left
+            found[k] = p + step
+            unsettled.append(k)
+        open_ = unsettled
+    for k in open_:
+        found[k] = np.full(stretches[k].size, np.nan)
+    return found

@@ -1,0 +1,287 @@
+"""Records of homogeneous tests: thinned, with their history (branches, largest strain before, rate)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import CouponMode, CouponTrial
+from calibration.measurements._records import Stroke, bins, strokes
+from calibration.measurements.homogeneous._course import (
+    Course,
+    bins_over_time,
+    course_of,
+    holds_of,
+    largest_before,
+    window_of,
+)
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
+from calibration.measurements.homogeneous.kinematics import first_excess
+from calibration.parameters import ProtocolWindow
+
+Array = NDArray[np.float64]
+
+MOST = 100  # points that are kept of a branch: more are averaged in bins of neighbours
+TURN = 0.03  # fraction of the record's range that a real turn goes back by
+NOISE = 6.0  # standard deviations of the stretch that are no turn
+LATE = 0.3  # fraction of a ramp's time for which it may stand still before this is a hold
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Record:
+    """The points of one trial, in the order in which they were measured; all arrays (k,).
+
+    Attributes
+    ----------
+    name : of the trial.
+    specimen : whose modulus it has.
+    stretch : of the driven direction; simple shear has 1 + gamma.
+    stress, sd : nominal stress and its standard deviation [Pa].
+    time : [s]; NaN where the lab has none.
+    branch : number of the stroke that a point belongs to.
+    turn : while unloading, I1 - 3 at the turning point before; NaN otherwise.
+    peak : the largest I1 - 3 that the specimen has seen so far.
+    reloaded : it was loaded again after an unloading. remembers : after one in another trial.
+    rate : of the stretch [1/s]; in a hold, the stretch over the time since its ramp began; NaN without time.
+    estimated : the lab states no error of the stress, and sd comes from the scatter.
+    ranges : see `calibration.measurements.Record`.
+    course : the rows that it was made of, for materials that remember; None where it was made for others.
+    """
+
+    name: str
+    material: str
+    specimen: str
+    mode: CouponMode
+    stretch: Array
+    stress: Array
+    sd: Array
+    time: Array
+    branch: Array
+    turn: Array
+    peak: Array
+    reloaded: bool
+    remembers: bool
+    rate: Array
+    estimated: bool
+    ranges: Mapping[str, tuple[float, float]]
+    course: Course | None = None
+
+    @property
+    def points(self) -> int:
+        return self.stretch.size
+
+    @cached_property
+    def groups(self) -> Mapping[str, str]:
+        return {
+            "material": self.material,
+            "specimen": self.specimen,
+            "mode": str(self.mode),
+            "trial": self.name,
+        }
+
+    @property
+    def unloads(self) -> bool:
+        return bool(np.isfinite(self.turn).any())
+
+    def only(self, kept: NDArray[np.bool_]) -> Record:
+        """Some of its points."""
+        arrays = ("stretch", "stress", "sd", "time", "branch", "turn", "peak", "rate")
+        course = None if self.course is None else self.course.only(kept)
+        return replace(self, course=course, **{name: getattr(self, name)[kept] for name in arrays})
+
+
+def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[Record]:
+    """One record a trial. A named specimen's trials were done in the order of the file, so that it remembers
+    in one of them what it was strained to in those before. courses : for a material that remembers: holds
+    count by their time. InputError where an error is neither stated nor to be had from the stress."""
+    found: list[Record] = []
+    seen: dict[tuple[str, str], float] = {}
+    furthest: dict[tuple[str, str], float] = {}
+    for t in trials:
+        own = (t.specimen or f"trial {t.id}", t.mode)
+        record = _record(t, seen.get(own, 0.0), furthest.get(own, 1.0) if courses else None)
+        found.append(record)
+        top = float(first_excess(t.mode, record.stretch).max())
+        seen[own] = max(seen.get(own, 0.0), top)
+        furthest[own] = largest_before(t.mode, t.stretch, furthest.get(own, 1.0))
+    return found
+
+
+def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record:
+    """before, furthest : largest I1 - 3 and stretch of earlier trials; furthest is None without a course."""
+    parts = branches_of(trial)
+    timed = furthest is not None and trial.time is not None
+    holds = holds_of(trial) if timed else []
+    excess = first_excess(trial.mode, trial.stretch)
+    turn = np.full(excess.size, np.nan)
+    for b in parts[1:]:
+        unloading = _unloading(trial, b)
+        turn[b.points] = np.where(unloading, excess[b.points.start], np.nan)
+    raw_time = np.full(excess.size, np.nan) if trial.time is None else trial.time
+    raw_rate = rates_of(trial, parts)
+    peak = np.maximum.accumulate(np.maximum(excess, before))
+    rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
+    sds, numbers, firsts, counts = [], [], [], []
+    for n, b in enumerate(parts):
+        first, count = bins_over_time(trial, b.points, holds, MOST) if timed else bins(b.points, MOST)
+        firsts.append(b.points.start + first)
+        counts.append(count)
+        raw = {
+            "stretch": trial.stretch,
+            "stress": trial.stress,
+            "time": raw_time,
+            "turn": turn,
+            "peak": peak,
+            "rate": raw_rate,
+        }
+        mean = {name: np.add.reduceat(x[b.points], first) / count for name, x in raw.items()}
+        for name in _AVERAGED:
+            rows[name].append(mean[name])
+        if timed:
+            sds.append(_sd_over_time(trial, b, holds, mean, first, count))
+        else:
+            sds.append(_sd(trial, b, mean["stretch"], mean["stress"], count))
+        numbers.append(np.full(first.size, float(n)))
+    whole = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
+    sd = np.concatenate(sds)
+    if not (np.isfinite(sd) & (sd > np.finfo(float).tiny)).all():
+        raise InputError(f"trials.{trial.id}: expected some stress that is not 0, or a stated stress_sd_kPa")
+    again = before > 0.0 or bool(np.isfinite(turn).any() and _loads_again(turn))
+    return Record(
+        name=trial.id,
+        material=trial.material,
+        specimen=trial.specimen or trial.material,
+        mode=trial.mode,
+        sd=sd,
+        branch=np.concatenate(numbers),
+        reloaded=again,
+        remembers=before > 0.0,
+        estimated=trial.stress_sd is None,
+        ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))},
+        course=None
+        if furthest is None
+        else course_of(trial, np.concatenate(firsts), np.concatenate(counts), furthest, holds),
+        **whole,
+    )
+
+
+_AVERAGED = ("stretch", "stress", "time", "turn", "peak", "rate")
+
+
+def _unloading(trial: CouponTrial, b: Stroke) -> NDArray[np.bool_]:
+    """Which points of a branch go back to rest, apart from noise about rest; beyond it they load again."""
+    s = trial.stretch[b.points]
+    noise = turning(trial)
+    gone = b.direction * (s - 1.0)
+    if gone[0] > -noise:
+        return np.zeros(s.size, dtype=bool)
+    return np.full(s.size, True) if gone.max() <= noise else gone < 0.0
+
+
+def _loads_again(turn: Array) -> bool:
+    """Whether a loading follows an unloading."""
+    unloading = np.isfinite(turn)
+    return bool((~unloading[int(np.argmax(unloading)) :]).any())
+
+
+def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array) -> Array:
+    """Of the means in bins [Pa]. An error estimated from the scatter stays at least what areas and gauges are
+    known to, however many points are averaged."""
+    own = _own_sd(trial, b, trial.stretch[b.points], stress, count)
+    if trial.stretch_sd == 0.0:
+        return own
+    return np.asarray(np.hypot(own, slope(stretch, stress) * trial.stretch_sd / np.sqrt(count)))
+
+
+def _sd_over_time(
+    trial: CouponTrial,
+    b: Stroke,
+    holds: Sequence[slice],
+    mean: Mapping[str, Array],
+    first: NDArray[np.intp],
+    count: Array,
+) -> Array:
+    """As `_sd`, with the scatter about a smooth curve over time; in a hold the slope is the last ramp's."""
+    assert trial.time is not None
+    own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count)
+    if trial.stretch_sd == 0.0:
+        return own
+    rows = b.points.start + first
+    moves = ~np.array([any(h.start <= i < h.stop for h in holds) for i in rows])
+    if np.count_nonzero(moves) < 5:
+        return own
+    slopes = slope(mean["stretch"][moves], mean["stress"][moves])
+    last = np.maximum(np.cumsum(moves) - 1, 0)
+    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(count)))
+
+
+def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
+    """Of the stress alone; over : what its scatter is taken about a smooth curve of."""
+    if trial.stress_sd is None:
+        one = relative_sd(over, trial.stress[b.points])
+        relative = np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE)
+        largest = np.abs(trial.stress).max(initial=0.0)
+        return np.asarray(relative * np.maximum(scatter_scale(stress), _FLOOR * largest))
+    return np.asarray(trial.stress_sd / np.sqrt(count))
+
+
+# As in `_scatter`: below this fraction of the largest stress an error stays what it is there.
+_FLOOR = 0.05
+
+
+def turning(trial: CouponTrial) -> float:
+    """How far a stretch goes back where it really turns."""
+    return max(TURN * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
+
+
+def branches_of(trial: CouponTrial) -> list[Stroke]:
+    """Loading and unloading in the order of the record; a record that goes nowhere has its net direction."""
+    x = trial.stretch
+    found = []
+    for s in strokes(x, turning(trial)):
+        last = min(s.points.stop, x.size - 1)
+        found.append(Stroke(points=s.points, direction=float(np.sign(x[last] - x[s.points.start]) or 1.0)))
+    return found
+
+
+def protocol_window(trials: Sequence[CouponTrial]) -> ProtocolWindow:
+    """What tests can show of parts beside a law: the times of their ramps and holds, and their peaks."""
+    return window_of(trials, [branches_of(t) for t in trials])
+
+
+def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
+    """|d stretch / d time| of each point [1/s]: that of its whole ramp, so that noise does not enter. In a
+    hold: the ramp's stretch over the time since it began, which falls as 1/time. NaN where there is no
+    time."""
+    found = np.full(trial.stretch.size, np.nan)
+    if trial.time is None:
+        return found
+    begun, travelled = 0.0, 0.0  # of the ramp before
+    for b in parts:
+        x, t = trial.stretch[b.points], trial.time[b.points]
+        reach = slice(b.points.start, min(b.points.stop + 1, trial.stretch.size))
+        travel = float(np.ptp(trial.stretch[reach]))
+        done = np.abs(x - x[0])
+        early = np.flatnonzero(done <= 0.1 * travel)
+        late = np.flatnonzero(done >= 0.9 * travel)
+        if travel == 0.0 or not late.size or t[late[0]] <= t[early[-1]]:
+            continue
+        between = float(t[late[0]] - t[early[-1]])
+        made = float(done[late[0]] - done[early[-1]])
+        rate = made / between
+        start = float(t[early[-1]]) - done[early[-1]] / rate
+        end = start + travel / rate
+        here = np.full(x.size, rate)
+        held = t > end + LATE * between
+        here[held] = travel / (t[held] - start)
+        if travelled > 0.0:  # still held from before
+            held = t < start - LATE * between
+            here[held] = travelled / (t[held] - begun)
+        found[b.points] = here
+        begun, travelled = start, travel
+    return found

@@ -1,0 +1,316 @@
+"""Homogeneous material tests: coupons of all materials together, effects nested in their closed-form stress.
+
+What is compared is the nominal stress at each point, over its standard deviation as the lab states it
+(stretch noise through the measured curve's slope; where no error of the stress is stated, one from the
+curve's scatter).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import CouponTrial, Experiment
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._basis import Columns, legendre
+from calibration.measurements._effect import Candidate
+from calibration.measurements._folds import fifths
+from calibration.measurements._memory import Memory
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise import Noise
+from calibration.measurements._records import listed
+from calibration.measurements._state import State
+from calibration.measurements.homogeneous._effect import HomogeneousEffect
+from calibration.measurements.homogeneous._forward import (
+    Acting,
+    BaseStress,
+    Loading,
+    with_effects,
+    yielding,
+)
+from calibration.measurements.homogeneous._record import Record, records_of
+from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
+from calibration.measurements.homogeneous.kinematics import stress_of
+
+Array = NDArray[np.float64]
+
+# K/G of solid rubbers is above 1000 (K some GPa, G below 1 MPa). At 3000 a stress is the incompressible one
+# to 0.1 %; it is not fitted, since a law that misfits would use it to repair its curve. A fit of a law that
+# holds K/G (`Parametrisation.holding`) has these curves too, whatever its prior says.
+BULK_RATIO = 3000.0
+REMEMBERED = 8192  # stresses of a record
+BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
+
+
+class HomogeneousModel(MeasurementModel):
+    """Baseline: a law of `tisim` (neo-Hookean by default), one shear modulus a specimen; trials that name no
+    specimen share one a material.
+
+    Parameters
+    ----------
+    experiment : its coupons are used.
+    effects : by name; see `calibration.diagnosis.effects.homogeneous`.
+    law, terms : of the baseline; terms of a series law (Ogden, 1 to 3).
+    baseline : in place of that.
+
+    Raises
+    ------
+    InputError : there is no coupon.
+    ValueError : the law is unknown.
+    """
+
+    kind = "homogeneous"
+    unit = ("kPa", 1e-3)
+    # such explanations part in the test by more than a verdict asks, whatever its noise
+    enough = 60.0
+    separates = "most"
+    experiments: ClassVar[Sequence[Any]] = EXPERIMENTS
+
+    records: Sequence[Record]
+    effects: Mapping[str, HomogeneousEffect]
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        *,
+        effects: Mapping[str, HomogeneousEffect] | None = None,
+        law: str = "neo-hookean",
+        terms: int = 1,
+        baseline: Baseline | None = None,
+    ) -> None:
+        self.trials = [t for t in experiment.trials if isinstance(t, CouponTrial)]
+        if not self.trials:
+            raise InputError("experiment.yaml: trials: expected a coupon")
+        self.experiment = experiment
+        self.effects = dict(effects or {})
+        courses = baseline is not None and bool(baseline.law.parts)
+        self._measured_in(records_of(self.trials, courses=courses))
+        self.baseline = baseline or Baseline.per_specimen(
+            self.records, law=law, terms=terms, bulk_ratio=BULK_RATIO
+        )
+        self._base = BaseStress(self.baseline, bulk_ratio=BULK_RATIO)
+        self._set_candidates()
+
+    def _measured_in(self, records: Sequence[Record]) -> None:
+        """Take these records, one row a point."""
+        self.records = records
+        self.row_record = np.repeat(np.arange(len(records)), [r.points for r in records])
+        self.noise = Noise.independent(np.concatenate([r.sd for r in records]))
+        self._reached: dict[Candidate, NDArray[np.bool_]] = {}
+        self._memory: Memory[Hashable, Array] = Memory(REMEMBERED)
+
+    def start(self) -> Array:
+        """Moduli of the incompressible neo-Hookean curves nearest to the records. ValueError where a specimen
+        pulls back against its stretch."""
+        found = {}
+        for name in self.baseline.specimens:
+            top = bottom = 0.0
+            for r in self.records:
+                if r.specimen == name:
+                    unit = stress_of(r.mode, r.stretch, 0.5) / r.sd
+                    top += float(unit @ (r.stress / r.sd))
+                    bottom += float(unit @ unit)
+            if top <= 0.0:
+                raise ValueError(
+                    f"specimen {name}: its stress falls with its stretch, no shear modulus gives that"
+                )
+            found[name] = top / bottom
+        return self.baseline.start(found)
+
+    def stresses(self, state: State) -> list[Array]:
+        """Nominal stress of each record at its stretches [Pa], with the state's effects; NaN where there is
+        none."""
+        return self._stresses_of(range(len(self.records)), state)
+
+    def _stresses_of(self, some: Sequence[int], state: State) -> list[Array]:
+        """Of some records, by index."""
+        loadings = [self._loading(self.records[k], state, self._effects_in(state, k)) for k in some]
+        return [x.shear_modulus * p for x, p in zip(loadings, self._over_modulus(loadings), strict=True)]
+
+    def _loading(self, record: Record, state: State, acting: Acting) -> Loading:
+        return Loading(
+            record=record,
+            shear_modulus=self.baseline.shear_modulus(record.specimen, state.u),
+            law=self.baseline.law_coordinates(record.material, state.u),
+            acting=acting,
+            further=np.zeros(0),
+        )
+
+    def _over_modulus(self, loadings: Sequence[Loading]) -> list[Array]:
+        """Stress over the shear modulus at the records' stretches. It is remembered, since a coordinate or an
+        effect changes few records."""
+        return self._memory.fetch(
+            [x.key for x in loadings], lambda some: self._solved([loadings[k] for k in some])
+        )
+
+    def _solved(self, loadings: Sequence[Loading]) -> list[Array]:
+        moved = []
+        for x in loadings:
+            s = x.record.stretch.copy()
+            for e, a in x.acting:
+                if e.shift is not None:
+                    s = s + e.shift(x.record.stretch, a, x.record)
+            moved.append(s)
+        return yielding(
+            lambda some, own: self._at_own_stretches([loadings[k] for k in some], own),
+            moved,
+            [x.compliance for x in loadings],
+        )
+
+    def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
+        """Stress over the shear modulus at the specimens' own stretches, shape of each."""
+        base = self._base.over_modulus(loadings, stretches)
+        return [with_effects(x, s, p) for x, s, p in zip(loadings, stretches, base, strict=True)]
+
+    def _effects_in(self, state: State, k: int) -> Acting:
+        """Effects in a record, by index, with the sums of their amplitudes there."""
+        found: dict[str, float] = {}
+        for c, a in state.amplitudes.items():
+            if self.visible.get(c, True) and self.reached(c)[k]:
+                found[c.effect] = found.get(c.effect, 0.0) + a
+        return [(self.effects[name], a) for name, a in found.items()]
+
+    def reached(self, candidate: Candidate) -> NDArray[np.bool_]:
+        if candidate not in self._reached:
+            self._reached[candidate] = super().reached(candidate)
+        return self._reached[candidate]
+
+    def _misfit(self, states: Sequence[State]) -> Array:
+        used = np.unique(self.row_record[self.noise.used]).tolist()
+        some = np.isin(self.row_record, used)
+        measured = np.concatenate([self.records[k].stress for k in used])
+        found = np.full((len(states), len(self.row_record)), np.nan)
+        for row, state in zip(found, states, strict=True):
+            row[some] = np.concatenate(self._stresses_of(used, state)) - measured
+        return found
+
+    def _constrains(self, record: Record) -> NDArray[np.bool_]:
+        return self._depends_on(record)
+
+    def predicted_in(self, test: CouponTest, state: State) -> Self | None:
+        """The same specimens in a new test, seen beside the trials that there are; None without a stress."""
+        trials = test.of_each(self.records)
+        if not trials:
+            return None
+        new = self.measuring(trials)
+        predicted = new.stresses(state)
+        if not all(np.isfinite(p).all() for p in predicted):
+            return None
+        new.records = [replace(r, stress=p) for r, p in zip(new.records, predicted, strict=True)]
+        return new
+
+    def measuring(self, trials: Sequence[CouponTrial]) -> Self:
+        """The same specimens in other trials, which are seen beside those that there are: coordinates and
+        candidates stay."""
+        some = copy(self)
+        courses = bool(self.baseline.law.parts)
+        some._measured_in(records_of([*self.trials, *trials], courses=courses)[len(self.trials) :])
+        some.visible = self._visible([*self.records, *some.records])
+        return some
+
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        """By mode, by material, by trial, by loading and unloading, and in fifths of each record."""
+        found: dict[str, list[str]] = {}
+        for r in self.records:
+            for name, labels in {
+                "leave-one-mode-out": [str(r.mode)] * r.points,
+                "leave-one-material-out": [r.material] * r.points,
+                "leave-one-trial-out": [r.name] * r.points,
+                "leave-one-branch-out": [f"{r.name} branch {b + 1:.0f}" for b in r.branch],
+                "leave-one-fifth-out": fifths(r.points),
+            }.items():
+                found.setdefault(name, []).extend(labels)
+        return found
+
+    def _discrepancies(self) -> Mapping[str, Array]:
+        """Smooth in the strain, shared in several ways; one standard deviation of each point [Pa].
+
+        trial bends : of each trial, degrees up to BEND in the strain. mode bends : the same for trials of one
+        mode and material. loops : as trial bends, opposite in loading and unloading. drifts : of each trial
+        that turns, in its time (in the order of its points, where it has none). cycles : one shift a branch.
+        jumps : steps of each trial, between JUMPS parts of its record.
+        """
+        records = self.records
+        columns = Columns([r.points for r in records])
+        for k, r in enumerate(records):
+            back = np.where(np.isfinite(r.turn), -1.0, 1.0)
+            turns = np.unique(r.branch)
+            for degree in range(BEND + 1):
+                bend = legendre(np.log(r.stretch) if (r.stretch > 0).all() else r.stretch, degree)
+                columns.add("trial bends", [(k, bend)])
+                if r.unloads:
+                    columns.add("loops", [(k, back * bend)])
+                if turns.size > 1:
+                    columns.add("drifts", [(k, legendre(_clock(r), degree))])
+            for part in range(1, JUMPS):
+                columns.add("jumps", [(k, (np.arange(r.points) >= part * r.points / JUMPS).astype(float))])
+            for b in turns if turns.size > 1 else []:
+                columns.add("cycles", [(k, (r.branch == b).astype(float))])
+        kinds = dict.fromkeys((r.mode, r.material) for r in records)
+        if len(kinds) < len(records):
+            for kind in kinds:
+                alike = [k for k, r in enumerate(records) if (r.mode, r.material) == kind]
+                strains = np.concatenate([records[k].stretch for k in alike])
+                for degree in range(BEND + 1):
+                    values = legendre(strains, degree)
+                    ends = np.cumsum([records[k].points for k in alike])[:-1]
+                    columns.add("mode bends", list(zip(alike, np.split(values, ends), strict=True)))
+        sd = self.noise.sd[:, None]
+        return {name: sd * raw for name, raw in columns.by_name().items()}
+
+    def remarks(self) -> list[str]:
+        """Where the errors come from, what one loop cannot separate, what order was taken for granted."""
+        records = self.records
+        found = []
+        guessed = [r for r in records if r.estimated]
+        if guessed:
+            typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
+            found.append(
+                f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
+                " scatter about a smooth curve, at least 0.5 % of the stress; its median is"
+                f" {100 * typical:.2g} % of the largest stress"
+            )
+        loops = [r for r in records if r.unloads and not r.reloaded]
+        if loops:
+            found.append(
+                f"{listed(loops)}: loaded and unloaded once, and one loop cannot tell hysteresis from the"
+                " softening of a first loading (mullins): load the specimen again"
+            )
+        remembering = [r for r in records if r.remembers]
+        if remembering:
+            found.append(
+                f"{listed(remembering)}: taken to follow the trials of the same specimen that the file lists"
+                " before"
+            )
+        return found
+
+    def noise_sentence(self) -> str:
+        stated = [r for r in self.records if not r.estimated]
+        parts = []
+        if stated:
+            parts.append("the stress and stretch errors that the lab states, white from point to point")
+        if len(stated) < len(self.records):
+            parts.append(
+                "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
+                " stress"
+            )
+        return (
+            f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
+            + "; ".join(parts)
+            + "; the shear modulus free for each specimen."
+        )
+
+    def pictures(self, diagnosis: Any) -> list[Any]:
+        from calibration.measurements.homogeneous.pictures import pictures
+
+        return pictures(self, diagnosis)
+
+
+def _clock(r: Record) -> Array:
+    return r.time if np.isfinite(r.time).all() else np.arange(float(r.points))

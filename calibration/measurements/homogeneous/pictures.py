@@ -1,0 +1,175 @@
+"""Pictures of coupons for the page of a diagnosis: curves, what is left of them, and its rms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from calibration.diagnosis.drawing import (
+    DrawnCurve,
+    Figure,
+    before_and_after,
+    draw_rms,
+    legend_handles,
+    legend_of,
+    measured_and_simulated,
+    most_telling,
+    per_trial,
+    titled,
+)
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.model import HomogeneousModel
+from calibration.report import COLOURS, INK
+
+Array = NDArray[np.float64]
+
+Kind = Literal["loading", "unloading", "loading again"]
+DOTS = 12  # a branch, where what is left is drawn
+LOOK: dict[Kind, str] = {"loading": COLOURS[0], "unloading": COLOURS[1], "loading again": COLOURS[2]}
+_KPA = 1e-3
+UNIT = ("kPa", _KPA)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnRecord(DrawnCurve):
+    """A record with the stress [Pa] that the baseline makes of its stretches, and the extension; None where
+    there is none."""
+
+    record: Record
+    before: Array
+    after: Array | None
+
+    def branches(self) -> list[tuple[NDArray[np.bool_], Kind]]:
+        """Points of each branch, and what it is."""
+        found: list[tuple[NDArray[np.bool_], Kind]] = []
+        unloaded = self.record.remembers
+        for b in np.unique(self.record.branch):
+            mine = self.record.branch == b
+            if np.isfinite(self.record.turn[mine]).mean() > 0.5:
+                found.append((mine, "unloading"))
+                unloaded = True
+            else:
+                found.append((mine, "loading again" if unloaded else "loading"))
+        return found
+
+
+def drawn(model: HomogeneousModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
+    """All records, with what stands for the extension."""
+    stresses = before_and_after(diagnosis, model.stresses)
+    return [
+        DrawnRecord(
+            name=r.name,
+            record=r,
+            before=b,
+            after=a,
+            left_before=r.stress - b,
+            left_after=None if a is None else r.stress - a,
+            sd=r.sd,
+        )
+        for r, (b, a) in zip(model.records, stresses, strict=True)
+    ]
+
+
+def pictures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[Figure]:
+    """Curves, residuals with the noise's band, and rms. ValueError where a law has no stress."""
+    records = drawn(model, diagnosis)
+    if not all(np.isfinite(d.before).all() for d in records):
+        raise ValueError("the law has no stress at the baseline")
+    after = legend_of(diagnosis)
+    return [
+        draw_curves(records, after),
+        draw_residuals(records, after),
+        draw_rms(
+            records,
+            diagnosis,
+            after,
+            quantity="stress",
+            unit=UNIT,
+            noise=float(np.sqrt(np.mean(np.concatenate([d.sd for d in records]) ** 2))),
+            dashed="the points' own error",
+        ),
+    ]
+
+
+def draw_curves(records: Sequence[DrawnRecord], after: str) -> Figure:
+    """One panel a trial: stress over stretch, measured and simulated."""
+
+    def draw(axes: Any, d: DrawnRecord) -> None:
+        measured_and_simulated(
+            axes,
+            _strain(d),
+            _KPA * d.record.stress,
+            _KPA * d.before,
+            None if d.after is None else _KPA * d.after,
+            [(mine, kind == "unloading") for mine, kind in d.branches()],
+        )
+        _titled(axes, d, "nominal stress / kPa")
+
+    return per_trial(
+        records,
+        draw,
+        name="curves",
+        caption="Dots: measured (hollow: unloading). Lines: simulated.",
+        handles=legend_handles(records, after),
+    )
+
+
+def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
+    """One panel a trial: measured less baseline, in means of neighbouring points, and what the extension adds
+    to the baseline: where it says what the baseline lacks, its lines go through the dots."""
+
+    def draw(axes: Any, d: DrawnRecord) -> None:
+        x = _strain(d)
+        axes.axhline(0.0, color=INK, lw=0.8, zorder=1)
+        for mine, kind in d.branches():
+            _means(axes, x[mine], _KPA * d.left("before")[mine], _KPA * d.sd[mine], kind)
+            if d.after is not None:
+                added = _KPA * (d.after - d.before)[mine]
+                axes.plot(x[mine], added, color=LOOK[kind], lw=2.0, zorder=2)
+        _titled(axes, d, "above the baseline / kPa")
+
+    kinds = dict.fromkeys(kind for d in most_telling(records)[0] for _, kind in d.branches())
+    handles = [Line2D([], [], ls="", marker="o", ms=4, color=LOOK[k], label=f"measured, {k}") for k in kinds]
+    if any(d.extended for d in records):
+        handles.append(Line2D([], [], color=INK, lw=2, label=after))
+    return per_trial(
+        records,
+        draw,
+        name="residuals",
+        caption="Dots: measured less baseline stress, means of neighbouring points with their standard"
+        " deviation."
+        + (" Lines: what is added to the baseline; right where they go through the dots." if after else ""),
+        handles=handles,
+        section="residuals",
+    )
+
+
+def _means(axes: Any, x: Array, y: Array, sd: Array, kind: Kind) -> None:
+    """Dots with error bars: weighted means of neighbours."""
+    parts = np.array_split(np.arange(x.size), min(x.size, DOTS))
+    weights = [sd[p] ** -2.0 for p in parts]
+    axes.errorbar(
+        [float(np.average(x[p], weights=w)) for p, w in zip(parts, weights, strict=True)],
+        [float(np.average(y[p], weights=w)) for p, w in zip(parts, weights, strict=True)],
+        yerr=[float(w.sum() ** -0.5) for w in weights],
+        fmt="o",
+        ms=3.5,
+        lw=0.9,
+        color=LOOK[kind],
+        zorder=3,
+    )
+
+
+def _strain(d: DrawnRecord) -> Any:
+    return d.record.stretch - 1.0 if d.record.mode == "simple-shear" else d.record.stretch
+
+
+def _titled(axes: Any, d: DrawnRecord, quantity: str) -> None:
+    across = "shear" if d.record.mode == "simple-shear" else "stretch"
+    titled(axes, d, across, quantity, unit=UNIT, note=f" ({d.record.mode})")

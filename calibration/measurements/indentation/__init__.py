@@ -1,0 +1,13 @@
+"""Indentation: force against depth of an indenter in a block, as a model of fits and diagnoses."""
+
+from calibration.measurements.indentation._noise import TOGETHER, scatter, wandering_modes
+from calibration.measurements.indentation._scene import approach, block_names, poke_scene
+
+__all__ = [
+    "TOGETHER",
+    "approach",
+    "block_names",
+    "poke_scene",
+    "scatter",
+    "wandering_modes",
+]

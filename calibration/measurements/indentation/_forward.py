@@ -1,0 +1,192 @@
+"""Simulated forces of records at their depths, with effects.
+
+An effect of the scene is simulated at a few amplitudes, its nodes, and interpolated between them. Without an
+effect of history the force in unloading is that of loading at the same depth, as long as nothing slides under
+the indenter (a friction of 0.6: to 0.01 % in an independent simulation that unloads).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements.indentation._curve import Curve
+from calibration.measurements.indentation._curve_cache import CurveCache, CurveRequest
+from calibration.measurements.indentation._effect import IndentationEffect
+from calibration.measurements.indentation._record import Record
+
+Array = NDArray[np.float64]
+# Amplitudes of the effects in a record [SI], by name, position (None here) and variant.
+Acting = Mapping[tuple[str, float | None, float | None], float]
+
+LEAST = 5  # points of a record that must be reached
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ForwardMap:
+    """Forces of records. curves : shared by all records. effects : by name."""
+
+    curves: CurveCache
+    effects: Mapping[str, IndentationEffect]
+
+    def base(self, record: Record) -> Curve:
+        """The curve of a record without effects."""
+        return self.curves.fetch([CurveRequest(geometry=record.geometry, depth=record.deepest)])[0]
+
+    def along(self, record: Record, curve: Curve, shear_modulus: float, acting: Acting) -> Array:
+        """Force along the indenter [N], shape (k,); curve : of the record's material without effects."""
+        depth = record.depth.copy()
+        for (name, _, _), a in acting.items():
+            shift = self.effects[name].shift
+            if shift is not None:
+                depth = depth + shift(a, record)
+        unit = curve.at(depth)
+        for (name, _, variant), a in acting.items():
+            if self.effects[name].scene is not None:
+                unit = unit + self._change(record, name, variant, a, depth, across=False)
+        force = shear_modulus * np.maximum(unit, 0.0)
+        for (name, _, variant), a in sorted(acting.items(), key=lambda item: self.effects[item[0][0]].stage):
+            apply = self.effects[name].force
+            if apply is not None:
+                force = apply(force, a, record, variant)
+        return np.asarray(force)
+
+    def across(self, record: Record, curve: Curve, shear_modulus: float, acting: Acting) -> Array:
+        """Force across the indenter [N], shape (k, 2): with effects of the scene only, since faults of the
+        load cell are modelled along the indenter."""
+        unit = curve.sides(record.depth)
+        for (name, _, variant), a in acting.items():
+            if self.effects[name].scene is not None:
+                unit = unit + self._change(record, name, variant, a, record.depth, across=True)
+        return shear_modulus * unit
+
+    def prepare(self, needed: Sequence[tuple[Record, Acting]]) -> None:
+        """Simulate together what these records need with these effects."""
+        requests = []
+        for record, acting in needed:
+            for (name, _, variant), a in acting.items():
+                effect = self.effects[name]
+                if effect.scene is None:
+                    continue
+                for node, weight in node_weights(nodes_of(record, effect), a, straight=effect.straight):
+                    if node != 0.0 and weight != 0.0:
+                        requests.append(self._request(record, name, variant, node))
+        if requests:
+            self.curves.fetch(requests)
+
+    def _change(
+        self, record: Record, name: str, variant: float | None, a: float, depth: Array, *, across: bool
+    ) -> Array:
+        """Change of the force over the shear modulus by an effect of the scene [m2], shape (k,) or (k, 2)."""
+        base = self.base(record)
+        found = np.zeros((depth.size, 2) if across else depth.size)
+        effect = self.effects[name]
+        for node, weight in node_weights(nodes_of(record, effect), a, straight=effect.straight):
+            if node != 0.0 and weight != 0.0:
+                curve = self.curves.fetch([self._request(record, name, variant, node)])[0]
+                if across:
+                    change = curve.sides(depth) - base.sides(depth)
+                else:
+                    retracted = curve.retracting(depth, record.cycle_peak)
+                    change = np.where(record.direction > 0, curve.at(depth), retracted) - base.at(depth)
+                found = found + weight * change
+        return found
+
+    def _request(self, record: Record, name: str, variant: float | None, node: float) -> CurveRequest:
+        effect = self.effects[name]
+        make = effect.scene
+        assert make is not None
+        retracts = effect.retracts and record.unloads
+        return CurveRequest(
+            geometry=record.geometry,
+            depth=record.deepest,
+            name=f"{name} {variant} {node:.9g}{' retracted' if retracts else ''}",
+            change=lambda poke, mesh: make(poke, mesh, node, variant),
+            finer=effect.finer,
+            retracts=retracts,
+        )
+
+
+def reached(curves: CurveCache, records: Sequence[Record]) -> tuple[list[Record], tuple[str, ...]]:
+    """Simulate each geometry; leave out points deeper than its simulation reached.
+
+    Returns
+    -------
+    The records, and a sentence for each that was shortened.
+
+    Raises
+    ------
+    ValueError : hardly any point of a record is left.
+    """
+    requests = [CurveRequest(geometry=r.geometry, depth=r.deepest) for r in records]
+    sentences, shortened = [], []
+    for r, curve in zip(records, curves.fetch(requests), strict=True):
+        deep = r.depth > curve.reached
+        if deep.any():
+            first = int(np.argmax(deep))  # later points depend on those that are left out
+            if first < LEAST:
+                raise ValueError(f"{r.name}: the simulated indentation ends at {1e3 * curve.reached:.2g} mm")
+            sentences.append(
+                f"{r.name}: from {1e3 * curve.reached:.2f} mm on not used, the simulation ended there"
+                f" ({curve.status})"
+            )
+            r = r.only(np.arange(r.points) < first)
+        shortened.append(r)
+    return shortened, tuple(sentences)
+
+
+def difference_step(effect: IndentationEffect, chord: float | None, now: float, record: Record) -> float:
+    """Step of a finite difference of an effect of the scene.
+
+    Parameters
+    ----------
+    chord : node that the first difference goes to.
+    now : amplitude; from zero the step goes all the way to the chord, else it stays between two nodes.
+    record : of which the nodes are.
+    """
+    if now == 0.0:
+        nodes = nodes_of(record, effect)
+        return chord if chord in nodes else min(nodes, key=lambda n: (n == 0.0, abs(n)))
+    inside = [n for n in effect.nodes if n != 0.0 and np.sign(n) == np.sign(now)]
+    further = max((abs(n) for n in inside), default=abs(now))
+    step = effect.step * float(np.sign(now))
+    return step if abs(now) + effect.step <= further else -step
+
+
+def nodes_of(record: Record, effect: IndentationEffect) -> tuple[float, ...]:
+    """Amplitudes at which a record's scene can be simulated with an effect, 0 among them."""
+    scene = record.geometry.scene(1e-3)
+    assert effect.scene is not None
+    make, variants = effect.scene, effect.variants([record])
+    return tuple(n for n in effect.nodes if n == 0.0 or effect.fits(make(scene, None, n, variants[0])))
+
+
+def node_weights(nodes: Sequence[float], a: float, *, straight: bool) -> list[tuple[float, float]]:
+    """Nodes with the weights that interpolate at an amplitude.
+
+    Weights are those of the two parabolas through both neighbours and the next node on either side, of which
+    the nearer side counts more, or of a line (`straight`); a line continues beyond the last node.
+    """
+    ordered = sorted(nodes)
+    if len(ordered) == 1:
+        return [(ordered[0], 1.0)]
+    k = min(max(int(np.searchsorted(ordered, a)), 1), len(ordered) - 1)
+    low, high = ordered[k - 1], ordered[k]
+    t = (a - low) / (high - low)
+    weights = {low: 1.0 - t, high: t}
+    if straight or not 0.0 < t < 1.0:
+        return list(weights.items())
+    # what a parabola adds to the line, for a node further on: zero at both neighbours
+    sides = [(n, w) for n, w in ((k - 2, 1.0 - t), (k + 1, t)) if 0 <= n < len(ordered)]
+    whole = sum(w for _, w in sides)
+    for n, w in sides:
+        node = ordered[n]
+        bend = w / whole * (a - low) * (a - high) / ((node - low) * (node - high))
+        weights[node] = bend
+        line = (node - low) / (high - low)
+        weights[low] -= bend * (1.0 - line)
+        weights[high] -= bend * line
+    return list(weights.items())

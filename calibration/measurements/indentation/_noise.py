@@ -1,0 +1,170 @@
+"""Noise of indentation: errors of each point, the simulation's mesh error, and first touch.
+
+Mesh error as measured on flat and round indenters to 5 mm (docs/pokes.md): at refinement 1 the force is
+too high by up to 3 %, with one sign at all depths, and beside that wanders by about 1 %, more at depths below
+0.4 radii, where few cells touch. It wanders as more cells come to touch, thus with the width of the contact,
+which grows as the square root of radius times depth, up and down once a cell; and each geometry has a
+deviation of its own. All fall with the square of the cell size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._noise import Noise
+from calibration.measurements.indentation._curve import COARSE, FINE, Curve
+from calibration.measurements.indentation._phases import remaining_noise
+from calibration.measurements.indentation._record import Record
+from calibration.measurements.indentation._scene import Geometry
+
+Array = NDArray[np.float64]
+
+# Relative sd at refinement 1: common to all indentations, and of each point by itself (contact points that
+# come and go, the curve between its frames).
+TOGETHER, SCATTER = 0.025, 0.002
+# (relative sd, correlation length in width of contact over the indenter's radius) at refinement 1: up and
+# down once a cell, and a geometry's own deviation at nearly all depths.
+WANDERING = ((0.008, 0.04), (0.006, 0.5))
+SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wandering grow
+NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
+
+GRID = 120  # depths at which wandering is evaluated
+TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
+# Mesh error of the force across the indenter, over the force along it, where its path across the surface
+# bends.
+ACROSS = 0.01
+
+
+# -- mesh error --
+
+
+def scatter(depth: Array, radius: float, refinement: float | Array) -> Array:
+    """Relative sd of the simulated force at depths (k,), independent from point to point.
+
+    Parameters
+    ----------
+    radius : of the indenter [m].
+    refinement : of the mesh; one number, or one for each depth.
+    """
+    return np.asarray(SCATTER / refinement**2 * _shallow(depth, radius))
+
+
+def wandering_modes(depth: Array, radius: float, refinement: float | Array) -> Array:
+    """One sd of each of m independent modes of the wandering, relative to the force at depths (k,); shape
+    (k, m). Parameters as in `scatter`."""
+    size = _shallow(depth, radius) / refinement**2
+    width = refinement * np.sqrt(depth / radius)
+    apart = width[:, None] - width[None, :]
+    alike = sum((sd**2 * np.exp(-0.5 * (apart / over) ** 2) for sd, over in WANDERING), np.zeros_like(apart))
+    values, vectors = np.linalg.eigh(np.outer(size, size) * alike)
+    kept = values > NEGLIGIBLE * values[-1]
+    return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+
+def _shallow(depth: Array, radius: float) -> Array:
+    """1 at large depth, 10 at most at first touch."""
+    shallow = SHALLOW * radius
+    return np.asarray(np.sqrt(1.0 + (shallow / np.maximum(depth, 0.1 * shallow)) ** 2))
+
+
+# -- noise of records --
+
+
+def noise_of(
+    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+) -> Noise:
+    """Noise of all forces along the indenter, then of all across it.
+
+    Parameters
+    ----------
+    curves : of the records, without effects.
+    forces, slopes : simulated force [N] and its slope [N/m] at the records' depths.
+    """
+    along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
+    across = [
+        np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
+    ]
+    columns, names = nuisances(records, curves, forces, slopes)
+    sd = np.concatenate([*along, *across])
+    none = np.zeros((len(sd) - len(columns), columns.shape[1]))  # nuisances are along the indenter
+    return Noise.independent(sd).with_nuisances(np.vstack([columns, none]), names)
+
+
+def point_sd(record: Record, curve: Curve, force: Array, slope: Array) -> Array:
+    """Standard deviation of each point by itself [N], shape (k,): of the load cell, of the depth through the
+    slope, of first touch close to it, and of the simulation."""
+    through_depth = slope * record.depth_error
+    # close to first touch a record may touch or not, which the slope does not say
+    near = np.abs(record.depth) < TOUCH * record.depth_sd
+    kink = np.where(near, 2.0 * record.depth_sd * float(slope[near].max(initial=0.0)), 0.0)
+    own = np.abs(force) * scatter(
+        np.maximum(record.depth, 0.0),
+        record.geometry.rod.radius,
+        _refinement(record.depth, curve, record.geometry),
+    )
+    return np.sqrt(record.own_sd**2 + through_depth**2 + own**2 + kink**2)
+
+
+def side_sd(record: Record, force: Array) -> Array:
+    """Standard deviation of the forces across the indenter [N], shape (k,)."""
+    return np.hypot(record.own_sd, ACROSS * np.abs(force))
+
+
+def nuisances(
+    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+) -> tuple[Array, list[str]]:
+    """One standard deviation of each nuisance in simulated less measured [N], shape (points, n), and names.
+
+    In this order: the mesh error common to all indentations; of each geometry its wandering; of each record
+    its first touch (positive where it is deeper than recorded), and the noise that smoothing leaves in the
+    depth of its phases.
+    """
+    starts = np.cumsum([0, *(r.points for r in records)])
+    rows = [np.arange(int(a), int(b)) for a, b in pairwise(starts)]
+    whole = np.concatenate(list(forces))
+    meshes = [_refinement(r.depth, c, r.geometry) for r, c in zip(records, curves, strict=True)]
+    found = [TOGETHER / np.concatenate(meshes) ** 2 * whole]
+    names = ["mesh of all indentations"]
+
+    def add(name: str, where: NDArray[np.intp], values: Array) -> None:
+        column = np.zeros(whole.size)
+        column[where] = values
+        found.append(column)
+        names.append(name)
+
+    for geometry in dict.fromkeys(r.geometry for r in records):
+        mine = [k for k, r in enumerate(records) if r.geometry == geometry]
+        # records of one geometry have one curve, apart from its continuation by a deeper one
+        curve = max((curves[k] for k in mine), key=lambda c: c.finer)
+        where = np.concatenate([rows[k] for k in mine])
+        depth = np.maximum(np.concatenate([records[k].depth for k in mine]), 0.0)
+        label = ", ".join(records[k].name for k in mine)
+        for m, mode in enumerate(_modes(depth, geometry, curve).T, 1):
+            add(f"mesh {m} of {label}", where, mode * whole[where])
+    for r, own, slope in zip(records, rows, slopes, strict=True):
+        if r.depth_sd > 0.0:
+            add(f"touch of {r.name}", own, -r.depth_sd * slope)
+        for n, degree in enumerate(r.degrees):
+            phase = r.phase == n
+            if degree < 0 or not phase.any():
+                continue
+            left = r.depth_sd * remaining_noise(r.time[phase], int(r.count[phase].sum()), degree)
+            for m, part in enumerate(left.T, 1):
+                add(f"depth {m} of {r.labels[n]} of {r.name}", own[phase], part * slope[phase])
+    return np.column_stack(found), names
+
+
+def _refinement(depth: Array, curve: Curve, geometry: Geometry) -> Array:
+    """Refinement of the mesh that a curve's forces at depths (k,) come from."""
+    return np.where(depth <= curve.finer, FINE, COARSE) * geometry.refinement
+
+
+def _modes(depth: Array, geometry: Geometry, curve: Curve) -> Array:
+    """Wandering modes at depths (k,), interpolated on a grid of depths, since records are long."""
+    grid = np.linspace(0.0, float(np.sqrt(depth.max())), GRID)[1:] ** 2
+    modes = wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
+    return np.column_stack([np.interp(depth, grid, mode) for mode in modes.T])

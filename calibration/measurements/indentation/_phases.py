@@ -1,0 +1,230 @@
+"""Phases of a record: loading, holds and unloading, and the depth of each without its reading noise.
+
+Strokes are those of `calibration.measurements._records`; holds are split off them, and boundaries are moved
+to where straight lines on either side fit a noisy depth best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.experiment.model import PokeTrial
+from calibration.measurements._records import strokes
+
+Array = NDArray[np.float64]
+
+TURN = 0.02  # fraction of the record's range of depth that a real turn goes back by
+NOISE = 6.5  # standard deviations of the depth that are no turn
+# samples by which noise may have moved a boundary, and those on either side from which it is found
+MOVED, WINDOW = 6, 14
+ENDS, NEAR, CALM = 7, 0.5, 5  # samples at the ends of a stroke, distance that counts as there, median window
+# Squared deviations of the depth by which lines without a hold must be worse than with it: a hold has two
+# numbers for its ends and one for its depth, chosen among many alternatives.
+MORE = 15.0
+REST = 0.15  # fraction of a stroke's time that it must stand still at its end to be a hold
+
+HIGHEST = 6  # degree of a phase's depth in time
+LEAST = 8  # samples that a phase needs to be smoothed
+AGREES = 1.3  # rms of the depth about the smooth one, over the stated noise
+
+_NAMES = {1.0: "loading", 0.0: "hold", -1.0: "unloading"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phase:
+    """A part of a record in which the indenter moves one way, or rests.
+
+    Attributes
+    ----------
+    points : its samples in the record.
+    direction : +1 loading, 0 hold, -1 unloading.
+    cycle : number of the loading that it belongs to, from 1.
+    """
+
+    points: slice
+    direction: float
+    cycle: int
+
+    @property
+    def label(self) -> str:
+        return f"{_NAMES[self.direction]} {self.cycle}"
+
+
+def phases_of(trial: PokeTrial) -> list[Phase]:
+    """Phases in the order of the record."""
+    depth, time = trial.record.depth, trial.record.time
+    tolerance = max(TURN * float(np.ptp(depth)), NOISE * trial.depth_sd)
+    found: list[Phase] = []
+    cycle = 0
+    for s in strokes(depth, tolerance):
+        direction = s.direction or 1.0  # a record that never turns counts as loading
+        cycle += direction > 0
+        number = max(cycle, 1)
+        a, b = s.points.start, s.points.stop
+        first, last = _moving(depth[a:b], time[a:b], tolerance)
+        for low, high, moves in ((0, first, 0.0), (first, last, direction), (last, b - a, 0.0)):
+            if high <= low:
+                continue
+            # a rest at the end of the stroke before continues at this stroke's start
+            if moves == 0.0 and found and found[-1].direction == 0.0:
+                found[-1] = replace(found[-1], points=slice(found[-1].points.start, a + high))
+            else:
+                found.append(Phase(points=slice(a + low, a + high), direction=moves, cycle=number))
+    return found if trial.depth_sd == 0.0 else _settled(found, time, depth, trial.depth_sd)
+
+
+# -- depth without its noise --
+
+
+def smooth_depth(
+    time: Array, depth: Array, phases: Sequence[Phase], sd: float
+) -> tuple[Array, tuple[int, ...]]:
+    """Depth without its reading noise. An indenter is driven smoothly, and forces simulated at noisy depths
+    would carry that noise into everything that is fitted to the measured ones.
+
+    Parameters
+    ----------
+    sd : of one reading of the depth [m].
+
+    Returns
+    -------
+    Depth [m], shape (k,): in each phase the polynomial in time of the lowest degree that agrees with the
+    stated noise; and these degrees, -1 where none agrees, and the depth keeps its noise.
+    """
+    found, degrees = depth.copy(), []
+    for p in phases:
+        t, d = time[p.points], depth[p.points]
+        degrees.append(-1)
+        for degree in range(min(HIGHEST, d.size // 3) + 1) if sd > 0.0 and d.size >= LEAST else ():
+            line = np.polynomial.Legendre.fit(t, d, degree)(t)
+            rms = float(np.sqrt(np.sum((d - line) ** 2) / (d.size - degree - 1)))
+            if rms <= AGREES * sd:
+                found[p.points] = line
+                degrees[-1] = degree
+                break
+    return found, tuple(degrees)
+
+
+def remaining_noise(time: Array, samples: int, degree: int) -> Array:
+    """One standard deviation of each coefficient of a smoothed phase, at some of its times (k,), over the
+    noise of one sample; shape (k, degree + 1)."""
+    low, high = float(time.min()), float(time.max())
+    unit = 2.0 * (time - low) / (high - low) - 1.0 if high > low else np.zeros(time.size)
+    each = np.sqrt((2.0 * np.arange(degree + 1) + 1.0) / samples)
+    return np.asarray(np.polynomial.legendre.legvander(unit, degree) * each)
+
+
+# -- holds --
+
+
+def _moving(depth: Array, time: Array, tolerance: float) -> tuple[int, int]:
+    """First sample of a stroke that moves and first one that has arrived; rests too short to be holds belong
+    to the stroke."""
+    from scipy.ndimage import median_filter
+
+    size = depth.size
+    if size < 4:
+        return 0, size
+    # medians of several samples: the first and the last alone are extremes of the noise where a stroke begins
+    # and ends at a rest, and a rest about them would seem to move
+    some = max(1, min(ENDS, size // 8))
+    start, end = float(np.median(depth[:some])), float(np.median(depth[-some:]))
+    near = NEAR * tolerance
+    calm = median_filter(depth, min(CALM, some), mode="reflect")
+    left = np.flatnonzero(np.abs(calm - start) > near)
+    arrived = np.flatnonzero(np.abs(calm - end) > near)
+    if not left.size or not arrived.size:
+        return 0, size
+    first, last = int(left[0]), int(arrived[-1]) + 1
+    travel = max(float(time[min(last, size - 1)] - time[first]), 0.0)
+    if time[first] - time[0] <= REST * travel:
+        first = 0
+    if time[-1] - time[min(last, size - 1)] <= REST * travel:
+        last = size
+    return first, last
+
+
+def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[Phase]:
+    """Boundaries moved to where they are; then holds too short, and holds that noise of `sd` on the strokes
+    beside them explains, are given to these strokes, and boundaries are moved again."""
+    found = _sharper(phases, time, depth)
+    while True:
+        needless = next((k for k in range(len(found)) if not _needed(found, k, time, depth, sd)), None)
+        if needless is None:
+            return found
+        found = _sharper(_without(found, needless), time, depth)
+
+
+def _needed(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -> bool:
+    """Whether a phase is a stroke, or a hold without which the strokes beside it, extended to their best
+    common turning point, fit worse than noise explains, and which lasts."""
+    hold = phases[k]
+    beside = [q for q in phases[max(k - 1, 0) : k + 2] if q.direction != 0.0]
+    if hold.direction != 0.0 or not beside:
+        return True
+    if _duration(hold, time) <= REST * max(_duration(q, time) for q in beside):
+        return False
+    low = max(phases[k - 1].points.start, hold.points.start - WINDOW) if k > 0 else hold.points.start
+    high = (
+        min(phases[k + 1].points.stop, hold.points.stop + WINDOW) if k + 1 < len(phases) else hold.points.stop
+    )
+    three = [slice(low, hold.points.start), hold.points, slice(hold.points.stop, high)]
+    held = sum(_line_misfit(time[p], depth[p], level=p == hold.points) for p in three if p.stop - p.start > 2)
+    if len(beside) == 2:
+        cuts = time[low + 3 : high - 2]
+        two = min(_bent_misfit(time[low:high], depth[low:high], at, *beside) for at in cuts)
+    else:
+        two = _line_misfit(time[low:high], depth[low:high], level=False)
+    return two > held + MORE * sd**2
+
+
+def _without(phases: list[Phase], k: int) -> list[Phase]:
+    """The samples of a hold go to the stroke before it, or half of them where there is one on either side."""
+    start, stop = phases[k].points.start, phases[k].points.stop
+    cut = start if k == 0 else stop if k + 1 == len(phases) else (start + stop) // 2
+    found = [replace(p) for p in phases]
+    if k > 0:
+        found[k - 1] = replace(found[k - 1], points=slice(found[k - 1].points.start, cut))
+    if k + 1 < len(found):
+        found[k + 1] = replace(found[k + 1], points=slice(cut, found[k + 1].points.stop))
+    return found[:k] + found[k + 1 :]
+
+
+def _duration(phase: Phase, time: Array) -> float:
+    return float(time[phase.points.stop - 1] - time[phase.points.start])
+
+
+def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
+    """The same with each boundary where two lines that meet there, level in a hold, fit the depth best."""
+    found = list(phases)
+    for k in range(len(found) - 1):
+        a, b = found[k], found[k + 1]
+        low = max(a.points.start, a.points.stop - WINDOW)
+        high = min(b.points.stop, b.points.start + WINDOW)
+        cuts = range(max(low + 3, a.points.stop - MOVED), min(high - 3, a.points.stop + MOVED) + 1)
+        if not cuts:
+            continue
+        misfits = [_bent_misfit(time[low:high], depth[low:high], time[c], a, b) for c in cuts]
+        cut = cuts[int(np.argmin(misfits))]
+        found[k] = replace(a, points=slice(a.points.start, cut))
+        found[k + 1] = replace(b, points=slice(cut, b.points.stop))
+    return found
+
+
+def _bent_misfit(time: Array, depth: Array, at: float, a: Phase, b: Phase) -> float:
+    """Squared misfit of a line with a bend at a time, level on the side of a hold."""
+    before, after = np.minimum(time - at, 0.0), np.maximum(time - at, 0.0)
+    columns = [np.ones(time.size)]
+    columns += [side for side, p in ((before, a), (after, b)) if p.direction != 0.0]
+    basis = np.linalg.qr(np.column_stack(columns))[0]
+    return float(depth @ depth - np.sum((basis.T @ depth) ** 2))
+
+
+def _line_misfit(time: Array, depth: Array, *, level: bool) -> float:
+    """Squared misfit of a line, of a level one for a hold."""
+    t, d = time - time.mean(), depth - depth.mean()
+    return float(d @ d - (0.0 if level else (t @ d) ** 2 / (t @ t)))

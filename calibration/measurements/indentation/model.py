@@ -1,0 +1,398 @@
+"""Indentation tests of all materials together, effects nested in their simulated forces.
+
+The force along the indenter (and across it, where the lab has vectors) is compared at the recorded depths of
+the whole record: loading, holds, unloading, later cycles. Errors are those that the lab states, the depth's
+through the slope, and the simulation's own mesh error (`_noise.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from functools import partial
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import Experiment, PokeTrial
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._basis import Columns, legendre
+from calibration.measurements._effect import Candidate, reaches
+from calibration.measurements._folds import fifths
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise import Noise
+from calibration.measurements._records import listed
+from calibration.measurements._state import State
+from calibration.measurements.indentation._curve import Curve
+from calibration.measurements.indentation._curve_cache import CurveCache
+from calibration.measurements.indentation._effect import IndentationEffect
+from calibration.measurements.indentation._forward import ForwardMap, difference_step, reached
+from calibration.measurements.indentation._law_curves import LawCurves
+from calibration.measurements.indentation._noise import TOUCH, noise_of
+from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
+from calibration.measurements.indentation._scene import BULK_RATIO, FRICTION, geometry_of
+from calibration.measurements.indentation.experiments import EXPERIMENTS, IndentationTest
+
+Array = NDArray[np.float64]
+
+LEAST = 3  # points of a record that a law must reach
+BEND = 4  # highest degree of a discrepancy basis
+
+
+class IndentationModel(MeasurementModel):
+    """Baseline: neo-Hookean, nearly incompressible, one shear modulus a specimen; trials that name no
+    specimen share one a material. Each geometry is simulated once, and once for each change of it that a
+    search needs. A baseline of a law has that law's curves (`LawCurves`), simulated by `update_nuisances`.
+
+    Parameters
+    ----------
+    experiment : its indentations are used.
+    effects : by name; see `calibration.diagnosis.effects.indentation`.
+    workers : processes, as in `tisim.simulate`.
+    baseline : in place of the neo-Hookean one.
+    friction : coefficient between indenter and block, a belief.
+    edge_radius : of flat indenters [m]; None for 0.4 of their radius.
+    max_depth : nothing deeper is compared [m].
+    first_loading : nothing after the first hold or reversal is compared.
+    refinement : by which all meshes are finer than usual.
+
+    Attributes
+    ----------
+    noise : before `update_nuisances`, the load cell's alone.
+    left_out : a sentence for each record that is not compared as a whole.
+
+    Raises
+    ------
+    InputError : there is no indentation, or one that cannot be simulated.
+    ValueError : a simulation has no equilibrium.
+    """
+
+    kind = "indentation"
+    unit = ("N", 1.0)
+    experiments: ClassVar[Sequence[Any]] = EXPERIMENTS
+
+    records: Sequence[Record]
+    effects: Mapping[str, IndentationEffect]
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        *,
+        effects: Mapping[str, IndentationEffect] | None = None,
+        workers: int | None = None,
+        baseline: Baseline | None = None,
+        friction: float = FRICTION,
+        edge_radius: float | None = None,
+        max_depth: float | None = None,
+        first_loading: bool = False,
+        refinement: float = 1.0,
+    ) -> None:
+        trials = [t for t in experiment.trials if isinstance(t, PokeTrial)]
+        if not trials:
+            raise InputError("experiment.yaml: trials: expected a poke")
+        self.experiment = experiment
+        self.effects = dict(effects or {})
+        self.curves = CurveCache(workers)
+        self.forward = ForwardMap(curves=self.curves, effects=self.effects)
+        self._geometry = partial(
+            geometry_of, friction=friction, edge_radius=edge_radius, refinement=refinement
+        )
+        self._part = partial(part_of, max_depth=max_depth, first_loading=first_loading)
+        self._fits_law = baseline is not None and baseline.whole
+        self._measured_in(trials)
+        self.baseline = baseline or Baseline.per_specimen(self.records, bulk_ratio=BULK_RATIO)
+        self._of_law = {
+            m: LawCurves(self.baseline.law, [r for r in self.records if r.material == m], self.curves)
+            for m in (self.baseline.materials if self.baseline.whole else ())
+        }
+        self._set_candidates()
+
+    def _measured_in(self, trials: Sequence[PokeTrial]) -> None:
+        """Take the records of these trials. Rows: one a point along the indenter, of all records; then two a
+        point across it, of the records that have them."""
+        compared, not_compared = self._part(records_of(trials, self._geometry))
+        self.records, self.left_out = compared, not_compared
+        if self._fits_law:  # simulated where nuisances are taken
+            check_pushed(compared)
+        else:
+            self.records, ended = reached(self.curves, compared)
+            self.left_out += ended
+        self.row_record = np.concatenate([np.repeat(k, n) for k, n in self._row_blocks()])
+        own = [r.own_sd for r in self.records]
+        across = [np.repeat(r.own_sd, 2) for r in self.records if r.across is not None]
+        self.noise = Noise.independent(np.concatenate([*own, *across]))
+        self._elastic: list[Array] = []
+
+    def _row_blocks(self) -> list[tuple[int, int]]:
+        """Record and number of rows of each block of rows, in their order."""
+        along = [(k, r.points) for k, r in enumerate(self.records)]
+        return along + [(k, 2 * r.points) for k, r in enumerate(self.records) if r.across is not None]
+
+    # -- forces --
+
+    def start(self) -> Array:
+        """Moduli of the curves nearest to the first loadings. ValueError where a specimen pulls the indenter
+        in."""
+        found = {}
+        for name in self.baseline.specimens:
+            top = bottom = 0.0
+            for r in self.records:
+                if r.specimen == name:
+                    unit = self.forward.base(r).at(r.depth)
+                    first = (r.cycle == 1) & (r.direction > 0)
+                    used = first if first.any() else np.ones(r.points, dtype=bool)
+                    top += float(unit[used] @ r.force[used])
+                    bottom += float(unit[used] @ unit[used])
+            if not top > 0.0:
+                raise ValueError(
+                    f"specimen {name}: its force falls with the depth, no shear modulus gives that"
+                )
+            found[name] = top / bottom
+        return self.baseline.start(found)
+
+    def forces(self, state: State) -> list[Array]:
+        """Force along the indenter of each record at its points [N], with the state's effects."""
+        self._prepare([state])
+        return [self._along(state, r) for r in self.records]
+
+    def acting(self, state: State, record: Any) -> dict[tuple[str, float | None, float | None], float]:
+        """As in the base; variants that are chords of one effect are one form."""
+        found: dict[tuple[str, float | None, float | None], float] = {}
+        for (name, position, variant), a in super().acting(state, record).items():
+            form = (name, position, None if self.effects[name].chords else variant)
+            found[form] = found.get(form, 0.0) + a
+        return found
+
+    def _prepare(self, states: Sequence[State]) -> None:
+        """Simulate together what these states need."""
+        self.forward.prepare([(r, self.acting(s, r)) for s in states for r in self.records])
+
+    def _along(self, state: State, record: Record) -> Array:
+        shear_modulus = self.baseline.shear_modulus(record.specimen, state.u)
+        curve = self._curve(record, state.u)
+        return self.forward.along(record, curve, shear_modulus, self.acting(state, record))
+
+    def _across(self, state: State, record: Record) -> Array:
+        shear_modulus = self.baseline.shear_modulus(record.specimen, state.u)
+        curve = self._curve(record, state.u)
+        return self.forward.across(record, curve, shear_modulus, self.acting(state, record))
+
+    def _curve(self, record: Record, u: Array) -> Curve:
+        """Force over shear modulus of a record's geometry and material, without effects."""
+        if not self.baseline.whole:
+            return self.forward.base(record)
+        own = self.baseline.law_coordinates(record.material, u)
+        return self._of_law[record.material].curve(record, own)
+
+    def _misfit(self, states: Sequence[State]) -> Array:
+        self._prepare(states)
+        found = np.empty((len(states), len(self.row_record)))
+        for row, state in zip(found, states, strict=True):
+            along = [self._along(state, r) - r.force for r in self.records]
+            across = [
+                (self._across(state, r) - r.across).ravel() for r in self.records if r.across is not None
+            ]
+            row[:] = np.concatenate([*along, *across])
+        return found
+
+    def _step(self, candidate: Candidate, state: State) -> float:
+        effect = self.effects[candidate.effect]
+        now = state.amplitudes.get(candidate, 0.0)
+        if effect.scene is None:
+            return effect.step if now + effect.step <= effect.bounds[1] else -effect.step
+        first = next(r for r in self.records if reaches(candidate, r, effect))
+        return difference_step(effect, candidate.variant if effect.chords else effect.chord, now, first)
+
+    def update_nuisances(self, state: State, *, rough: bool = False) -> None:
+        """Take noise and, of a law, its curves at a state; of these the state's modulus does not count where
+        it is rough, but the one nearest to the records.
+
+        Raises
+        ------
+        ValueError : the law has no equilibrium there, or one of hardly any point of a record.
+        """
+        for material, curves_of_law in self._of_law.items():
+            curves_of_law.take(self.baseline.law_coordinates(material, state.u))
+        curves = [self._curve(r, state.u) for r in self.records]
+        forces, slopes = [], []
+        for r, curve in zip(self.records, curves, strict=True):
+            shear_modulus = self.baseline.shear_modulus(r.specimen, state.u)
+            if rough and self.baseline.whole:
+                shear_modulus = self._nearest_modulus(r.material, curves)
+            forces.append(shear_modulus * curve.at(r.depth))
+            slopes.append(shear_modulus * curve.slope(r.depth, max(TOUCH * r.depth_sd, 1e-6)))
+        self._elastic = forces
+        noise = noise_of(self.records, curves, forces, slopes)
+        simulated = self._simulated()
+        for r, inside in zip(self.records, simulated, strict=True):
+            if np.count_nonzero(inside) < LEAST:
+                raise ValueError(f"{r.name}: the simulation reaches {np.count_nonzero(inside)} points of it")
+        across = [
+            np.repeat(x, 2) for r, x in zip(self.records, simulated, strict=True) if r.across is not None
+        ]
+        used = np.concatenate([*simulated, *across])
+        self.noise = replace(noise, sd=np.where(used, noise.sd, np.inf), kept=self.noise.kept)
+
+    def _nearest_modulus(self, material: str, curves: Sequence[Curve]) -> float:
+        """Shear modulus [Pa] whose forces are nearest to those of a material's records; 100 Pa at least."""
+        mine = [
+            (r, c.at(r.depth)) for r, c in zip(self.records, curves, strict=True) if r.material == material
+        ]
+        top = sum(float(unit @ r.force) for r, unit in mine)
+        bottom = sum(float(unit @ unit) for _, unit in mine)
+        return max(top / bottom, 100.0)
+
+    def _simulated(self) -> list[NDArray[np.bool_]]:
+        """Points of each record that the simulations of its law reached."""
+        if not self.baseline.whole:
+            return [np.ones(r.points, dtype=bool) for r in self.records]
+        return [r.depth <= self._of_law[r.material].of(r).reached * (1.0 + 1e-9) for r in self.records]
+
+    def shortcomings(self) -> list[str]:
+        """Which records the simulations of a law did not reach all of."""
+        found: list[str] = []
+        if not all(curves.taken for curves in self._of_law.values()):
+            return found
+        for r, inside in zip(self.records, self._simulated(), strict=True):
+            if not inside.all():
+                law = self._of_law[r.material].of(r)
+                found.append(
+                    f"indentation {r.name}{law.short} at {1e3 * law.reached:.2f} of {1e3 * r.deepest:.2f} mm;"
+                    f" {np.count_nonzero(~inside)} measured points beyond it are not used"
+                )
+        return found
+
+    # -- experiments --
+
+    def predicted_in(self, test: IndentationTest, state: State) -> Self | None:
+        """The same specimens in a new test; None where the block has no room for it, or no equilibrium is
+        found."""
+        trials = test.of_each(self.records)
+        if not trials:
+            return None
+        try:
+            new = self.measuring(trials)
+            predicted = new.forces(state)
+        except (InputError, ValueError):
+            return None
+        new.records = [replace(r, force=p) for r, p in zip(new.records, predicted, strict=True)]
+        new.update_nuisances(State(u=state.u))
+        return new
+
+    def measuring(self, trials: Sequence[PokeTrial]) -> Self:
+        """The same specimens in other trials, which are seen beside those that there are: coordinates and
+        candidates stay."""
+        some = copy(self)
+        some._measured_in(trials)
+        some.visible = self._visible([*self.records, *some.records])
+        return some
+
+    # -- lack of fit, folds, scores --
+
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        """By trial, by material, by phases of one label, and in fifths of each record."""
+        found: dict[str, list[str]] = {}
+        for k, size in self._row_blocks():
+            r = self.records[k]
+            for name, labels in {
+                "leave-one-trial-out": [r.name] * r.points,
+                "leave-one-material-out": [r.material] * r.points,
+                "leave-one-phase-out": [r.labels[int(p)] for p in r.phase],
+                "leave-one-fifth-out": fifths(r.points),
+            }.items():
+                found.setdefault(name, []).extend(label for label in labels for _ in range(size // r.points))
+        return found
+
+    def _discrepancies(self) -> Mapping[str, Array]:
+        """Smooth in depth and in time, in proportion to the simulated force [N]; the noise of measured forces
+        would be fitted again.
+
+        trial bends : of each trial, degrees up to BEND in the depth. phase bends : the same of each phase, in
+        a hold in time. drifts : of each trial in time. shared bends : as trial bends, common to all trials of
+        a specimen.
+        """
+        records, forces = self.records, self._elastic
+        columns = Columns([r.points for r in records])
+        for k, r in enumerate(records):
+            largest = float(np.abs(forces[k]).max(initial=0.0))
+            size = np.abs(forces[k]) + 0.02 * largest
+            phases = np.unique(r.phase)
+            for degree in range(BEND + 1):
+                columns.add("trial bends", [(k, size * legendre(r.depth, degree))])
+                columns.add("drifts", [(k, largest * legendre(r.time, degree))])
+                for p in phases if phases.size > 1 and degree < BEND else []:
+                    mine = r.phase == p
+                    x = r.time if not r.direction[mine].any() else r.depth
+                    bend = legendre(x, degree, (float(x[mine].min()), float(x[mine].max())))
+                    columns.add("phase bends", [(k, np.where(mine, size * bend, 0.0))])
+        specimens = dict.fromkeys(r.specimen for r in records)
+        for s in specimens if len(specimens) < len(records) else []:
+            alike = [k for k, r in enumerate(records) if r.specimen == s]
+            low = min(float(records[k].depth.min()) for k in alike)
+            high = max(float(records[k].depth.max()) for k in alike)
+            for degree in range(BEND + 1):
+                shared = [np.abs(forces[k]) * legendre(records[k].depth, degree, (low, high)) for k in alike]
+                columns.add("shared bends", list(zip(alike, shared, strict=True)))
+        across = len(self.row_record) - sum(r.points for r in records)
+        return {
+            name: np.vstack([raw, np.zeros((across, raw.shape[1]))])
+            for name, raw in columns.by_name().items()
+        }
+
+    def registered(self, state: State) -> list[Array]:
+        """As in the base, along the indenter only."""
+        return self._along_rows(super().registered(state))
+
+    def point_sds(self) -> list[Array]:
+        """Standard deviation of each point by itself along the indenter [N], of each record."""
+        return self._along_rows([self.noise.sd[self.row_record == k] for k in range(len(self.records))])
+
+    def _along_rows(self, rows: Sequence[Array]) -> list[Array]:
+        return [own[: r.points] for r, own in zip(self.records, rows, strict=True)]
+
+    # -- for reports --
+
+    def remarks(self) -> list[str]:
+        """What was not simulated, where the errors come from, which order was assumed, which effects the
+        catalogue lacks."""
+        found = list(self.left_out)
+        guessed = [r for r in self.records if r.estimated]
+        if guessed:
+            relative = [
+                float(np.median(r.own_sd * np.sqrt(r.count)) / np.abs(r.force).max()) for r in guessed
+            ]
+            found.append(
+                f"the lab states no error of the force of {listed(guessed)}: it was estimated from the"
+                " scatter about a smooth curve, at least 0.5 % of the force; its median is"
+                f" {100 * float(np.median(relative)):.2g} % of the largest force"
+            )
+        again = [r for r in self.records if r.unloaded[0] > 0.0]
+        if again:
+            found.append(
+                f"{listed(again)}: taken to follow the indentations of the same specimen that the file lists"
+                " before"
+            )
+        found.append(
+            "the catalogue of indentation has no stiffer skin and no base that slips: they are not simulated"
+            " yet"
+        )
+        return found
+
+    def noise_sentence(self) -> str:
+        estimated = any(r.estimated for r in self.records)
+        return (
+            f"{len(self.records)} records, {self.points} values (of long records the means of neighbours);"
+            " the force and depth errors that the lab states, white from point to point"
+            + (" (where it states none, an error from the scatter of the record)" if estimated else "")
+            + "; first touch, off by the depth's error once a record; the simulation's mesh error: 2.5 %"
+            " common to all forces, wandering by 1 % with the depth, by more near the surface; the shear"
+            " modulus free for each specimen."
+        )
+
+    def pictures(self, diagnosis: Any) -> list[Any]:
+        from calibration.measurements.indentation.pictures import pictures
+
+        return pictures(self, diagnosis)

@@ -1,0 +1,30 @@
+"""Outlines of beams against simulated ones; `.model.OutlineModel` is the model of fits and diagnoses."""
+
+from calibration.measurements.outlines._admitted import Admitted, admitted
+from calibration.measurements.outlines._edges import Feet, edges, feet
+from calibration.measurements.outlines._noise import (
+    Nuisances,
+    contour_root,
+    registration_columns,
+    smooth_basis,
+)
+from calibration.measurements.outlines._photographs import TracedPhotograph, away_from_clamps
+from calibration.measurements.outlines.fidelity import COARSE, REFERENCE, Fidelity, beam_scene
+
+__all__ = [
+    "COARSE",
+    "REFERENCE",
+    "Admitted",
+    "Feet",
+    "Fidelity",
+    "Nuisances",
+    "TracedPhotograph",
+    "admitted",
+    "away_from_clamps",
+    "beam_scene",
+    "contour_root",
+    "edges",
+    "feet",
+    "registration_columns",
+    "smooth_basis",
+]

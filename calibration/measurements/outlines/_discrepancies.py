@@ -1,0 +1,67 @@
+"""What a lack of fit of outlines might look like: smooth bends of edges that photographs share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.experiment.model import BeamTrial
+from calibration.measurements.outlines._photographs import TracedPhotograph
+
+Array = NDArray[np.float64]
+
+BEND = 4  # highest degree
+
+
+def discrepancies(
+    photographs: Sequence[TracedPhotograph], trials: Sequence[BeamTrial]
+) -> Mapping[str, Array]:
+    """Smooth bends of edges, shared in several ways, in the coefficients.
+
+    trial edges : each edge of each trial, degrees up to BEND, the same in all its photographs. trial
+    bends : both edges of each trial together, which is what bending does. support bends : as trial bends,
+    the same for trials of one length and support. drifts : as trial bends, growing with the logarithm of
+    time.
+    """
+    times = np.array([p.time for p in photographs])
+    sets: dict[str, list[Array]] = {
+        "trial edges": [],
+        "trial bends": [],
+        "support bends": [],
+        "drifts": [],
+    }
+    for i in range(len(trials)):
+        for degree in range(BEND + 1):
+            mine = np.array([p.beam == i for p in photographs], dtype=float)
+            sets["trial edges"] += [_bend(photographs, mine, degree, edge) for edge in ((1, 0), (0, 1))]
+            sets["trial bends"].append(_bend(photographs, mine, degree, (1, 1)))
+            spread = np.where(mine > 0, np.log(times) - np.log(times[mine > 0]).mean(), 0.0)
+            if spread.any():
+                sets["drifts"].append(_bend(photographs, spread, degree, (1, 1)))
+    for kind in dict.fromkeys((t.supports, t.free_length) for t in trials):
+        alike = np.array(
+            [(trials[p.beam].supports, trials[p.beam].free_length) == kind for p in photographs], dtype=float
+        )
+        for degree in range(BEND + 1):
+            sets["support bends"].append(_bend(photographs, alike, degree, (1, 1)))
+    return {name: np.column_stack(columns) for name, columns in sets.items() if columns}
+
+
+def _bend(
+    photographs: Sequence[TracedPhotograph], weights: Array, degree: int, sides: tuple[int, int]
+) -> Array:
+    """A polynomial of one degree along the edges: upper and lower are given with opposite normals or not
+    just as distances are, so that both alike mean a shift of the whole section."""
+    whole = np.zeros(photographs[-1].rows.stop)
+    for p, weight in zip(photographs, weights, strict=True):
+        if weight == 0.0:
+            continue
+        values = []
+        for side, edge in zip(sides, (p.outline.upper, p.outline.lower), strict=True):
+            s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+            legendre = np.polynomial.legendre.legval(2.0 * s / s[-1] - 1.0, np.eye(degree + 1)[degree])
+            values.append(side * legendre)
+        whole[p.rows] = weight * (p.basis.T @ np.concatenate(values))
+    return whole

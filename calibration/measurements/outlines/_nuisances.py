@@ -1,0 +1,98 @@
+"""What the lab admits not to know, as columns by name: where each photograph lies, radius, free length,
+density, rig; and what a simulation may get wrong next to a clamp.
+
+A column is what one sd more of its quantity adds to measured less simulated distances, by the sign that
+`Noise` expects: r = e + columns b."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._state import State
+from calibration.measurements.outlines._admitted import admitted
+from calibration.measurements.outlines._noise import registration_columns
+from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients, feet_of
+from calibration.measurements.outlines._scenes import Scenes
+from calibration.measurements.outlines._solutions import SolutionCache, simulated
+from tisim import Beam, Result, simulate
+
+Array = NDArray[np.float64]
+Named = list[tuple[str, Array]]
+
+# [m]: meshes that agree elsewhere to 0.02 mm differ by this next to the singular corner of a clamp
+CORNER_SD = 8e-5
+
+
+def registrations(
+    photographs: Sequence[TracedPhotograph], results: Sequence[Result], scenes: Scenes, state: State
+) -> Named:
+    """What one sd of each photograph's shift, roll and scale does to the coefficients [m]."""
+    columns = []
+    for p, r in zip(photographs, results, strict=True):
+        both = feet_of(p, r, scenes.images(p.beam, state, time=p.time))
+        block = np.vstack([registration_columns(f, p.outline.registration) for f in both])
+        names = ("shift x", "shift z", "roll", "scale")
+        for what, column in zip(names, (p.basis.T @ block).T, strict=True):
+            whole = np.zeros(photographs[-1].rows.stop)
+            whole[p.rows] = column
+            columns.append((f"{what} of {p.name}", whole))
+    return columns
+
+
+def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], state: State) -> Named:
+    """What one sd of each radius, free length and density that is stated with a sd does to the coefficients.
+
+    base: those of `results` [m], the answer of `state`, which has no effect that differs in time.
+    """
+    scenes, parts, beams = solutions.scenes, [], []
+    first = {p.beam: r for p, r in zip(reversed(solutions.photographs), reversed(results), strict=True)}
+    for name in dict.fromkeys(t.material for t in scenes.trials):
+        mine = [i for i, t in enumerate(scenes.trials) if t.material == name]
+        for n in admitted([scenes.trials[i] for i in mine], scenes.experiment.materials[name]):
+            touched = [mine[i] for i in n.trials if mine[i] in first]
+            parts.append((n, touched))
+            for i in touched:
+                solved = first[i].scene  # whatever the simulator, as the answer was solved
+                assert isinstance(solved, Beam)
+                beams.append(n.moved(solved))
+    at_rest = all(b.solver.method == "static" for b in beams)
+    moved = iter(simulated(beams, simulate if at_rest else solutions.simulator.run, solutions.workers))
+    columns = []
+    for n, touched in parts:
+        there = {i: next(moved) for i in touched}
+        change = np.zeros(len(base))
+        for p in solutions.photographs:
+            r = there.get(p.beam)
+            if r is not None:
+                images = scenes.images(p.beam, state, time=p.time)
+                change[p.rows] = coefficients(p, r, images) - base[p.rows]
+        columns.append((n.name, -change * (n.sd / n.step)))
+    return columns
+
+
+def doubts(solutions: SolutionCache, base: Array, state: State) -> Named:
+    """What one sd of each direction of what is known of the rig does to the coefficients [m]; base: those of
+    the state. ValueError where a beam has no equilibrium then."""
+    setup = solutions.scenes.setup
+    columns = []
+    for name, off in [] if setup is None else setup.doubts():
+        moved = replace(solutions, scenes=replace(solutions.scenes, setup=off))
+        columns.append((name, base - moved.values_of(moved.answer(state), state)))
+    return columns
+
+
+def corners(photographs: Sequence[TracedPhotograph]) -> Named:
+    """What the simulation may get wrong next to a clamp, the same in all photographs of a trial [m]."""
+    columns = []
+    for trial in dict.fromkeys(p.beam for p in photographs):
+        mine = [p for p in photographs if p.beam == trial]
+        for k in range(mine[0].corners.shape[1]):
+            whole = np.zeros(photographs[-1].rows.stop)
+            for p in mine:
+                whole[p.rows] = CORNER_SD * p.corners[:, k]
+            columns.append((f"clamp corner {k + 1} of {mine[0].trial.id}", whole))
+    return columns

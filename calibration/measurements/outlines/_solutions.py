@@ -1,0 +1,167 @@
+"""Solutions of states: scenes that photographs or states share are solved once, faults of the simulator are
+blended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypeGuard
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._state import State
+from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients
+from calibration.measurements.outlines._scenes import Scenes
+from calibration.measurements.outlines.fidelity import Fidelity
+from calibration.measurements.outlines.simulators import Simulator
+from tisim import Beam, Result, simulate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SolutionCache:
+    """Simulated beams of some photographs; workers : processes (None: all cores)."""
+
+    scenes: Scenes
+    photographs: Sequence[TracedPhotograph]
+    simulator: Simulator
+    workers: int | None
+
+    @property
+    def surrogate(self) -> SolutionCache:
+        """The one whose derivatives guide a search: this one, unless its simulator names another."""
+        return (
+            self if self.simulator.surrogate is None else replace(self, simulator=self.simulator.as_surrogate)
+        )
+
+    def corrected_by(self, name: str) -> SolutionCache:
+        """The one whose beams show the correction of a fault of the simulator: this one if they are then at
+        rest, else the surrogate."""
+        beam = self.scenes.beam(0, self._any, time=1.0, fidelity=self.simulator.fidelity)
+        return self if self._corrected(beam, name).solver.method == "static" else self.surrogate
+
+    def values(self, wanted: Sequence[State]) -> list[Array]:
+        """Smooth coefficients of the distances of all photographs [m], (points,) for each state; NaN where a
+        photograph's beam has no equilibrium."""
+        found = [
+            self.values_of(results, one) for one, results in zip(wanted, self.solve(wanted), strict=True)
+        ]
+        plain = [values.copy() for values in found]
+        for name in dict.fromkeys(n for one in wanted for n in self._faults(one)):
+            some = [k for k, one in enumerate(wanted) if name in self._faults(one)]
+            there = [wanted[k] for k in some]
+            own = self.corrected_by(name)
+            better = [
+                self.values_of(r, one) for one, r in zip(there, own.solve(there, instead=name), strict=True)
+            ]
+            worse = (
+                [plain[k] for k in some]
+                if own is self
+                else [self.values_of(r, one) for one, r in zip(there, own.solve(there), strict=True)]
+            )
+            for k, good, bad in zip(some, better, worse, strict=True):
+                found[k] += self._faults(wanted[k])[name] * (good - bad)
+        return found
+
+    def values_of(self, results: Sequence[Result | None], state: State) -> Array:
+        """Smooth coefficients of the distances from simulated beams [m], (points,)."""
+        return np.concatenate(
+            [
+                np.full(p.basis.shape[1], np.nan)
+                if r is None
+                else coefficients(p, r, self.scenes.images(p.beam, state, time=p.time))
+                for p, r in zip(self.photographs, results, strict=True)
+            ]
+        )
+
+    def solve(self, wanted: Sequence[State], *, instead: str | None = None) -> list[list[Result | None]]:
+        """One result a photograph for each state, None where it has no equilibrium.
+
+        instead: the simulator's fault without which the beams are to be simulated.
+        """
+        beams: list[Beam] = []
+        known: dict[tuple[object, ...], int] = {}
+        rows: list[list[int]] = [[] for _ in wanted]
+        for p in self.photographs:  # photograph by photograph, so that neighbours in the batch share a mesh
+            for row, state in zip(rows, wanted, strict=True):
+                key = self.scenes.key(p.beam, state, time=p.time)
+                if key not in known:
+                    known[key] = len(beams)
+                    beam = self.scenes.beam(p.beam, state, time=p.time, fidelity=self.simulator.fidelity)
+                    beams.append(beam if instead is None else self._corrected(beam, instead))
+                row.append(known[key])
+        run = self.simulator.run if instead is None else simulate
+        results = simulated(beams, run, self.workers)
+        return [[results[k] for k in row] for row in rows]
+
+    def answer(self, state: State) -> Sequence[Result]:
+        """One result a photograph, without those faults of the simulator that the state names. ValueError
+        where a beam has no equilibrium."""
+        corrected = [n for n, part in self._faults(state).items() if part > 0.5]
+        own = self.corrected_by(corrected[0]) if corrected else self
+        found = own.solve([state], instead=corrected[0] if corrected else None)[0]
+        if not complete(found):
+            raise ValueError("no equilibrium at this state")
+        return found
+
+    def fine(
+        self, state: State, reference: Fidelity, *, one_by_one: bool = False
+    ) -> tuple[Sequence[Result], str]:
+        """One result a photograph on a finer mesh; none, and why, where a beam has no equilibrium there.
+
+        one_by_one : the longest first, since that one fails if any, and no others after one that failed: a
+        beam without equilibrium costs a hundred times one that has it.
+        """
+        trials = self.scenes.trials
+        longest = sorted(range(len(trials)), key=lambda i: -trials[i].free_length)
+        found: dict[int, Result | None] = {}
+        for some in [[i] for i in longest] if one_by_one else [list(range(len(trials)))]:
+            beams = [self.scenes.beam(i, state, time=1.0, fidelity=reference) for i in some]
+            found.update(zip(some, simulated(beams, simulate, self.workers), strict=True))
+            failed = [trials[i].id for i, r in found.items() if r is None]
+            if failed:
+                return [], f"no equilibrium of {', '.join(failed)} on the finer mesh that corrects"
+        return [r for p in self.photographs if (r := found[p.beam]) is not None], ""
+
+    def _faults(self, state: State) -> dict[str, float]:
+        """Parts of the simulator's faults that are taken away."""
+        parts: dict[str, float] = {}
+        for c, a in state.amplitudes.items():
+            parts[c.effect] = parts.get(c.effect, 0.0) + a
+        return {n: a for n, a in parts.items() if a != 0.0 and self.scenes.effects[n].instead is not None}
+
+    @property
+    def _any(self) -> State:
+        return State(u=self.scenes.baseline.start(dict.fromkeys(self.scenes.baseline.specimens, 1e4)))
+
+    def _corrected(self, beam: Beam, name: str) -> Beam:
+        instead = self.scenes.effects[name].instead
+        assert instead is not None
+        return instead(beam)
+
+
+def complete(results: Sequence[Result | None]) -> TypeGuard[Sequence[Result]]:
+    return all(r is not None for r in results)
+
+
+def simulated(beams: Sequence[Beam], run: object, workers: int | None) -> list[Result | None]:
+    """Results, None for a beam that has no equilibrium or that cannot be: a search tries odd ones too."""
+    assert callable(run)
+    try:
+        results: list[Result] = run(beams, workers=workers)
+    except ValueError:
+        results = []
+        for b in beams:
+            results += _alone(b, run)
+        return [r if r is not None and r.ok else None for r in results]
+    return [r if r.ok else None for r in results]
+
+
+def _alone(beam: Beam, run: object) -> list[Result]:
+    assert callable(run)
+    try:
+        return list(run([beam], workers=1))
+    except ValueError:
+        return [None]  # type: ignore[list-item]

@@ -1,0 +1,386 @@
+"""Photographed beams of all materials together, with effects nested in their FEM.
+
+What is compared is the smooth part of the distances between traced points and simulated edges: for each edge
+of each photograph the coefficients of polynomials, whitened by the contour's noise as the lab states it
+together with all nuisances (registration, radius, free length, density, what the mesh's correction leaves).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from calibration.errors import InputError
+from calibration.experiment.model import BeamTrial, Capture, Experiment, TracedOutline
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise import Noise
+from calibration.measurements._state import State
+from calibration.measurements.outlines._discrepancies import discrepancies
+from calibration.measurements.outlines._edges import edges
+from calibration.measurements.outlines._effect import OutlineEffect
+from calibration.measurements.outlines._nuisances import beliefs, corners, doubts, registrations
+from calibration.measurements.outlines._photographs import (
+    Image,
+    SeenPhotograph,
+    TracedPhotograph,
+    coefficients,
+    distances,
+    feet_of,
+    photographs_of,
+    shown,
+)
+from calibration.measurements.outlines._scenes import BULK_RATIO, Scenes
+from calibration.measurements.outlines._solutions import SolutionCache
+from calibration.measurements.outlines.experiments import EXPERIMENTS, Photographs
+from calibration.measurements.outlines.fidelity import Fidelity
+from calibration.measurements.outlines.setup import Setup
+from calibration.measurements.outlines.simulators import OURS, Simulator
+from tisim import Beam, Result, simulate
+
+Array = NDArray[np.float64]
+
+MESH_LEFT = 0.2  # of the mesh's correction: one sd of a nuisance, of each trial
+SCAN = np.geomspace(3e5, 3e3, 9)  # shear moduli to begin from, stiff to soft [Pa]
+EACH_EDGE = 40  # points of a made outline
+
+
+class OutlineModel(MeasurementModel):
+    """Baseline: neo-Hookean and nearly incompressible, one modulus a specimen; trials that name no specimen
+    share one a material. `update_nuisances` comes before residuals.
+
+    Parameters
+    ----------
+    experiment : its traced beams are used.
+    effects : by name; see `calibration.diagnosis.effects.outlines`. Those that the simulator cannot have are
+        left out.
+    simulator : whose faults are looked for too.
+    workers : as in `tisim.simulate`.
+    pose : see `Scenes`.
+    baseline : whose coordinates are to be understood: of another model of the same specimens, or of a fit.
+    setup : what is known of rig and camera, applied to every scene and picture; its doubts are nuisances.
+
+    Attributes
+    ----------
+    uncorrected : why the mesh's error is not corrected; "" where it is.
+
+    Raises
+    ------
+    InputError : no beam was traced, or a density is missing.
+    """
+
+    kind = "outlines"
+    unit = ("mm", 1e3)
+    # three stand in for an axial gradient of 16 sigmas: a gap at the clamps, an image scale and a radius
+    max_causes = 2
+    coordinate_step = 0.003
+    no_answer = "no equilibrium at this state"
+    experiments: ClassVar[Sequence[Any]] = EXPERIMENTS
+
+    records: Sequence[TracedPhotograph]
+    effects: Mapping[str, OutlineEffect]
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        *,
+        effects: Mapping[str, OutlineEffect] | None = None,
+        simulator: Simulator = OURS,
+        workers: int | None = None,
+        pose: Callable[[Beam, BeamTrial], Beam] | None = None,
+        baseline: Baseline | None = None,
+        setup: Setup | None = None,
+    ) -> None:
+        self.trials = [
+            t for t in experiment.trials if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)
+        ]
+        if not self.trials:
+            raise InputError("experiment.yaml: trials: expected a beam with a traced outline")
+        for name in dict.fromkeys(t.material for t in self.trials):
+            if experiment.materials[name].density is None:
+                raise InputError(
+                    f"experiment.yaml: materials.{name}.density_kg_m3: expected, since a beam's shape tells"
+                    " only the ratio of weight to stiffness"
+                )
+        self.experiment = experiment
+        self.simulator, self.workers = simulator, workers
+        self.effects = {n: e for n, e in (effects or {}).items() if e.faulty(simulator)}
+        self.records = photographs_of(self.trials)
+        sizes = [p.basis.shape[1] for p in self.records]
+        self.row_record = np.repeat(np.arange(len(self.records)), sizes)
+        self.noise = Noise.correlated(block_diag(*[p.covariance for p in self.records]))
+        self.baseline = baseline or Baseline.per_specimen(self.records, bulk_ratio=BULK_RATIO)
+        self._set_candidates()
+        self.scenes = Scenes(
+            experiment=experiment,
+            trials=self.trials,
+            baseline=self.baseline,
+            effects=self.effects,
+            pose=pose,
+            setup=setup,
+        )
+        self.solutions = SolutionCache(
+            scenes=self.scenes, photographs=self.records, simulator=simulator, workers=workers
+        )
+        self.uncorrected = "" if simulator.reference else f"simulated as they are: {simulator.sentence}"
+        self._correction = np.zeros(len(self.row_record))
+        self._updated = False
+
+    def start(self) -> Array:
+        """The modulus of each specimen, of a coarse scan, that comes nearest to its outlines. From stiff to
+        soft, and no further than past the nearest: beams far too soft are dear, or have no equilibrium."""
+        names = self.baseline.specimens
+        best, found = dict.fromkeys(names, np.inf), dict.fromkeys(names, float(SCAN[0]))
+        for shear in SCAN:
+            state = State(u=self.baseline.start(dict.fromkeys(names, float(shear))))
+            cost = dict.fromkeys(names, 0.0)
+            for p, r in zip(self.records, self.solutions.surrogate.solve([state])[0], strict=True):
+                cost[p.specimen] += np.inf if r is None else float(np.sum(distances(feet_of(p, r)) ** 2))
+            better = [n for n in names if cost[n] < best[n]]
+            for n in better:
+                best[n], found[n] = cost[n], float(shear)
+            if not better:
+                break
+        if not all(np.isfinite(b) for b in best.values()):
+            raise ValueError("no shear modulus from 3 to 300 kPa gives every beam an equilibrium")
+        return self.baseline.start(found)
+
+    def update_nuisances(self, state: State, *, rough: bool = False) -> None:
+        """Nuisances and the correction of the mesh's error, taken at a state; rough : without the correction,
+        to find out where to take it."""
+        # effects that differ in time are left out: what is taken here hardly depends on the modulus
+        lasting = {c: a for c, a in state.amplitudes.items() if not self.effects[c.effect].timed}
+        calm = replace(state, amplitudes=lasting)
+        results = self.solutions.answer(calm)
+        base = self.solutions.values_of(results, calm)
+        self._correction = np.zeros(len(base))
+        if self.simulator.reference is not None and not rough:
+            self._correction, self.uncorrected = self._corrected(calm, base, *self.simulator.reference)
+        named = registrations(self.records, results, self.scenes, calm) + corners(self.records)
+        for i, t in enumerate(self.trials):
+            named.append((f"mesh of {t.id}", np.where(self.of_trial(i), MESH_LEFT * self._correction, 0.0)))
+        named += beliefs(self.solutions, base, results, calm) + doubts(self.solutions, base, calm)
+        # what does nothing has no name: it is no nuisance of these photographs
+        names = [name if column.any() else "" for name, column in named]
+        self.noise = self.noise.with_nuisances([column for _, column in named], names)
+        self._updated = True
+
+    def _corrected(self, state: State, base: Array, coarser: Fidelity, finer: Fidelity) -> tuple[Array, str]:
+        """What the mesh of the search misses [m], (rows,), by Richardson's extrapolation of second order in
+        the number of rings; zero, and why, where a reference has no equilibrium."""
+        if self.baseline.whole and self.uncorrected:
+            return np.zeros(len(base)), self.uncorrected  # a law that has none here is not tried again
+        values = []
+        alone = self.baseline.whole and self.workers == 1
+        for reference in (coarser, finer):
+            fine, problem = self.solutions.fine(state, reference, one_by_one=alone)
+            if problem:
+                return np.zeros(len(base)), problem
+            values.append(self.solutions.values_of(fine, state))
+        n, more = coarser.rings**2, finer.rings**2
+        return values[1] + n / (more - n) * (values[1] - values[0]) - base, ""
+
+    def _misfit(self, states: Sequence[State]) -> Array:
+        return self._from(self._used(), states)
+
+    def _from(self, solutions: SolutionCache, states: Sequence[State]) -> Array:
+        """By some simulated beams; NaN for photographs that none of them is of."""
+        if not self._updated:
+            raise RuntimeError("call update_nuisances of an OutlineModel before use")
+        found = np.full((len(states), len(self.row_record)), np.nan)
+        rows = np.concatenate([np.arange(p.rows.start, p.rows.stop) for p in solutions.photographs])
+        for row, values in zip(found, solutions.values(states), strict=True):
+            row[rows] = values + self._correction[rows]
+        return found
+
+    def _used(self) -> SolutionCache:
+        """Of the photographs that are compared."""
+        used = [p for p in self.records if self.noise.used[p.rows].any()]
+        return replace(self.solutions, photographs=used)
+
+    def _beside(self, state: State) -> list[tuple[State, Mapping[int, NDArray[np.bool_]]]]:
+        """All moduli at once: each specimen has photographs of its own."""
+        if self.baseline.whole:
+            return super()._beside(state)
+        owner = [self.baseline.specimens.index(p.specimen) for p in self.records]
+        of_row = np.array(owner)[self.row_record]
+        moved = replace(state, u=state.u + self.coordinate_step)
+        return [(moved, {k: of_row == k for k in range(len(self.names))})]
+
+    def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
+        """By the surrogate where the simulator has one; corrections of its own faults by itself."""
+        solutions = self._used()
+        surrogate = solutions.surrogate
+        if surrogate is solutions:
+            return super()._differences(state, candidates)
+        ((moved, parts),) = self._beside(state)
+        probes = self._probes(state, candidates)
+        own = [p for p in probes if self._own(candidates[p[2][0]].effect)]
+        others = [p for p in probes if p not in own]
+        base, *by_own = self._from(solutions, [state, *(s for s, _, _ in own)])
+        still, stiffer, *by_others = self._from(surrogate, [state, moved, *(s for s, _, _ in others)])
+        used = self.noise.used
+        if not (np.isfinite(base[used]).all() and np.isfinite(stiffer[used]).all()):
+            raise ValueError(self.no_answer)
+        by_u = np.zeros((len(base), len(self.names)))
+        for k, mine in parts.items():
+            by_u[:, k] = np.where(mine, (stiffer - still) / self.coordinate_step, 0.0)
+        columns = np.zeros((len(base), len(candidates)))
+        for some, rows, at in ((own, by_own, base), (others, by_others, still)):
+            for (_, step, members), row in zip(some, rows, strict=True):
+                for k in members:
+                    hit = self.reached(candidates[k])[self.row_record]
+                    columns[:, k] = np.where(hit, (row - at) / step, 0.0)
+        return base, by_u, columns
+
+    def _own(self, name: str) -> bool:
+        """Whether an effect corrects what the simulator lacks beside its surrogate."""
+        solutions = self.solutions
+        return self.effects[name].instead is not None and solutions.corrected_by(name) is solutions
+
+    def predicted_in(self, design: Photographs, state: State) -> Self | None:
+        """The same specimens photographed anew, as a state predicts it; None where they cannot be."""
+        kept = {t.id: changed for t in self.trials if (changed := design.trial(t)) is not None}
+        if not kept:
+            return None
+        empty = replace(self.experiment, trials=tuple(replace(t, captures=()) for t in kept.values()))
+        made = self._photographed(empty, kept, design, state)
+        if made is None:
+            return None
+        new = self.measuring(made, design.pose)
+        new.update_nuisances(state)
+        return new
+
+    def measuring(self, experiment: Experiment, pose: Callable[[Beam, BeamTrial], Beam]) -> Self:
+        """The same specimens in other photographs, simulated as they are: coordinates stay."""
+        return type(self)(
+            experiment,
+            effects=self.effects,
+            simulator=replace(self.simulator, reference=None),
+            workers=self.workers,
+            pose=pose,
+            baseline=self.baseline,
+        )
+
+    def _photographed(
+        self, empty: Experiment, trials: dict[str, BeamTrial], design: Photographs, state: State
+    ) -> Experiment | None:
+        """The experiment as the state predicts it; None where it has no equilibrium."""
+        scenes = replace(self.scenes, trials=[trials.get(t.id, t) for t in self.trials], pose=design.pose)
+        index = [i for i, t in enumerate(self.trials) if t.id in trials]
+        fidelity = self.simulator.fidelity
+        beams = [scenes.beam(i, state, time=design.time, fidelity=fidelity) for i in index]
+        results = simulate(beams, workers=self.workers)
+        if not all(r.ok for r in results):
+            return None
+        photographed = []
+        for i, r in zip(index, results, strict=True):
+            trial = trials[self.trials[i].id]
+            old = next(p for p in self.records if p.beam == i)
+            outline = _traced(r, old, scenes.images(i, state, time=design.time))
+            photographed.append(replace(trial, captures=(Capture(time=design.time, outline=outline),)))
+        return replace(empty, trials=tuple(photographed))
+
+    def registered(self, state: State) -> list[Array]:
+        """Distances of each photograph's points [m], the most likely nuisances removed. ValueError where a
+        beam has no equilibrium."""
+        left = {id(s.photograph): s.left for s in self.seen(state)}
+        return [left.get(id(p), np.full(len(p.basis), np.nan)) for p in self.records]
+
+    def seen(self, state: State) -> list[SeenPhotograph]:
+        """The photographs that are compared, against the beams of a state. ValueError where one has no
+        equilibrium."""
+        used = self._used()
+        results = used.answer(state)
+        smooth = np.full(len(self.row_record), np.nan)
+        for p, r in zip(used.photographs, results, strict=True):
+            smooth[p.rows] = coefficients(p, r, self.scenes.images(p.beam, state, time=p.time))
+        smooth += self._correction
+        known = smooth - self.noise.remove(smooth)
+        found = []
+        for p, r in zip(used.photographs, results, strict=True):
+            images = self.scenes.images(p.beam, state, time=p.time)
+            lines = [shown(line, images) for line in edges(r)]
+            feet = feet_of(p, r, images)
+            raw = distances(feet) + p.basis @ self._correction[p.rows]
+            found.append(
+                SeenPhotograph(
+                    photograph=p, feet=feet, simulated=lines, raw=raw, left=raw - p.basis @ known[p.rows]
+                )
+            )
+        return found
+
+    def results(self, state: State) -> Sequence[Result]:
+        """One result a photograph. ValueError where a beam has no equilibrium."""
+        return self.solutions.answer(state)
+
+    def _measured_points(self) -> int:
+        """Traced points of the photographs that are compared."""
+        return sum(len(p.basis) for p in self._used().photographs)
+
+    def of_trial(self, trial: int) -> NDArray[np.bool_]:
+        """Rows of the photographs of a trial, by its index, shape (rows,)."""
+        return np.array([p.beam == trial for p in self.records])[self.row_record]
+
+    def shortcomings(self) -> list[str]:
+        return [self.uncorrected] if self.uncorrected else []
+
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        """By length and support, by material, and by when photographs were taken."""
+        found: dict[str, list[str]] = {}
+        for k, p in enumerate(self.records):
+            nth = sum(q.beam == p.beam for q in self.records[:k])
+            for name, label in {
+                "leave-one-length-out": f"{p.trial.supports} {1e3 * p.trial.free_length:.0f} mm",
+                "leave-one-material-out": p.material,
+                "leave-one-photograph-out": f"photograph {nth + 1} of each beam",
+            }.items():
+                found.setdefault(name, []).extend([label] * p.basis.shape[1])
+        return found
+
+    def _discrepancies(self) -> Mapping[str, Array]:
+        return discrepancies(self.records, self.trials)
+
+    def remarks(self) -> list[str]:
+        return [f"the mesh's error is not corrected: {self.uncorrected}"] if self.uncorrected else []
+
+    def noise_sentence(self) -> str:
+        from calibration.report import significant
+
+        def span(values: list[float]) -> str:
+            low, high = significant(min(values), 2), significant(max(values), 2)
+            return low if low == high else f"{low} to {high}"
+
+        outlines = [p.outline for p in self.records]
+        sd, correlation = (span([1e3 * getattr(o, name) for o in outlines]) for name in ("sd", "correlation"))
+        registration = [o.registration for o in outlines]
+        shift = span([1e3 * r.shift for r in registration])
+        roll = span([float(np.degrees(r.roll)) for r in registration])
+        scale = span([100.0 * r.scale for r in registration])
+        text = (
+            f"{len(outlines)} photographs; the contour's error {sd} mm, correlated over {correlation} mm; the"
+            f" position of each photograph: {shift} mm, {roll}°, {scale} % of scale; section, free length and"
+            " density as the lab states them with a standard deviation."
+        )
+        if self.uncorrected:
+            return f"{text} The mesh's error is not corrected: {self.uncorrected}."
+        return (
+            f"{text} The mesh's error is corrected by a finer mesh; part of the correction is left as noise."
+        )
+
+    def pictures(self, diagnosis: Any) -> list[Any]:
+        from calibration.measurements.outlines.pictures import pictures
+
+        return pictures(self, diagnosis)
+
+
+def _traced(result: Result, old: TracedPhotograph, images: Sequence[Image]) -> TracedOutline:
+    upper, lower = (shown(line, images) for line in edges(result))
+    some = [line[np.linspace(0, len(line) - 1, EACH_EDGE).astype(int)] for line in (upper, lower)]
+    return replace(old.outline, upper=some[0], lower=some[1])

@@ -1,0 +1,144 @@
+"""Beams for drawing: traced points where the baseline has them, and what is left before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.experiment.model import BeamTrial
+from calibration.measurements.outlines._edges import edges
+from calibration.measurements.outlines._photographs import feet_of
+from calibration.measurements.outlines.model import OutlineModel
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnEdge:
+    """One edge of a photograph, k points: foot of each on the baseline's edge (k, 2) with unit normal (k, 2);
+    registered distances (k,) before and, where there is an extension, after; smooth_before, smooth_after
+    (k,): their smooth part, which is what fits compare; smooth_sd (k,): of that, by the contour's error;
+    along (k,): distance from the clamp along the traced edge. All in m."""
+
+    foot: Array
+    normal: Array
+    before: Array
+    after: Array | None
+    smooth_before: Array
+    smooth_after: Array | None
+    smooth_sd: Array
+    along: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnPhotograph:
+    """One traced photograph, `time` [s] after the release."""
+
+    time: float
+    upper: DrawnEdge
+    lower: DrawnEdge
+
+    @property
+    def edges(self) -> tuple[DrawnEdge, DrawnEdge]:
+        return self.upper, self.lower
+
+    def rms(self, when: Literal["before", "after"]) -> tuple[float, int]:
+        """Mean square of the smooth distances [m^2], and count of points."""
+        parts = [e.smooth_before if when == "before" else e.smooth_after for e in self.edges]
+        whole = np.concatenate([p for p in parts if p is not None])
+        return float(np.mean(whole**2)), len(whole)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrawnTrial:
+    """A beam with its photographs in the order of time; body: the baseline's upper and lower edge, (m, 2)."""
+
+    trial: BeamTrial
+    photographs: tuple[DrawnPhotograph, ...]
+    body: tuple[Array, Array]
+
+    @property
+    def kind(self) -> str:
+        name = "bridge" if self.trial.supports == "clamped-clamped" else "cantilever"
+        return f"{name} {1e3 * self.trial.free_length:.4g} mm"
+
+    def rms(self, when: Literal["before", "after"]) -> float:
+        """rms of its smooth distances [m]."""
+        return rms_of(self.photographs, when)
+
+    @property
+    def extended(self) -> bool:
+        return self.photographs[0].upper.after is not None
+
+    @property
+    def largest(self) -> float:
+        """Largest departure of the baseline, single points left out [m]."""
+        return max(float(np.quantile(np.abs(e.before), 0.98)) for p in self.photographs for e in p.edges)
+
+
+def in_time(model: OutlineModel, diagnosis: Diagnosis) -> bool:
+    """Whether what is to be seen differs from one photograph of a beam to the next: a named effect does, or
+    nothing is named and residuals that grow with time are what departs most."""
+    chosen = diagnosis.chosen
+    if chosen is not None:
+        return any(model.effects[name].timed for name in chosen.names)
+    return diagnosis.finding.verdict == "unexplained" and diagnosis.finding.lack_of_fit.worst == "drifts"
+
+
+def rms_of(photographs: Sequence[DrawnPhotograph], when: Literal["before", "after"]) -> float:
+    """rms of the smooth distances of all points [m], as `OutlineModel.distance_rms` counts them."""
+    squares = np.array([p.rms(when) for p in photographs])
+    return float(np.sqrt(np.average(squares[:, 0], weights=squares[:, 1])))
+
+
+def drawn(model: OutlineModel, diagnosis: Diagnosis) -> list[DrawnTrial]:
+    """All trials that have photographs. ValueError where a beam has no equilibrium."""
+    finding = diagnosis.finding
+    base = finding.baseline.state
+    results = model.results(base)
+    before = model.registered(base)
+    chosen = diagnosis.chosen
+    after = model.registered(chosen.fit.state) if chosen is not None else [None] * len(before)
+    by_trial: dict[int, list[DrawnPhotograph]] = {}
+    bodies: dict[int, tuple[Array, Array]] = {}
+    for p, result, left, later in zip(model.records, results, before, after, strict=True):
+        n = len(p.outline.upper)
+        parts = (slice(n), slice(n, None))
+        smooth, smooth_later = (None if d is None else p.basis @ (p.basis.T @ d) for d in (left, later))
+        sd = np.sqrt(np.einsum("ij,jk,ik->i", p.basis, p.covariance, p.basis))
+        assert smooth is not None
+        found = [
+            DrawnEdge(
+                foot=f.foot,
+                normal=f.normal,
+                before=left[part],
+                after=None if later is None else later[part],
+                smooth_before=smooth[part],
+                smooth_after=None if smooth_later is None else smooth_later[part],
+                smooth_sd=sd[part],
+                along=_along(traced),
+            )
+            for f, part, traced in zip(
+                feet_of(p, result), parts, (p.outline.upper, p.outline.lower), strict=True
+            )
+        ]
+        by_trial.setdefault(p.beam, []).append(DrawnPhotograph(time=p.time, upper=found[0], lower=found[1]))
+        bodies[p.beam] = edges(result)
+    return [
+        DrawnTrial(
+            trial=model.trials[i],
+            photographs=tuple(sorted(photographs, key=lambda p: p.time)),
+            body=bodies[i],
+        )
+        for i, photographs in by_trial.items()
+    ]
+
+
+def _along(edge: Array) -> Array:
+    steps = np.linalg.norm(np.diff(edge, axis=0), axis=1)
+    return np.asarray(edge[0, 0] + np.concatenate([[0.0], np.cumsum(steps)]))

@@ -1,0 +1,44 @@
+"""Panels of beams: materials (or specimens) below each other, lengths and supports beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from calibration.measurements.outlines.pictures._drawn import DrawnTrial
+
+MOST = 30  # panels of one picture
+WIDEST = 5  # panels beside each other where the trials make no grid
+
+Grid = list[list[DrawnTrial | None]]
+
+
+def grid_of(beams: Sequence[DrawnTrial]) -> tuple[Grid, int]:
+    """Rows of panels, and how many beams found no place: those that depart least.
+
+    One row a material, or more where it has several beams of a kind; one column a kind. Beams that would
+    leave most of such a grid empty stand in their own order.
+    """
+    shown = sorted(beams, key=lambda b: -b.largest)[:MOST]
+    shown = [b for b in beams if b in shown]
+    kinds = sorted({b.kind for b in shown}, key=lambda k: _order(k, shown))
+    rows: Grid = []
+    for material in dict.fromkeys(b.trial.material for b in shown):
+        mine = [b for b in shown if b.trial.material == material]
+        by_kind = {k: [b for b in mine if b.kind == k] for k in kinds}
+        for n in range(max(len(found) for found in by_kind.values())):
+            rows.append([found[n] if n < len(found) else None for found in by_kind.values()])
+    if len(rows) * len(kinds) > 1.7 * len(shown) or len(kinds) > WIDEST:
+        columns = min(len(shown), 3)
+        rows = [list(shown[k : k + columns]) for k in range(0, len(shown), columns)]
+        rows[-1] += [None] * (columns - len(rows[-1]))
+    return rows, len(beams) - len(shown)
+
+
+def _order(kind: str, shown: Sequence[DrawnTrial]) -> tuple[str, float]:
+    trial = next(b.trial for b in shown if b.kind == kind)
+    return ("1" if trial.supports == "clamped-clamped" else "0", trial.free_length)
+
+
+def left_out(count: int) -> str:
+    """What a caption says of them."""
+    return f" {count} beams that depart less are not drawn." if count else ""

@@ -1,0 +1,68 @@
+"""How beams are drawn: shades of time, clamps, a round magnification."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import floor, log10
+from typing import Any
+
+from matplotlib import colormaps
+from matplotlib.patches import Rectangle
+
+from calibration.measurements.outlines.pictures._drawn import DrawnTrial
+from calibration.report import INK
+
+MEASURED, EXTENDED = "Blues", "Oranges"
+CLAMP = "#6B7480"
+_AWAY = 0.8  # of half a beam's height that the largest departure is drawn as: edges must not meet
+
+
+def shade(family: str, nth: int, count: int) -> Any:
+    """The darker the later."""
+    return colormaps[family](0.45 + 0.5 * (nth / (count - 1) if count > 1 else 0.7))
+
+
+def magnification(beams: Sequence[DrawnTrial]) -> float:
+    """A round factor, the same for all panels, at which the largest departure is well seen."""
+    half = min(0.5 * float(abs(b.body[0][0] - b.body[1][0]).max()) for b in beams)
+    largest = max(b.largest for b in beams)
+    wanted = _AWAY * half / largest if largest > 0.0 else 1.0
+    if wanted <= 1.0:
+        return 1.0
+    power = 10.0 ** floor(log10(wanted))
+    return float(max(m * power for m in (1, 1.5, 2, 3, 5, 7) if m * power <= wanted))
+
+
+def clamps(axes: Any, beam: DrawnTrial, depth_mm: float) -> None:
+    """The grips that hold a beam, in mm."""
+    upper, lower = (1e3 * line for line in beam.body)
+    places = [(upper[0], lower[0], -depth_mm)]
+    if beam.trial.supports == "clamped-clamped":
+        places.append((upper[-1], lower[-1], depth_mm))
+    for top, bottom, width in places:
+        high = 1.15 * (top[1] - bottom[1])
+        axes.add_patch(
+            Rectangle(
+                (0.5 * (top[0] + bottom[0]), 0.5 * (top[1] + bottom[1] - high)),
+                width,
+                high,
+                color=CLAMP,
+                lw=0,
+                zorder=1,
+            )
+        )
+
+
+def scale_bar(axes: Any, length_mm: float) -> None:
+    """A length in the lower left corner."""
+    x, z = axes.get_xlim()[0], axes.get_ylim()[0]
+    axes.plot([x, x + length_mm], [z, z], color=INK, lw=2.5, solid_capstyle="butt", clip_on=False)
+    axes.annotate(
+        f"{length_mm:g} mm",
+        (x + length_mm, z),
+        xytext=(4, 0),
+        textcoords="offset points",
+        fontsize=8,
+        va="center",
+        annotation_clip=False,
+    )

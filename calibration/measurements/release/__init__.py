@@ -1,0 +1,23 @@
+"""Cantilever releases: markers of a beam in free vibration and at static equilibrium."""
+
+from calibration.measurements.release._record import hung_mass
+from calibration.measurements.release.fit import MotionFit, fit_motion
+from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
+from calibration.measurements.release.objective import Damping, Fidelity, MarkerObjective, Match, Nuisances
+from calibration.measurements.release.ringdown import RingDown, ringdown
+
+__all__ = [
+    "Damping",
+    "Fidelity",
+    "MarkerObjective",
+    "Match",
+    "Motion",
+    "MotionFit",
+    "Nuisances",
+    "RingDown",
+    "fit_motion",
+    "hung_mass",
+    "marker_displacements",
+    "marker_motion",
+    "ringdown",
+]

@@ -1,0 +1,179 @@
+"""Corrections of the reduced beam by FEM: at the static equilibrium of each trial, and of its frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from calibration.measurements.release._beam import BeamParameters, ReducedBeam
+from calibration.measurements.release._record import Record
+from calibration.measurements.release._vibration import beam_markers, free_vibration
+from calibration.measurements.release.kinematics import marker_displacements
+from calibration.measurements.release.ringdown import ringdown
+from tisim import Beam, Result, Solver, material_from_moduli, simulate
+
+Array = NDArray[np.float64]
+
+BULK_RATIO = 300.0  # K/G
+LAYERS, RINGS = (5, 10), (1, 2)  # coarse and fine
+USUAL = 0.06  # of the height: length of a beam that the clamp keeps from bending, before FEM is run
+PERIODS, STEPS = 4.0, 64  # periods that FEM simulates, and its time steps in one
+_WIDEST = 0.25  # of the height
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Correction:
+    """What three dimensions add to the reduced beam.
+
+    Attributes
+    ----------
+    stiff_root : with which the tip of the reduced beam has FEM's equilibrium [m].
+    extra_inertia : relative, with which it has FEM's frequency.
+    markers : displacement at equilibrium, FEM less reduced, shape (m, 2) [m].
+    drop : of the tip at equilibrium [m].
+    """
+
+    stiff_root: float
+    extra_inertia: float
+    markers: Array
+    drop: float
+
+
+def beam_of(record: Record, shear: float, *, fine: bool) -> Beam:
+    """The trial's beam for FEM."""
+    t = record.trial
+    return Beam(
+        material=material_from_moduli(
+            "neo-hookean",
+            shear_modulus=shear,
+            bulk_modulus=BULK_RATIO * shear,
+            density=record.parameters.density,
+        ),
+        length=t.free_length,
+        section=t.section,
+        supports=t.supports,
+        grip_length=t.grip_length,
+        gravity=t.gravity,
+        tip_force=t.tip_force,
+        tip_mass=record.parameters.tip_mass,
+        axial_element_size=t.free_length / LAYERS[fine],
+        radial_elements=RINGS[fine],
+        solver=Solver(tolerance=1e-6),
+    )
+
+
+def corrections(
+    records: Sequence[Record],
+    shears: Sequence[float],
+    relaxation_times: Sequence[float],
+    *,
+    workers: int | None,
+) -> tuple[list[Correction], list[str]]:
+    """One correction a record, and what went wrong; the usual one where FEM or its match has no answer.
+
+    Beams of one form, markers and load are simulated once. shears [Pa] and relaxation_times [s] are of each
+    record.
+    """
+    kinds: dict[object, list[int]] = {}
+    for k, r in enumerate(records):
+        s = r.parameters
+        form = (s.section, s.length, s.density, round(s.tip_mass, 6), r.trial.grip_length, r.specimen)
+        kinds.setdefault((form, r.positions, r.names), []).append(k)
+    beams = []
+    for members in kinds.values():
+        k = members[0]
+        still = [beam_of(records[k], shears[k], fine=fine) for fine in (False, True)]
+        beams += [*still, replace(still[0], solver=_released(records[k], relaxation_times[k]))]
+    results = simulate(beams, workers=workers)
+    found, wrong = [uncorrected(r) for r in records], []
+    for n, members in enumerate(kinds.values()):
+        k = members[0]
+        try:
+            one = _matched(records[k], shears[k], relaxation_times[k], *results[3 * n : 3 * n + 3])
+        except ValueError as problem:
+            names = ", ".join(records[j].name for j in members)
+            wrong.append(f"{names}: not corrected by FEM: {problem}")
+            continue
+        for j in members:
+            found[j] = one
+    return found, wrong
+
+
+def uncorrected(record: Record, *, usual: bool = True) -> Correction:
+    """Beam theory, with the stiff root that clamps usually have, or none."""
+    return Correction(
+        stiff_root=USUAL * _height(record) if usual else 0.0,
+        extra_inertia=0.0,
+        markers=np.zeros((len(record.positions), 2)),
+        drop=float(-record.equilibrium[record.outer, 1].mean()),
+    )
+
+
+def _released(record: Record, relaxation_time: float) -> Solver:
+    return Solver(
+        method="implicit",
+        duration=PERIODS * record.period,
+        time_step=record.period / STEPS,
+        stiffness_damping=relaxation_time,
+        tolerance=1e-4,
+    )
+
+
+def _matched(
+    record: Record, shear: float, relaxation_time: float, coarse: Result, fine: Result, moving: Result
+) -> Correction:
+    positions = np.array([m.position for m in record.trial.markers])
+    for result in (coarse, fine, moving):
+        if not result.ok:
+            raise ValueError(f"{result.status}: {result.message}")
+    parameters = replace(record.parameters, shear_modulus=shear, relaxation_time=relaxation_time)
+    rough = _with_root(record, parameters, _plane(coarse, positions)[:, -1])
+    tips = _plane(moving, positions)[record.outer, :, 1].mean(axis=0)
+    q = free_vibration(rough).coordinates(moving.load)
+    reduced = beam_markers(rough, q, record.positions).displacement[record.outer, :, 1].mean(axis=0)
+    first, last = 0.75 * record.period, PERIODS * record.period
+    rates = [ringdown(moving.load, z, first=first, last=last).frequency for z in (tips, reduced)]
+    # BDF2 of a step dt lowers an angular frequency w by the part (w dt)^2 / 3
+    slowed = (2.0 * np.pi * rates[0] * record.period / STEPS) ** 2 / 3.0
+    aim = _plane(fine, positions)[:, -1]
+    exact = _with_root(record, parameters, aim)
+    return Correction(
+        stiff_root=exact.stiff_root,
+        extra_inertia=(rates[1] / (rates[0] * (1.0 + slowed))) ** 2 - 1.0,
+        markers=aim - _equilibrium(exact, record)[0],
+        drop=float(-aim[record.outer, 1].mean()),
+    )
+
+
+def _plane(result: Result, positions: Array) -> Array:
+    """Displacement of markers in x and z, shape (m, f, 2) [m]."""
+    return marker_displacements(result, positions)[:, :, [0, 2]]
+
+
+def _with_root(record: Record, parameters: BeamParameters, aim: Array) -> BeamParameters:
+    """The parameters with the stiff root that brings the reduced beam's tip to FEM's, of markers (m, 2)."""
+    drop = float(-aim[record.outer, 1].mean())
+    widest = _WIDEST * _height(record)
+
+    def off(root: float) -> float:
+        return _equilibrium(replace(parameters, stiff_root=root), record)[1] - drop
+
+    if off(-widest) * off(widest) > 0.0:
+        raise ValueError("no stiffness of the root gives the reduced beam that equilibrium")
+    return replace(parameters, stiff_root=float(brentq(off, -widest, widest, xtol=1e-8)))
+
+
+def _equilibrium(parameters: BeamParameters, record: Record) -> tuple[Array, float]:
+    """Markers at the equilibrium of the reduced beam (m, 2), and the drop of its tip."""
+    q = ReducedBeam(parameters).equilibrium()
+    moved = beam_markers(parameters, q[None], record.positions).displacement[:, 0]
+    return moved, float(-moved[record.outer, 1].mean())
+
+
+def _height(record: Record) -> float:
+    section = record.parameters.section
+    return float(getattr(section, "height", 2.0 * getattr(section, "radius", 0.0)))

@@ -1,0 +1,281 @@
+"""The forward map of cantilever releases: coordinates besides the moduli, and the rows of each record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.measurements._baseline import Baseline, Extra
+from calibration.measurements.release._beam import BeamParameters
+from calibration.measurements.release._fem import Correction
+from calibration.measurements.release._record import LAST, Record
+from calibration.measurements.release._vibration import beam_markers, clamp_markers, free_vibration
+from calibration.measurements.release.experiments import unchanged
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+RELEASE = 0.01  # [s], and
+START = 0.1  # fraction of the way to equilibrium, that one unit of a trial's own coordinates is
+RELEASE_SD, START_SD = 0.03, 0.2  # of their priors [s], [-]
+RELAXATION_TIME, RELAXATION_SD = 2e-3, 3.0  # [s], and sd of its logarithm
+WITH_CLAMP, WITH_CLAMP_SD = 0.5, 0.5  # fraction by which markers next to a clamp move with it
+# Of ln G from one load to another: the error of the reduced beam (its frequency against FEM's: 0.1 to 0.3 %),
+# and one unit of the coordinate. It moves the phase of the last periods by so much that it is no linear
+# nuisance.
+LOAD, LOAD_SD = 0.02, 0.003
+# Periods by which a vibration may get out of phase until its end; further out, a search does not find back.
+OUT_OF_PHASE = 0.4
+REMEMBERED = 400
+
+
+@dataclass(frozen=True, kw_only=True)
+class Own:
+    """A record's own unknowns.
+
+    Attributes
+    ----------
+    release_time : [s].
+    start : fraction of the way to equilibrium from which the beam was released.
+    with_clamp : fraction by which markers next to the clamp move with it.
+    """
+
+    release_time: float
+    start: float
+    with_clamp: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Coordinates:
+    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s; of each trial its
+    release time (in 10 ms after the first guess) and start (in tenths of the way to equilibrium); the reduced
+    beam's error at each load but the first (in 2 % of the modulus); of each specimen with markers next to the
+    clamp the fraction by which these move with the clamp.
+
+    Attributes
+    ----------
+    baseline : with these extras.
+    trials, loads : names.
+    near : specimens with markers next to the clamp.
+    """
+
+    baseline: Baseline
+    trials: tuple[str, ...]
+    loads: tuple[str, ...]
+    near: tuple[str, ...]
+
+    @classmethod
+    def of(cls, records: Sequence[Record], plain: Baseline) -> Coordinates:
+        """Coordinates of these records, besides those of a plain baseline."""
+        trials = tuple(r.name for r in records)
+        loads = tuple(dict.fromkeys(r.load for r in records))
+        near = tuple(dict.fromkeys(r.specimen for r in records if (r.near_clamp & ~r.behind_face).any()))
+        extras = [
+            *(
+                Extra(name=f"{m} relaxation time", sd=RELAXATION_SD, centre=float(np.log(RELAXATION_TIME)))
+                for m in plain.materials
+            ),
+            *(
+                Extra(name=f"{t} {quantity}", sd=sd)
+                for t in trials
+                for quantity, sd in (("release", RELEASE_SD / RELEASE), ("start", START_SD / START))
+            ),
+            *(Extra(name=f"error with {load}", sd=LOAD_SD / LOAD) for load in loads[1:]),
+            *(Extra(name=f"{s} fraction with the clamp", sd=WITH_CLAMP_SD, centre=WITH_CLAMP) for s in near),
+        ]
+        return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, near=near)
+
+    def shear_modulus(self, record: Record, u: Array) -> float:
+        """Shear modulus of a record's beam [Pa], with the error of its load."""
+        error = LOAD * float(u[self.of_load(record.load)]) if record.load != self.loads[0] else 0.0
+        return float(np.exp(u[self.baseline.specimens.index(record.specimen)] + error))
+
+    def relaxation_time(self, record: Record, u: Array) -> float:
+        """Relaxation time of a record's material [s]."""
+        return float(np.exp(u[self.of_material(record.material)]))
+
+    def own(self, record: Record, u: Array) -> Own:
+        """When and from where a record's beam was released, and how far its markers move with the clamp."""
+        first = self.of_trial(record)
+        fraction = 0.0
+        if record.specimen in self.near:
+            fraction = float(u[self._of_near(record.specimen)])
+        return Own(
+            release_time=record.release_time + RELEASE * float(u[first]),
+            start=START * float(u[first + 1]),
+            with_clamp=fraction,
+        )
+
+    def constrained(
+        self, records: Sequence[Record], compared: Rows, vibrating: Rows, row_record: NDArray[np.intp]
+    ) -> Rows:
+        """Coordinates (n,) that some rows constrain. A trial's own are constrained by its vibration alone.
+
+        Parameters
+        ----------
+        compared : rows that are left, shape (rows,).
+        vibrating : rows of the free vibration, shape (rows,).
+        row_record : index of the record of each row, shape (rows,).
+        """
+        found = np.zeros(len(self.baseline.names), dtype=bool)
+        found[len(found) - len(self.near) :] = True
+        for k, r in enumerate(records):
+            mine = compared & (row_record == k)
+            if mine.any():
+                found |= self.baseline.informed_by(r, whole_material=False)
+                found[self.of_material(r.material)] = True
+                if r.load != self.loads[0]:
+                    found[self.of_load(r.load)] = True
+            if (mine & vibrating).any():
+                first = self.of_trial(r)
+                found[first : first + 2] = True
+        return found
+
+    def depended_on(self, record: Record) -> Rows:
+        """Coordinates (n,) that the simulation of a record depends on."""
+        found = self.baseline.informed_by(record, whole_material=False)
+        found[self.of_material(record.material)] = True
+        first = self.of_trial(record)
+        found[first : first + 2] = True
+        if record.load != self.loads[0]:
+            found[self.of_load(record.load)] = True
+        if record.specimen in self.near:
+            found[self._of_near(record.specimen)] = True
+        return found
+
+    def of_material(self, material: str) -> int:
+        """Index of a material's relaxation time."""
+        return self.baseline.first_extra + self.baseline.materials.index(material)
+
+    def of_trial(self, record: Record) -> int:
+        """Index of the first of a trial's own coordinates."""
+        begin = self.baseline.first_extra + len(self.baseline.materials)
+        return begin + 2 * self.trials.index(record.name)
+
+    def of_load(self, load: str) -> int:
+        """Index of the error at a load that is not the first."""
+        return len(self.baseline.names) - len(self.near) - len(self.loads) + self.loads.index(load)
+
+    def _of_near(self, specimen: str) -> int:
+        """Index of the fraction by which a specimen's markers move with the clamp."""
+        return len(self.baseline.names) - len(self.near) + self.near.index(specimen)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ForwardMap:
+    """Simulated rows of each record.
+
+    Attributes
+    ----------
+    corrections : of each record, by FEM.
+    reference_time : of all beams [s]; see `BeamParameters`.
+    changed : by the experiment that is predicted; where it changes the beam, its vibration may be out of
+        phase with the record's.
+    """
+
+    records: Sequence[Record]
+    coordinates: Coordinates
+    corrections: Sequence[Correction]
+    reference_time: float
+    changed: Callable[[BeamParameters], BeamParameters] = unchanged
+    _known: dict[object, Array] = field(default_factory=dict, init=False, repr=False)
+
+    def baseline_parameters(self, k: int, u: Array) -> BeamParameters:
+        """Parameters of a record's beam without effects."""
+        r = self.records[k]
+        return replace(
+            r.parameters,
+            shear_modulus=self.coordinates.shear_modulus(r, u),
+            relaxation_time=self.coordinates.relaxation_time(r, u),
+            stiff_root=self.corrections[k].stiff_root,
+            reference_time=self.reference_time,
+            extra_inertia=self.corrections[k].extra_inertia,
+        )
+
+    def own(self, k: int, u: Array) -> Own:
+        return self.coordinates.own(self.records[k], u)
+
+    def rows(self, k: int, parameters: BeamParameters, own: Own) -> Array:
+        """Rows of a record [m], without nuisances; remembered, since most coordinates are of other records.
+        ValueError where the beam has no stable equilibrium, or gets out of phase."""
+        key = (k, parameters, own)
+        if key not in self._known:
+            if len(self._known) >= REMEMBERED:
+                self._known.pop(next(iter(self._known)))
+            r = self.records[k]
+            moved = self._displacements(k, parameters, own, r.time - own.release_time)
+            self._known[key] = r.rows(lambda i: moved[i], np.zeros((len(r.positions), 2)))
+        return self._known[key]
+
+    def tip_height(self, k: int, parameters: BeamParameters, own: Own, time: Array) -> Array:
+        """Mean height (t,) [m] of a record's outer markers, at times after the first guess of its release."""
+        r = self.records[k]
+        moved = self._displacements(k, parameters, own, time + r.release_time - own.release_time)
+        return np.asarray(moved[r.outer, :, 1].mean(axis=0))
+
+    def _displacements(self, k: int, parameters: BeamParameters, own: Own, since: Array) -> Array:
+        """Displacement of a record's markers (m, t, 2) [m], at times since the release by the lab's clock."""
+        r, correction = self.records[k], self.corrections[k]
+        time = since * (1.0 + parameters.clock_rate)
+        motion = free_vibration(parameters, start=own.start)
+        q = motion.coordinates(time)
+        moved = beam_markers(parameters, q, r.positions).displacement
+        drop = -moved[r.outer, :, 1].mean(axis=0)
+        moved = moved + correction.markers[:, None, :] * (drop / correction.drop)[None, :, None]
+        if r.near_clamp.any():
+            clamped = clamp_markers(parameters, q, r.positions).displacement
+            fraction = np.where(r.behind_face, 1.0, own.with_clamp)[:, None, None]
+            moved[r.near_clamp] += (fraction * (clamped - moved))[r.near_clamp]
+        moved = moved * (time > 0.0)[None, :, None]
+        slip = abs(motion.frequencies[0] * (1.0 + parameters.clock_rate) * r.period - 1.0) * LAST
+        if self.changed is unchanged and slip > OUT_OF_PHASE:
+            raise ValueError("the simulated vibration gets out of phase with the measured one")
+        c, s = (1.0 + parameters.image_scale) * np.array(
+            [np.cos(parameters.camera_roll), np.sin(parameters.camera_roll)]
+        )
+        return np.stack([c * moved[..., 0] - s * moved[..., 1], s * moved[..., 0] + c * moved[..., 1]], -1)
+
+
+def start_of(forward: ForwardMap) -> Array:
+    """Coordinates (n,) with the moduli whose vibration is as fast as the measured one, the relaxation time of
+    its damping ratio, and the release nearest to the data. ValueError where a beam has no equilibrium."""
+    records, coordinates = forward.records, forward.coordinates
+    baseline = coordinates.baseline
+    moduli = {}
+    for name in baseline.specimens:
+        mine = [r for r in records if r.specimen == name]
+        logs = [np.log(_modulus(r, forward.corrections[0].stiff_root)) for r in mine]
+        moduli[name] = float(np.exp(np.mean(logs)))
+    u = baseline.start(moduli)
+    for name in baseline.materials:
+        mine = [r for r in records if r.material == name]
+        u[coordinates.of_material(name)] = np.mean([np.log(r.damping_ratio * r.period / np.pi) for r in mine])
+    for k, r in enumerate(records):
+        parameters, own = forward.baseline_parameters(k, u), forward.own(k, u)
+        there = np.isfinite(r.deviations())
+        tries = np.linspace(-RELEASE_SD, RELEASE_SD, 61)
+        costs = []
+        for t in r.release_time + tries:
+            simulated = forward.rows(k, parameters, replace(own, release_time=float(t)))
+            costs.append(float(np.sum(((simulated - r.measured())[there]) ** 2)))
+        u[coordinates.of_trial(r)] = tries[int(np.argmin(costs))] / RELEASE
+    return u
+
+
+def _modulus(record: Record, stiff_root: float) -> float:
+    """Shear modulus [Pa] whose reduced beam vibrates as fast as the record."""
+    shear = 1e5
+    usual = replace(record.parameters, stiff_root=stiff_root)
+    for _ in range(40):
+        try:
+            found = float(free_vibration(replace(usual, shear_modulus=shear)).frequencies[0])
+        except ValueError:  # too soft for its load
+            shear *= 4.0
+            continue
+        if abs(found * record.period - 1.0) < 1e-4:
+            break
+        shear *= float(np.clip((1.0 / (found * record.period)) ** 2, 0.3, 4.0))
+    return shear

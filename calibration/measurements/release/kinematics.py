@@ -1,0 +1,137 @@
+"""How markers on a simulated body move: on its surface, or on a rigid stalk that stands on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tisim import Mesh, Result
+
+Array = NDArray[np.float64]
+
+FLUSH = 1e-9  # distances from the surface within this much of the nearest are one contact [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Motion of m markers in f frames.
+
+    Attributes
+    ----------
+    displacement : shape (m, f, 3) [m].
+    turn : R - 1 of what carries each marker, shape (m, f, 3, 3): a marker at X + e in place of X is displaced
+        by turn @ e more.
+    """
+
+    displacement: Array
+    turn: Array
+
+
+def marker_displacements(result: Result, positions: ArrayLike) -> Array:
+    """Displacement of markers from the unloaded pose in each frame of a result, shape (m, f, 3) [m].
+
+    positions : in the unloaded pose, shape (m, 3) [m]. See `marker_motion`.
+    """
+    return marker_motion(result, positions).displacement
+
+
+def marker_motion(result: Result, positions: ArrayLike) -> Motion:
+    """Displacement and turn of markers in each frame of a result.
+
+    A marker's foot is the nearest point of the body's surface, and moves as its facet interpolates. A marker
+    that stands off it is carried as by a rigid stalk, turned as the surface turns at the foot: by the
+    least-squares rotation (polar factor) of the facet's tangents and normal, which is exact where the surface
+    bends as the elements do. A foot on an edge takes the mean of its facets.
+    ValueError where the mesh has no facet set "surface".
+    """
+    mesh = result.mesh
+    if "surface" not in mesh.facet_sets:
+        raise ValueError("markers: expected a mesh with a facet set 'surface'")
+    wanted = np.asarray(positions, dtype=float).reshape(-1, 3)
+    moved = np.zeros((len(wanted), len(result.positions), 3))
+    turns = np.zeros((len(wanted), len(result.positions), 3, 3))
+    for i, at in enumerate(wanted):
+        # half models: the other half moves as the mirror image
+        mirror = np.ones(3)
+        for axis in mesh.symmetry:
+            mirror["xyz".index(axis)] = -1.0 if at["xyz".index(axis)] < 0.0 else 1.0
+        displacement, turn = _one(mesh, result.positions, at * mirror)
+        moved[i] = displacement * mirror
+        turns[i] = mirror[:, None] * turn * mirror
+    return Motion(moved, turns)
+
+
+def _one(mesh: Mesh, x: Array, at: Array) -> tuple[Array, Array]:
+    """Displacement (f, 3) and turn (f, 3, 3) of one marker."""
+    facets = mesh.facet_sets["surface"]
+    corners, split = _corners(facets)
+    points, local = nearest_on_triangles(at, mesh.nodes[corners])
+    distance = np.linalg.norm(points - at, axis=1)
+    near = np.flatnonzero(distance <= distance.min() + FLUSH)
+    foot, moved, gradient = np.zeros(3), np.zeros((len(x), 3)), np.zeros((len(x), 3, 3))
+    for k in near:
+        nodes = facets[k // split]
+        n, tangents = _shape(facets.shape[1], int(k) % split, local[k])
+        foot += n @ mesh.nodes[nodes] / len(near)
+        moved += np.einsum("a,fai->fi", n, x[:, nodes]) / len(near)
+        rest = _frame(tangents @ mesh.nodes[nodes][None])[0]
+        gradient += _frame(tangents @ x[:, nodes]) @ np.linalg.inv(rest)
+    turn = _rotation(gradient) - np.eye(3)
+    return moved - foot + turn @ (at - foot), turn
+
+
+def _frame(tangents: Array) -> Array:
+    """Two tangents (f, 2, 3) and the unit normal, as columns (f, 3, 3)."""
+    normal = np.cross(tangents[:, 0], tangents[:, 1])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.stack([tangents[:, 0], tangents[:, 1], normal], axis=2)
+
+
+def _rotation(gradient: Array) -> Array:
+    """Nearest rotations of matrices (f, 3, 3) (Kabsch, Acta Cryst. A32, 1976)."""
+    u, _, vt = np.linalg.svd(gradient)
+    u[..., 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
+    return np.asarray(u @ vt)
+
+
+def _corners(facets: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:
+    """Flat triangles of the facets, and how many each facet makes."""
+    if facets.shape[1] == 4:
+        return np.stack([facets[:, [0, 1, 2]], facets[:, [0, 2, 3]]], axis=1).reshape(-1, 3), 2
+    return facets[:, :3], 1
+
+
+def _shape(width: int, part: int, l: Array) -> tuple[Array, Array]:
+    """Shape functions (width,) of a facet at area coordinates l (3,) of its flat triangle number `part`, and
+    their derivatives along that triangle's two sides (2, width)."""
+    along = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
+    if width == 6:
+        n = np.concatenate([l * (2 * l - 1), [4 * l[0] * l[1], 4 * l[1] * l[2], 4 * l[2] * l[0]]])
+        middle = 4 * np.array([[l[1], l[0], 0.0], [0.0, l[2], l[1]], [l[2], 0.0, l[0]]])
+        return n, along @ np.concatenate([np.diag(4 * l - 1), middle]).T
+    place = np.zeros((3, width))
+    place[[0, 1, 2], ([0, 1, 2], [0, 2, 3])[part]] = 1.0
+    return l @ place, along @ place
+
+
+def nearest_on_triangles(at: Array, triangles: Array) -> tuple[Array, Array]:
+    """Points of triangles (t, 3, 3) nearest to a point (3,), shape (t, 3), and their area coordinates."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    e1, e2, d = b - a, c - a, at - a
+    g11, g12, g22 = (np.einsum("ti,ti->t", p, q) for p, q in ((e1, e1), (e1, e2), (e2, e2)))
+    h1, h2 = np.einsum("ti,ti->t", e1, d), np.einsum("ti,ti->t", e2, d)
+    det = g11 * g22 - g12**2
+    u, v = (g22 * h1 - g12 * h2) / det, (g11 * h2 - g12 * h1) / det
+    best = np.column_stack([1.0 - u - v, u, v])
+    gap = np.where((best >= 0.0).all(axis=1), 0.0, np.inf)  # those outside are on an edge
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        p, q = triangles[:, i], triangles[:, j]
+        t = np.clip(np.einsum("ti,ti->t", at - p, q - p) / np.einsum("ti,ti->t", q - p, q - p), 0.0, 1.0)
+        away = np.linalg.norm(p + t[:, None] * (q - p) - at, axis=1)
+        closer = away < gap
+        edge = np.zeros_like(best)
+        edge[:, i], edge[:, j] = 1.0 - t, t
+        best[closer], gap[closer] = edge[closer], away[closer]
+    return np.einsum("ta,tai->ti", best, triangles), best

@@ -1,0 +1,282 @@
+"""Cantilever releases of all trials together, effects nested in a reduced beam.
+
+What is compared are displacements of markers in the plane of the vibration: before the release, in free
+vibration (from one period after the release on, since no hand lets go in an instant) and near equilibrium, in
+means of neighbouring samples. Their noise is the lab's marker error; nuisances are marginalised: the cameras'
+frame, markers' positions and zeros, a twist, what FEM adds to the reduced beam.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import Experiment
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise import Noise
+from calibration.measurements._state import State
+from calibration.measurements.release._beam import BeamParameters
+from calibration.measurements.release._effect import ReleaseEffect
+from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
+from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of
+from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
+from calibration.measurements.release._record import FIRST, LAST, Record, records_of
+from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+MOVED = 0.05  # of ln G, after which FEM is run again
+
+
+class ReleaseModel(MeasurementModel):
+    """Baseline: neo-Hookean, nearly incompressible, one modulus a specimen (trials that name none share one a
+    material) and one relaxation time a material (damping in proportion to stiffness). `Coordinates` lists the
+    others.
+
+    Parameters
+    ----------
+    experiment : its beams with markers are used.
+    effects : by name; see `calibration.diagnosis.effects.release`.
+    baseline : in place of that.
+    workers : processes of FEM; None for all cores.
+    fem : correct the reduced beam by FEM; False leaves plain beam theory.
+
+    Raises
+    ------
+    InputError : there is no beam with markers, or one lacks something.
+    """
+
+    kind = "release"
+    unit = ("mm", 1e3)
+    coordinate_step = 1e-5
+    # A change of frequency has a long column, of which a modulus takes nearly all; the closed forms of the
+    # reduced beam leave nothing else to finite differences.
+    alias_tolerance = 1e-4
+    compares_specimens = False
+    no_answer = "the beam has no equilibrium at this state"
+    # such explanations part in the experiment by more than a verdict asks, whatever its noise
+    enough = 60.0
+    separates = "most"
+    experiments: ClassVar[Sequence[Any]] = EXPERIMENTS
+
+    records: Sequence[Record]
+    effects: Mapping[str, ReleaseEffect]
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        *,
+        effects: Mapping[str, ReleaseEffect] | None = None,
+        baseline: Baseline | None = None,
+        workers: int | None = None,
+        fem: bool = True,
+    ) -> None:
+        records = records_of(experiment)
+        if not records:
+            raise InputError("experiment.yaml: trials: expected a beam with markers")
+        self.experiment = experiment
+        self.workers, self.fem = workers, fem
+        self.effects = dict(effects or {})
+        self._measured_in(records)
+        self.coordinates = Coordinates.of(
+            records, baseline or Baseline.per_specimen(records, bulk_ratio=BULK_RATIO)
+        )
+        self.baseline = self.coordinates.baseline
+        self.reference_time = float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)
+        self.forward = ForwardMap(
+            records=records,
+            coordinates=self.coordinates,
+            corrections=[uncorrected(r, usual=fem) for r in records],
+            reference_time=self.reference_time,
+        )
+        self.not_corrected: list[str] = []
+        self._corrected_at: Array | None = None
+        self._set_candidates()
+
+    def _measured_in(self, records: Sequence[Record]) -> None:
+        """Take these records."""
+        self.records = records
+        self.row_record = np.repeat(np.arange(len(records)), [r.points for r in records])
+        self.noise = Noise.independent(np.concatenate([r.deviations() for r in records]), symmetric=True)
+
+    @property
+    def corrections(self) -> Sequence[Correction]:
+        """By FEM, of each record."""
+        return self.forward.corrections
+
+    # -- forward map --
+
+    def start(self) -> Array:
+        """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
+        release nearest to the data. ValueError where a beam has no equilibrium."""
+        return start_of(self.forward)
+
+    def parameters(self, k: int, state: State) -> BeamParameters:
+        """Of a record's beam, with the state's effects in it."""
+        found = self.forward.baseline_parameters(k, state.u)
+        for (name, _, variant), amplitude in self.acting(state, self.records[k]).items():
+            if amplitude != 0.0:
+                found = self.effects[name].alter(found, amplitude, variant)
+        return self.forward.changed(found)
+
+    def simulated(self, k: int, state: State) -> Array:
+        """Rows of a record [m], without nuisances. ValueError where its beam has no equilibrium."""
+        return self.forward.rows(k, self.parameters(k, state), self.forward.own(k, state.u))
+
+    def tip_height(self, k: int, state: State, time: Array) -> Array:
+        """Mean height (t,) [m] of a record's outer markers, at times after the first guess of its release."""
+        return self.forward.tip_height(k, self.parameters(k, state), self.forward.own(k, state.u), time)
+
+    def _misfit(self, states: Sequence[State]) -> Array:
+        return np.array(
+            [np.concatenate([self._left(k, s) for k in range(len(self.records))]) for s in states]
+        )
+
+    def _depends_on(self, record: Record) -> Rows:
+        return self.coordinates.depended_on(record)
+
+    def _left(self, k: int, state: State) -> Array:
+        """Simulated less measured rows of a record; NaN where its beam has no answer, or no row is used."""
+        r = self.records[k]
+        if not self.noise.used[self.row_record == k].any():
+            return np.full(r.points, np.nan)
+        try:
+            return self.simulated(k, state) - r.measured()
+        except (ValueError, np.linalg.LinAlgError):
+            return np.full(r.points, np.nan)
+
+    # -- noise, lack of fit, folds --
+
+    def update_nuisances(self, state: State, *, rough: bool = False) -> None:
+        """Take the nuisances and the corrections by FEM at a state; rough : without running FEM."""
+        every = range(len(self.records))
+        moduli = np.array([state.u[self.baseline.specimens.index(r.specimen)] for r in self.records])
+        far = self._corrected_at is None or np.abs(moduli - self._corrected_at).max() > MOVED
+        if self.fem and not rough and far:
+            beams = [self.parameters(k, state) for k in every]
+            found, self.not_corrected = corrections(
+                self.records,
+                [b.shear_modulus for b in beams],
+                [b.relaxation_time for b in beams],
+                workers=self.workers,
+            )
+            self.forward = replace(self.forward, corrections=found)
+            self._corrected_at = moduli
+        own = [self.forward.own(k, state.u) for k in every]
+        columns = nuisance_columns(
+            self.records,
+            [self.parameters(k, state) for k in every],
+            [o.release_time for o in own],
+            self.corrections,
+            lambda k, parameters: self.forward.rows(k, parameters, own[k]),
+        )
+        self.noise = self.noise.with_nuisances(columns)
+
+    def noise_rms(self) -> float:
+        return float(np.sqrt(np.mean(self.noise.sd[self.noise.used] ** 2)))
+
+    def _discrepancies(self) -> Mapping[str, Array]:
+        return discrepancies(self.records)
+
+    def _fold_labels(self) -> Mapping[str, Sequence[str]]:
+        """By load, by trial, and free vibration against what comes after it."""
+        late = self._after_vibration()
+        owners = [self.records[k] for k in self.row_record]
+        return {
+            "leave-one-load-out": [r.load for r in owners],
+            "leave-one-trial-out": [r.name for r in owners],
+            "vibration-or-equilibrium-out": [
+                "approach to equilibrium" if x else "free vibration" for x in late
+            ],
+        }
+
+    def _after_vibration(self) -> Rows:
+        """Rows after the free vibration, shape (rows,)."""
+        return np.concatenate([r.labels()[2] > LAST * r.period for r in self.records])
+
+    def unconstrained(self, fold: Rows) -> Rows:
+        """A trial's release and start are constrained by its free vibration alone."""
+        time = np.concatenate([r.labels()[2] for r in self.records])
+        return ~self.coordinates.constrained(
+            self.records,
+            self.noise.used & ~fold,
+            np.isfinite(time) & ~self._after_vibration(),
+            self.row_record,
+        )
+
+    # -- advice and reports --
+
+    def predicted_in(self, test: RepeatedRelease, state: State) -> Self | None:
+        """The same specimens in a repeated release, nuisances drawn anew; None where it cannot be done."""
+        some = copy(self)
+        some._measured_in([r.longer(test.duration) for r in self.records])
+        some.forward = replace(self.forward, records=some.records, changed=test.changed)
+        try:
+            some.update_nuisances(state, rough=True)
+            predicted = [some.simulated(k, state) for k in range(len(some.records))]
+        except ValueError:
+            return None
+        some.records = [r.measuring(p) for r, p in zip(some.records, predicted, strict=True)]
+        return some
+
+    def remarks(self) -> list[str]:
+        """What was left out, what was taken for granted, what the verdict is good for."""
+        records = self.records
+        found = [
+            f"of each trial the first {FIRST:g} periods after the release are left out, since no hand lets go"
+            " in an instant; the time of the release and the shape at it are free",
+            "displacements across the plane of the vibration are not compared; a twist of the tip is a"
+            " nuisance",
+        ]
+        if self.coordinates.near:
+            names = sorted(
+                {
+                    name
+                    for r in records
+                    for name, c in zip(r.names, r.near_clamp & ~r.behind_face, strict=True)
+                    if c
+                }
+            )
+            found.append(
+                f"markers next to the clamp ({', '.join(names)}) may sit on it: the fraction by which they"
+                " move with it is free, and only their motion is compared, not their position at rest"
+            )
+        silent = [
+            r.name
+            for r in records
+            if any(np.isnan(r.held[i, 0]) for i, close in enumerate(r.near_clamp) if not close)
+        ]
+        if silent:
+            found.append(
+                f"{', '.join(silent)}: no sample before the release, so the zero of the displacements is not"
+                " known"
+            )
+        found.append(
+            "a fault of rig or cameras, where one is named, is on record in cards/rig.yaml, which no command"
+            " reads: calibration.fit --rig corrects outlines of photographed beams"
+        )
+        return [*found, *self.not_corrected]
+
+    def noise_sentence(self) -> str:
+        return (
+            f"{len(self.records)} records, {self.points} points (means of neighbouring samples, in x and z):"
+            " the marker error that the lab states, white from sample to sample. Nuisances, one draw a trial:"
+            " the cameras' frame (2 degrees), the zeros of markers (2 mm), a twist of the tip; one draw a"
+            " marker: its position (1 mm); one draw a load: 0.3 % of the equilibrium; one draw in all: a"
+            " fifth of what FEM adds to the reduced beam. Free: the modulus of each specimen, one relaxation"
+            " time a material, the time of each release and the shape at it, 0.3 % of the modulus from one"
+            " load to another."
+        )
+
+    def pictures(self, diagnosis: Any) -> list[Any]:
+        from calibration.measurements.release.pictures import pictures
+
+        return pictures(self, diagnosis)

@@ -1,0 +1,155 @@
+"""All photographs of an experiment traced, and the experiment again with outlines in their place."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from calibration.errors import InputError
+from calibration.experiment import BeamTrial, Checkerboard, read
+from calibration.photo._board import Board, find_board
+from calibration.photo._camera import Camera, calibrate
+from calibration.photo._chain import LEDGER, Job, digest, kept, run
+from calibration.photo._files import PhotoSettings, png, read_settings, write_copy, write_whole
+from calibration.photo._image import PhotoProblem, UnusablePhotographs, read_photograph
+from calibration.progress import OnProgress, Progress, to_log
+from calibration.results import Reconstruction
+
+
+def reconstruct(
+    experiment: Path,
+    *,
+    out: Path | None = None,
+    resume: bool = True,
+    skip_bad: bool = False,
+    on_progress: OnProgress = to_log,
+) -> Reconstruction:
+    """Trace every photograph; see `calibration.reconstruct`."""
+    read_in, settings = read(experiment), read_settings(experiment)
+    target = out or Path(f"{experiment.resolve().name}-traced")
+    _check_target(target, experiment)
+    jobs = [
+        Job(name=f"{trial.id}-{number + 1}".replace("/", "-"), trial=trial, number=number, capture=capture)
+        for trial in read_in.trials
+        if isinstance(trial, BeamTrial)
+        for number, capture in enumerate(trial.captures)
+    ]
+    if not jobs:
+        raise InputError(f"{experiment}: expected a beam with captures, it has none")
+    work = _Work()
+    _find_boards(jobs, experiment, settings, work, on_progress)
+    _run_all(jobs, target, settings, work, on_progress, resume=resume)
+    return _finish(jobs, experiment, target, work, skip_bad=skip_bad)
+
+
+@dataclass
+class _Work:
+    """Boards and cameras by photograph; captures that failed, with their sentences."""
+
+    boards: dict[str, Board] = field(default_factory=dict)
+    cameras: dict[str, Camera] = field(default_factory=dict)
+    problems: dict[str, str] = field(default_factory=dict)
+    figures: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
+def _check_target(target: Path, experiment: Path) -> None:
+    if target.exists() and not target.is_dir():
+        raise InputError(f"{target}: expected a folder to write to, it is a file")
+    if target.resolve() == experiment.resolve():
+        raise InputError(f"{target}: expected a folder other than the experiment's own")
+    if (target / "experiment.yaml").exists() and not (target / LEDGER).is_dir():
+        raise InputError(f"{target}: holds an experiment that this command did not write")
+
+
+def _find_boards(
+    jobs: list[Job], folder: Path, settings: PhotoSettings, work: _Work, on_progress: OnProgress
+) -> None:
+    """All boards first: photographs of one size share a camera, and calibrate it together."""
+    wanted = [job for job in jobs if not job.traced]
+    total, done = len(wanted) + len(settings.calibration_photos), 0
+    views: dict[tuple[int, int], list[Board]] = {}
+    boards: set[Checkerboard] = set()
+    for job in wanted:
+        assert job.capture.photo is not None
+        assert job.capture.checkerboard is not None
+        boards.add(job.capture.checkerboard)
+        try:
+            board = find_board(read_photograph(job.capture.photo), job.capture.checkerboard)
+        except InputError as error:
+            work.problems[job.name] = _sentence(job, error)
+            work.figures[job.name] = {"picture": getattr(error, "picture", None)}
+        else:
+            work.boards[job.name] = board
+            views.setdefault(board.size, []).append(board)
+        done += 1
+        on_progress(Progress(message=f"{job.name}: board", done=done, total=total))
+    for name in settings.calibration_photos:
+        if len(boards) != 1:
+            raise InputError(f"{folder / 'photographs.yaml'}: calibration_photos: expected one kind of board")
+        try:
+            board = find_board(read_photograph(folder / name), next(iter(boards)))
+        except PhotoProblem as error:
+            raise InputError(f"{folder / name}: {error}") from None
+        views.setdefault(board.size, []).append(board)
+        done += 1
+        on_progress(Progress(message=f"{name}: board", done=done, total=total))
+    cameras = {size: calibrate(found) for size, found in views.items()}
+    work.cameras = {name: cameras[board.size] for name, board in work.boards.items()}
+
+
+def _run_all(
+    jobs: list[Job],
+    target: Path,
+    settings: PhotoSettings,
+    work: _Work,
+    on_progress: OnProgress,
+    *,
+    resume: bool,
+) -> None:
+    for number, job in enumerate(jobs, 1):
+        outcome = "cannot be used"
+        if job.name not in work.problems:
+            board, camera = work.boards.get(job.name), work.cameras.get(job.name)
+            key = digest(job, board, camera, settings)
+            done = kept(target, job, key) if resume else None
+            try:
+                if done is None:  # until all is done again, no experiment names outlines that change
+                    (target / "experiment.yaml").unlink(missing_ok=True)
+                work.figures[job.name] = done or run(target, job, key, board, camera, settings)
+                outcome = "kept" if done else "done"
+            except InputError as error:
+                work.problems[job.name] = _sentence(job, error)
+                work.figures[job.name] = {"picture": getattr(error, "picture", None)}
+        if job.name in work.problems:
+            picture = work.figures.pop(job.name)["picture"]
+            if picture is not None:
+                write_whole(target / "problems" / f"{job.name}.png", png(picture))
+        on_progress(Progress(message=f"{job.name}: {outcome}", done=number, total=len(jobs)))
+
+
+def _sentence(job: Job, error: InputError) -> str:
+    place = job.capture.photo.name if job.capture.photo is not None else "its outline"
+    return f"{job.name} ({place}): {error}"
+
+
+def _finish(jobs: list[Job], folder: Path, target: Path, work: _Work, *, skip_bad: bool) -> Reconstruction:
+    if work.problems and not skip_bad:
+        raise UnusablePhotographs(
+            f"{len(work.problems)} of {len(jobs)} captures cannot be used (pictures of what was found in "
+            f"{target / 'problems'}); {len(work.figures)} are traced and kept; take them again, or leave "
+            "them out with --skip-bad",
+            work.problems,
+        )
+    for job in jobs:
+        old = target / "problems" / f"{job.name}.png"
+        if job.name in work.figures and old.exists():
+            old.unlink()
+    by_place = {(job.trial.id, job.number): job.name for job in jobs}
+    figures = {place: work.figures[name] for place, name in by_place.items() if name in work.figures}
+    write_copy(folder, target, figures, by_place)
+    report = {"experiment": folder.name, "captures": work.figures, "left_out": work.problems}
+    write_whole(target / "reconstruct.json", json.dumps(report, indent=1).encode())
+    # what was written is an experiment
+    return Reconstruction(target, read(target), dict(work.figures), dict(work.problems))

@@ -1,0 +1,150 @@
+"""Assessment of a fit: does chance explain the residuals between the data and the fitted law?
+
+A search that converges is not yet a calibration. Where a constant is driven to a bound of the search or away
+from its prior, where more nuisances leave the lab's stated uncertainty than chance allows, or where the
+misfit is far above the noise, the data ask for something that the law, the rig or the camera model lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import comb, erfc, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from calibration.parameters import Parametrisation
+
+if TYPE_CHECKING:
+    from calibration.study.calibration import Calibration
+
+NEAR = 1e-3  # of a coordinate's range: so near to a bound counts as being there
+PRESSED = 1.0  # chi-square that a step over the bound would gain
+FROM_PRIOR = 3.0  # sd: chance leads there in 0.3 % of fits
+CHANCE = 1e-3  # of nuisances: a p-value below is not left to chance
+NOISE_OFF = 1.5  # reduced chi-square that a noise sd stated 20 % too small explains
+
+NAMES = {
+    "shear_modulus": "G",
+    "bulk_ratio": "K/G",
+    "second_share": "C01 / (C10 + C01)",
+    "locking": "locking stretch",
+}
+
+
+def spoken(name: str) -> str:
+    """A search coordinate's name for people; terms of a series keep their number."""
+    for known, word in NAMES.items():
+        if name == known:
+            return word
+        if name.startswith(f"{known}_"):
+            return f"{word} {name.removeprefix(f'{known}_')}"
+    return name.replace("_", " ")
+
+
+def at_bounds(
+    parametrisation: Parametrisation, u: ArrayLike, gains: ArrayLike | None = None
+) -> dict[str, float]:
+    """Constants at a bound of the search that is no simpler law, with the bound's value.
+
+    Parameters
+    ----------
+    parametrisation : Parametrisation
+    u : array, shape (n,)
+    gains : array, shape (n,), optional
+        Chi-square that a free step of each coordinate alone would gain (`step_gains`). With it, a bound
+        counts only where the data press against it (a gain above `PRESSED`); a constant that they do not see
+        may end anywhere.
+    """
+    found = {}
+    pressed = np.full(len(parametrisation.coordinates), np.inf) if gains is None else np.asarray(gains)
+    for c, x, (low, high), gain in zip(
+        parametrisation.coordinates, np.asarray(u, float), parametrisation.bounds, pressed, strict=True
+    ):
+        near = NEAR * (high - low)
+        if gain < PRESSED or c.held:
+            continue
+        if x - low < near and not c.limit_low:
+            found[c.name] = c.low
+        elif high - x < near and not c.limit_high:
+            found[c.name] = c.high
+    return found
+
+
+def step_gains(residuals: ArrayLike, jacobian: ArrayLike) -> NDArray[np.float64]:
+    """(J_i' r)^2 / (J_i' J_i): chi-square that a free step of coordinate i alone would gain, shape (n,)."""
+    J, r = np.asarray(jacobian, float), np.asarray(residuals, float)
+    return np.asarray((J.T @ r) ** 2 / np.maximum((J**2).sum(axis=0), 1e-300))
+
+
+def off_prior(parametrisation: Parametrisation, u: ArrayLike) -> dict[str, float]:
+    """Constants farther from their prior than `FROM_PRIOR` sd, with that distance [sd]."""
+    centre, sd = parametrisation.prior()
+    away = np.abs((np.asarray(u, float) - centre) / sd)
+    return {
+        c.name: float(a)
+        for c, a in zip(parametrisation.coordinates, away, strict=True)
+        if a > FROM_PRIOR and not c.held
+    }
+
+
+def constants_lacking(
+    parametrisation: Parametrisation, u: ArrayLike, gains: ArrayLike | None = None
+) -> tuple[str, ...]:
+    """A phrase for each constant that is driven to a bound or away from its prior."""
+    bounds, away = at_bounds(parametrisation, u, gains), off_prior(parametrisation, u)
+    phrases = [f"{spoken(n)} ends at its bound {value:g}" for n, value in bounds.items()]
+    for name, distance in away.items():
+        if name not in bounds:
+            i = parametrisation.names.index(name)
+            c = parametrisation.coordinates[i]
+            centre, _ = parametrisation.prior()
+            phrases.append(
+                f"{spoken(name)} {c.value(float(np.asarray(u, float)[i])):.3g} lies {distance:.1f} standard"
+                f" deviations from its prior's {c.value(centre[i]):.3g}"
+            )
+    return tuple(phrases)
+
+
+def misfit_lacking(result: Calibration) -> tuple[str, ...]:
+    """A phrase for each way in which a likelihood fit misses the data by more than chance allows."""
+    if result.objective != "likelihood" or not result.parameters:
+        return ()
+    phrases = []
+    freedom = max(1, result.points - len(result.u))
+    if result.reduced_chi2 > max(NOISE_OFF, 1.0 + 3.0 * sqrt(2.0 / freedom)):
+        phrases.append(f"reduced chi-square {result.reduced_chi2:.3g}")
+    phrases += nuisances_lacking(result.nuisances)
+    return tuple(phrases)
+
+
+def nuisances_lacking(nuisances: Mapping[str, float]) -> list[str]:
+    """Phrases on nuisances [sd], where chance explains neither their number beyond 2 sd nor the largest."""
+    n = len(nuisances)
+    if not n:
+        return []
+    beyond = sum(abs(v) > 2.0 for v in nuisances.values())
+    tail = erfc(2.0 / sqrt(2.0))
+    if _at_least(beyond, n, tail) < CHANCE:
+        return [
+            f"{beyond} of {n} nuisances lie beyond 2 standard deviations, where chance puts about"
+            f" {n * tail:.0f}"
+        ]
+    name, largest = max(nuisances.items(), key=lambda pair: abs(pair[1]))
+    if n * erfc(abs(largest) / sqrt(2.0)) < CHANCE:
+        return [f"{name} lies {abs(largest):.1f} standard deviations from what the lab states"]
+    return []
+
+
+def _at_least(k: int, n: int, p: float) -> float:
+    """Binomial probability of k or more."""
+    return 1.0 - sum(comb(n, i) * p**i * (1.0 - p) ** (n - i) for i in range(k))
+
+
+def sentence(label: str, lacking: tuple[str, ...], experiment: str = "EXPERIMENT") -> str:
+    """The message of a fit with a lack of fit."""
+    return (
+        f"the data ask for something that {label} lacks ({'; '.join(lacking)}): find the cause with"
+        f" python -m calibration.diagnose {experiment}"
+    )

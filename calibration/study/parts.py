@@ -1,0 +1,140 @@
+"""Parts beside the law in a fit: which are asked for, what the tests can show of them, the choice among
+several.
+
+Where the number of Prony terms is left to the data, one fit is made with each number, and the Bayesian
+information criterion chooses (G. Schwarz, Ann. Stat. 6, 1978): it needs no further fit, where held-out
+prediction takes one a fold, and it asks more of a term than Akaike's does, which errs towards too many terms
+where records have hundreds of points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from calibration.errors import InputError, OptionError
+from calibration.experiment.model import CouponTrial, Experiment
+from calibration.measurements._kinds import kind_of
+from calibration.measurements.homogeneous import protocol_window
+from calibration.parameters import (
+    Parametrisation,
+    ProtocolWindow,
+    part_alternatives,
+    part_coordinates,
+    part_kind,
+    part_kinds,
+)
+from calibration.study.calibration import Calibration
+
+_ANY = ProtocolWindow(first=1.0, last=100.0, peaks=1)  # for the check of a spec alone
+
+
+def asked(**options: str | None) -> tuple[str, ...]:
+    """Specs of the parts that options ask for (time="prony:2", damage="mullins").
+
+    Raises
+    ------
+    OptionError
+        An option names no part of its own, or an argument that the part does not take.
+    """
+    found = []
+    for option, spec in options.items():
+        if spec is None:
+            continue
+        usage = ", ".join(k.usage for k in part_kinds(option))
+        try:
+            kind = part_kind(spec)
+            for alternative in part_alternatives(spec):
+                part_coordinates(alternative, _ANY)
+        except ValueError:
+            raise OptionError(option, spec, f"expected {_one_of(usage)}") from None
+        if kind.option != option:
+            raise OptionError(option, spec, f"expected {_one_of(usage)}")
+        found.append(spec)
+    return tuple(found)
+
+
+def option_of(spec: str) -> str:
+    """The option that asks for a part."""
+    return part_kind(spec).option
+
+
+def _one_of(usage: str) -> str:
+    return f"one of {usage}" if "," in usage else usage
+
+
+def check(experiment: Experiment, materials: Sequence[str], specs: Sequence[str]) -> None:
+    """InputError, in one sentence, where a material's tests cannot be fitted with these parts."""
+    for material in materials if specs else ():
+        mine = [t for t in experiment.trials if t.material == material]
+        options = " and ".join(f"--{part_kind(s).option}" for s in specs)
+        for t in mine:
+            if not isinstance(t, CouponTrial):
+                raise InputError(
+                    f"trial {t.id}: {options}: expected homogeneous tests alone, since beams and indentations"
+                    " are not fitted over time yet"
+                )
+        if kind_of(replace(experiment, trials=tuple(mine))).name != "homogeneous":
+            raise InputError(
+                f"trial {mine[0].id}: {options}: expected homogeneous tests alone, since cylinders between"
+                " platens are not fitted over time yet"
+            )
+        strips = [t.id for t in mine if t.mode == "uniaxial"]  # type: ignore[union-attr]
+        if "fibres" in specs and strips:
+            raise InputError(
+                f"trial {strips[0]}: --fibres: expected planar, equibiaxial or shear tests, since a strip"
+                " shears where its fibres are oblique, which a fit does not follow yet"
+            )
+        for spec in specs:
+            kind = part_kind(spec)
+            missing = [t.id for t in mine if kind.needs_time and t.time is None]  # type: ignore[union-attr]
+            if missing:
+                raise InputError(
+                    f"trial {missing[0]}: --{kind.option} {spec}: expected a column time_s in its record"
+                )
+
+
+def with_parts(
+    law: Parametrisation, specs: Sequence[str], experiment: Experiment, material: str
+) -> Parametrisation:
+    """The law with parts that are fitted to a material's homogeneous tests; each spec says all."""
+    if not specs:
+        return law
+    trials = [t for t in experiment.trials if isinstance(t, CouponTrial) and t.material == material]
+    window = protocol_window(trials)
+    if any(part_kind(s).needs_time for s in specs) and not window.last > 0.0:
+        raise InputError(f"material {material}: expected records that last longer than 0 s")
+    return law.with_parts([part_coordinates(s, window) for s in specs])
+
+
+def label(law: str, specs: Sequence[str]) -> str:
+    """Of a fit, before its data are read."""
+    return "+".join([law, *(s.replace(":", "-") for s in specs)])
+
+
+def alternatives(specs: Sequence[str]) -> list[tuple[str, ...]]:
+    """All sets of specs among which the data choose."""
+    return [*product(*(part_alternatives(s) for s in specs))]
+
+
+def choose(results: Sequence[Calibration]) -> Calibration:
+    """The fit with the lowest Bayesian information criterion, chi-square over the least reduced one, where
+    that is above 1; its note says how far the others are."""
+    fitted = [r for r in results if r.parameters]
+    sound = [r for r in fitted if r.status in ("converged", "lack of fit")] or fitted
+    if not sound:
+        return results[0]
+    scale = max(1.0, min(r.reduced_chi2 for r in sound))
+    values = {r.label: r.chi2 / scale + len(r.u) * float(np.log(r.points)) for r in sound}
+    best = min(sound, key=lambda r: values[r.label])
+    others = ", ".join(
+        f"{name} {value - values[best.label]:+.1f}" for name, value in values.items() if name != best.label
+    )
+    lost = [f"{r.label} {r.status}" for r in results if r not in sound]
+    sentence = f"{best.label} has the lowest Bayesian information criterion"
+    if others or lost:
+        sentence += f" ({'; '.join(n for n in (others, *lost) if n)})"
+    return replace(best, note="; ".join(n for n in (sentence, best.note) if n))

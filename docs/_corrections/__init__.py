@@ -1,1 +1,0 @@
-"""The parts of `docs/corrections_study.py`."""

@@ -1,0 +1,133 @@
+"""What the commands share: applications, --version, console, log, and errors of one sentence.
+
+Imported before everything else of the factory, so that `--help` does not wait for the simulator.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import importlib.metadata
+import logging
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+from factory._input import InputError, describe_os_error, one_line
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def make_app(command: Callable[..., None], epilog: str) -> typer.Typer:
+    """A command of its own, `python -m factory.NAME`."""
+    app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+    app.command(epilog=epilog)(command)
+    return app
+
+
+def version() -> str:
+    """Version of the installed distribution, or of the sources in a checkout that was not installed."""
+    try:
+        return importlib.metadata.version("tisim")
+    except importlib.metadata.PackageNotFoundError:
+        return str(getattr(importlib.import_module("tisim"), "__version__", "source"))
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"tisim {version()}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool,
+    typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+]
+Plugins = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin",
+        metavar="MODULE",
+        help="Import a Python module first: it registers laws or inclusion shapes. Repeatable.",
+    ),
+]
+
+
+def import_plugins(modules: Sequence[str] | None) -> None:
+    """Import modules that register laws or inclusion shapes; InputError names the one that fails."""
+    for name in modules or ():
+        try:
+            importlib.import_module(name)
+        except Exception as error:
+            raise InputError(f"--plugin {name}: {type(error).__name__}: {one_line(error)}") from None
+
+
+def make_console() -> Console:
+    """A console on stdout that prints names as they are: no markup, no emoji codes.
+
+    It is wide where stdout is no terminal, so that tables and paths stay whole.
+    """
+    from rich.console import Console
+
+    width = None if sys.stdout.isatty() else 140
+    return Console(soft_wrap=True, width=width, markup=False, emoji=False, highlight=False)
+
+
+class _ToStderr(logging.Handler):
+    """Sentences of the library, as it logs them, on the stderr of the moment."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        typer.echo(self.format(record), err=True)
+
+
+@contextlib.contextmanager
+def shown_errors(doing: str) -> Iterator[None]:
+    """Show the library's log on stderr, and errors that people can act on as one sentence with exit code 2.
+
+    Parameters
+    ----------
+    doing : str
+        What was being done, for errors of the system: "cannot use".
+    """
+    logger, handler = logging.getLogger("factory"), _ToStderr()
+    before = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+    try:
+        yield
+    except InputError as error:
+        fail(error)
+    except BrokenPipeError:
+        raise  # who reads our output has gone: not an error of the input
+    except OSError as error:
+        fail(InputError(describe_os_error(error, doing)))
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(before)
+
+
+def fail(error: InputError) -> NoReturn:
+    """The sentence on stderr, exit code 2."""
+    typer.echo(f"error: {error}", err=True)
+    raise typer.Exit(2)
+
+
+def duration(seconds: float) -> str:
+    """Seconds as people say them."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    if seconds < 5400:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.1f} h"
+
+
+def size_text(count: float) -> str:
+    """Bytes as people say them."""
+    for unit in ("B", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
+        count /= 1000
+    return f"{count:.1f} GB"

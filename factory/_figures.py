@@ -1,0 +1,152 @@
+"""Figures: the preview beside a store, and one poke in detail."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from factory._sampling import grid_points
+from factory.plan import Plan
+from factory.reader import Dataset, PokeData
+
+if TYPE_CHECKING:
+    from factory._report import Trace
+
+_INCLUSION: dict[str, Any] = {"facecolor": "#fdae6b", "edgecolor": "#e6550d", "alpha": 0.25}
+COLOURS = ("#08306b", "#2171b5", "#6baed6", "#9ecae1", "#c6dbef")
+
+
+def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
+    """Write the preview, whole or not at all: contact points, force against depth, the top at its deepest."""
+    figure = Figure(figsize=(13, 4.2), layout="constrained", dpi=110)
+    sites, curves, top = figure.subplots(1, 3)
+    figure.suptitle(f"{plan.recipe.name}, {plan.model}: {len(traces)} of {len(plan.pokes)} pokes")
+    _sites(plan, traces, sites)
+    for index, trace in sorted(traces.items()):
+        colour = COLOURS[plan.pokes[index].level % len(COLOURS)]
+        curves.plot(trace.depth * 1e3, trace.force, color=colour, lw=0.9, alpha=0.7)
+    for number, name in enumerate(plan.recipe.levels):
+        curves.plot([], [], color=COLOURS[number % len(COLOURS)], label=name)
+    curves.legend(title="material level")
+    curves.set(xlabel="depth [mm]", ylabel="force on the rod [N]", title="all frames")
+    _top(plan, traces, top, figure)
+    temporary = path.with_name(f".{path.name}.tmp")
+    try:
+        figure.savefig(temporary, format="png")
+        temporary.replace(path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        raise
+
+
+def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:
+    half = np.array(plan.block[:2]) / 2 * 1e3
+    for inclusion in plan.inclusions:
+        axes.add_patch(Polygon(inclusion.plan() * 1e3, closed=True, **_INCLUSION))
+    for poke in plan.pokes:
+        x, y = (v * 1e3 for v in poke.scene.site)
+        colour = COLOURS[poke.level % len(COLOURS)] if poke.index in traces else "0.8"
+        dx, dy = (v * 6 for v in poke.scene.direction[:2])
+        axes.plot([x, x + dx], [y, y + dy], color=colour, lw=0.7)
+        axes.plot(x, y, ".", color=colour, ms=3)
+    axes.set(xlim=(-half[0], half[0]), ylim=(-half[1], half[1]), xlabel="x [mm]", ylabel="y [mm]")
+    axes.set_aspect("equal")
+    axes.set_title("contact points and headings; inclusions of all shapes", fontsize=9)
+
+
+def _top(plan: Plan, traces: dict[int, Trace], axes: Any, figure: Figure) -> None:
+    """The deepest frame so far as a map of how far the top has sunk."""
+    shown = [i for i, trace in traces.items() if trace.grid is not None and len(trace.depth)]
+    if not shown:
+        axes.set_axis_off()
+        return
+    deepest = max(shown, key=lambda i: (traces[i].depth.max(), -i))
+    grid = traces[deepest].grid
+    assert grid is not None
+    rest = grid_points(plan.block)
+    x, y = (rest[..., axis] * 1e3 for axis in (0, 1))
+    drawn = axes.pcolormesh(x, y, grid[..., 2] * 1e3, cmap="viridis", shading="nearest")
+    figure.colorbar(drawn, ax=axes, label="vertical displacement [mm]")
+    axes.set_aspect("equal")
+    axes.set_title(f"poke {deepest} at {traces[deepest].depth.max() * 1e3:.1f} mm", fontsize=9)
+    axes.set(xlabel="x [mm]", ylabel="y [mm]")
+
+
+def draw_poke(poke: PokeData, data: Dataset, path: Path) -> None:
+    """Write a picture of the deepest frame: the block, the section below the indenter, and all forces."""
+    figure = Figure(figsize=(14, 4.6), layout="constrained", dpi=110)
+    figure.suptitle(
+        f"poke {poke.index}: {poke.shape}, {poke.level}, {poke.depth.max() * 1e3:.1f} mm, {poke.status}"
+    )
+    _block(poke, figure.add_subplot(1, 3, 1, projection="3d"))
+    _section(poke, data, figure.add_subplot(1, 3, 2), figure)
+    axes = figure.add_subplot(1, 3, 3)
+    across, label = (poke.depth * 1e3, "depth [mm]") if poke.time is None else (poke.time, "time [s]")
+    for name, force, style in (("on the rod", poke.rod_force, "o-"), ("at the base", poke.base_force, "x--")):
+        axes.plot(across, np.linalg.norm(force, axis=1), style, ms=4, label=name)
+    axes.set(xlabel=label, ylabel="force [N]")
+    axes.legend()
+    figure.savefig(path, format="png")
+
+
+def _deepest(poke: PokeData) -> int:
+    """Frame of the largest depth: the last one, unless the rod is drawn back."""
+    return int(np.argmax(poke.depth))
+
+
+def _block(poke: PokeData, axes: Any) -> None:
+    surface = poke.surface[_deepest(poke)] * 1e3
+    corners = surface[poke.triangles]
+    sunk = (poke.surface_rest * 1e3 - surface)[poke.triangles][:, :, 2].mean(axis=1)
+    shade = 1 - 0.8 * np.clip(sunk / max(float(sunk.max()), 1e-9), 0, 1)
+    colours = np.stack([0.35 * shade, 0.55 * shade + 0.1, 0.8 * shade + 0.15], axis=1)
+    axes.add_collection3d(
+        Poly3DCollection(corners, facecolors=colours, edgecolors="#00000018", linewidths=0.2)
+    )
+    tip = poke.rod_tip[_deepest(poke)] * 1e3
+    tail = tip - 40 * poke.direction
+    axes.plot(*np.stack([tip, tail], axis=1), color="#d94801", lw=5)
+    low, high = surface.min(axis=0), surface.max(axis=0)
+    high[2] = max(high[2], tail[2])
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low)
+    axes.view_init(elev=28, azim=-60)
+    axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
+
+
+def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
+    """Stiffness below the grid row nearest to the rod's tip, and that row of the top, deformed."""
+    rest = data.table["grid_rest"] * 1e3
+    tip = poke.rod_tip[_deepest(poke)] * 1e3
+    row = int(np.argmin(np.abs(rest[:, 0, 1] - tip[1])))
+    height = float(rest[0, 0, 2])
+    levels = poke.profile[row].T / 255
+    extent = (rest[row, 0, 0], rest[row, -1, 0], 0.0, height)
+    drawn = axes.imshow(
+        levels,
+        extent=extent,
+        aspect="equal",
+        cmap="Greys",
+        vmin=0,
+        vmax=1,
+        alpha=0.7,
+        interpolation="nearest",
+    )
+    figure.colorbar(drawn, ax=axes, label="stiffness code (rest shape)", orientation="horizontal")
+    axes.plot(
+        poke.grid[_deepest(poke), row, :, 0] * 1e3,
+        poke.grid[_deepest(poke), row, :, 2] * 1e3,
+        ".-",
+        color="#2171b5",
+    )
+    start = tip - 40 * poke.direction
+    axes.plot([start[0], tip[0]], [start[2], tip[2]], color="#d94801", lw=3)
+    axes.set(xlabel="x [mm]", ylabel="z [mm]", title=f"section at y = {rest[row, 0, 1]:.1f} mm")
+    axes.set_ylim(0, height + 12)

@@ -1,0 +1,305 @@
+"""What the build command shows: the plan, progress with the time left, and the preview beside the store."""
+
+from __future__ import annotations
+
+import io
+import logging
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from factory._build import BuildProgress, Built
+from factory._cli import duration, size_text
+from factory._course import HoldRecipe, deepest
+from factory._input import describe_os_error
+from factory._parts import part_entries
+from factory._staging import Staging
+from factory._store import read_ledger
+from factory.materials import TAKEN
+from factory.plan import Plan
+from tisim.problems._stops import shortest_time
+from tisim.problems.indentation.steps import LARGEST_STEP
+
+log = logging.getLogger(__name__)
+_LINE_SECONDS = 20.0  # between lines where the output is no terminal
+_PICTURE_SECONDS = 120.0
+
+# Measured with Ogden on 2 cores: 12 core-s a poke to 10 mm (recipe quick), 55 s to the end, which came at
+# 24 mm on average (recipe sample, asked for 30 mm). What lies deep is dear.
+NODES = 5_500
+SECONDS_TO_10_MM = 12.0
+GROWTH = 1.4  # the power of the depth asked for that joins the two
+SECONDS_A_STEP = 0.6  # of a hold, or of another way of the rod
+FRAMES_PER_MM = 0.65  # frames a millimetre of depth: most pokes end before the whole depth
+SURFACE_NODES = 1_700
+_COMPRESSED = 0.85
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Time and size to expect of a build.
+
+    Attributes
+    ----------
+    nodes : int
+        Of a mesh.
+    poke_seconds : float
+        Core time of one poke [s].
+    seconds : float
+        Wall time of the pokes that are missing [s].
+    size : float
+        Of the store [bytes].
+    missing : int
+        Pokes still to simulate.
+    measured : bool
+        `poke_seconds` comes from this build's ledger.
+    """
+
+    nodes: int
+    poke_seconds: float
+    seconds: float
+    size: float
+    missing: int
+    measured: bool
+
+
+def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
+    """Time and size to expect, from the ledger of the run so far or from measured defaults: a rough guess."""
+    staging = Staging(target)
+    ledger = read_ledger(staging.ledger_file)
+    walls = [float(entry["wall_seconds"]) for entry in ledger.values() if not entry.get("error")]
+    asked = plan.recipe.protocol.depth_mm / 10.0
+    each = fmean(walls) if walls else SECONDS_TO_10_MM * asked**GROWTH
+    done = len(staging.finished())
+    missing = max(len(plan.pokes) - done, 0)
+    frames = FRAMES_PER_MM * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm
+    course = plan.pokes[0].scene.course
+    if course is not None:
+        frames = len(course.frames or ())
+        each = each if walls else each + _seconds_after_loading(plan)
+    frame_bytes = 12 * (1024 + SURFACE_NODES) + 200
+    return Estimate(
+        nodes=NODES,
+        poke_seconds=each,
+        seconds=missing * each / min(workers, max(missing, 1)),
+        size=len(plan.pokes) * (frames * frame_bytes * _COMPRESSED + 60e3),
+        missing=missing,
+        measured=bool(walls),
+    )
+
+
+def _seconds_after_loading(plan: Plan) -> float:
+    """Core time of what a course adds to the way to its depth, by steps; mean of the plan's pokes [s]."""
+    each = []
+    for poke in plan.pokes:
+        scene = poke.scene
+        assert scene.course is not None
+        depths = np.array([0.0, *(stop.value for stop in scene.course.stops(shortest_time(scene.material)))])
+        moves = np.abs(np.diff(depths))
+        travelled = np.ceil(moves[moves > 0.0] / LARGEST_STEP).sum() - deepest(scene) / LARGEST_STEP
+        each.append(SECONDS_A_STEP * (max(travelled, 0.0) + (moves == 0.0).sum()))
+    return fmean(each)
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One poke in the preview.
+
+    Attributes
+    ----------
+    depth, force : ndarray, shape (frames,)
+        Travel of the indenter [m] and size of the force on it [N].
+    grid : ndarray, shape (32, 32, 3), or None
+        Displacement of the grid in the deepest frame [m].
+    """
+
+    depth: NDArray[np.float64]
+    force: NDArray[np.float64]
+    grid: NDArray[np.float32] | None
+
+
+def preview_path(target: Path) -> Path:
+    """NAME.zarr -> NAME.png, beside it."""
+    return target.with_suffix(".png")
+
+
+def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Table:
+    """The plan, as --dry-run prints it."""
+    protocol = plan.recipe.protocol
+    table = Table(title=f"Plan: recipe {plan.recipe.name}, {plan.model}", show_header=False)
+    table.add_row("store", str(target))
+    table.add_row("uuid", plan.uuid)
+    table.add_row(
+        "pokes",
+        f"{len(plan.pokes)} = {len(plan.inclusions)} shapes x {len(plan.materials)} material levels x "
+        f"{plan.recipe.pokes_each} ({protocol.shared_sites} shared contact points, {protocol.own_sites} own)",
+    )
+    table.add_row("to do", f"{expected.missing}")
+    table.add_row("depth", f"{protocol.depth_mm:g} mm, a frame each {protocol.frame_spacing_mm:g} mm")
+    if protocol.course:
+        table.add_row("course", _course_text(plan))
+    table.add_row("nodes", f"about {expected.nodes} a poke (each has a mesh of its own)")
+    source = "measured so far" if expected.measured else "typical of a 2-core machine"
+    table.add_row(
+        "expected time",
+        f"about {duration(expected.seconds)} with {workers} workers "
+        f"({expected.poke_seconds:.0f} s a poke, {source})",
+    )
+    table.add_row("expected size", f"about {size_text(expected.size)}, twice that while it is built")
+    derived = derived_levels(plan)
+    for name, material in zip(plan.recipe.levels, plan.materials, strict=True):
+        values = ", ".join(f"{key} = {_show(value)}" for key, value in material.parameters.items())
+        law = "" if material.law == plan.model else f"{material.law}: "
+        if name in derived:
+            values += " (from the card's small-strain moduli: it has no parameters of this law)"
+        parts = "".join(
+            f"; {part.pop('kind')}: {', '.join(f'{k} = {_show(v)}' for k, v in part.items())}"
+            for part in part_entries(material).values()
+        )
+        table.add_row(f"material {name}", law + values + parts)
+    for name, text in effect_lines(plan):
+        table.add_row(f"effect in {name}", text)
+    return table
+
+
+def _course_text(plan: Plan) -> str:
+    """The pieces of the rod's course, and how long it takes."""
+    words = []
+    for piece in plan.recipe.protocol.course:
+        if isinstance(piece, HoldRecipe):
+            words.append(f"hold {piece.hold_s:g} s")
+            continue
+        low, high = piece.speed_mm_per_s
+        words.append(f"to {piece.to_mm:g} mm at {low:g}{'' if low == high else f' to {high:g}'} mm/s")
+    courses = [poke.scene.course for poke in plan.pokes]
+    lengths = [course.duration for course in courses if course is not None]
+    frames = max(len(course.frames or ()) for course in courses if course is not None)
+    long = " to ".join(f"{v:.3g}" for v in sorted({round(min(lengths), 6), round(max(lengths), 6)}))
+    return f"{', '.join(words)}: {long} s, up to {frames} frames"
+
+
+def effect_lines(plan: Plan) -> list[tuple[str, str]]:
+    """Each effect of the cards: its mixture, and what becomes of it."""
+    lines = []
+    for card in plan.cards:
+        for effect in card.effects:
+            left = effect.left_out(card.material)
+            word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"
+            lines.append((card.material, f"{effect.describe()}: {word}"))
+    return lines
+
+
+def derived_levels(plan: Plan) -> list[str]:
+    """Material levels whose card has no parameters of the plan's model."""
+    return [card.material for card in plan.cards if not card.holds(plan.model)]
+
+
+def _show(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    return ", ".join(f"{v:g}" for v in value) if isinstance(value, tuple | list) else f"{value:g}"
+
+
+class Screen:
+    """Progress of one build on a terminal (a bar) or elsewhere (a line now and then)."""
+
+    def __init__(self, plan: Plan, target: Path, console: Console, expected: Estimate) -> None:
+        self._plan, self._target, self._console, self._expected = plan, target, console, expected
+        self._traces: dict[int, Trace] = {}
+        self._began = self._line = self._picture = time.monotonic()
+        self._first = 0
+        self._bar = Progress(
+            TextColumn("pokes"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[failed]}"),
+            TimeElapsedColumn(),
+            TextColumn("{task.fields[left]}"),
+            console=console,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task("pokes", total=len(plan.pokes), failed="", left="")
+
+    def __enter__(self) -> Self:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+    def update(self, state: BuildProgress) -> None:
+        """The build's `on_progress`: called at the start and after each poke."""
+        now = time.monotonic()
+        if state.outcome is None:
+            self._first = state.done
+            for index in sorted(state.staging.finished()):
+                self._add(index, state.staging.result_path(index).read_bytes())
+            self._console.print(f"Building {self._target}: {state.done} of {state.total} pokes are done.")
+        elif state.outcome.payload is not None:
+            self._add(state.outcome.index, state.outcome.payload)
+        fresh = state.done + state.failed - self._first
+        each = (now - self._began) / fresh if fresh else None
+        todo = state.total - state.done - state.failed
+        remaining = todo * each if each is not None else self._expected.seconds
+        left = f"about {duration(remaining)} left"
+        self._bar.update(
+            self._task,
+            completed=state.done,
+            failed=f"{state.failed} failed" if state.failed else "",
+            left=left,
+        )
+        if not self._console.is_terminal and (now - self._line > _LINE_SECONDS or todo == 0):
+            self._line = now
+            failed = f", {state.failed} failed" if state.failed else ""
+            self._console.print(f"{state.done} of {state.total} pokes done{failed}, {left}")
+        if now - self._picture > _PICTURE_SECONDS:
+            self._draw()
+            self._picture = time.monotonic()
+
+    def finish(self, built: Built) -> None:
+        """The last picture and where everything is."""
+        if self._traces or not preview_path(self._target).exists():
+            self._draw()
+        new = f"{built.simulated} simulated now"
+        if not built.simulated:
+            new = "none simulated with success now" if built.errors else "nothing was left to simulate"
+        if built.damaged:
+            count = len(built.damaged)
+            pokes = ", ".join(str(i) for i in built.damaged[:8]) + (" ..." if count > 8 else "")
+            self._console.print(
+                f"{count} staged {'results were' if count > 1 else 'result was'} damaged and set aside, "
+                f"and simulated again (poke {pokes})."
+            )
+        self._console.print(
+            f"{self._target}: {built.total - len(built.errors)} of {built.total} pokes ({new}); "
+            f"preview {preview_path(self._target).name}"
+        )
+
+    def _add(self, index: int, payload: bytes) -> None:
+        with np.load(io.BytesIO(payload)) as part:
+            depth = part["depth"]
+            deepest = part["grid_displacement"][int(np.argmax(depth))] if len(depth) else None
+            self._traces[index] = Trace(
+                depth=depth,
+                force=np.linalg.norm(part["rod_force"], axis=1),
+                grid=deepest,
+            )
+
+    def _draw(self) -> None:
+        from factory._figures import draw_preview
+
+        try:
+            draw_preview(self._plan, self._traces, preview_path(self._target))
+        except OSError as error:  # a picture is not worth a build
+            log.warning("%s.", describe_os_error(error, "no preview picture:"))

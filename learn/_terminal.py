@@ -1,0 +1,135 @@
+"""The terminal, as the commands use it: errors as one sentence, tables that fit, log messages."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import signal
+import sys
+from collections.abc import Iterator
+from typing import NoReturn
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from learn.errors import InputError
+
+_PACKAGES = {
+    "torch",
+    "fsspec",
+    "aiohttp",
+    "zarr",
+    "numcodecs",
+    "scipy",
+    "matplotlib",
+    "jinja2",
+    "yaml",
+    "pydantic",
+}
+
+
+def make_console() -> Console:
+    """stdout; wide where it is no terminal, so that tables and paths stay whole. Text is never read as
+    markup.
+    """
+    width = None if sys.stdout.isatty() else 170
+    return Console(soft_wrap=True, width=width, markup=False, highlight=False, emoji=False)
+
+
+def fail(message: str, code: int = 2) -> NoReturn:
+    """The sentence on stderr, and the exit code."""
+    typer.echo(message, err=True)
+    raise typer.Exit(code)
+
+
+@contextlib.contextmanager
+def plain_errors() -> Iterator[None]:
+    """InputError, failed file operations and missing packages as one sentence, exit code 2."""
+    try:
+        yield
+    except ImportError as error:
+        name = (error.name or "").partition(".")[0]
+        if name not in _PACKAGES:
+            raise
+        fail(f"error: the package {name} is not installed: pip install 'tisim[learn]'")
+    except OSError as error:
+        where = f" {error.filename}" if error.filename else ""
+        fail(f"error: cannot use{where}: {error.strerror or error}")
+    except InputError as error:
+        fail(f"error: {error}")
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """Lets SIGTERM end the work as Ctrl-C does."""
+
+    def interrupt(_number: int, _frame: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def duration(seconds: float) -> str:
+    """Seconds as people read them."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    if seconds < 5400:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.1f} h"
+
+
+def print_table(console: Console, title: str, heads: list[str], rows: list[list[str]]) -> None:
+    """A table that fits the console: as it is, else transposed, else in pieces of a few columns."""
+    if not _fits(console, heads, rows) and len(rows) < len(heads):
+        heads, *rows = ([str(cell) for cell in column] for column in zip(heads, *rows, strict=True))
+    widths = [
+        max(len(cell) for cell in column)
+        for column in zip(*([_wrapped(h) for h in heads], *rows), strict=True)
+    ]
+    first = 1
+    while first < len(heads):
+        last, used = first, widths[0] + 3
+        while last < len(heads) and (last == first or used + widths[last] + 3 <= console.width - 1):
+            used += widths[last] + 3
+            last += 1
+        table = Table(title=Text(title))
+        table.add_column(Text(heads[0]), no_wrap=True, min_width=widths[0])
+        for head, width in zip(heads[first:last], widths[first:last], strict=True):
+            table.add_column(Text(head), justify="right", min_width=width)
+        for row in rows:
+            table.add_row(*(Text(cell) for cell in (row[0], *row[first:last])))
+        console.print(table)
+        first = last
+
+
+def _fits(console: Console, heads: list[str], rows: list[list[str]]) -> bool:
+    """Whether every column has room for its widest cell and for the longest word of its heading."""
+    columns = zip(*([_wrapped(head) for head in heads], *rows), strict=True)
+    return sum(max(len(cell) for cell in column) + 3 for column in columns) + 1 <= console.width
+
+
+def _wrapped(head: str) -> str:
+    return max(head.split() or [""], key=len)
+
+
+class _ToConsole(logging.Handler):
+    """Messages of the library on the console, one a line."""
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console = console
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._console.print(record.getMessage())
+
+
+def log_to(console: Console) -> None:
+    logger = logging.getLogger("learn")
+    logger.handlers = [_ToConsole(console)]
+    logger.setLevel(logging.INFO)

@@ -1,0 +1,91 @@
+"""Reading YAML written by people: every fault is one sentence, and no file can exhaust time or memory."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import ValidationError
+
+from learn.errors import InputError
+
+_BYTES, _EVENTS, _DEPTH = 1_000_000, 20_000, 30
+
+
+class _Loader(yaml.SafeLoader):
+    """Refuses a key that stands twice in one mapping, and reads 1e-3 as a number (YAML 1.1 wants 1.0e-3)."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen: set[str] = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    raise InputError(f"key {key.value}: stands twice (line {key.start_mark.line + 1})")
+                seen.add(key.value)
+        return super().construct_mapping(node, deep=deep)
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float", re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$"), list("-+0123456789")
+)
+
+
+def read_yaml(path: Path) -> dict[Any, Any]:
+    """The keys and values of a YAML file. InputError for anything else.
+
+    Refused: files beyond 1 MB, aliases (with them a small file can stand for gigabytes, or contain itself),
+    nesting beyond 30 levels, the same key twice.
+    """
+    try:
+        if path.stat().st_size > _BYTES:
+            raise InputError(f"{path}: {path.stat().st_size} bytes, expected at most {_BYTES}")
+        text = path.read_text(encoding="utf-8")
+        _check_events(text)
+        values = yaml.load(text, Loader=_Loader)
+    except InputError as error:
+        raise InputError(str(error) if str(error).startswith(str(path)) else f"{path}: {error}") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    # values such as a date of month 13 or an integer of 5,000 digits raise ValueError in their constructors
+    except (yaml.YAMLError, UnicodeDecodeError, ValueError, TypeError, RecursionError) as error:
+        raise InputError(f"{path}: not YAML ({' '.join(str(error).split())[:120]})") from None
+    if not isinstance(values, dict):
+        raise InputError(f"{path}: expected keys and values")
+    return values
+
+
+def _check_events(text: str) -> None:
+    depth = 0
+    for count, event in enumerate(yaml.parse(text, Loader=yaml.SafeLoader)):
+        line = event.start_mark.line + 1 if event.start_mark else 1
+        if isinstance(event, yaml.AliasEvent):
+            raise InputError(f"line {line}: expected no alias (*{event.anchor})")
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > _DEPTH:
+            raise InputError(f"line {line}: nested deeper than {_DEPTH} levels")
+        if count > _EVENTS:
+            raise InputError(f"more than {_EVENTS} values")
+
+
+def first_fault(error: ValidationError) -> str:
+    """The fault to name first, as "key KEY: expectation".
+
+    An unknown key comes before a missing one: it is usually the same key, misspelt.
+    """
+    faults = error.errors(include_url=False)
+    faults.sort(key=lambda fault: fault["type"] not in ("extra_forbidden", "invalid_key"))
+    fault = faults[0]
+    text = str(fault["msg"]).removeprefix("Value error, ")
+    if fault["type"] in ("extra_forbidden", "invalid_key"):
+        text = "no such key"
+    elif fault["type"] == "missing":
+        text = "this key is missing"
+    elif fault["type"].startswith(("float", "int", "bool", "finite", "string")) and "input" in fault:
+        text = f"{text}, got {fault['input']!r:.40}"
+    # the tag of a union is no key of the file
+    names = [str(part) for part in fault["loc"]]
+    key = ".".join(names)
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    return f"key {key}: {text}{more}" if key else f"{text}{more}"

@@ -1,0 +1,133 @@
+"""How fast a run predicts one poke, and how fast the loaders read, beside yardsticks of the same machine."""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from learn.data import Batch, MemoryDataset, Store, StreamDataset, make_batch
+from learn.data.loaders import epoch_order
+from learn.models import InvariantGnn, Scene, pokes_of
+from learn.models.single_poke import SinglePoke
+from learn.onnx_bundle import OnnxBundle
+from learn.training import Run
+
+BATCH = 64
+_YARDSTICK = 512  # rows and columns of the matrix product
+
+
+def _memmap_batches(store: Store, array: np.memmap, size: int, epoch: int) -> Iterator[Batch]:
+    order = epoch_order(len(array), 1, epoch)
+    for first in range(0, len(order), size):
+        rows = order[first : first + size]
+        yield make_batch(store, rows, np.asarray(array[rows]))
+
+
+def _rate(frames: int, epoch: Callable[[int], Iterable[Batch]], repeats: int) -> float:
+    seconds = []
+    for number in range(repeats):
+        begun = time.perf_counter()
+        for batch in epoch(number):
+            batch.displacement[:, ::64].sum()  # touch every frame
+        seconds.append(time.perf_counter() - begun)
+    return frames / statistics.median(seconds)
+
+
+def loader_rates(
+    store: Store, *, batch: int = 64, shuffle_buffer: int = 4, repeats: int = 3
+) -> dict[str, float]:
+    """Frames a second of whole epochs in random order: streamed, in memory, and a memmap. File cache warm."""
+    rows = np.arange(store.frames)
+    stream = StreamDataset(store, rows, batch=batch, shuffle_buffer=shuffle_buffer, seed=1)
+
+    def streamed(epoch: int) -> Iterable[Batch]:
+        stream.epoch = epoch
+        return stream
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "displacement.f4"
+        shape = (store.frames, len(store.points), 3)
+        array = np.memmap(path, dtype=np.float32, mode="w+", shape=shape)
+        for first in range(0, store.frames, store.block):
+            block = store.displacement(slice(first, min(first + store.block, store.frames)))
+            array[first : first + len(block)] = block
+        array.flush()
+        mapped = np.memmap(path, dtype=np.float32, mode="r", shape=shape)
+        rates = {
+            "streamed, shuffled blocks": _rate(store.frames, streamed, repeats),
+            "NumPy memmap": _rate(store.frames, lambda e: _memmap_batches(store, mapped, batch, e), repeats),
+        }
+    memory = MemoryDataset(store, rows)
+    rates["in memory"] = _rate(store.frames, lambda e: memory.batches(batch, seed=1, epoch=e), repeats)
+    return rates
+
+
+@torch.inference_mode()
+def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
+    """Latency of one poke: name, threads, median and best [ms]; the interior is encoded before."""
+    times: list[tuple[str, str, float, float]] = []
+    rows = np.arange(min(BATCH, store.frames))
+    data, model, name = MemoryDataset(store, rows), run.model, run.recipe.model
+    one, many = pokes_of(data[0]), pokes_of(data.__getitems__(rows))
+    encoded = model.encode(scene, model.prepare(scene))
+    for threads in (1, 2):
+        torch.set_num_threads(threads)
+        if isinstance(model, InvariantGnn) and not model.takes_clock:
+            single = SinglePoke(model, encoded, int(scene.rigid_index[one.geometry[0]]))
+            poke = (
+                one.start[0].numpy(),
+                one.direction[0].numpy(),
+                float(one.depth[0]),
+                float(one.modulus[0]),
+            )
+            middle, best = timed(lambda single=single, poke=poke: single(*poke), repeats)  # type: ignore[misc]
+            times.append((f"{name}, one at a time", str(threads), middle, best))
+        middle, best = timed(lambda: model.decode(encoded, one), repeats)
+        times.append((f"{name}, as a batch of one", str(threads), middle, best))
+        middle, best = timed(lambda: model.decode(encoded, many), max(3, repeats // 10))
+        each = f"{name}, {len(rows)} at once, each"
+        times.append((each, str(threads), middle / len(rows), best / len(rows)))
+        if (run.folder / "onnx" / "encoder.onnx").is_file():
+            onnx = OnnxBundle(run.folder / "onnx", threads=threads)
+            code = onnx.encode(scene.rigid[scene.rigid_index[one.geometry[0]]])
+            middle, best = timed(lambda onnx=onnx, code=code: onnx.poke(code, one, 0), repeats)  # type: ignore[misc]
+            times.append((f"{name}, onnxruntime", str(threads), middle, best))
+    if torch.cuda.is_available():
+        there, on_gpu = model.cuda(), scene.to("cuda")
+        prepared = there.prepare(scene)
+        ready = there.encode(on_gpu, prepared and tuple(s.to("cuda") for s in prepared))
+        moved = type(many)(**{k: v.cuda() for k, v in vars(many).items()})
+
+        def answer() -> None:
+            there.decode(ready, moved)
+            torch.cuda.synchronize()
+
+        middle, best = timed(answer, repeats)
+        each = f"{name}, GPU, {len(rows)} at once, each"
+        times.append((each, "-", middle / len(rows), best / len(rows)))
+        model.cpu()
+    return times
+
+
+def yardstick(repeats: int) -> tuple[float, float]:
+    """Median and best [ms] of NumPy's product of two 512 x 512 float32 matrices."""
+    square = np.ones((_YARDSTICK, _YARDSTICK), dtype=np.float32)
+    return timed(lambda: square @ square, repeats)
+
+
+def timed(call: Callable[[], object], repeats: int) -> tuple[float, float]:
+    """Median and best [ms]."""
+    for _ in range(3):
+        call()
+    seconds = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        call()
+        seconds.append(time.perf_counter() - begun)
+    return statistics.median(seconds) * 1e3, min(seconds) * 1e3

@@ -1,0 +1,496 @@
+"""The commands: learn.train, learn.evaluate, learn.predict, learn.export, learn.bench.
+
+Nothing but the command line is imported here: `--help` answers at once, and without torch. Each command
+imports its work when it runs.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from learn import __version__
+from learn._terminal import duration, fail, log_to, make_console, plain_errors, print_table, terminable
+from learn.errors import InputError
+
+if TYPE_CHECKING:
+    from learn.progress import Progress as State
+    from learn.training import Recipe, Trainer
+
+_LINE_SECONDS = 20.0  # between lines where the output is no terminal
+
+app = typer.Typer(
+    name="learn",
+    help="Surrogates of the poke response: train, evaluate, predict, export, bench.",
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+)
+
+
+# -- what the commands share ---------------------------------------------------------------------------------
+
+
+def load_plugins(files: list[Path]) -> None:
+    """Import Python files that register metrics or models. InputError where one fails."""
+    for number, file in enumerate(files):
+        spec = importlib.util.spec_from_file_location(f"learn_plugin_{number}", file)
+        if not file.is_file() or spec is None or spec.loader is None:
+            raise InputError(f"--plugin {file}: expected a Python file")
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = module
+        try:
+            spec.loader.exec_module(module)
+        except InputError:
+            raise
+        except Exception as error:  # whatever the file does
+            raise InputError(
+                f"--plugin {file}: {type(error).__name__}: {' '.join(str(error).split())}"
+            ) from error
+
+
+def _show_version(value: bool) -> None:
+    if value:
+        typer.echo(f"tisim {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+]
+Plugins = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--plugin", metavar="FILE", help="Python file that registers a metric or a model; repeatable."
+    ),
+]
+Dataset = Annotated[str | None, typer.Option(help="The store, if it moved since the training.")]
+Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")]
+Runs = Annotated[
+    list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")
+]
+
+
+@app.callback()
+def _main(_version: Version = False) -> None:
+    pass
+
+
+def _set_threads(threads: int | None) -> None:
+    import torch
+
+    torch.set_num_threads(threads or os.cpu_count() or 1)
+
+
+# -- train ---------------------------------------------------------------------------------------------------
+
+TRAIN_EXAMPLES = """
+[bold]Examples[/bold]
+
+A dataset of few shapes, in minutes:
+
+  python -m learn.train datasets/quick-ogden.zarr --recipe quick
+
+The surrogate on unseen shapes, first of five folds:
+
+  python -m learn.train datasets/paper-ogden.zarr --recipe fast --fold 0
+
+The paper's model and settings, on two GPUs:
+
+  torchrun --nproc-per-node 2 -m learn.train datasets/paper-ogden.zarr --recipe paper
+
+Stopped or killed, the same command with --resume goes on to the same result.
+
+Exit codes: 0 trained, 1 diverged (the last good checkpoint stands), 2 bad input or no room to write,
+130 stopped by Ctrl-C.
+"""
+
+
+@app.command(epilog=TRAIN_EXAMPLES)
+def train(
+    dataset: Annotated[str, typer.Argument(help="The store: a folder or an fsspec URL.")],
+    recipe: Annotated[str, typer.Option(help="fast, quick, cegnn, paper, or a YAML file.")] = "fast",
+    model: Annotated[
+        str | None, typer.Option(help="Instead of the recipe's: invariant-gnn, invariant-gnn-small, cegnn.")
+    ] = None,
+    fold: Annotated[int | None, typer.Option(help="Instead of the recipe's: 0 to 4.")] = None,
+    split: Annotated[str | None, typer.Option(help="Instead of the recipe's: shape or site.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Instead of the recipe's.")] = None,
+    epochs: Annotated[int | None, typer.Option(help="Instead of the recipe's.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The run's folder. Default: runs/RECIPE-MODEL-LAW-FOLD-SEED.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on where an earlier run stopped.")] = False,
+    device: Annotated[str, typer.Option(help="auto, cpu or cuda.")] = "auto",
+    threads: Threads = None,
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Train a surrogate and keep the epoch that does best on the validation part."""
+    console = make_console()
+    with plain_errors():
+        import torch
+
+        from learn.data import open_store
+        from learn.training import DivergedError, Trainer, load_recipe, make_process_group
+        from learn.training.recipe import check_recipe
+
+        load_plugins(plugin or [])
+        _set_threads(threads)
+        torch.use_deterministic_algorithms(True, warn_only=True)
+        changes = {"model": model, "fold": fold, "split": split, "seed": seed, "epochs": epochs}
+        given = {key: value for key, value in changes.items() if value is not None}
+        chosen = check_recipe({**load_recipe(recipe).model_dump(), **given}, "the command line")
+        store = open_store(dataset)
+        folder = out or Path("runs") / f"{chosen.name}-{chosen.model}-{store.law}-{chosen.fold}-{chosen.seed}"
+        group = make_process_group(device)
+        screen = _TrainingScreen(console, folder, chosen, quiet=not group.is_main)
+        try:
+            with terminable(), screen.bar:
+                trainer = Trainer(
+                    store, chosen, folder, process_group=group, resume=resume, on_progress=screen.update
+                )
+                screen.begin(trainer)
+                trainer.train()
+        except DivergedError as error:
+            good = "the last good checkpoint stands" if (folder / "last.pt").exists() else "nothing was kept"
+            fail(f"diverged: {error}; {good} in {folder}", 1)
+        except KeyboardInterrupt:
+            fail(f"Stopped; the same command with --resume goes on ({folder}).", 130)
+        except OSError as error:
+            good = (
+                "the last good checkpoint stands: the same command with --resume goes on"
+                if (folder / "last.pt").exists()
+                else "nothing was kept"
+            )
+            fail(f"error: cannot write {error.filename or folder}: {error.strerror or error}; {good}")
+        finally:
+            group.close()
+        screen.end()
+
+
+class _TrainingScreen:
+    """A bar on a terminal, or a line now and then."""
+
+    def __init__(self, console: Console, folder: Path, recipe: Recipe, *, quiet: bool) -> None:
+        self._console, self._folder, self._recipe, self._quiet = console, folder, recipe, quiet
+        self.bar = Progress(
+            TextColumn("{task.fields[epoch]}"),
+            BarColumn(),
+            TextColumn("{task.fields[text]}"),
+            TimeElapsedColumn(),
+            TextColumn("{task.fields[left]}"),
+            console=console,
+            disable=quiet or not console.is_terminal,
+        )
+        self._task = self.bar.add_task("train", total=recipe.epochs, epoch="", text="", left="")
+        self._text = ""
+        self._began = self._line = time.monotonic()
+        self._first = 0
+
+    def begin(self, trainer: Trainer) -> None:
+        self._began, self._first = time.monotonic(), trainer.epoch
+        if not self._quiet:
+            parts = ", ".join(f"{len(v)} {k}" for k, v in trainer.split.groups.items())
+            size = sum(p.numel() for p in trainer.model.parameters())
+            self._console.print(
+                f"{self._recipe.model}, {size} parameters; {len(trainer.split.train)} frames to train on; "
+                f"groups: {parts}"
+            )
+
+    def update(self, state: State) -> None:
+        if self._quiet:
+            return
+        now = time.monotonic()
+        fresh, total = state.done - self._first, int(state.total)
+        left = (
+            f"about {duration((total - state.done) * (now - self._began) / fresh)} left" if fresh > 0 else ""
+        )
+        if state.values is not None:
+            line = state.values
+            self._text = (
+                f"loss {line['train_loss']:.4f}, validation {line['validation_mean_mm']:.4f} mm mean, "
+                f"force {line['validation_force_relative']:.1%}"
+            )
+        epoch = f"epoch {min(int(state.done) + 1, total)} of {total}"
+        self.bar.update(self._task, completed=state.done, epoch=epoch, text=self._text, left=left)
+        last = state.done >= total
+        if not self._console.is_terminal and state.values and (now - self._line > _LINE_SECONDS or last):
+            self._line = now
+            self._console.print(f"{state.done:.0f} of {total} epochs: {self._text}, {left}")
+
+    def end(self) -> None:
+        if not self._quiet:
+            self._console.print(
+                f"{self._folder}: best.pt, last.pt, log.jsonl; next: python -m learn.evaluate {self._folder}"
+            )
+
+
+# -- evaluate ------------------------------------------------------------------------------------------------
+
+EVALUATE_EXAMPLES = """
+[bold]Examples[/bold]
+
+  python -m learn.evaluate runs/quick
+
+Several folds, or the surrogate beside the paper's model; the first run's folder gets the report:
+
+  python -m learn.evaluate runs/fast-invariant-gnn-ogden-*-0 runs/paper-cegnn-ogden-0-0
+
+Runs of one fold that differ in seed, alone and together:
+
+  python -m learn.evaluate runs/fast-invariant-gnn-ogden-0-0 runs/fast-invariant-gnn-ogden-0-1 --ensemble
+
+On pokes of another law or recipe than it was trained on:
+
+  python -m learn.evaluate runs/quick --dataset datasets/paper-mooney-rivlin.zarr --transfer
+
+Exit codes: 0 done, 2 bad input.
+"""
+
+
+@app.command(epilog=EVALUATE_EXAMPLES)
+def evaluate(
+    runs: Runs,
+    dataset: Dataset = None,
+    transfer: Annotated[
+        bool,
+        typer.Option(
+            "--transfer", help="Allow another dataset than the run was trained on: all its unseen shapes."
+        ),
+    ] = False,
+    baselines: Annotated[bool, typer.Option(help="Fit and show the baselines as well.")] = True,
+    clouds: Annotated[bool, typer.Option(help="Show errors on other point clouds as well.")] = True,
+    ensemble: Annotated[
+        bool,
+        typer.Option("--ensemble", help="Join runs that differ in seed alone, and evaluate them as one too."),
+    ] = False,
+    out: Annotated[Path | None, typer.Option(help="Default: evaluation/ in the first run.")] = None,
+    threads: Threads = None,
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Tables of the test part with baselines beside, and report.html with pictures."""
+    console = make_console()
+    with plain_errors():
+        from learn.data import open_store
+        from learn.evaluation import evaluate as evaluate_runs
+        from learn.evaluation import save_intervals
+        from learn.evaluation.report import tables, verdict, write_report
+        from learn.training import load_run
+
+        load_plugins(plugin or [])
+        _set_threads(threads)
+        log_to(console)
+        loaded = [load_run(folder) for folder in runs]
+        store = open_store(dataset or loaded[0].location)
+        for run in loaded:
+            if run.uuid != store.uuid and not transfer:
+                raise InputError(
+                    f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid} "
+                    "(--transfer allows it)"
+                )
+        found = evaluate_runs(loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble)
+        folder = out or runs[0] / "evaluation"
+        write_report(found, folder)
+        if not transfer:
+            for run, intervals in found.intervals:
+                save_intervals(run, intervals)
+        for title, ((heads, rows), notes) in tables(found).items():
+            if rows:
+                print_table(console, title, heads, rows)
+            else:
+                console.print(f"{title}: {' '.join(notes[:-1])}")
+        console.print(verdict(found))
+        console.print(f"{folder}: report.html, tables.json, pictures")
+
+
+# -- predict -------------------------------------------------------------------------------------------------
+
+PREDICT_EXAMPLES = """
+[bold]Examples[/bold]
+
+  python -m learn.predict runs/quick datasets/scenes/poke.yaml --out poke
+
+Runs of several seeds as one, the mean of their predictions:
+
+  python -m learn.predict runs/fast-invariant-gnn-ogden-0-0 runs/fast-invariant-gnn-ogden-0-1 poke.yaml
+
+with poke.yaml, for instance:
+
+  site_mm: \\[5, -10]
+  depth_mm: 8
+  angle_deg: 20
+  heading_deg: 45
+  shape: cube-18            # or inclusion: {kind: sphere, radius_mm: 8, centre_mm: \\[0, 0, 6]}
+  softness: S0.5            # or shear_modulus_kPa: 12
+
+Every prediction says whether the poke is inside what the model was trained on.
+
+Exit codes: 0 done, 2 bad input, or outside the training with --strict.
+"""
+
+
+@app.command(epilog=PREDICT_EXAMPLES)
+def predict(
+    runs: Annotated[
+        list[Path], typer.Argument(help="Folder of a run, or of several to be joined.", metavar="RUN...")
+    ],
+    scene: Annotated[Path, typer.Argument(help="A YAML file: the poke.")],
+    dataset: Dataset = None,
+    strict: Annotated[
+        bool,
+        typer.Option("--strict", help="Refuse pokes outside what the model was trained on (exit code 2)."),
+    ] = False,
+    out: Annotated[
+        Path, typer.Option(help="Folder for displacement.csv, prediction.json and the picture.")
+    ] = Path("prediction"),
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Predict one poke on the dataset's block, and say whether the model was trained on such pokes."""
+    console = make_console()
+    with plain_errors():
+        from learn.predictor import load
+
+        load_plugins(plugin or [])
+        predictor = load(list(runs), dataset=dataset)
+        answer = predictor.predict(scene, strict=strict)
+        answer.save(out)
+        for key, value in answer.as_dict().items():
+            if isinstance(value, float):
+                console.print(f"{key}: {value:.4g}")
+        if answer.radius is None:
+            console.print(
+                "no intervals: learn.evaluate makes them where there are two or more validation pokes"
+            )
+        console.print(answer.verdict)
+        for check in answer.checks:
+            if not check.inside:
+                console.print(f"  {check.text}")
+        console.print(f"{out}: displacement.csv, prediction.json, prediction.png")
+
+
+# -- export --------------------------------------------------------------------------------------------------
+
+EXPORT_EXAMPLES = """
+[bold]Example[/bold]
+
+  python -m learn.export runs/quick --out surrogate
+
+encoder.onnx: rigid (n, levels) -> code, vectors, clear: once an interior.
+poke.onnx: code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
+For the paper's model, in double precision, poke.onnx alone: profile (n, levels), start, direction, depth.
+model.json: the points, the rod, and the domain of validity: what it was trained on.
+
+Needs the packages of 'tisim\\[export]'.
+
+Exit codes: 0 written and checked, 2 bad input or a check that failed.
+"""
+
+
+@app.command(epilog=EXPORT_EXAMPLES)
+def export(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    dataset: Dataset = None,
+    out: Annotated[Path | None, typer.Option(help="Default: onnx/ in the run.")] = None,
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Write a run as ONNX for the dataset's grid and check it on test pokes."""
+    console = make_console()
+    with plain_errors():
+        from learn.onnx_bundle import write_bundle
+        from learn.predictor import load
+
+        load_plugins(plugin or [])
+        predictor = load(run, dataset=dataset)
+        files, wrong, pokes = write_bundle(
+            predictor.run, predictor.store, out or run / "onnx", predictor.domain
+        )
+        console.print(
+            f"{', '.join(str(path) for path in files)} and model.json; "
+            f"{wrong:.1e} off torch over {pokes} pokes"
+        )
+
+
+# -- bench ---------------------------------------------------------------------------------------------------
+
+BENCH_EXAMPLES = """
+[bold]Examples[/bold]
+
+  python -m learn.bench runs/quick
+
+The surrogate and the small one beside it:
+
+  python -m learn.bench runs/fast-invariant-gnn-ogden-0-0 runs/fast-invariant-gnn-small-ogden-0-0
+
+Exported with learn.export before, the ONNX files are timed as well.
+"""
+
+
+@app.command(epilog=BENCH_EXAMPLES)
+def bench(
+    runs: Runs,
+    dataset: Dataset = None,
+    repeats: Annotated[int, typer.Option(min=3, help="Timed calls each.")] = 200,
+    loader: Annotated[bool, typer.Option(help="Time the loaders as well.")] = True,
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Latency of one poke on the dataset's grid, and loader throughput; medians, with the best beside."""
+    console = make_console()
+    with plain_errors():
+        from learn.benchmark import BATCH, latencies, loader_rates, yardstick
+        from learn.data import open_store
+        from learn.models import scene_of
+        from learn.training import load_run
+
+        load_plugins(plugin or [])
+        loaded = [load_run(run) for run in runs]
+        store = open_store(dataset or loaded[0].location, verify=False)
+        for run in loaded:
+            if run.uuid != store.uuid:
+                raise InputError(
+                    f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
+                )
+        scene = scene_of(store)
+        rows = [row for run in loaded for row in latencies(run, scene, store, repeats)]
+        print_table(
+            console,
+            f"One poke of {len(store.points)} points, the interior encoded before",
+            ["", "threads", "median ms", "best ms"],
+            [[name, threads, f"{median:.2f}", f"{best:.2f}"] for name, threads, median, best in rows],
+        )
+        median, best = yardstick(repeats)
+        load = f", load average {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
+        console.print(
+            f"beside it, NumPy's product of two 512 x 512 float32 matrices: "
+            f"median {median:.2f} ms, best {best:.2f} ms; {os.cpu_count()} cores{load}"
+        )
+        if loader:
+            rates = loader_rates(store)
+            memmap = rates["NumPy memmap"]
+            print_table(
+                console,
+                f"Loaders: {store.frames} frames, batches of {BATCH}, random order",
+                ["", "frames a second", "relative to a memmap"],
+                [[name, f"{rate:.0f}", f"{rate / memmap:.2f}"] for name, rate in rates.items()],
+            )
+
+
+def single(command: Callable[..., Any], epilog: str) -> typer.Typer:
+    """One command as a program of its own, for `python -m learn.COMMAND`."""
+    program = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+    program.command(epilog=epilog)(command)
+    return program

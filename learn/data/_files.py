@@ -1,0 +1,207 @@
+"""The files of a store in a folder or at an fsspec URL; reading errors in one sentence."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import mmap
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import fsspec
+import numpy as np
+import zarr
+from numcodecs.blosc import decompress
+from numpy.typing import NDArray
+from zarr.storage import FsspecStore, LocalStore
+
+from learn.errors import InputError
+
+MANIFEST = "provenance/manifest.json"
+_ABSENT = 2**64 - 1  # of a chunk that was never written: it holds zeros
+_CHECKSUM = 4  # bytes of the index's crc32c
+
+
+@contextlib.contextmanager
+def reading(what: str) -> Iterator[None]:
+    """Turns whatever a damaged or missing file raises into an InputError that names it."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # codecs, file systems and zarr each raise kinds of their own
+        text = " ".join(str(error).split())[:160] or type(error).__name__
+        raise InputError(f"{what}: cannot be read ({text})") from error
+
+
+_readers: dict[str, ShardReader | None] = {}
+_opened: dict[tuple[int, str], zarr.Group] = {}
+
+
+def group_here(location: str, *, fresh: bool = False) -> zarr.Group:
+    """The root group, opened once a process: a loader's worker must not use its parent's connections."""
+    key = (os.getpid(), location)
+    if fresh or key not in _opened:
+        _opened[key] = Source(location).group()
+        _readers.pop(location, None)
+    return _opened[key]
+
+
+def displacement_reader(location: str) -> ShardReader | None:
+    """The fast reader of a local store's displacement; None where zarr has to read it."""
+    if location not in _readers:
+        remote = Source(location).remote
+        _readers[location] = None if remote else shard_reader(Path(location) / "grid_displacement")
+    return _readers[location]
+
+
+def _is_local(name: str) -> bool:
+    """Whether a manifest's name is a plain path within the store; it is never followed elsewhere."""
+    parts = name.split("/")
+    return not any(part in ("", ".", "..") or "\\" in part or ":" in part for part in parts)
+
+
+@dataclass(frozen=True)
+class Source:
+    """A folder or URL that holds a store."""
+
+    location: str
+
+    @property
+    def remote(self) -> bool:
+        return "://" in self.location
+
+    def group(self) -> zarr.Group:
+        """The store's root group; InputError where there is none."""
+        store: LocalStore | FsspecStore
+        if self.remote:
+            with reading(self.location):
+                store = FsspecStore.from_url(self.location, read_only=True)
+        else:
+            if not (Path(self.location) / "zarr.json").is_file():
+                raise InputError(f"{self.location}: no dataset there (expected a Zarr 3 store)")
+            store = LocalStore(Path(self.location), read_only=True)
+        with reading(self.location):
+            return zarr.open_group(store=store, mode="r", zarr_format=3)
+
+    def check_manifest(self, arrays: list[str]) -> None:
+        """Every file of these arrays is there and, in a folder, has the bytes of the manifest.
+
+        Zarr reads a missing chunk as zeros, so that a truncated store must be found here. Over a URL
+        only existence is checked: the bytes would have to be loaded twice.
+        """
+        wanted = {
+            name: digest
+            for name, digest in self._manifest().items()
+            if name.split("/")[0] in arrays and not name.endswith("zarr.json")
+        }
+        for name in sorted(wanted):
+            if self.remote:
+                files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{name}")
+                with reading(f"{self.location}: {name}"):
+                    there = bool(files.exists(path))
+                if not there:
+                    raise InputError(f"{self.location}: {name} is missing, the store is incomplete")
+                continue
+            file = Path(self.location) / name
+            if not file.resolve().is_relative_to(Path(self.location).resolve()):
+                raise InputError(f"{self.location}: {name} is a link that leads out of the store")
+            if not file.is_file():
+                raise InputError(f"{self.location}: {name} is missing, the store is incomplete")
+            with file.open("rb") as stream:
+                found = hashlib.file_digest(stream, "sha256").hexdigest()
+            if found != wanted[name]:
+                raise InputError(f"{self.location}: {name} was altered (its sha256 is not the manifest's)")
+
+    def _manifest(self) -> dict[str, str]:
+        where = f"{self.location}: {MANIFEST}"
+        with reading(where):
+            if self.remote:
+                files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{MANIFEST}")
+                text = files.cat_file(path)
+            else:
+                text = (Path(self.location) / MANIFEST).read_bytes()
+            found: Any = json.loads(text)["sha256"]
+            if not isinstance(found, dict) or not found:
+                raise InputError(f"{where}: expected a table of sha256 sums")
+            for name, digest in found.items():
+                if not _is_local(name):
+                    raise InputError(
+                        f"{where}: name {name!r} leads out of the store, expected a path within it"
+                    )
+                if not isinstance(digest, str):
+                    raise InputError(f"{where}: {name}: expected a sha256 sum, got {digest!r}"[:300])
+            return dict(found)
+
+
+@dataclass(frozen=True)
+class ShardReader:
+    """Reads whole shards of a local store straight to where they are wanted.
+
+    zarr-python takes three times as long for a shard of 1,024 frames as its chunks take to decompress (copies
+    and scheduling). Where the store has the factory's layout in a folder, its shards are read here; elsewhere
+    zarr reads them, to the same values. rows: of the array; chunk, shard: rows in each; row: shape of one.
+    """
+
+    folder: Path
+    rows: int
+    chunk: int
+    shard: int
+    row: tuple[int, ...]
+
+    def read(self, start: int, stop: int, out: NDArray[np.float32]) -> None:
+        """Rows start to stop into out, (stop - start, *row). Whatever is damaged raises."""
+        for number in range(start // self.shard, -(-stop // self.shard)):
+            first = number * self.shard
+            low, high = max(start, first), min(stop, first + self.shard)
+            self._read_shard(number, low - first, high - first, out[low - start : high - start])
+
+    def _read_shard(self, number: int, low: int, high: int, out: NDArray[np.float32]) -> None:
+        path = self.folder / "c" / "/".join(str(k) for k in (number, *(0 for _ in self.row)))
+        per = self.shard // self.chunk
+        with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            index = np.frombuffer(data[-16 * per - _CHECKSUM : -_CHECKSUM], dtype="<u8").reshape(per, 2)
+            for k in range(low // self.chunk, -(-high // self.chunk)):
+                first = k * self.chunk
+                a, b = max(low, first), min(high, first + self.chunk)
+                where = out[a - low : b - low]
+                offset, size = (int(v) for v in index[k])
+                if offset == _ABSENT:
+                    where[...] = 0
+                    continue
+                view = memoryview(data)[offset : offset + size]
+                try:
+                    if b - a == self.chunk:
+                        decompress(view, where)
+                    else:
+                        whole = np.empty((self.chunk, *self.row), dtype=np.float32)
+                        decompress(view, whole)
+                        where[...] = whole[a - first : b - first]
+                finally:
+                    view.release()
+
+
+def shard_reader(folder: Path) -> ShardReader | None:
+    """A reader of an array's folder; None where its layout is another."""
+    meta: dict[str, Any] = json.loads((folder / "zarr.json").read_text(encoding="utf-8"))
+    shape, grid, codecs = meta["shape"], meta["chunk_grid"]["configuration"]["chunk_shape"], meta["codecs"]
+    if meta["data_type"] != "float32" or len(codecs) != 1 or codecs[0]["name"] != "sharding_indexed":
+        return None
+    inner = codecs[0]["configuration"]
+    names = [[c["name"] for c in inner[key]] for key in ("codecs", "index_codecs")]
+    little = inner["codecs"][0].get("configuration", {}).get("endian") == "little"
+    chunk = inner["chunk_shape"]
+    fits = (
+        names == [["bytes", "blosc"], ["bytes", "crc32c"]]
+        and little
+        and inner.get("index_location", "end") == "end"
+        and meta.get("fill_value") == 0
+        and meta["chunk_key_encoding"] == {"name": "default", "configuration": {"separator": "/"}}
+        and chunk[1:] == grid[1:] == shape[1:]
+        and grid[0] % chunk[0] == 0
+    )
+    return ShardReader(folder, shape[0], chunk[0], grid[0], tuple(shape[1:])) if fits else None

@@ -1,0 +1,101 @@
+"""Point clouds other than the dataset's grid, with the displacement interpolated from the surface meshes.
+
+Each poke of the dataset was simulated on a mesh of its own, whose surface is stored. Linear interpolation
+between its nodes gives the displacement anywhere on the block's top face: for testing on other clouds, and
+for training at points between those of the grid (recipe key `point_jitter`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay, KDTree
+
+from learn.data.store import Store
+from learn.errors import InputError
+
+Floats = NDArray[np.float64]
+_TOP = 1e-9  # [m] from the top plane
+
+
+def scattered(store: Store, count: int, *, seed: int = 0) -> Floats:
+    """Points without a grid on the block's top face, within the outermost grid points.
+
+    Returns
+    -------
+    Rest positions [m], shape (count, 3): evenly scattered, each 0.6 spacings or more from the next.
+    """
+    low, high = store.points[:, :2].min(axis=0), store.points[:, :2].max(axis=0)
+    random = np.random.default_rng(seed)
+    chosen = random.uniform(low, high, (count, 2))
+    spacing = np.sqrt(np.prod(high - low) / count)
+    for _ in range(60):  # push too close points apart
+        pairs = KDTree(chosen).query_pairs(0.8 * spacing, output_type="ndarray")
+        gap = chosen[pairs[:, 0]] - chosen[pairs[:, 1]]
+        size = np.linalg.norm(gap, axis=1, keepdims=True)
+        push = 0.25 * (0.8 * spacing - size) * gap / np.maximum(size, 1e-12)
+        np.add.at(chosen, pairs[:, 0], push)
+        np.add.at(chosen, pairs[:, 1], -push)
+        chosen = np.clip(chosen, low, high)
+    return np.column_stack([chosen, np.full(count, store.points[0, 2])])
+
+
+def jittered(store: Store, random: np.random.Generator) -> Floats:
+    """The grid's points, each moved at random within its cell and the outermost grid points [m], (n, 3)."""
+    low, high = store.points[:, :2].min(axis=0), store.points[:, :2].max(axis=0)
+    cell = (high - low) / (round(len(store.points) ** 0.5) - 1)
+    points = store.points.copy()
+    moved = points[:, :2] + random.uniform(-0.5, 0.5, (len(points), 2)) * cell
+    points[:, :2] = np.clip(moved, low, high)
+    return points
+
+
+def nearest_columns(store: Store, points: Floats) -> NDArray[np.int64]:
+    """Index of the grid point nearest to each point of the top face, shape (n,)."""
+    side = round(len(store.points) ** 0.5)
+    low = store.points.min(axis=0)[:2]
+    step = (store.points.max(axis=0)[:2] - low) / (side - 1)
+    column, row = np.rint(((points[:, :2] - low) / step).T).astype(int)
+    return np.asarray(row * side + column, dtype=np.int64)
+
+
+class SurfaceField:
+    """Displacement anywhere on the top face, by linear interpolation of each poke's own surface mesh.
+
+    Parameters
+    ----------
+    store : the dataset.
+    pokes : indices of the pokes whose meshes are held in memory. InputError where a mesh has no top face.
+    """
+
+    def __init__(self, store: Store, pokes: Iterable[int]) -> None:
+        self.store = store
+        self._meshes: dict[int, tuple[Delaunay, NDArray[np.float32]]] = {}
+        for poke in pokes:
+            rest, _, moved = store.surface(int(poke))
+            top = np.abs(rest[:, 2] - store.points[0, 2]) < _TOP
+            if top.sum() < 4:
+                raise InputError(f"{store.location}: the surface of poke {poke} has no nodes on the top face")
+            self._meshes[int(poke)] = Delaunay(rest[top, :2]), np.ascontiguousarray(moved[:, top])
+
+    def displacement(self, rows: NDArray[np.int64], points: Floats) -> NDArray[np.float32]:
+        """Displacement [m] of points (n, 3) of the top face in these frames, shape (frames, n, 3)."""
+        out = np.empty((len(rows), len(points), 3), dtype=np.float32)
+        pokes = self.store.frame_poke[rows]
+        for poke in np.unique(pokes):
+            mesh, moved = self._meshes[int(poke)]
+            simplex = mesh.find_simplex(points[:, :2])
+            if (simplex < 0).any():
+                raise InputError(
+                    f"{self.store.location}: the surface of poke {poke} does not cover the grid's points"
+                )
+            transform = mesh.transform[simplex]
+            first = np.einsum("nij,nj->ni", transform[:, :2], points[:, :2] - transform[:, 2])
+            weight = np.column_stack([first, 1 - first.sum(axis=1)])
+            corners = mesh.simplices[simplex]
+            for k in np.flatnonzero(pokes == poke):
+                frame = moved[rows[k] - self.store.frame_start[poke]]
+                out[k] = np.einsum("nk,nkc->nc", weight, frame[corners])
+        return out

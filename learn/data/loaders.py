@@ -1,0 +1,241 @@
+"""Frames as batches of tensors: a part in memory, or streamed block by block through a shuffle buffer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+import torch
+import torch.utils.data
+from numpy.typing import NDArray
+from torch import Tensor
+
+from learn.data.store import Store, open_store
+
+Floats32 = NDArray[np.float32]
+_READERS = 2  # threads: decompressing takes some four times as long as dealing
+
+
+def no_clock(count: int = 0) -> Tensor:
+    """The clock of frames without time."""
+    return torch.empty(count, 0, dtype=torch.float64)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Batch:
+    """b frames on one grid of n points. SI units.
+
+    Positions are in float64, so that translating the scene far from the origin costs no digits.
+
+    Attributes
+    ----------
+    frame : rows of the store, shape (b,).
+    geometry : rows of the store's profile, shape (b,).
+    start : the indenter's tip at first contact [m], shape (b, 3).
+    direction : unit vector of the push, shape (b, 3).
+    depth : travel since first contact [m], shape (b,).
+    modulus : shear modulus at small strain [Pa], shape (b,).
+    displacement : of the grid's points [m], shape (b, n, 3), float32.
+    force : magnitude of the force on the indenter [N], shape (b,), float32.
+    clock : where the dataset has time, time since first contact [s], the rod's speed along the push and its
+        speed of approach [m/s] (`Clock`), shape (b, 3); else shape (b, 0).
+    """
+
+    frame: Tensor
+    geometry: Tensor
+    start: Tensor
+    direction: Tensor
+    depth: Tensor
+    modulus: Tensor
+    displacement: Tensor
+    force: Tensor
+    clock: Tensor = field(default_factory=no_clock)
+
+    def __len__(self) -> int:
+        return len(self.frame)
+
+    def to(self, device: torch.device | str) -> Batch:
+        """The same batch on a device."""
+        return Batch(**{f.name: getattr(self, f.name).to(device, non_blocking=True) for f in fields(self)})
+
+
+def make_batch(store: Store, rows: NDArray[np.int64], displacement: NDArray[np.float32]) -> Batch:
+    """The batch of these frames; displacement: theirs, (b, n, 3), not copied."""
+    poke = store.frame_poke[rows]
+    return Batch(
+        frame=torch.from_numpy(rows),
+        geometry=torch.from_numpy(store.geometry[poke]),
+        start=torch.from_numpy(store.path_start[poke]),
+        direction=torch.from_numpy(store.direction[poke]),
+        depth=torch.from_numpy(store.depth[rows]),
+        modulus=torch.from_numpy(store.modulus[poke]),
+        displacement=torch.from_numpy(displacement),
+        force=torch.from_numpy(np.linalg.norm(store.rod_force[rows], axis=1).astype(np.float32)),
+        clock=torch.from_numpy(store.clocks(rows)),
+    )
+
+
+def epoch_order(count: int, seed: int, epoch: int) -> NDArray[np.int64]:
+    """The random order of one epoch: a function of seed and epoch alone, so that a resumed run goes on."""
+    return np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(epoch,))).permutation(count)
+
+
+class MemoryDataset(torch.utils.data.Dataset[Batch]):
+    """A map-style torch dataset; with a DataLoader use `collate_fn=lambda batch: batch`.
+
+    >>> data = MemoryDataset(store, split.train)
+    >>> for batch in data.batches(64, seed=1, epoch=0): ...
+    """
+
+    def __init__(self, store: Store, rows: NDArray[np.int64]) -> None:
+        self.store, self.rows = store, np.asarray(rows, dtype=np.int64)
+        self._displacement = np.empty((len(rows), len(store.points), 3), dtype=np.float32)
+        block = store.block
+        for first in np.unique(self.rows // block) * block:
+            here = np.flatnonzero((self.rows >= first) & (self.rows < first + block))
+            values = store.displacement(slice(int(first), min(int(first) + block, store.frames)))
+            self._displacement[here] = values[self.rows[here] - first]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __getitem__(self, index: int) -> Batch:
+        return self.__getitems__([index])
+
+    def __getitems__(self, index: list[int] | NDArray[np.int64]) -> Batch:
+        picked = np.asarray(index, dtype=np.int64)
+        return make_batch(self.store, self.rows[picked], self._displacement[picked])
+
+    def batches(
+        self, size: int, *, seed: int | None = None, epoch: int = 0, rank: int = 0, world: int = 1
+    ) -> Iterator[Batch]:
+        """Batches of one epoch, in random order where a seed is given.
+
+        rank, world: this process's share of every batch; all processes get as many batches (the epoch's
+        last, incomplete round is left out where there is more than one process).
+        """
+        count = len(self)
+        order = np.arange(count) if seed is None else epoch_order(count, seed, epoch)
+        if world > 1:
+            order = order[: count - count % (size * world)] if count >= size * world else order
+        for first in range(rank * size, len(order), size * world):
+            yield self.__getitems__(order[first : first + size])
+
+
+class StreamDataset(torch.utils.data.IterableDataset[Batch]):
+    """An iterable torch dataset of whole batches; with a DataLoader use `batch_size=None`.
+
+    Blocks (files of the store) come in random order into a buffer of `shuffle_buffer` blocks; batches are
+    drawn at random from the buffer while the next block is read in two other threads. So memory is bounded by
+    shuffle_buffer + 2 blocks (`bytes_held`), whatever the store's size, and every frame comes exactly once an
+    epoch. Loader workers and the ranks of torchrun each take their share of the blocks: in each, the order is
+    another.
+
+    >>> data = StreamDataset("https://example.org/pokes.zarr", split.train, batch=64, seed=1)
+    >>> data.epoch = 3
+    >>> for batch in data: ...
+    """
+
+    def __init__(
+        self,
+        store: Store | str,
+        rows: NDArray[np.int64],
+        *,
+        batch: int = 64,
+        shuffle_buffer: int = 4,
+        seed: int | None = 0,
+        rank: int = 0,
+        world: int = 1,
+    ) -> None:
+        self.store = store if isinstance(store, Store) else open_store(store)
+        self.rows = np.sort(np.asarray(rows, dtype=np.int64))
+        self.batch, self.shuffle_buffer, self.seed = batch, max(1, shuffle_buffer), seed
+        self.rank, self.world = rank, world
+        self._block, self._chunk = self.store.block, self.store.chunk  # asking the store takes milliseconds
+        self.epoch = 0
+        self._spare: list[list[Floats32]] = []
+
+    @property
+    def bytes_held(self) -> int:
+        """Upper bound of the displacement held at any time [bytes]."""
+        return (self.shuffle_buffer + 2) * self._block * len(self.store.points) * 3 * 4
+
+    def __len__(self) -> int:
+        """Frames, not batches: how many batches there are depends on the workers."""
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Batch]:
+        worker = torch.utils.data.get_worker_info()
+        count, number = (worker.num_workers, worker.id) if worker is not None else (1, 0)
+        share, shares = self.rank * count + number, self.world * count
+        blocks = np.unique(self.rows // self._block)
+        if self.seed is not None:
+            blocks = blocks[epoch_order(len(blocks), self.seed, self.epoch)]
+        random = np.random.default_rng(
+            np.random.SeedSequence(entropy=self.seed or 0, spawn_key=(self.epoch, share))
+        )
+        yield from self._deal(blocks[share::shares], random)
+
+    def _deal(self, blocks: NDArray[np.int64], random: np.random.Generator) -> Iterator[Batch]:
+        counts = [len(self._rows_of(int(block))) for block in blocks]
+        room = min(self.shuffle_buffer * self._block, sum(counts))
+        # fresh memory costs as much as decompressing into it: an epoch hands its room to the next
+        buffers = self._spare.pop() if self._spare else self._buffers()
+        held = buffers[0]
+        rows = np.empty(room, dtype=np.int64)
+        room_to_read = buffers[1:]  # a block is read into one while the other is dealt into the buffer
+        free, full = np.arange(room), np.empty(0, dtype=np.int64)  # places in the buffer
+        with ThreadPoolExecutor(_READERS) as readers:
+            waiting = [self._ask(readers, int(block), room_to_read[0]) for block in blocks[:1]]
+            for number, count in enumerate(counts):
+                new_rows, new = self._got(int(blocks[number]), room_to_read[number % 2], waiting.pop())
+                if number + 1 < len(blocks):
+                    spare = room_to_read[(number + 1) % 2]
+                    waiting.append(self._ask(readers, int(blocks[number + 1]), spare))
+                while len(free) < count:
+                    pick, full = full[: self.batch], full[self.batch :]
+                    yield make_batch(self.store, rows[pick], held[pick])
+                    free = np.concatenate([free, pick])
+                place, free = free[:count], free[count:]
+                rows[place], held[place] = new_rows, new
+                full = np.concatenate([full, place])
+                full = random.permutation(full) if self.seed is not None else full
+        for first in range(0, len(full), self.batch):
+            pick = full[first : first + self.batch]
+            yield make_batch(self.store, rows[pick], held[pick])
+        self._spare.append(buffers)
+
+    def _buffers(self) -> list[Floats32]:
+        block, points = min(self._block, self.store.frames), len(self.store.points)
+        held = min(self.shuffle_buffer * self._block, len(self.rows))
+        return [np.empty((count, points, 3), dtype=np.float32) for count in (held, block, block)]
+
+    def _rows_of(self, block: int) -> NDArray[np.int64]:
+        first = block * self._block
+        low, high = np.searchsorted(self.rows, [first, first + self._block])
+        return self.rows[low:high]
+
+    def _span(self, block: int) -> tuple[int, int]:
+        rows = self._rows_of(block)
+        return int(rows[0]), int(rows[-1]) + 1
+
+    def _ask(self, readers: ThreadPoolExecutor, block: int, room: Floats32) -> list[Future[Floats32]]:
+        """Reads a block's frames, cut between two chunks so that both readers have as much to do."""
+        start, stop = self._span(block)
+        chunk = self._chunk
+        middle = min(max(round((start + stop) / 2 / chunk) * chunk, start), stop)
+        return [
+            readers.submit(self.store.displacement, slice(a, b), room[a - start : b - start])
+            for a, b in ((start, middle), (middle, stop))
+            if a < b
+        ]
+
+    def _got(
+        self, block: int, room: Floats32, asked: list[Future[Floats32]]
+    ) -> tuple[NDArray[np.int64], Floats32]:
+        for part in asked:
+            part.result()
+        rows, (start, stop) = self._rows_of(block), self._span(block)
+        return rows, room[: len(rows)] if len(rows) == stop - start else room[rows - start]

@@ -1,0 +1,142 @@
+"""Predictions of a model beside the truth: on a part of the dataset, on other point clouds, on rotated
+scenes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from learn.data import Batch, MemoryDataset, Store, make_batch
+from learn.data.clouds import SurfaceField
+from learn.metrics import Predictions, join_predictions
+from learn.models import Pokes, Response, Scene, pokes_of, scene_on
+
+Floats = NDArray[np.float64]
+
+
+class Predicts(Protocol):
+    """Anything that predicts pokes: `learn.models.Model` and `learn.baselines.Baseline`."""
+
+    def prepare(self, scene: Scene) -> Any: ...
+
+    def encode(self, scene: Scene, prepared: Any = None) -> Any: ...
+
+    def decode(self, encoded: Any, pokes: Pokes) -> Response: ...
+
+
+def predict_part(model: Predicts, scene: Scene, data: MemoryDataset, *, batch: int = 64) -> Predictions:
+    """Predictions of all frames of a part; scene: of the store's grid."""
+    return predict_batches(model, scene, data.store, data.batches(batch))
+
+
+@torch.no_grad()
+def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterable[Batch]) -> Predictions:
+    """Predictions of these batches."""
+    parts: list[Predictions] = []
+    encoded: Any = None
+    points = scene.points.numpy()
+    for batch in batches:
+        if encoded is None:
+            encoded = model.encode(scene, model.prepare(scene))
+        found = model.decode(encoded, pokes_of(batch))
+        away = np.linalg.norm(points[None] - batch.start.numpy()[:, None], axis=2)
+        poke = store.frame_poke[batch.frame.numpy()]
+        parts.append(
+            Predictions(
+                truth=batch.displacement.numpy(),
+                predicted=found.displacement.float().numpy(),
+                force=batch.force.double().numpy(),
+                force_predicted=found.force.double().numpy(),
+                away=away,
+                depth=batch.depth.numpy(),
+                poke=poke,
+                softness=np.array(store.softness_names)[store.softness[poke]],
+                spread=_or_zero(found.spread, away.shape),
+                force_spread=_or_zero(found.force_spread, poke.shape),
+            )
+        )
+    return join_predictions(parts)
+
+
+def _or_zero(spread: torch.Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """The spread; zero for one model."""
+    return np.zeros(shape) if spread is None else spread.double().numpy()
+
+
+def predict_on(
+    model: Predicts,
+    store: Store,
+    rows: NDArray[np.int64],
+    points: Floats,
+    surfaces: SurfaceField | None = None,
+) -> Predictions:
+    """Predictions at other points of the top face, against interpolation of each poke's own surface mesh."""
+    field = surfaces or SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
+    return predict_batches(model, scene_on(store, points), store, _batches(store, rows, points, field))
+
+
+def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
+    """Mean distance [mm] of that interpolation from the stored field at the grid's own points."""
+    field = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
+    wrong = []
+    for batch in _batches(store, rows, store.points, field):
+        first = int(batch.frame[0])
+        stored = torch.from_numpy(store.displacement(slice(first, first + len(batch))))
+        wrong.append(float((batch.displacement - stored).norm(dim=2).mean()))
+    return float(np.mean(wrong)) * 1e3
+
+
+def _batches(
+    store: Store, rows: NDArray[np.int64], points: Floats, surfaces: SurfaceField
+) -> Iterator[Batch]:
+    """A batch a poke."""
+    for poke in np.unique(store.frame_poke[rows]):
+        mine = rows[store.frame_poke[rows] == poke]
+        yield make_batch(store, mine, surfaces.displacement(mine, points))
+
+
+@dataclass(frozen=True)
+class SymmetryError:
+    """Largest over points, pokes and rotations: displacement [mm]; force relative to its magnitude."""
+
+    displacement_mm: float
+    force: float
+
+
+@torch.no_grad()
+def symmetry_error(
+    model: Predicts, scene: Scene, pokes: Pokes, *, about_normal: bool = False, rotations: int = 5
+) -> SymmetryError:
+    """How far the prediction for a rotated scene is from the rotated prediction.
+
+    Parameters
+    ----------
+    about_normal : quarter turns about the vertical and no translation, as in the paper; otherwise random
+    rotations
+        about any axis and translations by up to 0.1 m.
+    """
+    from scipy.stats import special_ortho_group  # half a second to import
+
+    random = np.random.default_rng(0)
+    still = model.decode(model.encode(scene, model.prepare(scene)), pokes)
+    worst, worst_force = 0.0, 0.0
+    for k in range(3 if about_normal else rotations):
+        if about_normal:
+            turn = np.linalg.matrix_power(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]), k + 1)
+            shift = np.zeros(3)
+        else:
+            turn, shift = special_ortho_group.rvs(3, random_state=random), random.uniform(-0.1, 0.1, 3)
+        q, t = torch.from_numpy(turn), torch.from_numpy(shift)
+        turned = replace(scene, points=scene.points @ q.T + t, normals=scene.normals @ q.T)
+        rod = replace(pokes, start=pokes.start @ q.T + t, direction=pokes.direction @ q.T)
+        moved = model.decode(model.encode(turned, model.prepare(turned)), rod)
+        apart = (moved.displacement.double() - still.displacement.double() @ q.T).norm(dim=2).max()
+        worst = max(worst, float(apart) * 1e3)
+        worst_force = max(worst_force, float(((moved.force - still.force) / still.force).abs().max()))
+    return SymmetryError(worst, worst_force)

@@ -1,0 +1,226 @@
+"""The geometry encoder: the interior under and around each point, computed once a geometry.
+
+Messages are weighted means over neighbourhoods, and means of directions (slopes). The weight falls smoothly
+to zero at the neighbourhood's edge, so that points at equal distance are always all in or all out, whatever
+rounding does to a rotated scene, and a mean over a denser cloud tends to the same integral.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+import torch
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+from torch import Tensor, nn
+
+from learn.models.base import Scene
+
+RADII = (6.2e-3, 12.4e-3, 25e-3)  # [m], of the neighbourhoods
+BINS = 16  # of the profile's levels
+
+
+class _Product(torch.autograd.Function):
+    """A constant sparse matrix times a dense one (torch's own has no fast gradient)."""
+
+    @staticmethod
+    def forward(ctx: Any, matrix: Tensor, transposed: Tensor, values: Tensor) -> Tensor:
+        ctx.transposed = transposed
+        return torch.mm(matrix, values)
+
+    @staticmethod
+    def backward(ctx: Any, *gradient: Tensor) -> tuple[None, None, Tensor]:
+        return None, None, torch.mm(ctx.transposed, gradient[0].contiguous())
+
+
+@dataclass(frozen=True, eq=False)
+class Sparse:
+    """A constant sparse matrix (rows, n), applied to values (n, columns)."""
+
+    matrix: Tensor
+    transposed: Tensor
+
+    def __call__(self, values: Tensor) -> Tensor:
+        product: Tensor = _Product.apply(self.matrix, self.transposed, values.float())
+        return product
+
+    def to(self, device: torch.device | str) -> Sparse:
+        return Sparse(self.matrix.to(device), self.transposed.to(device))
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """The same by gathering neighbours, where sparse products are not to be had (ONNX).
+
+    index, weight: (rows, most neighbours), padded with weights of zero. Matrices of which rows k, k + n, ...
+    share their neighbours (`parts` of them) gather once: weight (n, parts, neighbours).
+    """
+
+    index: Tensor
+    weight: Tensor
+
+    def __call__(self, values: Tensor) -> Tensor:
+        n, k = self.index.shape
+        near = values.index_select(0, self.index.reshape(-1)).reshape(n, k, -1)
+        found = torch.matmul(self.weight, near)  # (n, parts, columns)
+        return found.permute(1, 0, 2).reshape(-1, values.shape[1])
+
+    def to(self, device: torch.device | str) -> Gathered:
+        return Gathered(self.index.to(device), self.weight.to(device))
+
+
+@dataclass(frozen=True, eq=False)
+class Stencil:
+    """Neighbourhoods of one radius. mean: (n, c) -> (n, c). slope: (n, c) -> (3 n, c), the components of
+    the mean of (x_j - x_i) / radius times the value at j, x of all points first."""
+
+    mean: Sparse | Gathered
+    slope: Sparse | Gathered
+
+    def to(self, device: torch.device | str) -> Stencil:
+        return Stencil(self.mean.to(device), self.slope.to(device))
+
+
+def stencil(points: NDArray[np.float64], radius: float) -> Stencil:
+    """The stencil of a cloud (n, 3) [m], neighbours nearer than radius [m], each point its own as well."""
+    n = len(points)
+    pairs = KDTree(points).query_pairs(radius, output_type="ndarray")
+    own = np.arange(n)
+    row = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+    column = np.concatenate([pairs[:, 1], pairs[:, 0], own])
+    offset = (points[column] - points[row]) / radius
+    weight = (1 - np.minimum((offset**2).sum(axis=1), 1)) ** 2
+    weight /= np.bincount(row, weight, minlength=n)[row]
+    slopes = [(row + k * n, column, weight * offset[:, k]) for k in range(3)]
+    slope_row, slope_column, slope_weight = (np.concatenate(part) for part in zip(*slopes, strict=True))
+    return Stencil(
+        _sparse(row, column, weight, (n, n)), _sparse(slope_row, slope_column, slope_weight, (3 * n, n))
+    )
+
+
+def gathered(s: Stencil) -> Stencil:
+    """The same stencil, by gathering."""
+    assert isinstance(s.mean, Sparse)
+    assert isinstance(s.slope, Sparse)
+    mean = s.mean.matrix
+    n = mean.shape[0]
+    start, column = mean.crow_indices().numpy(), mean.col_indices().numpy()
+    counts = np.diff(start)
+    index = np.zeros((n, counts.max()), dtype=np.int64)
+    place = np.arange(index.shape[1])[None, :] < counts[:, None]
+    index[place] = column
+    weight = np.zeros((n, 4, index.shape[1]), dtype=np.float32)
+    weight[:, 0][place] = mean.values().numpy()
+    # a row of the slope has the mean's neighbours, in the same order
+    slope = s.slope.matrix.values().numpy().reshape(3, -1)
+    for k in range(3):
+        weight[:, k + 1][place] = slope[k]
+    where, w = torch.from_numpy(index), torch.from_numpy(weight)
+    return Stencil(Gathered(where, w[:, :1].contiguous()), Gathered(where, w[:, 1:].contiguous()))
+
+
+def _sparse(
+    row: NDArray[Any], column: NDArray[Any], weight: NDArray[np.float64], shape: tuple[int, int]
+) -> Sparse:
+    matrix = scipy.sparse.coo_array((weight.astype(np.float32), (row, column)), shape=shape).tocsr()
+    matrix.sort_indices()
+    transposed = matrix.T.tocsr()
+    transposed.sort_indices()
+    return Sparse(_torch(matrix), _torch(transposed))
+
+
+def _torch(matrix: Any) -> Tensor:
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Sparse CSR tensor support is in beta")
+        return torch.sparse_csr_tensor(
+            torch.from_numpy(matrix.indptr.astype(np.int64)),
+            torch.from_numpy(matrix.indices.astype(np.int64)),
+            torch.from_numpy(matrix.data),
+            size=matrix.shape,
+            check_invariants=False,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Encoded:
+    """k inclusions under n points. code (n, k, c): invariant; vectors (3, n, k, v): they turn with the scene;
+    clear (n, k): share of each column that lies above the inclusion.
+
+    stencils: the cloud's neighbourhoods at `RADII`. scene: what was encoded.
+    """
+
+    scene: Scene
+    stencils: tuple[Stencil, ...]
+    code: Tensor
+    vectors: Tensor
+    clear: Tensor
+
+
+def stencils_of(scene: Scene) -> tuple[Stencil, ...]:
+    """The cloud's neighbourhoods; they depend on its points alone."""
+    points = scene.points.cpu().numpy()
+    return tuple(stencil(points, radius).to(scene.points.device) for radius in RADII)
+
+
+class GeometryEncoder(nn.Module):
+    """Two rounds of messages over three scales, then the slopes of the code as vectors."""
+
+    def __init__(self, *, profile: int = 8, code: int = 24, vectors: int = 8) -> None:
+        super().__init__()
+        self.profile = nn.Sequential(nn.Linear(BINS + 2, 32), nn.SiLU(), nn.Linear(32, profile))
+        wide = profile + 1
+        self.first = _Round(wide, 16)
+        self.second = _Round(16 + 1, code)
+        self.narrow = nn.Linear(code, vectors)
+        self.n_code, self.n_vectors = code, vectors * 2
+
+    def forward(self, scene: Scene, stencils: tuple[Stencil, ...]) -> Encoded:
+        """Codes and vectors of every inclusion of the scene."""
+        levels = scene.rigid.shape[2]
+        binned = scene.rigid.reshape(*scene.rigid.shape[:2], BINS, levels // BINS).mean(dim=3)
+        # how much soft tissue lies above the inclusion, and how much of the column is rigid
+        clear = (scene.rigid.cumsum(dim=2) < 0.5).float().mean(dim=2, keepdim=True)
+        share = scene.rigid.mean(dim=2, keepdim=True)
+        values = self.profile(torch.cat([binned, clear, share], dim=2)).permute(1, 0, 2)
+        normals = scene.normals.float().T[:, :, None, None]
+        # a constant beside the values: its slope is where the cloud ends
+        h = torch.nn.functional.silu(self.first(_with_one(values), stencils, normals))
+        code = self.second(_with_one(h), stencils, normals)
+        thin = self.narrow(code)
+        vectors = torch.cat([slopes(s, thin) for s in stencils[1:]], dim=3)
+        return Encoded(scene, stencils, code, vectors, clear[..., 0].T)
+
+
+class _Round(nn.Module):
+    """Means and slopes at every scale into a small network at each point."""
+
+    def __init__(self, wide: int, out: int) -> None:
+        super().__init__()
+        self.mix = nn.Sequential(nn.Linear(wide * (1 + 3 * len(RADII)), 48), nn.SiLU(), nn.Linear(48, out))
+
+    def forward(self, values: Tensor, stencils: tuple[Stencil, ...], normals: Tensor) -> Tensor:
+        parts = [values]
+        for s in stencils:
+            slope = slopes(s, values)
+            parts += [means(s, values), slope.square().sum(dim=0), (slope * normals).sum(dim=0)]
+        out: Tensor = self.mix(torch.cat(parts, dim=2))
+        return out
+
+
+def means(s: Stencil, values: Tensor) -> Tensor:
+    """Neighbourhood means of (n, b, c)."""
+    n, b, c = values.shape
+    return s.mean(values.reshape(n, b * c)).reshape(n, b, c)
+
+
+def slopes(s: Stencil, values: Tensor) -> Tensor:
+    n, b, c = values.shape
+    return s.slope(values.reshape(n, b * c)).reshape(3, n, b, c)
+
+
+def _with_one(values: Tensor) -> Tensor:
+    return torch.cat([values, torch.ones_like(values[..., :1])], dim=2)

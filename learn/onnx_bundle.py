@@ -1,0 +1,260 @@
+"""A run as ONNX files, checked against torch.
+
+invariant-gnn: `encoder.onnx`, once an interior: rigid (n, levels) -> code, vectors, clear. `poke.onnx`: code,
+vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
+
+cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It chooses
+neighbours anew in each layer, and its answer jumps where they change: in single precision another runtime's
+rounding is enough for that, somewhere on a grid of a thousand points. In double precision both choose alike,
+so that what is written, and what it is checked against, is the model with its weights in double precision.
+
+`model.json` holds the points, the indenter and the domain of validity: outside it the files answer as
+confidently.
+"""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import json
+import logging
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from learn.data import MemoryDataset, Store, split_of
+from learn.errors import InputError
+from learn.models import Cegnn, InvariantGnn, Pokes, Scene, pokes_of, scene_of
+from learn.models._encoder import Encoded, Stencil, gathered
+from learn.training import Run
+from learn.validity import Domain
+
+TOLERANCE = 1e-5  # of the largest displacement of a poke, and of its force
+_CHECKED = 8  # pokes
+INPUTS = ["profile", "start", "direction", "depth"]  # of cegnn
+
+
+class PokePart(nn.Module):
+    """`InvariantGnn.decode` of one poke with plain tensors in and out, for a fixed cloud."""
+
+    def __init__(self, model: InvariantGnn, scene: Scene, stencils: tuple[Stencil, ...]) -> None:
+        super().__init__()
+        self.model, self.scene, self.stencils = model, scene, stencils
+
+    def forward(
+        self, code: Tensor, vectors: Tensor, clear: Tensor, start: Tensor, direction: Tensor, depth: Tensor,
+        modulus: Tensor,
+    ) -> tuple[Tensor, Tensor]:  # fmt: skip
+        scene = replace(self.scene, rigid_index=torch.zeros(1, dtype=torch.int64))
+        encoded = Encoded(scene, self.stencils, code, vectors, clear)
+        pokes = Pokes(
+            geometry=torch.zeros(1, dtype=torch.int64),
+            start=start[None],
+            direction=direction[None],
+            depth=depth[None],
+            modulus=modulus[None],
+        )
+        found = self.model.decode(encoded, pokes)
+        return found.displacement[0], found.force[0]
+
+
+class EncoderPart(nn.Module):
+    """`InvariantGnn.encode` of one interior with plain tensors in and out."""
+
+    def __init__(self, model: InvariantGnn, scene: Scene, stencils: tuple[Stencil, ...]) -> None:
+        super().__init__()
+        self.model, self.scene, self.stencils = model, scene, stencils
+
+    def forward(self, rigid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        encoded = self.model.encode(replace(self.scene, rigid=rigid[None]), self.stencils)
+        return encoded.code, encoded.vectors, encoded.clear
+
+
+def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
+    """Write poke.onnx, and encoder.onnx for invariant-gnn, for a scene's cloud.
+
+    InputError where a package is missing, or the model has no export.
+    """
+    for name in ("onnx", "onnxscript", "onnxruntime"):
+        _package(name)
+    if not isinstance(run.model, Cegnn | InvariantGnn):
+        raise InputError(f"{run.folder}: model {run.recipe.model} has no ONNX export")
+    if run.model.takes_clock:
+        raise InputError(f"{run.folder}: the model was trained with time, which has no ONNX export")
+    folder.mkdir(parents=True, exist_ok=True)
+    if isinstance(run.model, Cegnn):
+        files = {"poke": folder / "poke.onnx"}
+        part = CegnnPart(_in_double(run.model), scene)
+        _write(part, _example(scene), files["poke"], INPUTS, ["displacement", "force"])
+        return files
+    sparse = run.model.prepare(scene)
+    stencils = tuple(gathered(s) for s in sparse)
+    one = replace(scene, rigid=scene.rigid[:1], rigid_index=torch.zeros(1, dtype=torch.int64))
+    with torch.no_grad():
+        encoded = run.model.encode(one, stencils)
+    files = {"encoder": folder / "encoder.onnx", "poke": folder / "poke.onnx"}
+    _write(
+        EncoderPart(run.model, one, stencils), (one.rigid[0],), files["encoder"],
+        ["rigid"], ["code", "vectors", "clear"],
+    )  # fmt: skip
+    vector = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
+    scalar = torch.tensor(5e-3, dtype=torch.float64)
+    start = scene.points.mean(dim=0)
+    _write(
+        PokePart(run.model, one, stencils),
+        (encoded.code, encoded.vectors, encoded.clear, start, vector, scalar, scalar * 2e6),
+        files["poke"],
+        ["code", "vectors", "clear", "start", "direction", "depth", "modulus"],
+        ["displacement", "force"],
+    )
+    return files
+
+
+def _write(part: nn.Module, inputs: tuple[Tensor, ...], path: Path, names: list[str], out: list[str]) -> None:
+    logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it names packages that nothing here needs
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the exporter warns of its own future
+        torch.onnx.export(
+            part.eval(), inputs, str(path), input_names=names, output_names=out, dynamo=True,
+            external_data=False, verbose=False,
+        )  # fmt: skip
+
+
+def _package(name: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise InputError(
+            f"learn.export needs the package {name}, which is not installed: pip install 'tisim[export]'"
+        ) from None
+
+
+def _session(path: Path, *, threads: int = 1) -> Any:
+    runtime = _package("onnxruntime")
+    options = runtime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+
+
+class OnnxBundle:
+    """The exported files, run by onnxruntime."""
+
+    def __init__(self, folder: Path, *, threads: int = 1) -> None:
+        self._encoder, self._poke = (
+            _session(folder / name, threads=threads) for name in ("encoder.onnx", "poke.onnx")
+        )
+
+    def encode(self, rigid: Tensor) -> dict[str, Any]:
+        """Once an interior; rigid (n, levels)."""
+        code, vectors, clear = self._encoder.run(None, {"rigid": rigid.numpy()})
+        return {"code": code, "vectors": vectors, "clear": clear}
+
+    def poke(self, encoded: dict[str, Any], pokes: Pokes, k: int) -> tuple[Any, Any]:
+        """Displacement (n, 3) [m] and force [N] of the k-th poke."""
+        rod = {name: getattr(pokes, name)[k].numpy() for name in ("start", "direction", "depth", "modulus")}
+        displacement, force = self._poke.run(None, {**encoded, **rod})
+        return displacement, force
+
+
+def largest_difference(folder: Path, run: Run, scene: Scene, pokes: Pokes) -> float:
+    """Largest difference from torch, relative to each poke's largest displacement, and to its force."""
+    if isinstance(run.model, Cegnn):
+        return _cegnn_difference(_session(folder / "poke.onnx"), run.model, scene, pokes)
+    onnx = OnnxBundle(folder)
+    with torch.no_grad():
+        found = run.model(scene, pokes)
+    worst = 0.0
+    for k in range(len(pokes.depth)):
+        rigid = scene.rigid[scene.rigid_index[pokes.geometry[k]]]
+        u, force = onnx.poke(onnx.encode(rigid), pokes, k)
+        truth = found.displacement[k].numpy()
+        worst = max(worst, float(np.abs(u - truth).max() / np.linalg.norm(truth, axis=1).max()))
+        worst = max(worst, abs(float(force) / float(found.force[k]) - 1))
+    return worst
+
+
+def write_bundle(
+    run: Run, store: Store, folder: Path, domain: Domain | None
+) -> tuple[list[Path], float, int]:
+    """Write a run for the dataset's grid, check it on test pokes, and write model.json.
+
+    Returns
+    -------
+    The files, the largest relative difference from torch, and the number of pokes it was found over.
+    InputError where that is above `TOLERANCE`; the files are removed then.
+    """
+    scene = scene_of(store)
+    test = MemoryDataset(store, split_of(store, run.recipe).test)
+    files = export(run, scene, folder)
+    some = np.linspace(0, len(test) - 1, min(_CHECKED, len(test))).astype(int)
+    wrong = largest_difference(folder, run, scene, pokes_of(test.__getitems__(some)))
+    if not wrong <= TOLERANCE:
+        for path in files.values():
+            path.unlink()
+        raise InputError(f"{folder}: ONNX is {wrong:.1e} off torch, more than {TOLERANCE:g}; files removed")
+    about = {
+        "uuid": run.uuid,
+        "law": run.law,
+        "model": run.recipe.model,
+        "rod_radius_m": scene.rod_radius,
+        "rod_edge_m": scene.rod_edge,
+        "difference_from_torch": wrong,
+        "domain": None if domain is None else domain.model_dump(mode="json"),
+        "points_m": scene.points.tolist(),
+    }
+    (folder / "model.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
+    return list(files.values()), wrong, len(some)
+
+
+class CegnnPart(nn.Module):
+    """`Cegnn` of one poke with plain tensors in and out, for a fixed cloud; profile (n, levels)."""
+
+    def __init__(self, model: Cegnn, scene: Scene) -> None:
+        super().__init__()
+        self.model, self.scene = model, scene
+
+    def forward(
+        self, profile: Tensor, start: Tensor, direction: Tensor, depth: Tensor
+    ) -> tuple[Tensor, Tensor]:
+        scene = replace(self.scene, profile=profile[None])
+        pokes = Pokes(
+            geometry=torch.zeros(1, dtype=torch.int64),
+            start=start[None],
+            direction=direction[None],
+            depth=depth[None],
+            modulus=torch.ones(1, dtype=torch.float64),  # the profile's codes hold the softness
+        )
+        found = self.model.decode(self.model.encode(scene), pokes)
+        return found.displacement[0], found.force[0]
+
+
+def _in_double(model: Cegnn) -> Cegnn:
+    """The model with its weights in double precision."""
+    return copy.deepcopy(model).double().eval()
+
+
+def _example(scene: Scene) -> tuple[Tensor, ...]:
+    """Inputs of one poke."""
+    down = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
+    return scene.profile[0], scene.points.mean(dim=0), down, torch.tensor(5e-3, dtype=torch.float64)
+
+
+def _cegnn_difference(session: Any, model: Cegnn, scene: Scene, pokes: Pokes) -> float:
+    """The same for cegnn, against torch in double precision."""
+    with torch.no_grad():
+        found = _in_double(model)(scene, pokes)
+    worst = 0.0
+    for k in range(len(pokes.depth)):
+        rod = {name: getattr(pokes, name)[k].numpy() for name in INPUTS[1:]}
+        u, force = session.run(None, {"profile": scene.profile[pokes.geometry[k]].numpy(), **rod})
+        truth = found.displacement[k].numpy()
+        worst = max(worst, float(np.abs(u - truth).max() / np.linalg.norm(truth, axis=1).max()))
+        worst = max(worst, abs(float(force) / float(found.force[k]) - 1))
+    return worst

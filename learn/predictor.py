@@ -1,0 +1,338 @@
+"""Predicting pokes with a trained run, from Python.
+
+>>> import learn
+>>> predictor = learn.load("runs/quick")
+>>> answer = predictor.predict({"site_mm": [5, -10], "depth_mm": 8, "shape": "cube-18", "softness": "S0.5"})
+>>> answer.force, answer.displacement.shape, answer.inside
+>>> answer.save("prediction")
+
+Both objects print as tables in a notebook, the answer with its picture.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from learn.data import Store, open_store, split_of
+from learn.errors import InputError, OutsideDomainError
+from learn.evaluation import join_runs, load_intervals
+from learn.evaluation.pictures import draw_prediction, encoded
+from learn.metrics import Predictions
+from learn.models import Pokes, Response, Scene
+from learn.scene_file import PokeScene, kind_of, load_poke, scene_and_poke
+from learn.training import Run, load_run
+from learn.validity import Check, Domain, domain_of, poke_values, unknown_checks
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PokePrediction:
+    """The prediction of one poke. SI units.
+
+    Attributes
+    ----------
+    poke : what was asked for.
+    points : rest positions of the surface's points [m], shape (n, 3).
+    displacement : of these points [m], shape (n, 3).
+    force : magnitude of the force on the indenter [N].
+    radius : radius of the 90 % interval at each point [m], shape (n,); None without intervals.
+    force_interval : 90 % interval of the force [N]; None without intervals.
+    checks : one for each quantity: whether it is inside what the model was trained on.
+    scene, pokes : the model's own input.
+    """
+
+    poke: PokeScene
+    points: Floats
+    displacement: NDArray[np.float32]
+    force: float
+    radius: Floats | None
+    force_interval: tuple[float, float] | None
+    checks: list[Check]
+    scene: Scene
+    pokes: Pokes
+
+    @property
+    def inside(self) -> bool | None:
+        """Whether the poke is inside what the model was trained on; None where that is not known."""
+        if any(check.inside is False for check in self.checks):
+            return False
+        return None if all(check.inside is None for check in self.checks) else True
+
+    @property
+    def outside(self) -> list[Check]:
+        """The quantities outside what was trained."""
+        return [check for check in self.checks if check.inside is False]
+
+    @property
+    def verdict(self) -> str:
+        """One sentence on the domain of validity."""
+        if self.inside is None:
+            return "It is not known what the model was trained on: the prediction may be wrong."
+        if self.inside:
+            return "Inside what the model was trained on."
+        names = ", ".join(
+            f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
+        )
+        return (
+            f"Outside what the model was trained on: {names}. The force may be wrong by a factor, and "
+            "no interval holds."
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """The numbers of prediction.json."""
+        size = np.linalg.norm(self.displacement, axis=1)
+        answer: dict[str, Any] = {
+            "force_N": self.force,
+            "largest_displacement_mm": float(size.max() * 1e3),
+        }
+        if self.radius is not None and self.force_interval is not None:
+            low, high = self.force_interval
+            answer |= {"force_low_N": low, "force_high_N": high}
+            answer |= {"radius_mean_mm": float(self.radius.mean() * 1e3)}
+            answer |= {"radius_max_mm": float(self.radius.max() * 1e3)}
+        answer["inside_training"] = self.inside
+        answer["domain"] = {
+            check.key: {"value": check.value, "trained": check.trained, "inside": check.inside}
+            for check in self.checks
+        }
+        return answer
+
+    def save(self, folder: Path | str) -> Path:
+        """Write FOLDER/displacement.csv, prediction.json and prediction.png."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        columns = [self.points * 1e3, self.displacement * 1e3]
+        heads = "x_mm,y_mm,z_mm,ux_mm,uy_mm,uz_mm"
+        if self.radius is not None:
+            columns, heads = [*columns, self.radius[:, None] * 1e3], f"{heads},radius_mm"
+        table = np.concatenate(columns, axis=1)
+        np.savetxt(folder / "displacement.csv", table, delimiter=",", header=heads, comments="", fmt="%.6g")
+        text = json.dumps(self.as_dict(), indent=1) + "\n"
+        (folder / "prediction.json").write_text(text, encoding="utf-8")
+        self.picture().savefig(folder / "prediction.png", dpi=110)
+        return folder
+
+    def picture(self) -> Any:
+        """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
+        title = f"force {self._force_text}, {'inside' if self.inside else 'NOT inside'} what was trained"
+        return draw_prediction(self.scene, self.pokes, self.displacement, radius=self.radius, title=title)
+
+    @property
+    def _force_text(self) -> str:
+        if self.force_interval is None:
+            return f"{self.force:.3g} N"
+        low, high = self.force_interval
+        return f"{self.force:.3g} N (90 %: {low:.3g} to {high:.3g})"
+
+    def __repr__(self) -> str:
+        largest = float(np.linalg.norm(self.displacement, axis=1).max() * 1e3)
+        return (
+            f"PokePrediction(force {self._force_text}, largest displacement {largest:.3g} mm; {self.verdict})"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [("force", self._force_text), ("", self.verdict), *((c.name, _value(c)) for c in self.checks)]
+        return f'{_html_table(rows)}<img src="data:image/png;base64,{encoded(self.picture())}">'
+
+
+def _value(check: Check) -> str:
+    return check.text.removeprefix(f"{check.name} ").partition(":")[0]
+
+
+def _html_table(rows: Sequence[tuple[str, str]]) -> str:
+    cells = "".join(f"<tr><th>{escape(key)}</th><td>{escape(value)}</td></tr>" for key, value in rows)
+    return f"<table>{cells}</table>"
+
+
+class Predictor:
+    """A trained run, or several as an ensemble, ready to predict pokes on the dataset's block.
+
+    Attributes
+    ----------
+    run : the trained model with its recipe.
+    store : the dataset that it was trained on.
+    domain : domain of validity; recorded with the checkpoint, or derived from the dataset.
+    """
+
+    def __init__(self, run: Run, store: Store) -> None:
+        if run.uuid != store.uuid:
+            raise InputError(
+                f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
+            )
+        self.run, self.store = run, store
+        self.domain = known_domain(run, store)
+
+    def predict(
+        self, scene: Path | str | Mapping[str, Any] | PokeScene, *, strict: bool = False
+    ) -> PokePrediction:
+        """Displacement and force of one poke, and whether it is inside what was trained.
+
+        Parameters
+        ----------
+        scene : keys and values as in `learn.scene_file.PokeScene`, or the path of a YAML file of them.
+        strict : refuse pokes that are not inside what the model was trained on.
+
+        Raises
+        ------
+        InputError
+            A key is wrong, or the poke does not fit the dataset's block.
+        OutsideDomainError
+            The poke is outside what was trained, or that is not known, and `strict` is set.
+        """
+        poke = load_poke(scene)
+        where = str(scene) if isinstance(scene, str | Path) else "scene"
+        if poke.free and not self.run.model.free_interior:
+            raise InputError(
+                f"{where}: model {self.run.recipe.model} knows the dataset's shapes and softness levels alone"
+            )
+        if self.run.model.takes_clock != (poke.clock is not None):
+            wanted = "expected keys time_s, rod_speed_mm_per_s and approach_speed_mm_per_s, since"
+            if not self.run.model.takes_clock:
+                wanted = "expected no key time_s, since"
+            timed = "with" if self.run.model.takes_clock else "without"
+            raise InputError(f"{where}: {wanted} the model was trained {timed} time")
+        inputs, pokes = scene_and_poke(poke, self.store, where)
+        checks = self._checks(poke, inputs, pokes)
+        with torch.no_grad():
+            response = self.run.model(inputs, pokes)
+        answer = self._answer(poke, inputs, pokes, response, checks)
+        if not (np.isfinite(answer.displacement).all() and np.isfinite(answer.force)):
+            raise InputError(f"{where}: the model's answer is not finite")
+        if strict and answer.inside is not True:
+            raise OutsideDomainError(f"{where}: --strict: {_first_lower(answer.verdict)}")
+        return answer
+
+    def _checks(self, poke: PokeScene, scene: Scene, pokes: Pokes) -> list[Check]:
+        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
+        values = poke_values(
+            self.store,
+            profile,
+            start=pokes.start[0].numpy(),
+            direction=pokes.direction[0].numpy(),
+            depth=float(pokes.depth[0]),
+            modulus=float(pokes.modulus[0]),
+            clock=pokes.clock[0].numpy(),
+        )
+        kind = kind_of(poke, self.store)
+        return self.domain.check(values, kind) if self.domain else unknown_checks(values, kind)
+
+    def _answer(
+        self, poke: PokeScene, scene: Scene, pokes: Pokes, response: Response, checks: list[Check]
+    ) -> PokePrediction:
+        u, force = response.displacement.numpy(), float(response.force[0])
+        radius, factor = self._interval(response, pokes)
+        return PokePrediction(
+            poke=poke,
+            points=self.store.points,
+            displacement=u[0],
+            force=force,
+            radius=radius,
+            force_interval=None if factor is None else (force / factor, force * factor),
+            checks=checks,
+            scene=scene,
+            pokes=pokes,
+        )
+
+    def _interval(self, response: Response, pokes: Pokes) -> tuple[Floats | None, float | None]:
+        """Radius at each point [m] and factor around the force; None without intervals."""
+        if self._intervals is None:
+            return None, None
+        u, force = response.displacement.numpy(), response.force.double().numpy()
+        none = np.zeros(0)
+        predictions = Predictions(
+            truth=u,
+            predicted=u,
+            force=force,
+            force_predicted=force,
+            away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1)[None],
+            depth=pokes.depth.numpy(),
+            poke=np.zeros(1, dtype=np.int64),
+            softness=np.array([""]),
+            spread=none if response.spread is None else response.spread.double().numpy(),
+            force_spread=none if response.force_spread is None else response.force_spread.double().numpy(),
+        )
+        factor = float(np.exp(self._intervals.force_log(predictions)[0]))
+        return self._intervals.radius_mm(predictions)[0] * 1e-3, factor
+
+    @cached_property
+    def _intervals(self) -> Any:
+        return load_intervals(self.run)
+
+    @property
+    def has_intervals(self) -> bool:
+        """Whether the run has intervals (made by `learn.evaluate`)."""
+        return self._intervals is not None
+
+    def _rows(self) -> list[tuple[str, str]]:
+        run, store = self.run, self.store
+        rows = [
+            ("run", ", ".join(str(folder) for folder in run.members) or str(run.folder)),
+            ("model", f"{run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}"),
+            ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes"),
+            ("trained on", f"{run.statistics.frames} frames"),
+            ("shapes", ", ".join(store.shapes)),
+            ("softness levels", ", ".join(store.softness_names)),
+            ("intervals", "yes" if self.has_intervals else "none"),
+        ]
+        if self.domain is None:
+            return [*rows, ("domain of validity", "not known")]
+        return [*rows, *self.domain.rows()]
+
+    def __repr__(self) -> str:
+        return "Predictor(\n" + "".join(f"  {key}: {value}\n" for key, value in self._rows()) + ")"
+
+    def _repr_html_(self) -> str:
+        return _html_table(self._rows())
+
+
+def _first_lower(text: str) -> str:
+    return text[:1].lower() + text[1:].rstrip(".")
+
+
+def known_domain(run: Run, store: Store) -> Domain | None:
+    """The domain recorded with a run, or derived from its dataset; None where neither is at hand."""
+    if run.domain is not None:
+        return run.domain
+    return domain_of(store, split_of(store, run.recipe).train) if run.uuid == store.uuid else None
+
+
+def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:
+    """A trained run, ready to predict.
+
+    Parameters
+    ----------
+    run : folder of a run, or several that differ in seed, to be joined as an ensemble.
+    dataset : the dataset, if it moved since the training.
+
+    Raises
+    ------
+    InputError
+        A run or the dataset is missing or damaged, or they do not belong together.
+    """
+    folders = [run] if isinstance(run, str | Path) else list(run)
+    if not folders:
+        raise InputError("expected the folder of a run, got none")
+    runs = [load_run(folder) for folder in folders]
+    for other in runs[1:]:
+        if other.uuid != runs[0].uuid:
+            raise InputError(
+                f"{other.folder}: trained on dataset {other.uuid}, {runs[0].folder} on {runs[0].uuid}"
+            )
+    store = open_store(dataset or runs[0].location, verify=False)
+    if len(runs) == 1:
+        return Predictor(runs[0], store)
+    domains = [known_domain(one, store) for one in runs]
+    known = [domain for domain in domains if domain is not None]
+    joined = replace(join_runs(runs), domain=Domain.common(known) if len(known) == len(runs) else None)
+    return Predictor(joined, store)

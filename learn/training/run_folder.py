@@ -1,0 +1,251 @@
+"""A run's folder: checkpoints, written whole or not at all, and the log.
+
+`last.pt` holds everything that training needs to resume; `best.pt` the weights of the best epoch on the
+validation part. Both carry the dataset's uuid, the recipe, the statistics and the domain of validity.
+`log.jsonl` has a line of JSON an epoch; TensorBoard events stand beside it where tensorboardX is installed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import torch
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from learn._yaml import first_fault
+from learn.data.statistics import Statistics
+from learn.data.store import Store
+from learn.errors import InputError
+from learn.models import MODELS, Model, make_model
+from learn.training.recipe import Recipe, check_recipe
+from learn.validity import Domain
+
+FORMAT = 1
+LAST, BEST, LOG = "last.pt", "best.pt", "log.jsonl"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Run:
+    """A trained model ready to use.
+
+    Attributes
+    ----------
+    folder : of the run.
+    recipe, statistics : that it was trained with.
+    uuid, law, location : of the dataset that it was trained on.
+    groups : shapes or sites of the parts "train", "validation" and "test".
+    epoch : that was kept, counted from 1.
+    model : in evaluation mode, on the CPU.
+    domain : domain of validity; None for runs trained before it was recorded (see
+    `learn.validity.domain_of`).
+    members : folders of the runs that were joined to this one as an ensemble; empty for one run.
+    """
+
+    folder: Path
+    recipe: Recipe
+    statistics: Statistics
+    uuid: str
+    law: str
+    location: str
+    groups: dict[str, list[str]]
+    epoch: int
+    model: Model
+    domain: Domain | None = None
+    members: tuple[Path, ...] = ()
+
+
+_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+
+
+class _Statistics(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+    frames: Annotated[int, Field(ge=1)]
+    displacement: _Number
+    depth_mean: _Number
+    depth_max: _Number
+    log_force_mean: _Number
+    log_force_sd: _Number
+    force_rms: _Number
+    log_modulus_mean: _Number
+    log_time_mean: _Number | None = None
+    log_speed_mean: _Number | None = None
+
+
+class _Content(BaseModel):
+    """What every checkpoint holds; `last.pt` holds more (`_Resumable`)."""
+
+    model_config = ConfigDict(arbitrary_types_allowed=True)
+    version: Annotated[int, Field(strict=True)] = 1
+    uuid: str
+    law: str
+    location: str
+    recipe: dict[str, Any]
+    statistics: _Statistics
+    groups: dict[str, list[str]]
+    epoch: Annotated[int, Field(strict=True, ge=0)]
+    model: dict[str, torch.Tensor]
+    domain: dict[str, Any] | None = None
+
+
+class _Resumable(_Content):
+    averaged: dict[str, torch.Tensor]
+    optimiser: dict[str, Any]
+    random: torch.Tensor
+    step: Annotated[int, Field(strict=True, ge=0)]
+    best: Annotated[float, Field(strict=True)]
+    first: Annotated[float, Field(strict=True)]
+
+
+def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
+    """Write beside, then put in place: a kill or a full disk leaves the old file or the new one.
+
+    Raises
+    ------
+    OSError
+        Nothing could be written; the file that was there stands.
+    """
+    buffer = io.BytesIO()
+    torch.save({"format": FORMAT, **content}, buffer)
+    write_whole(path, buffer.getvalue())
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """The file holds these bytes, or what it held before."""
+    beside = path.with_suffix(".part")
+    try:
+        with beside.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise OSError(error.errno, error.strerror, str(path)) from None
+
+
+def load_checkpoint(path: Path) -> dict[str, Any]:
+    """A checkpoint's content; InputError where it is missing, damaged or of another format."""
+    if not path.is_file():
+        raise InputError(f"{path}: no such checkpoint")
+    try:
+        content: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+    except Exception as error:  # unpickling breaks in many ways
+        text = " ".join(str(error).split())[:120]
+        raise InputError(f"{path}: not a readable checkpoint ({text})") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(f"{path}: expected a checkpoint of format {FORMAT}")
+    kind = _Resumable if path.name == LAST else _Content
+    try:
+        kind.model_validate(content)
+    except ValidationError as error:
+        raise InputError(f"{path}: not a readable checkpoint ({first_fault(error)})") from None
+    return content
+
+
+def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
+    """InputError where a checkpoint was trained on another dataset."""
+    if content["uuid"] != store.uuid:
+        raise InputError(
+            f"{path}: trained on dataset {content['uuid']}, but {store.location} is {store.uuid}"
+        )
+
+
+def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
+    """A checkpoint's recipe; InputError where it is damaged, or its model is of another version."""
+    recipe = check_recipe(content["recipe"], str(path))
+    found, now = content.get("version", 1), MODELS[recipe.model].version
+    if found != now:
+        raise InputError(
+            f"{path}: weights of version {found} of model {recipe.model}, this is version {now}: train again"
+        )
+    return recipe
+
+
+def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, name: str) -> None:
+    """Into the model; InputError where they do not fit it or are not finite."""
+    try:
+        model.load_state_dict(weights)
+    except RuntimeError as error:
+        raise InputError(f"{path}: does not fit model {name} ({str(error).splitlines()[0]})") from None
+    for key, value in weights.items():
+        if not bool(torch.isfinite(value).all()):
+            raise InputError(f"{path}: weight {key} has a value that is not finite")
+
+
+def load_run(folder: Path | str) -> Run:
+    """The best model of a run's folder. InputError where there is none, or it is damaged."""
+    path = Path(folder) / BEST
+    content = load_checkpoint(path)
+    recipe = recipe_of(content, path)
+    statistics = Statistics(**content["statistics"])
+    model = make_model(recipe.model, statistics)
+    load_weights(model, content["model"], path, recipe.model)
+    model.eval().requires_grad_(False)
+    domain = content.get("domain")
+    return Run(
+        folder=Path(folder),
+        recipe=recipe,
+        statistics=statistics,
+        uuid=content["uuid"],
+        law=content["law"],
+        location=content["location"],
+        groups=content["groups"],
+        epoch=content["epoch"],
+        model=model,
+        domain=None if domain is None else Domain.from_dict(domain, str(path)),
+    )
+
+
+class Log:
+    """Appends to RUN/log.jsonl. In a resumed run, lines of epochs that will be trained again are dropped."""
+
+    def __init__(self, folder: Path, *, epochs_done: int) -> None:
+        self._path = folder / LOG
+        kept = [line for line in read_log(folder) if line["epoch"] < epochs_done]
+        write_whole(self._path, "".join(json.dumps(line) + "\n" for line in kept).encode())
+        try:
+            module = importlib.import_module("tensorboardX")
+        except ImportError:
+            self._board: Any = None
+        else:
+            self._board = module.SummaryWriter(str(folder / "tensorboard"), purge_step=epochs_done)
+
+    def add(self, line: dict[str, Any]) -> None:
+        """One epoch's line."""
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line) + "\n")
+        if self._board is not None:
+            for key, value in line.items():
+                if key != "epoch":
+                    self._board.add_scalar(key, value, line["epoch"])
+
+    def close(self) -> None:
+        """Write what TensorBoard still holds."""
+        if self._board is not None:
+            with contextlib.suppress(OSError):  # a full disk was said already
+                self._board.close()
+
+
+def read_log(folder: Path) -> list[dict[str, Any]]:
+    """The log's whole lines, up to the first that is damaged: a kill can cut the last one."""
+    path = folder / LOG
+    if not path.is_file():
+        return []
+    lines = []
+    for text in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        try:
+            line = json.loads(text)
+        except ValueError:
+            break
+        if not isinstance(line, dict) or not isinstance(line.get("epoch"), int):
+            break
+        lines.append(line)
+    return lines

@@ -1,0 +1,278 @@
+"""Domain of validity: which pokes a model was trained on, and whether a poke to predict is one of them.
+
+A surrogate answers any poke with the same confidence; beyond its training the answer may be wrong by a
+factor. So the range of every quantity over the training part is recorded with the checkpoint (`domain_of`),
+and each prediction is compared with it (`Domain.check`). The ranges are those of the pokes themselves, not of
+the recipe that drew them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from learn._yaml import first_fault
+from learn.data.store import RIGID, Store
+from learn.errors import InputError
+
+Floats = NDArray[np.float64]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class Quantity(NamedTuple):
+    """One quantity of a poke. sides: which end of the trained range matters; slack: absolute tolerance."""
+
+    name: str
+    units: str
+    sides: Literal["both", "low", "high"]
+    slack: float
+
+
+# The slack of cover and inclusion is the profile's resolution: a level is 0.25 mm high, a column 3.1 mm wide.
+QUANTITIES: dict[str, Quantity] = {
+    "depth_mm": Quantity("depth", "mm", "both", 0.01),
+    "angle_deg": Quantity("angle", "degrees", "both", 0.1),
+    "cover_mm": Quantity("cover over the inclusion", "mm", "both", 0.3),
+    "depth_over_cover": Quantity("depth over cover", "", "high", 0.01),
+    "shear_modulus_kPa": Quantity("shear modulus", "kPa", "both", 0.01),
+    "rod_radius_mm": Quantity("rod radius", "mm", "both", 1e-3),
+    "rod_edge_mm": Quantity("radius of the rod's edge", "mm", "both", 1e-3),
+    "block_x_mm": Quantity("block's length in x", "mm", "both", 0.1),
+    "block_y_mm": Quantity("block's length in y", "mm", "both", 0.1),
+    "block_z_mm": Quantity("block's height", "mm", "both", 0.1),
+    "site_to_side_mm": Quantity("distance of the site from the block's sides", "mm", "low", 0.1),
+    "inclusion_width_mm": Quantity("inclusion's width", "mm", "both", 1.6),
+    "inclusion_height_mm": Quantity("inclusion's height", "mm", "both", 0.3),
+}
+# of pokes of datasets with time, in the order of `Pokes.clock`
+CLOCK_QUANTITIES: dict[str, Quantity] = {
+    "time_s": Quantity("time since contact", "s", "both", 1e-3),
+    "rod_speed_mm_per_s": Quantity("rod's speed", "mm/s", "both", 1e-2),
+    "approach_speed_mm_per_s": Quantity("speed of approach", "mm/s", "both", 1e-2),
+}
+_ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
+_RELATIVE = 1e-3  # tolerance besides the slack
+KINDS = ("cube", "cylinder", "sphere", "none")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """One quantity of a poke against its trained range.
+
+    Attributes
+    ----------
+    key, name : of the quantity.
+    value : of the poke; a number, or a name for the kind of inclusion.
+    trained : the trained range or names, as text.
+    inside : None where it is not known what was trained.
+    """
+
+    key: str
+    name: str
+    value: float | str
+    trained: str
+    inside: bool | None
+
+    @property
+    def text(self) -> str:
+        """One line: "cover over the inclusion 3 mm: outside what was trained (9.8 to 24.3 mm)"."""
+        value = self.value if isinstance(self.value, str) else f"{self.value:.4g}"
+        units = _ALL[self.key].units if self.key in _ALL else ""
+        word = {True: "inside", False: "outside", None: "not known whether inside"}[self.inside]
+        trained = f" ({self.trained})" if self.trained else ""
+        return f"{self.name} {value}{f' {units}' if units else ''}: {word} what was trained{trained}"
+
+
+class Domain(BaseModel):
+    """Ranges of the training part. Lengths in mm, angles in degrees, moduli in kPa.
+
+    Attributes
+    ----------
+    ranges : least and largest value by key of `QUANTITIES`.
+    kinds : kinds of inclusion ("cube", "cylinder", "sphere", "none"); None where the dataset does not say.
+    law : material law of the dataset.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    ranges: dict[str, tuple[Finite, Finite]]
+    kinds: tuple[str, ...] | None
+    law: str
+
+    def check(self, values: Mapping[str, float], kind: str | None) -> list[Check]:
+        """Every quantity of a poke (`poke_values`) against its range; kind of inclusion: None if unknown."""
+        checks = []
+        for key, value in values.items():
+            quantity = _ALL[key]
+            if key not in self.ranges:
+                checks.append(_unknown(key, value))
+                continue
+            low, high = self.ranges[key]
+            slack = quantity.slack + _RELATIVE * max(abs(low), abs(high))
+            inside = (quantity.sides == "high" or value >= low - slack) and (
+                quantity.sides == "low" or value <= high + slack
+            )
+            text = _range(low, high, quantity)
+            checks.append(Check(key=key, name=quantity.name, value=value, trained=text, inside=inside))
+        if kind is None or self.kinds is None:
+            checks.append(_unknown("inclusion", kind or "unknown"))
+        else:
+            trained = ", ".join(self.kinds)
+            inside = kind in self.kinds
+            checks.append(
+                Check(key="inclusion", name="inclusion", value=kind, trained=trained, inside=inside)
+            )
+        return checks
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The trained ranges as text: name, range."""
+        rows = []
+        for key, (low, high) in self.ranges.items():
+            quantity = _ALL.get(key)
+            if quantity is not None:
+                rows.append((f"trained {quantity.name}", _range(low, high, quantity)))
+        return [*rows, ("trained inclusions", ", ".join(self.kinds or ["not known"]))]
+
+    @classmethod
+    def common(cls, domains: Sequence[Domain]) -> Domain:
+        """The part that all domains share, for an ensemble."""
+        shared = set.intersection(*(set(domain.ranges) for domain in domains))
+        ranges = {
+            key: (max(d.ranges[key][0] for d in domains), min(d.ranges[key][1] for d in domains))
+            for key in domains[0].ranges
+            if key in shared
+        }
+        first = domains[0].kinds
+        kinds = None
+        if first is not None and all(domain.kinds is not None for domain in domains):
+            kinds = tuple(kind for kind in first if all(kind in (d.kinds or ()) for d in domains))
+        return cls(ranges=ranges, kinds=kinds, law=domains[0].law)
+
+    @classmethod
+    def from_dict(cls, values: Any, where: str) -> Domain:
+        """From a checkpoint; InputError where it is damaged."""
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            raise InputError(f"{where}: domain: {first_fault(error)}") from None
+
+
+def _range(low: float, high: float, quantity: Quantity) -> str:
+    units = f" {quantity.units}" if quantity.units else ""
+    if quantity.sides == "low":
+        return f"{low:.4g}{units} or more"
+    if quantity.sides == "high":
+        return f"{high:.4g}{units} or less"
+    alike = math.isclose(low, high, rel_tol=1e-3)
+    return f"{low:.4g}{units}" if alike else f"{low:.4g} to {high:.4g}{units}"
+
+
+def unknown_checks(values: Mapping[str, float], kind: str | None) -> list[Check]:
+    """The checks of a run whose training part is not known."""
+    checks = [_unknown(key, value) for key, value in values.items()]
+    return [*checks, _unknown("inclusion", kind or "unknown")]
+
+
+def _unknown(key: str, value: float | str) -> Check:
+    name = _ALL[key].name if key in _ALL else key
+    return Check(key=key, name=name, value=value, trained="", inside=None)
+
+
+def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
+    """The domain of a training part; rows: its frames."""
+    frames = store.frame_poke[rows]
+    values: dict[str, list[float]] = {}
+    kinds: set[str | None] = set()
+    for poke in np.unique(frames):
+        mine = rows[frames == poke]
+        depths, clocks = store.depth[mine], store.clocks(mine)
+        profile = store.profile[store.geometry[poke]]
+        ends = ((depths.min(), clocks.min(axis=0)), (depths.max(), clocks.max(axis=0)))
+        for depth, clock in ends:
+            found = poke_values(
+                store,
+                profile,
+                start=store.path_start[poke],
+                direction=store.direction[poke],
+                depth=float(depth),
+                modulus=float(store.modulus[poke]),
+                clock=clock,
+            )
+            for key, value in found.items():
+                values.setdefault(key, []).append(value)
+        kinds.add(shape_kind(store, store.shapes[store.shape[poke]]))
+    known = None if None in kinds else tuple(sorted(str(kind) for kind in kinds))
+    ranges = {key: (min(column), max(column)) for key, column in values.items()}
+    return Domain(ranges=ranges, kinds=known, law=store.law)
+
+
+def poke_values(
+    store: Store,
+    profile: NDArray[np.uint8],
+    *,
+    start: Floats,
+    direction: Floats,
+    depth: float,
+    modulus: float,
+    clock: Floats | None = None,
+) -> dict[str, float]:
+    """The quantities of `QUANTITIES` of one poke, in their order; those of time where it has one.
+
+    Parameters
+    ----------
+    profile : stiffness under each point as stored, shape (n, levels).
+    start, direction, depth, modulus, clock : of the poke, SI units, as in `learn.models.Pokes`.
+    """
+    points, rigid = store.points, profile == RIGID
+    length, width, height = store.block_size
+    site = contact_site(store, start, direction)
+    level = height / rigid.shape[1]
+    soft = np.where(rigid.any(axis=1), rigid.argmax(axis=1), rigid.shape[1]) * level
+    away = np.linalg.norm(points[:, :2] - site, axis=1)
+    near = away <= max(store.rod_radius, float(away.min()))
+    cover = float(soft[near].min())
+    cosine = min(1.0, float(-direction[2]))
+    middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
+    to_side = float((np.array([length, width]) / 2 - np.abs(site - middle)).min())
+    columns = rigid.any(axis=1)
+    area = columns.sum() * length * width / len(points)
+    timed = {}
+    if clock is not None and len(clock):
+        timed = dict(zip(CLOCK_QUANTITIES, (clock * np.array([1.0, 1e3, 1e3])).tolist(), strict=True))
+    return {
+        "depth_mm": depth * 1e3,
+        "angle_deg": math.degrees(math.acos(cosine)),
+        "cover_mm": cover * 1e3,
+        "depth_over_cover": depth * cosine / max(cover, level),
+        "shear_modulus_kPa": modulus * 1e-3,
+        "rod_radius_mm": store.rod_radius * 1e3,
+        "rod_edge_mm": store.rod_edge * 1e3,
+        "block_x_mm": length * 1e3,
+        "block_y_mm": width * 1e3,
+        "block_z_mm": height * 1e3,
+        "site_to_side_mm": to_side * 1e3,
+        "inclusion_width_mm": 2e3 * math.sqrt(area / math.pi),
+        "inclusion_height_mm": (height - float(soft.min())) * 1e3 if columns.any() else 0.0,
+        **timed,
+    }
+
+
+def contact_site(store: Store, start: Floats, direction: Floats) -> Floats:
+    """Where the indenter's axis meets the rest surface, (x, y) [m]."""
+    return np.asarray(start[:2] + (store.points[0, 2] - start[2]) / direction[2] * direction[:2])
+
+
+def shape_kind(store: Store, name: str) -> str | None:
+    """Kind of inclusion of a shape of the dataset; None where the dataset does not say."""
+    try:
+        shapes = store.attributes["identity"]["recipe"]["shapes"]
+        return next(str(shape["kind"]) for shape in shapes if shape["id"] == name)
+    except (KeyError, TypeError, StopIteration):
+        kind = name.partition("-")[0]
+        return kind if kind in KINDS else None

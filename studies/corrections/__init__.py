@@ -1,0 +1,1 @@
+"""Modulus errors of simulation shortcuts, each alone: `python -m studies.corrections`."""

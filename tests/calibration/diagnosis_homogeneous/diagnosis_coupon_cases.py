@@ -1,0 +1,76 @@
+"""Coupon experiments for tests of their diagnosis: closed forms that share no code with calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.catalogue import effects_of
+from calibration.experiment import CouponMode, CouponTrial, Experiment, MaterialBelief
+from calibration.measurements.homogeneous.model import HomogeneousModel
+
+Array = NDArray[np.float64]
+G = 5e4
+
+
+def neo_hookean(mode: str, s: Array) -> Array:
+    power = {"uniaxial": -2, "equibiaxial": -5, "planar": -3}
+    return G * ((s - 1.0) if mode == "simple-shear" else s - s ** power[mode])
+
+
+def trial(
+    name: str,
+    mode: CouponMode,
+    stretch: Array,
+    stress: Callable[[str, Array], Array] | Array = neo_hookean,
+    *,
+    sd: float | None = 200.0,
+    rate: float | None = 0.01,
+    material: str = "A",
+    specimen: str | None = None,
+    stretch_sd: float = 0.0,
+    seed: int = 0,
+) -> CouponTrial:
+    """Noise of `sd` [Pa] on the stress; None: none, and none stated."""
+    rng = np.random.default_rng(seed)
+    clean = stress(mode, stretch) if callable(stress) else stress
+    time = None if rate is None else np.cumsum([0.0, *np.abs(np.diff(stretch))]) / rate
+    return CouponTrial(
+        id=name,
+        material=material,
+        mode=mode,
+        specimen=specimen,
+        stretch=stretch + stretch_sd * rng.standard_normal(stretch.size),
+        stress=clean + (sd or 0.0) * rng.standard_normal(stretch.size),
+        stress_sd=sd,
+        stretch_sd=stretch_sd,
+        time=time,
+    )
+
+
+def experiment(*trials: CouponTrial) -> Experiment:
+    return Experiment(
+        name="made",
+        folder=Path("made"),
+        notes="",
+        materials={t.material: MaterialBelief(name=t.material) for t in trials},
+        trials=trials,
+        digest="0" * 64,
+    )
+
+
+def ramps(top: float, count: int, points: int = 40) -> Array:
+    """Out and back `count` times in all."""
+    there = np.linspace(1.0, top, points)
+    return np.concatenate([there if k % 2 == 0 else there[-2::-1] for k in range(count)])
+
+
+def coupon_model(
+    made: Experiment, *, without: Sequence[str] = (), law: str = "neo-hookean"
+) -> HomogeneousModel:
+    """With the catalogue's effects."""
+    effects = {n: e for n, e in effects_of("homogeneous").items() if n not in without}
+    return HomogeneousModel(made, effects=effects, law=law)  # type: ignore[arg-type]

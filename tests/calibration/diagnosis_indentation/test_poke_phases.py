@@ -1,0 +1,59 @@
+"""Strokes and holds of records whose depth is noisy, cut where they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from poke_records import trial
+
+from calibration.measurements.indentation._phases import phases_of
+
+SAMPLES, TOP = 45, 0.4e-3  # of a stroke; of the depth [m]
+NOISE = 2e-5  # a twentieth of the stroke: its ends, and a hold's, are extremes of it
+
+PROTOCOLS = {
+    "up and down": [("loading 1", TOP), ("unloading 1", 0.0)],
+    "held": [("loading 1", TOP), ("hold 1", TOP), ("unloading 1", 0.0)],
+    "held at the end": [("loading 1", TOP), ("hold 1", TOP)],
+    "twice": [("loading 1", TOP), ("unloading 1", 0.0), ("loading 2", TOP), ("unloading 2", 0.0)],
+}
+
+
+def record(protocol: str) -> tuple[np.ndarray, np.ndarray, list[int]]:
+    """Time, depth without noise, and where each part ends; samples of a hold come ever more slowly."""
+    time, depth, ends = [np.zeros(1)], [np.zeros(1)], []
+    for name, to in PROTOCOLS[protocol]:
+        hold = name.startswith("hold")
+        part = np.arange(1, (SAMPLES // 2 if hold else SAMPLES) + 1)
+        part = part / part.size
+        at, now = depth[-1][-1], time[-1][-1]
+        time.append(now + (15.0 * part**2 if hold else part))
+        depth.append(at + (to - at) * part)
+        ends.append(sum(d.size for d in depth))
+    return np.concatenate(time), np.concatenate(depth), ends
+
+
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+def test_a_noisy_shallow_record_is_cut_where_it_is(protocol: str) -> None:
+    """One record in a hundred at most is cut otherwise: no hold is made up where the rod turns at once, none
+    is lost, and what lies in a part is the part's own line to within the noise."""
+    time, depth, ends = record(protocol)
+    wrong = []
+    for seed in range(100):
+        noise = NOISE * np.random.default_rng(seed).standard_normal(depth.size)
+        found = phases_of(trial("p", time, depth + noise, 1e3 * depth, depth_sd=NOISE))
+        assert [p.points.start for p in found[1:]] == [p.points.stop for p in found[:-1]]
+        names = [p.label for p in found]
+        if names != [name for name, _ in PROTOCOLS[protocol]]:
+            wrong.append((seed, names))
+            continue
+        first = 0
+        for p, end in zip(found, ends, strict=True):
+            mine = slice(first, end)
+            line = np.polynomial.Polynomial.fit(time[mine], depth[mine], 1)(time)
+            off = np.abs(line - depth)[p.points].max()
+            if off > 3.5 * NOISE:
+                wrong.append((seed, [f"{p.label} off by {off / NOISE:.1f}"]))
+                break
+            first = end - 1
+    assert len(wrong) <= 1, wrong

@@ -1,0 +1,138 @@
+"""What of a record is compared: all of it, or the first loading, and nothing hidden about the rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import made_pokes as made
+import numpy as np
+import pytest
+
+import tisim
+from calibration.errors import InputError
+from calibration.experiment.model import PokeTrial
+from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
+
+UP = np.linspace(0.0, 3e-3, 61)
+DOWN = UP[-2::-1]
+
+
+def force(depth: np.ndarray) -> np.ndarray:
+    return 500.0 * np.maximum(depth, 0.0)
+
+
+def first_loading(trial: PokeTrial, **options: Any) -> tuple[Record, str]:
+    """The record up to the end of its first loading, and what is said of the rest."""
+    (record,), said = part_of(records_of([trial]), **{"max_depth": None, "first_loading": True, **options})
+    return record, "; ".join(said)
+
+
+def test_it_ends_at_the_reversal() -> None:
+    depth = np.concatenate([UP, DOWN, UP])
+    trial = made.trial(depth, force(depth))
+    (whole,) = records_of([trial])
+    record, said = first_loading(trial)
+    assert UP[-3] <= record.depth[-1] <= UP[-1]  # the mean of the last two samples or three
+    assert (np.diff(record.depth) > 0).all()
+    left = whole.points - record.points
+    assert said == f"p1: {left} of {whole.points} points are not used: {left} after the first loading"
+    assert part_of([whole], max_depth=None, first_loading=False) == ([whole], ())
+
+
+def test_it_ends_at_a_hold_on_the_way() -> None:
+    """Half way a hold of twice the loading's time, in which the force relaxes."""
+    depth = np.concatenate([UP[:31], np.full(120, UP[30]), UP[31:]])
+    record, said = first_loading(made.trial(depth, force(depth)))
+    assert UP[28] <= record.depth[-1] <= UP[30] * (1 + 1e-9)
+    assert "after the first loading" in said
+
+
+def test_steps_with_holds_end_at_the_first() -> None:
+    """Pushed in 1 mm at a time at 100 samples a second, held 1 s after each."""
+    depth = np.concatenate(
+        [np.r_[np.linspace(k, k + 1, 50, endpoint=False), np.full(100, k + 1.0)] for k in range(4)]
+    )
+    t = made.trial(depth * 1e-3, force(depth * 1e-3), time=0.01 * np.arange(len(depth)))
+    # the means of twelve samples, 0.24 mm apart: none of them of the hold
+    assert 0.76e-3 < first_loading(t)[0].depth[-1] <= 1e-3
+
+
+def test_a_hold_at_the_end_is_left_out() -> None:
+    depth = np.concatenate([UP, np.full(60, UP[-1])])
+    record, said = first_loading(made.trial(depth, force(depth)))
+    assert record.points <= 61
+    assert (record.direction > 0.0).all()
+    assert "after the first loading" in said
+
+
+def test_noise_in_depth_is_no_reversal() -> None:
+    rng = np.random.default_rng(1)
+    depth = np.concatenate([np.linspace(0.0, 3e-3, 601), np.linspace(3e-3, 0.0, 601)])
+    noisy = depth + rng.normal(0.0, 2e-5, depth.shape)
+    record, _ = first_loading(made.trial(noisy, force(depth), time=0.01 * np.arange(1202), depth_sd=2e-5))
+    assert 2.85e-3 < record.depth[-1] < 3.06e-3
+    # 601 samples on the way in, twelve a point; depths are smoothed: their noise is no part of the force's
+    assert record.points == 50
+    assert record.own_sd.mean() == pytest.approx(1e-3 / np.sqrt(12), rel=0.1)
+
+
+def test_a_steady_or_sparse_record_is_whole() -> None:
+    for n in (12, 60, 600):
+        depth = np.linspace(0.0, 3e-3, n)
+        record, said = first_loading(made.trial(depth, force(depth)))
+        assert record.depth[-1] == pytest.approx(3e-3, rel=0.01)
+        assert said == ""
+    assert first_loading(made.trial(UP[::5], force(UP[::5])))[0].points == 13
+
+
+def test_a_start_above_the_block_is_a_way_to_go() -> None:
+    """2 mm above, 30 degrees from the vertical: the first touch is 2 / cos 30 mm on."""
+    way = 2e-3 / np.cos(np.pi / 6)
+    depth = np.linspace(0.0, way + 3e-3, 200)
+    t = made.trial(
+        depth, force(depth - way), start=(0.0, 0.0, 0.032), direction=(0.5, 0.0, -float(np.sqrt(0.75)))
+    )
+    record, _ = first_loading(t)
+    # where neighbours on both sides of first touch are averaged, the force is not that of their mean depth
+    np.testing.assert_allclose(
+        record.force, force(record.depth), atol=500.0 * np.diff(record.depth).max() / 4
+    )
+    assert record.depth[0] == pytest.approx(-way, abs=1e-4)
+    assert (record.force[record.depth < -1e-4] == 0.0).all()
+
+
+def test_max_depth_is_said() -> None:
+    record, said = first_loading(made.trial(UP, force(UP)), max_depth=1e-3)
+    assert record.depth[-1] <= 1e-3
+    assert "deeper than 1 mm" in said
+
+
+def test_without_a_force_sd_the_scatter_speaks() -> None:
+    rng = np.random.default_rng(2)
+    clean = force(UP[1:])
+    noisy = clean * (1.0 + rng.normal(0.0, 0.03, clean.shape))
+    record, _ = first_loading(made.trial(UP[1:], noisy, force_sd=None))
+    assert record.estimated
+    last = record.own_sd[-1] * np.sqrt(record.count[-1]) / force(record.depth[-1:])[0]
+    assert last == pytest.approx(0.03, rel=0.4)
+
+
+def test_records_that_say_nothing_are_refused() -> None:
+    with pytest.raises(InputError, match=r"trial p1: record: expected a depth beyond the first touch"):
+        check_pushed(records_of([made.trial(-UP, force(UP))]))
+    with pytest.raises(InputError, match=r"trial p1: record: expected at least 5 points to compare, got 3"):
+        check_pushed([first_loading(made.trial(UP[:3], force(UP[:3])))[0]])
+    with pytest.raises(InputError, match=r"trial p1: record: expected a force above 0"):
+        check_pushed(records_of([made.trial(UP, -force(UP))]))
+    with pytest.raises(InputError, match=r"trial p1: start_mm: .* 5 mm below"):
+        records_of([made.trial(UP, force(UP), start=(0.0, 0.0, 0.025))])
+
+
+def test_trials_are_left_as_they_are() -> None:
+    t = made.trial(UP, force(UP))
+    before = replace(t, record=replace(t.record, depth=t.record.depth.copy(), force=t.record.force.copy()))
+    first_loading(t)
+    np.testing.assert_array_equal(t.record.depth, before.record.depth)
+    np.testing.assert_array_equal(t.record.force, before.record.force)
+    assert isinstance(t.block, tisim.Block)

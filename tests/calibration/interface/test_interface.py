@@ -1,0 +1,194 @@
+"""`calibration.fit`, `diagnose`, `reconstruct` and `read_experiment` as a notebook uses them."""
+
+from __future__ import annotations
+
+import doctest
+import logging
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _folders import coupon_entry, write_experiment
+
+import calibration
+from calibration.errors import InputError, OptionError
+from calibration.progress import FitProgress, Progress
+from calibration.results import DiagnosisResult, Fits, Reconstruction
+
+
+def strip(folder: Path, *, shear_kPa: float = 30.0) -> Path:
+    """A strip pulled to twice its length, incompressible neo-Hookean."""
+    stretch = np.linspace(1.05, 2.0, 20)
+    stress = shear_kPa * (stretch - stretch**-2)
+    return write_experiment(
+        folder,
+        [coupon_entry("pull", "pull.csv", material="rubber")],
+        tables={"pull.csv": {"stretch": stretch, "nominal_stress_kPa": stress}},
+        name="made strip",
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return strip(tmp_path_factory.mktemp("interface") / "strip")
+
+
+@pytest.fixture(scope="module")
+def fits(folder: Path) -> Fits:
+    return calibration.fit(folder, model="neo-hookean", workers=1, generations=20)
+
+
+def test_the_documented_example(folder: Path) -> None:
+    import calibration.api
+
+    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    finder = doctest.DocTestFinder(recurse=False)
+    (example,) = finder.find(calibration.api, "api", globs={"folder": folder})
+    runner = doctest.DocTestRunner(optionflags=flags)
+    lines: list[str] = []
+    runner.run(example, out=lines.append)
+    assert runner.summarize(verbose=False).failed == 0, "".join(lines)
+    assert runner.tries >= 5
+
+
+@pytest.mark.parametrize(
+    "orders",
+    [
+        "import calibration.fit; import calibration.diagnose; import calibration",
+        "from calibration import fit; import calibration.fit; import calibration.diagnose",
+        "from calibration.fit import app; import calibration; calibration.fit; import calibration.table",
+    ],
+)
+def test_functions_are_not_hidden_by_the_commands_of_their_names(orders: str) -> None:
+    code = orders + (
+        "\nimport calibration, types, importlib"
+        "\nfor name in ('fit', 'diagnose', 'reconstruct'):"
+        "\n    assert isinstance(getattr(calibration, name), types.FunctionType), name"
+        "\n    assert importlib.import_module('calibration.' + name).app is not None"
+        "\nfrom calibration import fit"
+        "\nassert fit is calibration.fit and callable(fit)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_fits_print_themselves(fits: Fits) -> None:
+    text, page = repr(fits), fits._repr_html_()
+    assert "rubber: shear modulus 30.0" in text
+    assert "Calibration(rubber, neo-hookean: converged, G 30" in text
+    assert "<td>neo-hookean</td>" in page
+    assert len(text) < 1000
+    assert "made strip" in repr(fits.experiment)
+    assert "<td>pull</td>" in fits.experiment._repr_html_()
+
+
+def test_fits_are_a_sequence_by_material(fits: Fits) -> None:
+    assert [r.label for r in fits] == ["neo-hookean"]
+    assert fits[0] is fits.best("rubber")
+    assert fits.converged
+    assert fits.folder is None
+    with pytest.raises(InputError, match="material chalk: expected a finished fit"):
+        fits.best("chalk")
+
+
+def test_fits_write_cards_and_a_page(fits: Fits, tmp_path: Path) -> None:
+    (card,) = fits.write_cards(tmp_path / "cards")
+    assert card.name == "rubber.yaml"
+    assert fits.write_report(tmp_path / "page").read_text().count("<h2>rubber</h2>") == 1
+
+
+def test_progress_is_one_callback(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    seen: list[Progress] = []
+    with caplog.at_level(logging.INFO, logger="calibration"):
+        found = calibration.fit(
+            folder, model="neo-hookean", workers=1, generations=3, on_progress=seen.append
+        )
+    assert all(isinstance(p, FitProgress) for p in seen)
+    assert (seen[0].done, seen[-1].done, seen[-1].total) == (0, 1, 1)
+    assert "generation" in str(seen[-2])
+    assert repr(found[0]) in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("wish", "words"),
+    [
+        ({"seed": -1}, "seed -1: expected 0 or more"),
+        ({"seed": 2**33}, "seed 8589934592: expected less than"),
+        ({"workers": 0}, "workers 0: expected 1 or more"),
+        ({"terms": 7}, "terms 7: expected 1 to 3"),
+        ({"generations": 0}, "generations 0: expected 1 or more"),
+        ({"model": "hooke"}, "model hooke: expected all or some of"),
+        ({"model": []}, "model: expected at least one law"),
+        ({"materials": ["chalk"]}, "material chalk: expected some of rubber"),
+        ({"objective": "guess"}, "objective guess: expected likelihood or dice"),
+    ],
+)
+def test_wishes_that_cannot_be_met(folder: Path, tmp_path: Path, wish: dict[str, object], words: str) -> None:
+    out = tmp_path / "out"
+    with pytest.raises(InputError, match=words.replace("(", r"\(")):
+        calibration.fit(folder, out=out, **wish)  # type: ignore[arg-type]
+    assert not out.exists()
+
+
+def test_options_of_a_diagnosis_are_checked(folder: Path) -> None:
+    with pytest.raises(OptionError, match="seed -3"):
+        calibration.diagnose(folder, seed=-3)
+    with pytest.raises(InputError, match="nonsense"):
+        calibration.diagnose(folder, domain="nonsense")
+
+
+def test_a_diagnosis_prints_itself(folder: Path) -> None:
+    class Stub:
+        next_experiment = "pull it <slowly>"
+
+        def sentence(self) -> str:
+            return "Found: the material <creeps> (creep)."
+
+        def causes(self) -> list[dict[str, object]]:
+            return [{"effect": "creep", "scope": "all", "parameters": {"ratio": {"value": 0.25, "sd": 0.01}}}]
+
+    result = DiagnosisResult(Stub(), calibration.read_experiment(folder), None)  # type: ignore[arg-type]
+    assert repr(result).splitlines()[0] == "Found: the material <creeps> (creep)."
+    assert "creep, all, ratio, 0.25 ± 0.01" in repr(result)
+    assert "&lt;creeps&gt;" in result._repr_html_()
+    assert "&lt;slowly&gt;" in result._repr_html_()
+
+
+def test_a_reconstruction_prints_itself(folder: Path, tmp_path: Path) -> None:
+    figure = {
+        "outline_sd_mm": 0.05,
+        "registration_sd": {"shift_mm": 0.1, "roll_deg": 0.1, "scale": 0.001},
+    }
+    found = Reconstruction(
+        tmp_path, calibration.read_experiment(folder), {"hang-1": figure}, {"hang-2": "blurred <edges>"}
+    )
+    assert "hang-1: 0.0500 mm" in repr(found)
+    assert "hang-2: not used: blurred <edges>" in repr(found)
+    assert "blurred &lt;edges&gt;" in found._repr_html_()
+
+
+def test_a_stopped_call_goes_on(folder: Path, tmp_path: Path) -> None:
+    def stop(progress: Progress) -> None:
+        if "generation 2" in str(progress):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        calibration.fit(folder, model="neo-hookean", workers=1, out=tmp_path, on_progress=stop)
+    kept = (tmp_path / "fits" / "rubber-neo-hookean.jsonl").read_text().splitlines()
+    found = calibration.fit(folder, model="neo-hookean", workers=1, out=tmp_path)
+    lines = (tmp_path / "fits" / "rubber-neo-hookean.jsonl").read_text().splitlines()
+    assert lines[: len(kept)] == kept
+    assert found.converged
+
+
+def test_the_headline_leads_to_a_diagnosis(fits: Fits, folder: Path) -> None:
+    lacking = replace(fits[0], nuisances={f"n{i}": 3.0 for i in range(10)}).assessed()
+    found = Fits((lacking,), calibration.read_experiment(folder))
+    (line,) = found.headlines
+    assert line.startswith("rubber: no calibration: the data ask for something that neo-hookean lacks")
+    assert f"python -m calibration.diagnose {folder}" in line
+    assert "kPa by neo-hookean" in line
+    assert not found.converged

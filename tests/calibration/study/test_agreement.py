@@ -1,0 +1,77 @@
+"""A fit and a diagnosis of one bench are of one model: the same modulus, to a tenth of its error bar.
+
+Like is compared with like. The clean bench has one specimen a material: one modulus a specimen, which is
+the diagnosis, is one modulus a material, which is the fit. The diagnosis holds K/G at 300, and the fit has
+a prior about 300: K/G is held in the fit too. The baseline of the diagnosis is the neo-Hookean law of
+isochoric strain (Yeoh's without its further constants), and so is the law that is fitted here. The
+neo-Hookean law of `calibration.fit` differs from it in how it takes volume: by a fifth of the error bar on
+the softest beams.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from calibration.diagnosis.engine.fitting import fit
+from calibration.experiment import read
+from calibration.inference import Problem, identify, polish
+from calibration.measurements._state import State
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.parameters import Parametrisation, parametrisation, two_moduli
+from calibration.study import measurements
+
+CLEAN = Path(__file__).parents[3] / "datasets" / "measured" / "bench" / "clean"
+LAW = two_moduli("yeoh").holding("bulk_ratio")
+NEO = parametrisation("neo-hookean").holding("bulk_ratio")
+
+
+def fitted(material: str, begin: float, law: Parametrisation = LAW) -> tuple[float, float, float]:
+    """Shear modulus [Pa], its standard deviation and chi-square over points of the fit."""
+    data = measurements(read(CLEAN), material, law, workers=1)
+    problem = Problem(parametrisation=law, objectives=data.objectives)
+    end = polish(problem, np.log([begin, 300.0]))
+    assert end.converged
+    known = identify(law, end.u, end.jacobian, reduced_chi2=1.0)
+    prior = problem.prior_residuals(end.u[None])[0]
+    chi2 = (end.cost - prior @ prior) / problem.points
+    return law.moduli(end.u).shear_modulus, known.shear_modulus_sd, chi2
+
+
+def diagnosed(materials: list[str], begin: float) -> tuple[dict[str, float], float]:
+    """Shear moduli [Pa] and chi-square over points of the baseline of a diagnosis."""
+    experiment = read(CLEAN)
+    some = replace(experiment, trials=tuple(t for t in experiment.trials if t.material in materials))
+    model = OutlineModel(some, workers=1)
+    state = State(u=np.full(len(model.names), np.log(begin)))
+    for _ in range(2):
+        model.update_nuisances(state)
+        found = fit(model, state)
+        assert found.converged
+        state = found.state
+    return model.shear_moduli(state.u), found.chi2 / model.points
+
+
+def test_one_material() -> None:
+    material, begin = "S0", 28e3
+    moduli, chi2 = diagnosed([material], begin)
+    own, sd, reduced = fitted(material, begin)
+    assert abs(own - moduli[material]) < 0.1 * sd, (own, moduli, sd)
+    assert reduced == pytest.approx(chi2, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_all_materials_of_the_clean_bench() -> None:
+    """The diagnosis of all of them at once, as the command makes it."""
+    truth = yaml.safe_load((CLEAN / "truth.yaml").read_text(encoding="utf-8"))["shear_modulus_Pa"]
+    moduli, _ = diagnosed([*truth], 12e3)
+    for material, other in moduli.items():
+        own, sd, _ = fitted(material, 1.1 * truth[material])
+        assert abs(own - other) < 0.1 * sd, (material, own, other, sd)
+        assert abs(own - truth[material]) < 2.0 * sd
+        by_neo, _, _ = fitted(material, own, NEO)
+        assert abs(by_neo - other) < 0.25 * sd, (material, by_neo, other, sd)

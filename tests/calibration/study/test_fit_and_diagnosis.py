@@ -1,0 +1,39 @@
+"""A fit and a diagnosis of one experiment: the same records, forward model and noise, so the same modulus."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.diagnosis import model_of
+from calibration.diagnosis.engine.search import fit_baseline
+from calibration.experiment import read
+from calibration.parameters import parametrisation
+from calibration.study import calibrate
+from calibration.study.measurements import measurements
+
+MEASURED = Path(__file__).parents[3] / "datasets" / "measured"
+
+
+@pytest.mark.parametrize(
+    ("folder", "kind", "materials"),
+    [("coupons", "homogeneous", 2), ("compression", "compression", 2), ("indentation", "indentation", 1)],
+)
+def test_they_agree_to_a_tenth_of_a_standard_deviation(folder: str, kind: str, materials: int) -> None:
+    """The neo-Hookean shear modulus of each material: `calibration.fit`'s end (one modulus a material, K/G
+    held by its prior) and the baseline of a diagnosis (one modulus a specimen, their geometric mean), in the
+    standard deviation of the baseline. The hidden cause is in both."""
+    experiment = read(MEASURED / folder)
+    model = model_of(experiment)
+    assert model.kind == kind
+    baseline = fit_baseline(model)
+    covariance = baseline.covariance()
+    moduli = model.shear_moduli(baseline.state.u)
+    assert len(moduli) == materials
+    for material, modulus in moduli.items():
+        weights = model.baseline.modulus_weights(material, baseline.state.u)
+        sd = modulus * float(np.sqrt(weights @ covariance @ weights))
+        data = measurements(experiment, material, parametrisation("neo-hookean"), workers=1)
+        assert calibrate(data).shear_modulus == pytest.approx(modulus, abs=0.1 * sd)

@@ -1,0 +1,164 @@
+"""What a fit needs of the outlines' model: nuisances by name and sign, one trial left out, a mesh that fails.
+
+Beams are made on the mesh that the model uses, without noise: what is tested is not whether tisim is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_beams import made
+
+import tisim
+from calibration.experiment import Experiment, read
+from calibration.experiment.model import BeamTrial
+from calibration.measurements.objective import ModelObjective
+from calibration.measurements.outlines import COARSE
+from calibration.measurements.outlines._solutions import SolutionCache
+from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.simulators import OURS
+from calibration.parameters import parametrisation
+from calibration.study.measurements import measurements
+
+SHEAR = 25e3
+TRUTH = tisim.material_from_moduli(
+    "neo-hookean", shear_modulus=SHEAR, bulk_modulus=300 * SHEAR, density=1000.0
+)
+LAW = parametrisation("neo-hookean")
+U = np.log([SHEAR, 300.0])
+BARE = replace(OURS, reference=None)
+
+
+@pytest.fixture(scope="module")
+def experiment(tmp_path_factory: pytest.TempPathFactory) -> Experiment:
+    folder = tmp_path_factory.mktemp("fit")
+    return read(
+        made(
+            folder,
+            TRUTH,
+            lengths_mm=(50.0, 80.0),
+            photographs=2,
+            noise=0.0,
+            layer=COARSE.layer,
+            rings=COARSE.rings,
+        )
+    )
+
+
+def outlines(experiment: Experiment, **options: object) -> ModelObjective[OutlineModel]:
+    found = measurements(experiment, "S0", LAW, workers=1, **options).outlines  # type: ignore[arg-type]
+    assert found is not None
+    return found
+
+
+def shorter(trial: BeamTrial) -> BeamTrial:
+    return replace(trial, free_length=trial.free_length - trial.free_length_sd)
+
+
+def thinner(trial: BeamTrial) -> BeamTrial:
+    assert isinstance(trial.section, tisim.Circle)
+    return replace(trial, section=replace(trial.section, radius=trial.section.radius - trial.section_sd[0]))
+
+
+def lifted(trial: BeamTrial) -> BeamTrial:
+    """In its first photograph, by one standard deviation."""
+    first = trial.captures[0]
+    assert first.outline is not None
+    up = np.array([0.0, first.outline.registration.shift])
+    traced = replace(first.outline, upper=first.outline.upper + up, lower=first.outline.lower + up)
+    return replace(trial, captures=(replace(first, outline=traced), *trial.captures[1:]))
+
+
+@pytest.mark.parametrize(
+    ("stated", "name"),
+    [
+        (shorter, "free length of S0-cantilever-80"),
+        (thinner, "radius of S0"),
+        (lifted, "shift z of S0-cantilever-80 at 10 s"),
+    ],
+)
+def test_a_nuisance_is_positive_where_its_quantity_is_larger_than_stated(
+    experiment: Experiment, stated: Callable[[BeamTrial], BeamTrial], name: str
+) -> None:
+    before = outlines(experiment, simulator=BARE)
+    assert before.linearise(U)
+    as_stated = before.nuisances(U)
+    trials = [t for t in experiment.trials if isinstance(t, BeamTrial)]
+    changed = [stated(t) if name.startswith("radius") or t.id in name else t for t in trials]
+    after = outlines(replace(experiment, trials=tuple(changed)), simulator=BARE)
+    assert after.linearise(U)
+    found = {n: b - as_stated[n] for n, b in after.nuisances(U).items()}
+    assert 0.2 < found[name] < 1.2
+    assert max(found, key=lambda n: abs(found[n])) == name
+
+
+def test_a_density_that_is_larger_than_stated_is_positive(experiment: Experiment) -> None:
+    belief = experiment.materials["S0"]
+    assert belief.density is not None
+    lighter = replace(belief, density=belief.density - belief.density_sd)
+    other = outlines(replace(experiment, materials={"S0": lighter}), simulator=BARE)
+    assert other.linearise(U)
+    assert 0.2 < other.nuisances(U)["density of S0"] < 1.2
+
+
+def test_one_trial_alone_and_the_others(experiment: Experiment) -> None:
+    whole = outlines(experiment, simulator=BARE)
+    assert whole.linearise(U)
+    own = whole.model.of_trial(0)
+    alone, rest = whole.subset(own), whole.subset(own, others=True)
+    assert alone.points + rest.points == whole.points
+    v = U + 0.05
+    for part, trial in ((alone, 0), (rest, 1)):
+        assert part.linearise(v)  # nothing is taken anew
+        assert part.model.noise.columns is whole.model.noise.columns
+        seen = part.model.seen(part.state(v))
+        assert [s.photograph.beam for s in seen] == [trial] * 2
+        (rows,) = part.residuals(v[None])
+        assert len(rows) == part.points
+        left = part.model.registered(part.state(v))
+        assert [bool(np.isfinite(x).all()) for x in left] == [k // 2 == trial for k in range(4)]
+    # what is seen of a photograph alone is explained by nuisances that the others do not hold
+    assert np.sum(alone.residuals(v[None]) ** 2) < np.sum(whole.residuals(v[None]) ** 2)
+
+
+def test_a_law_without_equilibrium_on_the_finer_mesh_is_tried_once(
+    experiment: Experiment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    def fails(self: SolutionCache, *_: object, **__: object) -> tuple[list[tisim.Result], str]:
+        tried.append(self)
+        return [], "no equilibrium of S0-cantilever-80 on the finer mesh that corrects"
+
+    monkeypatch.setattr(SolutionCache, "fine", fails)
+    found = outlines(experiment)
+    assert found.linearise(U, rough=True)
+    assert (tried, found.shortcomings()) == ([], [])
+    assert found.linearise(U)
+    assert found.linearise(U)
+    assert len(tried) == 1
+    (note,) = found.shortcomings()
+    assert note.startswith("no equilibrium of S0-cantilever-80")
+
+
+def test_the_longest_is_tried_first_and_no_other_after_it(
+    experiment: Experiment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved = []
+
+    def none(beams: list[tisim.Beam], *_: object) -> list[None]:
+        solved.append([round(1e3 * b.length) for b in beams])
+        return [None for _ in beams]
+
+    found = outlines(experiment)
+    monkeypatch.setattr("calibration.measurements.outlines._solutions.simulated", none)
+    state = found.state(U)
+    assert found.model.solutions.fine(state, COARSE, one_by_one=True)[1].startswith(
+        "no equilibrium of S0-cantilever-80 on"
+    )
+    assert solved == [[80]]
+    words = found.model.solutions.fine(state, COARSE)[1]
+    assert words.startswith("no equilibrium of S0-cantilever-50, S0-cantilever-80 on")

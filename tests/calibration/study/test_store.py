@@ -1,0 +1,144 @@
+"""Fits on disk: damage is a sentence, never a traceback, and nothing is lost by it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.errors import InputError
+from calibration.inference import Generation
+from calibration.study import Calibration
+from calibration.study._store import FitStore, locked, remove_fits
+
+HEADER = {"format": 2, "seed": 1}
+
+
+def store(folder: Path) -> FitStore:
+    return FitStore(folder, "S0-neo-hookean", HEADER)
+
+
+def generation(index: int) -> Generation:
+    return Generation(
+        restart=0,
+        index=index,
+        candidates=np.array([[1.0, 2.0], [3.0, 4.0]]),
+        costs=np.array([5.0, np.inf]),
+        replayed=False,
+    )
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    for index in range(3):
+        store(tmp_path).append(generation(index))
+    found = store(tmp_path).history()
+    assert [g.index for g in found] == [0, 1, 2]
+    assert found[0].costs.tolist() == [5.0, np.inf]
+
+
+GOOD = '{"format": 2, "seed": 1}\n'
+LINE = '{"restart": 0, "index": 0, "candidates": [[1.0, 2.0]], "costs": [3.0]}\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("garbage\n", 1),
+        ("[]\n", None),
+        ("null\n", None),
+        (GOOD + "garbage\n", 2),
+        (GOOD + LINE + "{}\n", 3),
+        (GOOD + "[1, 2]\n", 2),
+        (GOOD + LINE.replace("[3.0]", "[3.0, 4.0]"), 2),
+        (GOOD + LINE.replace("[3.0]", '["three"]'), 2),
+        (GOOD + LINE.replace("[3.0]", "[NaN]"), 2),
+        (GOOD + LINE.replace("[[1.0, 2.0]]", "[[1.0], [2.0, 3.0]]"), 2),
+        (GOOD + LINE.replace("[[1.0, 2.0]]", "7"), 2),
+        (GOOD + LINE.replace("2.0", "Infinity"), 2),
+        (GOOD + "[" * 100_000 + "\n", 2),
+    ],
+)
+def test_a_damaged_history_is_refused_and_kept(tmp_path: Path, text: str, line: int | None) -> None:
+    path = store(tmp_path).history_path
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        store(tmp_path).history()
+    assert str(caught.value).startswith(f"{path}: " + (f"line {line}: damaged" if line else "damaged"))
+    assert "--overwrite" in str(caught.value)
+    assert path.read_text() == text
+
+
+def test_bytes_that_are_no_text(tmp_path: Path) -> None:
+    store(tmp_path).history_path.write_bytes(b"\xff\xfe\x00garbage\n")
+    store(tmp_path).result_path.write_bytes(b"\xff\xfe\x00garbage\n")
+    with pytest.raises(InputError, match="damaged"):
+        store(tmp_path).history()
+    with pytest.raises(InputError, match="damaged"):
+        store(tmp_path).result()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "garbage",
+        "null",
+        "[]",
+        "{}",
+        '{"header": {}, "calibration": 7}',
+        '{"header": 3, "calibration": {}}',
+        "[" * 100_000,
+    ],
+)
+def test_a_damaged_result_is_refused(tmp_path: Path, text: str) -> None:
+    store(tmp_path).result_path.write_text(text)
+    with pytest.raises(InputError, match=r"damaged, expected a fit that calibration\.fit wrote"):
+        store(tmp_path).result()
+
+
+def test_a_line_cut_short_by_a_kill_is_dropped(tmp_path: Path) -> None:
+    path = store(tmp_path).history_path
+    path.write_text(GOOD + LINE + '{"restart": 0, "ind')
+    assert len(store(tmp_path).history()) == 1
+    assert path.read_text() == GOOD + LINE
+
+
+def test_a_result_of_an_earlier_version_is_assessed() -> None:
+    """It has no word of a lack of fit; its reduced chi-square has."""
+    old = Calibration(
+        material="S0",
+        law="neo-hookean",
+        label="neo-hookean",
+        status="converged",
+        message="",
+        density=None,
+        u=(10.0, 5.7),
+        parameters={"mu": 2e4, "lam": 6e6},
+        shear_modulus=2e4,
+        points=100,
+        chi2=12_600.0,
+        reduced_chi2=126.0,
+    )
+    data = old.to_json()
+    del data["lacking"], data["unsettled"]
+    found = Calibration.from_json(data)
+    assert found.status == "lack of fit"
+    assert "reduced chi-square 126" in found.message
+    assert "calibration.diagnose" in found.message
+    again = Calibration.from_json(found.to_json())
+    assert again.to_json() == found.to_json()
+
+
+def test_one_process_at_a_time(tmp_path: Path) -> None:
+    store(tmp_path).append(generation(0))
+    with locked(tmp_path):
+        with pytest.raises(InputError, match="another calibration is at work here"), locked(tmp_path):
+            pass
+        with pytest.raises(InputError, match="another calibration is at work here"):
+            remove_fits(tmp_path)
+    assert len(store(tmp_path).history()) == 1
+    remove_fits(tmp_path)
+    assert not store(tmp_path).history_path.exists()
+    with locked(tmp_path):
+        pass

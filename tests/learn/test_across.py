@@ -1,0 +1,77 @@
+"""Intervals by the other folds: from shapes that nobody had seen, never from the run's own test part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals
+from learn.metrics import Predictions
+from learn.training import Recipe, Run
+
+
+def _answers(
+    fold: int, factor: float, *, seed: int = 0, name: str = "invariant-gnn", **recipe: object
+) -> Predicted:
+    """A run whose errors on its unseen shapes are `factor` times as large as another's."""
+    random = np.random.default_rng([fold, seed])
+    pokes, n = 12, 200
+    frames = 3 * pokes
+    away = random.uniform(0, 0.05, (frames, n))
+    depth = np.tile([2e-3, 5e-3, 8e-3], pokes)
+    truth = np.zeros((frames, n, 3), dtype=np.float32)
+    wrong = factor * 2e-5 * random.normal(size=truth.shape)
+    force = depth * 500
+    cases = Predictions(
+        truth=truth,
+        predicted=(truth + wrong).astype(np.float32),
+        force=force,
+        force_predicted=force * np.exp(0.02 * factor * random.normal(size=frames)),
+        away=away,
+        depth=depth,
+        poke=1000 * fold + np.repeat(np.arange(pokes), 3),
+        softness=np.full(frames, "S0"),
+    )
+    run = SimpleNamespace(recipe=Recipe(fold=fold, **recipe), folder=Path(f"f{fold}"))  # type: ignore[arg-type]
+    return Predicted(cast(Run, run), name, cases)
+
+
+def test_shapes_that_differ_are_covered_on_average_over_folds() -> None:
+    """One fold's neighbour says little of it; the others together cover 90 % on average."""
+    shares, beside = [], []
+    for seed in range(12):
+        factors = np.exp(0.5 * np.random.default_rng(seed).normal(size=5))
+        answers = [_answers(k, f, seed=seed) for k, f in enumerate(factors)]
+        found = across_folds(answers)
+        assert [one.run.recipe.fold for one, _ in found] == [0, 1, 2, 3, 4]
+        shares.append([coverage(i, one.predictions).points for one, i in found])
+        neighbour = fit_intervals(answers[1].predictions)
+        beside.append(coverage(neighbour, answers[0].predictions).points)
+    assert 0.86 <= np.mean(shares) <= 0.94
+    assert np.std([s[0] for s in shares]) < np.std(beside)
+
+
+def test_a_run_takes_no_part_in_its_own_intervals() -> None:
+    """Errors of one fold ten times the others': that fold is not covered, its own errors being known."""
+    found = across_folds([_answers(k, 10.0 if k == 2 else 1.0) for k in range(4)])
+    shares = {one.run.recipe.fold: coverage(i, one.predictions).points for one, i in found}
+    assert shares[2] < 0.3
+    assert min(shares[k] for k in (0, 1, 3)) > 0.9
+
+
+@pytest.mark.parametrize(
+    "answers",
+    [
+        [_answers(0, 1.0), _answers(1, 1.0)],
+        [_answers(0, 1.0), _answers(1, 1.0), _answers(1, 1.0, seed=1)],
+        [_answers(0, 1.0), _answers(1, 1.0), _answers(2, 1.0, epochs=7)],
+        [_answers(0, 1.0), _answers(1, 1.0), _answers(2, 1.0, name="invariant-gnn, 2 together")],
+    ],
+    ids=["two folds", "a fold twice", "another recipe", "another model"],
+)
+def test_what_is_not_three_folds_of_one_kind_has_none(answers: list[Predicted]) -> None:
+    assert across_folds(answers) == []

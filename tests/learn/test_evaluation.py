@@ -1,0 +1,333 @@
+"""From a trained run to a report, a prediction and ONNX files, by the commands that people type."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from typer.testing import CliRunner, Result
+
+import learn.baselines
+import learn.evaluate
+import learn.export
+import learn.predict
+import learn.train
+from learn.data import MemoryDataset, open_store, split_pokes
+from learn.data.clouds import scattered
+from learn.errors import InputError
+from learn.evaluation import parts_of, summarise
+from learn.evaluation.predictions import interpolation_error_mm, predict_on
+from learn.metrics import METRICS
+from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_of
+from learn.scene_file import load_poke, scene_and_poke
+from learn.training import load_run
+from tests.learn.small_store import write_store
+
+POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_store(tmp_path_factory.mktemp("evaluation") / "s.zarr", sites=2, frames=3)
+
+
+@pytest.fixture(scope="module")
+def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run") / "run"
+    recipe = folder.parent / "r.yaml"
+    recipe.write_text(
+        "name: small\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
+        "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"  # minds the mean, which is asked for below
+    )
+    done = _call(learn.train.app, store, "--recipe", recipe, "--out", folder, "--threads", 1)
+    assert done.exit_code == 0, done.output
+    return folder
+
+
+def _call(app: object, *arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])  # type: ignore[arg-type]
+
+
+def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(learn.baselines, "_STEPS", 50)
+    done = _call(learn.evaluate.app, run, "--threads", 1, "--no-clouds")
+    assert done.exit_code == 0, done.output
+    html = (run / "evaluation" / "report.html").read_text()
+    assert html.count("data:image/png;base64") == 5
+    for name in ("learning", "best", "median", "worst", "force"):
+        assert (run / "evaluation" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    for words in ("analytic kernel", "zero displacement", "Symmetry", "Intervals", "Deeper"):
+        assert words in html
+    tables = json.loads((run / "evaluation" / "tables.json").read_text())
+    ours, zero = (tables["tables"][name]["all"] for name in ("invariant-gnn", "zero displacement"))
+    assert set(ours) == set(METRICS)
+    assert ours["mean"]["mean"] < 0.5 * zero["mean"]["mean"]
+    assert tables["symmetry"]["invariant-gnn, fold 0"]["displacement_mm"] < 1e-5
+    assert set(tables["tables"]["invariant-gnn"]) == {"S0", "S1", "all"}
+    assert (run / "intervals.json").is_file()
+
+
+@pytest.fixture(scope="module")
+def second(store: Path, run: Path) -> Path:
+    """A run that differs from the first in seed alone."""
+    folder = run.parent / "second"
+    done = _call(
+        learn.train.app,
+        store,
+        "--recipe",
+        run.parent / "r.yaml",
+        "--seed",
+        1,
+        "--out",
+        folder,
+        "--threads",
+        1,
+    )
+    assert done.exit_code == 0, done.output
+    return folder
+
+
+def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
+    """Each run's intervals come from the other folds' test parts, in the tables and in its folder."""
+    runs = [tmp_path / f"fold{k}" for k in range(3)]
+    for fold, folder in enumerate(runs):
+        flags = ("--fold", fold, "--out", folder, "--threads", 1)
+        done = _call(learn.train.app, store, "--recipe", run.parent / "r.yaml", *flags)
+        assert done.exit_code == 0, done.output
+    flags = ("--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "all")
+    done = _call(learn.evaluate.app, *runs, *flags)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "all" / "tables.json").read_text())
+    names = [f"invariant-gnn, fold {k}" for k in range(3)]
+    assert list(tables["intervals"]) == [*names, *(f"{name}, by the other folds" for name in names)]
+    assert "mean of those by the other folds" in (tmp_path / "all" / "report.html").read_text()
+    tested = [split_pokes(open_store(store), fold=k, train_depth=2.5e-3).test for k in range(3)]
+    poke = open_store(store).frame_poke
+    for fold, folder in enumerate(runs):
+        others = [len(np.unique(poke[rows])) for k, rows in enumerate(tested) if k != fold]
+        kept = json.loads((folder / "intervals.json").read_text())
+        assert kept["pokes"] == sum(others) - sum(others) // 2  # the other half fits the scale
+
+
+def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
+    """A row of their mean, better than the worse of them; intervals and predictions of both together."""
+    flags = ("--ensemble", "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "both")
+    done = _call(learn.evaluate.app, run, second, *flags)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "both" / "tables.json").read_text())
+    assert list(tables["tables"]) == ["invariant-gnn, 2 together", "invariant-gnn"]
+    assert tables["symmetry"]["invariant-gnn, 2 together, fold 0"]["displacement_mm"] < 1e-5
+    assert list(tables["intervals"]) == [
+        "invariant-gnn, 2 together, fold 0",
+        "invariant-gnn, fold 0",
+        "invariant-gnn, fold 0, seed 1",
+    ]
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE)
+    answers = []
+    for number, runs in enumerate(([run], [second], [run, second])):
+        done = _call(learn.predict.app, *runs, scene, "--out", tmp_path / str(number))
+        assert done.exit_code == 0, done.output
+        answers.append(json.loads((tmp_path / str(number) / "prediction.json").read_text()))
+    one, other, both = answers
+    assert both["force_N"] == pytest.approx((one["force_N"] * other["force_N"]) ** 0.5, rel=1e-5)
+    assert both["radius_max_mm"] > 0
+    alone = _call(learn.evaluate.app, run, "--ensemble", "--out", tmp_path / "alone")
+    assert alone.exit_code == 2
+    assert "two or more runs" in alone.stderr
+    assert not (tmp_path / "alone").exists()
+    swapped = _call(learn.predict.app, run, run, scene, "--out", tmp_path / "swapped")
+    assert swapped.exit_code == 2
+    assert "--ensemble writes it again" in swapped.stderr
+
+
+def test_an_ensemble_is_the_mean_of_its_members(store: Path) -> None:
+    opened = open_store(store)
+    scene, data = scene_of(opened), MemoryDataset(opened, np.arange(4))
+    pokes = pokes_of(data.__getitems__([0, 1, 2, 3]))
+    plain = _Truth()
+    found = Ensemble([plain, _Truth(more=1.02), _Truth(more=1.04)])(scene, pokes)
+    exact = plain(scene, pokes)
+    torch.testing.assert_close(found.displacement, exact.displacement * 1.02)
+    size = exact.displacement.norm(dim=2)
+    torch.testing.assert_close(found.spread, 0.02 * size, rtol=1e-3, atol=1e-9)
+    torch.testing.assert_close(
+        found.force_spread, torch.full((4,), float(np.log([1, 1.02, 1.04]).std(ddof=1)))
+    )
+
+
+def test_a_run_of_another_dataset_is_refused(run: Path, tmp_path: Path) -> None:
+    other = write_store(tmp_path / "o.zarr", seed=4, sites=3, frames=2)
+    refused = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out")
+    assert refused.exit_code == 2
+    assert "trained on dataset" in refused.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_damaged_run_is_refused(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "best.pt").write_bytes((run / "best.pt").read_bytes()[:500])
+    refused = _call(learn.evaluate.app, tmp_path)
+    assert refused.exit_code == 2
+    assert refused.stderr.count("\n") == 1
+    assert "not a readable checkpoint" in refused.stderr
+    assert not (tmp_path / "evaluation").exists()
+
+
+def test_prediction_of_one_poke(run: Path, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE)
+    done = _call(learn.predict.app, run, scene, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
+    assert answer["force_N"] > 0
+    table = np.loadtxt(tmp_path / "out" / "displacement.csv", delimiter=",", skiprows=1)
+    assert len(table) == 1024
+    deepest = table[np.linalg.norm(table[:, 3:6], axis=1).argmax()]
+    assert np.linalg.norm(deepest[:2] - [5, -10]) < 5  # mm from the site
+    scene.write_text(POKE.replace("softness: S1", "shear_modulus_kPa: 18"))
+    double = _call(learn.predict.app, run, scene, "--out", tmp_path / "double")
+    assert double.exit_code == 0, double.output
+    stiffer = json.loads((tmp_path / "double" / "prediction.json").read_text())
+    assert stiffer["force_N"] > 1.3 * answer["force_N"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("depth_mm: 2", "depth_mm: -2", "key depth_mm"),
+        ("depth_mm: 2", "depth: 2", "key depth"),
+        ("site_mm: [5, -10]", "site_mm: [500, 0]", "key site_mm: expected x and y within"),
+        ("shape: shape-1", "shape: cat", "key shape: expected one of shape-0"),
+        ("softness: S1", "softness: S9", "key softness: expected one of S0, S1"),
+        ("softness: S1\n", "", "either softness or shear_modulus_kPa"),
+    ],
+)
+def test_bad_scene_files_are_refused(run: Path, tmp_path: Path, old: str, new: str, words: str) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE.replace(old, new))
+    done = _call(learn.predict.app, run, scene, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert words in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    body = "inclusion: {kind: sphere, radius_mm: 8, centre_mm: [0, 0, 8]}"
+    scene.write_text(POKE.replace("shape: shape-1", body))
+    about, pokes = scene_and_poke(load_poke(scene), open_store(store))
+    column = about.rigid[0, 16 * 32 + 16].numpy()  # nearest to the middle
+    height = 32 - (np.arange(128) + 0.5) / 4  # mm above the base
+    assert np.abs(height[column > 0].max() - 16) < 0.5
+    assert column[height < 0.3].all() == (np.hypot(1.5625, 1.5625) < np.sqrt(64 - 7.8**2))
+    assert float(pokes.direction.norm()) == pytest.approx(1)
+
+
+class _Truth(Model):
+    """Answers with a smooth field known everywhere, times a number."""
+
+    def __init__(self, more: float = 1.0) -> None:
+        super().__init__()
+        self.more = more
+
+    def encode(self, scene: Scene, prepared: object = None) -> Scene:  # noqa: ARG002
+        return scene
+
+    def decode(self, encoded: Scene, pokes: Pokes) -> Response:
+        r = encoded.points[None] - pokes.start[:, None]
+        rho = (r.square().sum(dim=2) + 2.5e-3**2).sqrt()
+        fall = (2.5e-3 / rho * torch.exp(-rho / 0.02))[..., None] * pokes.depth[:, None, None]
+        lean = pokes.direction[:, None] + 0.3 * (1 + 20 * pokes.depth[:, None, None]) * r / rho[..., None]
+        u = (fall * lean).float() * self.more
+        return Response(displacement=u, force=pokes.depth.float() * self.more)
+
+
+def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
+    """The exact field, asked at scattered points, is found right but for the interpolation of the mesh."""
+    store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
+    rows = np.arange(store.frames)
+    points = scattered(store, 300)
+    assert points.shape == (300, 3)
+    gaps = np.sort(np.linalg.norm(points[:, None] - points[None], axis=2), axis=1)[:, 1]
+    assert gaps.min() > 1e-3
+    soft = ~(scene_of(store).rigid.sum(dim=(0, 2)) > 0).numpy()
+    on_grid = summarise(predict_on(_Truth(), store, rows, store.points[soft]))
+    assert on_grid["max"].mean < 1e-4
+    off_grid = summarise(predict_on(_Truth(), store, rows, points))
+    assert 0 < off_grid["rel L2"].mean < 0.5
+    assert interpolation_error_mm(store, rows) < 1e-6
+
+
+def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
+    """All pokes of shapes that the run has not seen, no others; its kept intervals are not changed."""
+    other = write_store(tmp_path / "o.zarr", seed=4, shapes=5, sites=1, frames=2)
+    flags = ("--transfer", "--no-clouds", "--threads", 1)
+    own = _call(
+        learn.evaluate.app, run, "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "own"
+    )
+    assert own.exit_code == 0, own.output
+    kept = (run / "intervals.json").read_bytes()
+    refused = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out")
+    assert refused.exit_code == 2
+    assert not (tmp_path / "out").exists()
+    allowed = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out", *flags)
+    assert allowed.exit_code == 0, allowed.output
+    tables = json.loads((tmp_path / "out" / "tables.json").read_text())
+    assert list(tables["tables"]) == ["invariant-gnn"]
+    assert list(tables["intervals"]) == ["invariant-gnn, fold 0"]
+    assert (run / "intervals.json").read_bytes() == kept
+    store, loaded = open_store(other), load_run(run)
+    tested = np.unique(store.shape[store.frame_poke[parts_of(store, loaded).test]])
+    assert {store.shapes[k] for k in tested} == {*loaded.groups["test"], "shape-3", "shape-4"}
+    few = write_store(tmp_path / "few.zarr", seed=5, shapes=3)
+    everything = replace(loaded, groups={**loaded.groups, "train": ["shape-0", "shape-1", "shape-2"]})
+    with pytest.raises(InputError, match="trained on all its shapes"):
+        parts_of(open_store(few), everything)
+
+
+@pytest.mark.slow
+def test_report_of_other_clouds(run: Path, tmp_path: Path) -> None:
+    done = _call(learn.evaluate.app, run, "--threads", 1, "--no-baselines", "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    tables = json.loads((tmp_path / "tables.json").read_text())
+    assert list(tables["clouds"]) == [
+        "1024, the grid",
+        "512, scattered",
+        "1024, scattered",
+        "4096, scattered",
+    ]
+    assert tables["cloud_interpolation_mm"] < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("onnx", "onnxscript", "onnxruntime")),
+    reason="the onnx packages are not installed",
+)
+def test_onnx_gives_what_torch_gives(run: Path, tmp_path: Path) -> None:
+    done = _call(learn.export.app, run, "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    about = json.loads((tmp_path / "model.json").read_text())
+    assert about["difference_from_torch"] < 1e-5
+    assert (tmp_path / "poke.onnx").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("onnx", "onnxscript", "onnxruntime")),
+    reason="the onnx packages are not installed",
+)
+def test_onnx_of_the_papers_model(store: Path, run: Path, tmp_path: Path) -> None:
+    recipe = ("--recipe", run.parent / "r.yaml", "--model", "cegnn", "--epochs", 1)
+    done = _call(learn.train.app, store, *recipe, "--out", tmp_path / "run", "--threads", 1)
+    assert done.exit_code == 0, done.output
+    done = _call(learn.export.app, tmp_path / "run")
+    assert done.exit_code == 0, done.output
+    about = json.loads((tmp_path / "run" / "onnx" / "model.json").read_text())
+    assert about["difference_from_torch"] < 1e-5

@@ -1,0 +1,109 @@
+"""Intervals cover what they promise: noise that differs from point to point, and from poke to poke."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from learn.errors import InputError
+from learn.evaluation.intervals import coverage, fit_intervals, pooled_quantile, rank_correlation
+from learn.metrics import Predictions
+
+
+def _noisy(pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0) -> Predictions:
+    """Predictions with errors that fall with the distance from the tip and grow with the depth.
+
+    apart: standard deviation of the logarithm of a factor that all errors of a poke share.
+    """
+    random = np.random.default_rng(seed)
+    frames, n = pokes * 4, 300
+    away = random.uniform(0, 0.05, (frames, n))
+    depth = np.tile([2e-3, 4e-3, 6e-3, 8e-3], pokes)
+    truth = np.zeros((frames, n, 3))
+    truth[..., 2] = -depth[:, None] * np.exp(-away / 0.01)
+    own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4)
+    scale = more * 0.02 * (own * depth)[:, None] * np.exp(-away / 0.02)
+    predicted = truth + random.normal(size=truth.shape) * scale[..., None]
+    force = depth * 500
+    return Predictions(
+        truth=truth.astype(np.float32),
+        predicted=predicted.astype(np.float32),
+        force=force,
+        force_predicted=force * np.exp(0.05 * own * random.normal(size=frames)),
+        away=away,
+        depth=depth,
+        poke=np.repeat(np.arange(pokes), 4),
+        softness=np.full(frames, "S0"),
+    )
+
+
+def test_ninety_per_cent_are_covered_near_and_far() -> None:
+    intervals = fit_intervals(_noisy(300, 0))
+    found = coverage(intervals, _noisy(100, 1))
+    assert intervals.promised == 0.9
+    assert 0.88 <= found.points <= 0.92
+    assert 0.86 <= found.force <= 0.94
+    assert all(0.86 <= ring <= 0.94 for ring in found.rings[:-1])  # none beyond 50 mm: few in the last
+    assert rank_correlation(intervals, _noisy(100, 1)) > 0.6
+
+
+def test_pokes_that_differ_are_covered_on_average_over_calibrations() -> None:
+    """With few pokes the coverage varies, but it is 90 % or more on average, as promised."""
+    shares = []
+    for seed in range(30):
+        intervals = fit_intervals(_noisy(24, seed, apart=0.8))
+        shares.append(coverage(intervals, _noisy(40, 1000 + seed, apart=0.8)).points)
+    assert 0.9 - 2 * np.std(shares) / 30**0.5 <= np.mean(shares) <= 0.97
+
+
+def test_pooled_quantile_counts_pokes_not_points() -> None:
+    """By hand: nine pokes of one score each; 0.9 of ten equal shares is the ninth. A poke of a thousand
+    points weighs as much as one of a single point."""
+    nine, of_nine = np.arange(1.0, 10.0), np.arange(9)
+    assert pooled_quantile(nine, of_nine, 0.9) == 9
+    assert pooled_quantile(nine, of_nine, 0.75) == 8
+    scores = np.concatenate([np.linspace(0, 1, 1000), nine])
+    poke = np.concatenate([np.full(1000, 99), of_nine])
+    assert pooled_quantile(scores, poke, 0.85) == 9
+    assert pooled_quantile(scores, poke, 0.6) == 6
+
+
+def test_few_pokes_promise_less() -> None:
+    intervals = fit_intervals(_noisy(8, 0))
+    assert (intervals.pokes, intervals.promised) == (4, 0.8)
+
+
+def test_spread_makes_the_intervals_wide_where_the_members_differ() -> None:
+    """A spread that knows which pokes are bad: covered as promised, tighter than without it."""
+    pokes, apart = 80, 1.0
+
+    def known(seed: int) -> Predictions:
+        own = np.repeat(np.exp(apart * np.random.default_rng(seed + 1).normal(size=pokes)), 4)  # another draw
+        plain = _noisy(pokes, seed, apart=0.0)
+        factor = own[:, None, None]
+        wrong = (plain.predicted - plain.truth) * factor
+        spread = 0.02 * factor[..., 0] * plain.depth[:, None] * np.exp(-plain.away / 0.02)
+        predicted = (plain.truth + wrong).astype(np.float32)
+        return dataclasses.replace(plain, predicted=predicted, spread=spread)
+
+    fitting, test = known(0), known(5)
+    blind = dataclasses.replace(fitting, spread=np.zeros(0))
+    blind_test = dataclasses.replace(test, spread=np.zeros(0))
+    seeing, without = fit_intervals(fitting), fit_intervals(blind)
+    assert 0.87 <= coverage(seeing, test).points <= 0.97
+    assert rank_correlation(seeing, test) > rank_correlation(without, blind_test) + 0.05
+    assert seeing.radius_mm(test).mean() < without.radius_mm(blind_test).mean()
+
+
+def test_a_worse_model_is_not_covered() -> None:
+    """The count can fail: errors three times as large fall outside."""
+    found = coverage(fit_intervals(_noisy(60, 0)), _noisy(100, 1, more=3.0))
+    assert found.points < 0.5
+    assert found.pokes == 0
+
+
+def test_one_poke_is_not_enough() -> None:
+    with pytest.raises(InputError, match="at least two validation pokes"):
+        fit_intervals(_noisy(1, 0))

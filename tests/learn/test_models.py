@@ -1,0 +1,238 @@
+"""Models: exact symmetries of ours, any cloud, and what the published scheme lacks."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import torch
+from scipy.stats import ortho_group
+from torch import Tensor
+
+from learn.data import MemoryDataset, Statistics, Store, open_store, statistics
+from learn.errors import InputError
+from learn.evaluation import predict_part, summarise
+from learn.models import InvariantGnn, Model, Pokes, Scene, make_model, make_scene, pokes_of, scene_of
+from learn.models._encoder import stencil
+from learn.models.cegnn import Cegnn, _neighbours
+from learn.models.single_poke import SinglePoke
+from tests.learn.small_store import write_store
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _one_thread() -> None:
+    torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    return open_store(write_store(tmp_path_factory.mktemp("models") / "s.zarr", frames=10))
+
+
+@pytest.fixture(scope="module")
+def sizes(store: Store) -> Statistics:
+    return statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store.rod_radius)
+
+
+@pytest.fixture(scope="module")
+def pokes(store: Store) -> Pokes:
+    return pokes_of(MemoryDataset(store, np.array([9, 34, 59, 119])).__getitems__([0, 1, 2, 3]))
+
+
+def _model(name: str, sizes: Statistics) -> Model:
+    torch.manual_seed(5)
+    model = make_model(name, sizes).eval()
+    with torch.no_grad():
+        for parameter in model.parameters():
+            parameter.mul_(1.7)  # answers as large as a trained model's, all paths awake
+    return model
+
+
+def _turned(scene: Scene, pokes: Pokes, turn: Tensor, shift: Tensor) -> tuple[Scene, Pokes]:
+    return (
+        dataclasses.replace(scene, points=scene.points @ turn.T + shift, normals=scene.normals @ turn.T),
+        dataclasses.replace(pokes, start=pokes.start @ turn.T + shift, direction=pokes.direction @ turn.T),
+    )
+
+
+def _error_mm(model: Model, scene: Scene, pokes: Pokes, turn: Tensor, shift: Tensor) -> tuple[float, float]:
+    """Largest disagreement between turning before and after [mm], and of the force [relative]."""
+    with torch.no_grad():
+        still, moved = model(scene, pokes), model(*_turned(scene, pokes, turn, shift))
+    apart = moved.displacement.double() - still.displacement.double() @ turn.T
+    return float(apart.norm(dim=2).max()) * 1e3, float((moved.force / still.force - 1).abs().max())
+
+
+@pytest.mark.parametrize(
+    ("name", "seed"), [*(("invariant-gnn", k) for k in range(4)), ("invariant-gnn-small", 4)]
+)
+def test_ours_turns_mirrors_and_moves_with_the_scene(
+    store: Store, sizes: Statistics, pokes: Pokes, name: str, seed: int
+) -> None:
+    """Rotations about any axis, mirrorings, translations by metres; float32."""
+    random = np.random.default_rng(seed)
+    turn = torch.from_numpy(ortho_group.rvs(3, random_state=random))  # half of them mirror
+    shift = torch.from_numpy(random.uniform(-3, 3, 3))
+    model, scene = _model(name, sizes), scene_of(store)
+    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
+    with torch.no_grad():
+        size = float(model(scene, pokes).displacement.norm(dim=2).max()) * 1e3
+    assert size > 1  # mm: the bound below means something
+    apart, force = _error_mm(model, scene, pokes, turn, shift)
+    assert apart < 1e-5
+    assert force < 1e-5
+
+
+def test_the_closed_form_alone_has_skill_on_another_shape(store: Store, sizes: Statistics) -> None:
+    model, scene = make_model("invariant-gnn", sizes), scene_of(store)
+    seen, unseen = (np.flatnonzero((store.shape[store.frame_poke] == 2) == last) for last in (False, True))
+    model.warm_start(MemoryDataset(store, seen[::3]).batches(8), scene)
+    assert isinstance(model, InvariantGnn)
+    with torch.no_grad():
+        model.coefficients.weight.zero_()
+        model.coefficients.bias.zero_()
+    found = summarise(predict_part(model, scene, MemoryDataset(store, unseen[::4])))
+    assert found["skill"].mean > 0.8
+
+
+def test_the_published_scheme_does_not(store: Store, sizes: Statistics, pokes: Pokes) -> None:
+    turn = torch.tensor([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=torch.float64)
+    apart, force = _error_mm(_model("cegnn", sizes), scene_of(store), pokes, turn, torch.zeros(3))
+    assert apart > 1e-3
+    assert force > 1e-3
+
+
+def test_the_published_head_acts_on_layers_and_path_joined(sizes: Statistics) -> None:
+    model = make_model("cegnn", sizes)
+    assert isinstance(model, Cegnn)
+    layers, path = torch.randn(2, 7, 12), torch.randn(2, 518)
+    joined = torch.cat([layers, path[:, None].expand(2, 7, 518)], dim=2)
+    torch.testing.assert_close(model._head(layers, path), model.head(joined), rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("digits", [torch.float32, torch.float64])
+def test_of_equally_near_points_the_first_are_neighbours(digits: torch.dtype) -> None:
+    line = np.arange(6) * 0.3
+    grid = np.stack([*np.meshgrid(line, line, indexing="ij"), np.zeros((6, 6))], axis=-1).reshape(-1, 3)
+    distance = np.linalg.norm(grid[:, None] - grid[None], axis=2).round(6)
+    nearest = np.argsort(distance, axis=1, kind="stable")[:, :5]
+    found = _neighbours(torch.from_numpy(grid).to(digits)[None])[0]
+    np.testing.assert_array_equal(np.sort(found.numpy(), axis=1), np.sort(nearest, axis=1))
+
+
+def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
+    store: Store, sizes: Statistics, pokes: Pokes
+) -> None:
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    order = np.random.default_rng(0).permutation(1024)
+    mixed = make_scene(
+        points=store.points[order],
+        normals=store.normals[order],
+        profile=store.profile[:, order],
+        level_depth=store.level_depth,
+        rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
+    )
+    with torch.no_grad():
+        plain, shuffled = model(scene, pokes), model(mixed, pokes)
+        alone = model(scene, Pokes(**{k: v[2:3] for k, v in vars(pokes).items()}))
+    torch.testing.assert_close(shuffled.displacement, plain.displacement[:, order], atol=1e-8, rtol=1e-5)
+    torch.testing.assert_close(alone.displacement[0], plain.displacement[2], atol=1e-8, rtol=1e-5)
+    torch.testing.assert_close(alone.force[0], plain.force[2])
+
+
+@pytest.mark.parametrize("name", ["invariant-gnn", "invariant-gnn-small"])
+def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, pokes: Pokes, name: str) -> None:
+    """The fast path: displacement to rounding, near the rod and far from it."""
+    model, scene = _model(name, sizes), scene_of(store)
+    assert isinstance(model, InvariantGnn)
+    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
+    with torch.no_grad():
+        encoded = model.encode(scene, model.prepare(scene))
+        found = model.decode(encoded, pokes)
+    for k in (0, 3):
+        one = SinglePoke(model, encoded, int(scene.rigid_index[pokes.geometry[k]]))
+        rod = (pokes.start[k].numpy(), pokes.direction[k].numpy(), float(pokes.depth[k]))
+        u, force = one(*rod, float(pokes.modulus[k]))
+        truth = found.displacement[k].numpy()
+        assert np.abs(u - truth).max() < 3e-6 * np.abs(truth).max()
+        assert force == pytest.approx(float(found.force[k]), rel=1e-5)
+        assert np.array_equal(one(*rod, float(pokes.modulus[k]))[0], u)
+
+
+def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
+    """A quarter of the points move much as they do among all: messages are means, not sums."""
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    some = np.arange(1024).reshape(32, 32)[::2, ::2].reshape(-1)
+    sparse = make_scene(
+        points=store.points[some],
+        normals=store.normals[some],
+        profile=store.profile[:, some],
+        level_depth=store.level_depth,
+        rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
+    )
+    with torch.no_grad():
+        whole, part = model(scene, pokes).displacement[:, some], model(sparse, pokes).displacement
+    wrong = (part - whole).norm(dim=2).mean() / whole.norm(dim=2).mean()
+    assert wrong < 0.25
+    few = make_scene(
+        points=store.points[:3],
+        normals=store.normals[:3],
+        profile=store.profile[:, :3],
+        level_depth=store.level_depth,
+        rod_radius=store.rod_radius,
+        rod_edge=store.rod_edge,
+    )
+    assert bool(torch.isfinite(model(few, pokes).displacement).all())
+
+
+def test_force_is_proportional_to_the_modulus_but_for_what_is_learned_of_it(
+    store: Store, sizes: Statistics, pokes: Pokes
+) -> None:
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    with torch.no_grad():
+        one = model(scene, pokes)
+        two = model(scene, dataclasses.replace(pokes, modulus=pokes.modulus * 1.0001))
+    torch.testing.assert_close(two.force / one.force, torch.full((4,), 1.0001), atol=1e-3, rtol=0)
+    assert bool((one.force > 0).all())
+
+
+def test_stencil_is_a_mean_and_a_slope() -> None:
+    """The mean of a constant is the constant, the slope of it zero where the cloud is symmetric; of a linear
+    function the slope points uphill."""
+    x = np.arange(9.0)
+    points = np.stack([*(g.reshape(-1) for g in np.meshgrid(x, x)), np.zeros(81)], axis=1)
+    s = stencil(points, 2.1)
+    one = torch.ones(81, 1)
+    torch.testing.assert_close(s.mean(one), one)
+    slope = s.slope(torch.from_numpy(points[:, :1]).float()).reshape(3, 81)
+    middle = 40
+    assert slope[0, middle] > 0.1
+    assert abs(slope[1, middle]) < 1e-6
+    assert float(s.slope(one).reshape(3, 81)[:, middle].abs().max()) < 1e-6
+
+
+def test_gradients_of_the_sparse_product_are_right() -> None:
+    points = np.random.default_rng(0).uniform(size=(12, 3))
+    s = stencil(points, 0.6)
+    values = torch.randn(12, 2, requires_grad=True)
+    weight = torch.randn(36, 2)
+    (s.slope(values) * weight).sum().backward()
+    assert values.grad is not None
+    torch.testing.assert_close(values.grad, s.slope.matrix.to_dense().T @ weight, atol=1e-5, rtol=1e-4)
+
+
+def test_unknown_model() -> None:
+    with pytest.raises(InputError, match="expected one of cegnn, invariant-gnn, invariant-gnn-small"):
+        make_model("best", Statistics(1, 1, 1, 1, 1, 1, 1, 1))
+
+
+def test_scene_of_some_interiors_keeps_their_indices(store: Store, sizes: Statistics, pokes: Pokes) -> None:
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    part = scene.only(pokes.geometry[3:].numpy())
+    assert len(part.rigid) == 1 < len(scene.rigid)
+    last = Pokes(**{k: v[3:] for k, v in vars(pokes).items()})
+    with torch.no_grad():
+        torch.testing.assert_close(model(part, last).displacement, model(scene, last).displacement)

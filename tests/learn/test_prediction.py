@@ -1,0 +1,264 @@
+"""learn.predict and learn.load: nonsense is refused by name; every answer says whether it was trained for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+import learn
+import learn.predict
+from learn.data import open_store, split_of
+from learn.errors import InputError, OutsideDomainError
+from learn.predictor import Predictor
+from learn.training import load_run
+from learn.training.run_folder import load_checkpoint, save_checkpoint
+from learn.validity import QUANTITIES, domain_of
+from tests.learn.commands import call, refused, train_small
+from tests.learn.small_store import write_store
+
+POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
+SPHERE = "inclusion: {kind: sphere, radius_mm: 8, centre_mm: [0, 0, 8]}"
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    torch.set_num_threads(1)
+    return write_store(tmp_path_factory.mktemp("prediction") / "s.zarr", shapes=3, sites=3, frames=3)
+
+
+@pytest.fixture(scope="module")
+def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return train_small(store, tmp_path_factory.mktemp("run") / "run", "--epochs", 1)
+
+
+@pytest.fixture(scope="module")
+def predictor(run: Path) -> Predictor:
+    return learn.load(run)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[5, -10]", "[.nan, -10]", "key site_mm.0: "),
+        ("[5, -10]", "[5, .inf]", "key site_mm.1: "),
+        ("[5, -10]", "[5, -10, 0]", "key site_mm: "),
+        ("[5, -10]", "[49, 0]", "key site_mm: expected x and y within -47.5 to 47.5"),
+        ("heading_deg: 45", "heading_deg: .nan", "key heading_deg: "),
+        ("heading_deg: 45", "heading_deg: true", "key heading_deg: "),
+        ("angle_deg: 20", "angle_deg: 79", "key angle_deg: Input should be less than or equal to 45"),
+        ("angle_deg: 20", "angle_deg: .nan", "key angle_deg: "),
+        ("depth_mm: 2", "depth_mm: true", "key depth_mm: Input should be a valid number, got True"),
+        ("depth_mm: 2", "depth_mm: '2'", "key depth_mm: Input should be a valid number, got '2'"),
+        ("depth_mm: 2", "depth_mm: .nan", "key depth_mm: "),
+        ("depth_mm: 2", "depth_mm: .inf", "key depth_mm: "),
+        (
+            "depth_mm: 2",
+            "depth_mm: 900",
+            "key depth_mm: expected less than the block's height of 32 mm, got 900",
+        ),
+        ("depth_mm: 2", "depth_mm: [2]", "key depth_mm: "),
+        ("depth_mm: 2", "depth: 2", "key depth: no such key (and 1 more)"),
+        ("softness: S1", "shear_modulus_kPa: .nan", "key shear_modulus_kPa: "),
+        ("softness: S1", "softness: 3", "key softness: "),
+        (
+            "shape: shape-1",
+            SPHERE.replace("radius_mm: 8", "radius_mm: .nan"),
+            "key inclusion.sphere.radius_mm: ",
+        ),
+        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, .nan, 8]"), "key inclusion.sphere.centre_mm.1: "),
+        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[60, 0, 8]"), "within the block, x -50 to 50 mm"),
+        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, 0, 30]"), "within the block, z 0 to 32 mm"),
+        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, 0, -9]"), "within the block, z 0 to 32 mm"),
+        ("shape: shape-1", SPHERE.replace("radius_mm: 8", "radius_mm: 80"), "within the block"),
+        ("shape: shape-1", SPHERE.replace("sphere", "cone"), "key inclusion: "),
+        (
+            "depth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1",
+            "depth_mm: 5\n" + SPHERE.replace("[0, 0, 8]", "[5, -10, 20]"),
+            "key depth_mm: expected less, the tip would end within the rigid inclusion",
+        ),
+        ("shape: shape-1\n", "", "expected either shape or inclusion"),
+    ],
+)
+def test_nonsense_is_refused_by_name(run: Path, tmp_path: Path, old: str, new: str, words: str) -> None:
+    scene = tmp_path / "poke.yaml"
+    assert old in POKE
+    scene.write_text(POKE.replace(old, new))
+    refused(call(learn.predict.app, run, scene, "--out", tmp_path / "out"), str(scene), words)
+    assert not (tmp_path / "out").exists()
+
+
+BOMB = "a: &a [1,1,1,1,1,1,1,1,1]\n" + "".join(
+    f"{k}: &{k} [{','.join([f'*{j}'] * 9)}]\n" for j, k in zip("abcdefgh", "bcdefghi", strict=True)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (BOMB, "expected no alias"),
+        ("a: &a [*a]\n", "expected no alias"),
+        ("site_mm: " + "[" * 5000 + "]" * 5000, "nested deeper"),
+        (POKE + "depth_mm: 3\n", "key depth_mm: stands twice"),
+        (POKE + "{", "not YAML"),
+        (POKE.replace("depth_mm: 2", "depth_mm: 2024-13-45"), "not YAML"),
+        (POKE.replace("depth_mm: 2", "depth_mm: " + "9" * 6000), "not YAML"),
+        (POKE.replace("depth_mm: 2", "depth_mm: !!python/name:os.system"), "not YAML"),
+        ("[1, 2]", "expected keys and values"),
+        ("", "expected keys and values"),
+        ("? [1, 2]\n: 3\n", "not YAML"),
+        ("1: 2\n", "key 1: "),
+        ("x" * 1_100_000, "expected at most"),
+    ],
+    ids=[
+        "bomb", "cycle", "nesting", "duplicate", "torn", "bad date", "huge integer", "python", "list",
+        "empty", "list as key", "number as key", "large",
+    ],
+)  # fmt: skip
+def test_yaml_that_is_no_scene_is_one_sentence(run: Path, tmp_path: Path, text: str, words: str) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(text)
+    refused(call(learn.predict.app, run, scene, "--out", tmp_path / "out"), str(scene), words)
+
+
+def _edges(run: Path) -> dict[str, tuple[float, float]]:
+    domain = load_run(run).domain
+    assert domain is not None
+    return domain.ranges
+
+
+def test_the_domain_is_that_of_the_training_part(run: Path, store: Path) -> None:
+    opened, loaded = open_store(store), load_run(run)
+    rows = split_of(opened, loaded.recipe).train
+    assert loaded.domain == domain_of(opened, rows)
+    ranges = _edges(run)
+    assert ranges["depth_mm"] == pytest.approx((1.0, 2.0))  # the recipe trains to 2.5 mm
+    angle = np.degrees(np.arccos(-opened.direction[opened.frame_poke[rows], 2]))
+    assert ranges["angle_deg"] == pytest.approx((angle.min(), angle.max()))
+    assert ranges["shear_modulus_kPa"] == pytest.approx((9, 30))
+    assert ranges["block_z_mm"] == pytest.approx((32, 32))
+    assert ranges["block_x_mm"] == pytest.approx((100, 100))
+    assert ranges["rod_radius_mm"] == pytest.approx((2.5, 2.5))
+    assert ranges["inclusion_height_mm"][1] <= 32 - 12 + 0.3
+    assert set(ranges) == set(QUANTITIES)
+
+
+def _outside(predictor: Predictor, **changes: object) -> set[str]:
+    """Keys of what is outside, of a poke in the middle of the trained ranges but for the changes."""
+    ranges = predictor.domain.ranges if predictor.domain else {}
+    middle = {key: sum(ranges[key]) / 2 for key in ("depth_mm", "angle_deg", "shear_modulus_kPa")}
+    scene: dict[str, object] = {"site_mm": [0, 0], "shape": "shape-2", **middle, **changes}
+    return {check.key for check in predictor.predict(scene).outside}
+
+
+def test_each_quantity_is_checked_on_its_own(predictor: Predictor) -> None:
+    plain = _outside(predictor)
+    assert plain <= {"cover_mm", "depth_over_cover", "inclusion_width_mm", "inclusion_height_mm"}
+    for changes, key in [
+        ({"depth_mm": 4.0}, "depth_mm"),
+        ({"depth_mm": 0.3}, "depth_mm"),
+        ({"angle_deg": 45}, "angle_deg"),
+        ({"shear_modulus_kPa": 100}, "shear_modulus_kPa"),
+        ({"site_mm": [46, 0]}, "site_to_side_mm"),
+    ]:
+        assert _outside(predictor, **changes) - plain - {"depth_over_cover"} == {key}, changes
+
+
+def test_thin_cover_and_other_inclusions_are_outside(predictor: Predictor) -> None:
+    thin = {"kind": "cylinder", "radius_mm": 9, "height_mm": 28, "centre_mm": [0, 0, 14]}
+    outside = _outside(predictor, shape=None, inclusion=thin)
+    assert {"cover_mm", "inclusion_height_mm"} <= outside
+    none = predictor.predict(
+        {"site_mm": [0, 0], "depth_mm": 2, "softness": "S0", "inclusion": {"kind": "none"}}
+    )
+    assert "inclusion_width_mm" in {check.key for check in none.outside}
+    kind = next(check for check in none.checks if check.key == "inclusion")
+    assert kind.inside is None  # this dataset does not say what its shapes are
+
+
+def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE.replace("depth_mm: 2", "depth_mm: 9"))
+    done = call(learn.predict.app, run, scene, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    flat = " ".join(done.output.split())
+    assert "Outside what the model was trained on: depth (9 mm; trained: 1 to 2 mm)" in flat
+    answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
+    assert answer["inside_training"] is False
+    depth = answer["domain"]["depth_mm"]
+    assert depth == {"value": pytest.approx(9.0), "trained": "1 to 2 mm", "inside": False}
+    assert set(answer["domain"]) == {*QUANTITIES, "inclusion"}
+    strict = call(learn.predict.app, run, scene, "--strict", "--out", tmp_path / "strict")
+    refused(strict, str(scene), "--strict", "depth (9 mm; trained: 1 to 2 mm)")
+    assert not (tmp_path / "strict").exists()
+
+
+def test_a_trained_poke_is_inside(run: Path, store: Path) -> None:
+    """Every training poke, asked for as a scene, is inside, and strict answers it."""
+    opened, predictor = open_store(store), learn.load(run)
+    rows = split_of(opened, predictor.run.recipe).train
+    for poke in np.unique(opened.frame_poke[rows]):
+        direction = opened.direction[poke]
+        scene = {
+            "site_mm": [float(v) * 1e3 for v in opened.path_start[poke][:2]],
+            "depth_mm": 2.0,
+            "angle_deg": float(np.degrees(np.arccos(-direction[2]))),
+            "heading_deg": float(np.degrees(np.arctan2(direction[1], direction[0]))),
+            "shape": opened.shapes[opened.shape[poke]],
+            "softness": opened.softness_names[opened.softness[poke]],
+        }
+        answer = predictor.predict(scene, strict=True)
+        assert answer.inside, answer.verdict
+
+
+def test_runs_from_before_the_domain_was_recorded(run: Path, tmp_path: Path) -> None:
+    """Derived from the dataset where it is at hand, else said to be unknown."""
+    old = tmp_path / "old"
+    old.mkdir()
+    content = load_checkpoint(run / "best.pt")
+    recorded = content.pop("domain")
+    save_checkpoint(old / "best.pt", content)
+    assert load_run(old).domain is None
+    predictor = learn.load(old)
+    assert predictor.domain is not None
+    assert predictor.domain.model_dump(mode="json") == recorded
+    predictor.domain = None
+    answer = predictor.predict({"site_mm": [0, 0], "depth_mm": 2, "shape": "shape-1", "softness": "S0"})
+    assert answer.inside is None
+    assert "not known what the model was trained on" in answer.verdict
+    with pytest.raises(OutsideDomainError, match="not known"):
+        predictor.predict(answer.poke, strict=True)
+
+
+def test_the_python_interface(run: Path, predictor: Predictor, tmp_path: Path) -> None:
+    scene = tmp_path / "poke.yaml"
+    scene.write_text(POKE)
+    answer = predictor.predict(scene)
+    assert answer.displacement.shape == answer.points.shape == (1024, 3)
+    assert answer.force > 0
+    again = predictor.predict({"site_mm": [5, -10], "depth_mm": 2, "angle_deg": 20, "heading_deg": 45,
+                               "shape": "shape-1", "softness": "S1"})  # fmt: skip
+    np.testing.assert_array_equal(again.displacement, answer.displacement)
+    assert {p.name for p in answer.save(tmp_path / "out").iterdir()} == {
+        "displacement.csv", "prediction.json", "prediction.png",
+    }  # fmt: skip
+    for shown, word in ((answer, "force"), (predictor, "invariant-gnn")):
+        html = shown._repr_html_()
+        assert html.startswith("<table>")
+        assert word in html
+        assert word in repr(shown)
+        assert len(repr(shown)) < 2500
+    assert "data:image/png;base64" in answer._repr_html_()
+    with pytest.raises(InputError, match="trained on dataset"):
+        learn.load(run, dataset=write_store(tmp_path / "o.zarr", seed=4, frames=1))
+
+
+def test_the_shipped_scene_is_read() -> None:
+    from learn.scene_file import load_poke
+
+    poke = load_poke(Path(__file__).parents[2] / "datasets" / "scenes" / "poke.yaml")
+    assert poke.shape == "cube-18"  # a shape of the quick recipe
+    assert poke.softness == "S0.5"

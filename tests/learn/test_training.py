@@ -1,0 +1,255 @@
+"""Training: repeats itself, resumes to the same result, stops at nonsense, keeps what was good."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import torch
+from torch import Tensor
+from typer.testing import CliRunner
+
+import learn.training.loop
+from learn.data import open_store
+from learn.errors import InputError
+from learn.progress import Progress
+from learn.train import app
+from learn.training import DivergedError, ProcessGroup, Recipe, Trainer, load_recipe, load_run, read_log
+from learn.training.recipe import RECIPES
+from learn.training.run_folder import load_checkpoint, save_checkpoint
+from tests.learn.small_store import write_store
+
+ROOT = Path(__file__).parent.parent.parent
+TINY = Recipe(name="tiny", epochs=2, batch=4, ema_decay=0.9)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _one_thread() -> None:
+    torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_store(tmp_path_factory.mktemp("training") / "s.zarr", sites=2, frames=2)
+
+
+def _train(
+    store: Path, recipe: Recipe, out: Path, *, resume: bool = False, stop_after: int | None = None
+) -> None:
+    def watch(progress: Progress) -> None:
+        if stop_after is not None and progress.values is None and progress.done > stop_after:
+            raise KeyboardInterrupt
+
+    Trainer(open_store(store), recipe, out, resume=resume, on_progress=watch).train()
+
+
+def _weights(out: Path) -> dict[str, Tensor]:
+    found: dict[str, Tensor] = load_checkpoint(out / "last.pt")["model"]
+    return found
+
+
+def _same(a: dict[str, Tensor], b: dict[str, Tensor]) -> bool:
+    return all(torch.equal(a[name], b[name]) for name in a)
+
+
+@pytest.mark.parametrize("data", ["memory", pytest.param("stream", marks=pytest.mark.slow)])
+def test_stopped_and_resumed_is_the_same_as_at_one_go(folder: Path, tmp_path: Path, data: str) -> None:
+    recipe = TINY.model_copy(update={"data": data, "shuffle_buffer": 2, "point_dropout": 0.5})
+    _train(folder, recipe, tmp_path / "whole")
+    with pytest.raises(KeyboardInterrupt):
+        _train(folder, recipe, tmp_path / "parts", stop_after=1)  # in the middle of the second epoch
+    assert load_checkpoint(tmp_path / "parts" / "last.pt")["epoch"] == 1
+    _train(folder, recipe, tmp_path / "parts", resume=True)
+    assert _same(_weights(tmp_path / "whole"), _weights(tmp_path / "parts"))
+    logs = [
+        [{k: v for k, v in line.items() if "second" not in k} for line in read_log(tmp_path / part)]
+        for part in ("whole", "parts")
+    ]
+    assert logs[0] == logs[1]
+    assert [line["epoch"] for line in logs[0]] == [0, 1]
+
+
+def test_another_seed_gives_other_weights(folder: Path, tmp_path: Path) -> None:
+    one = TINY.model_copy(update={"epochs": 1})
+    _train(folder, one, tmp_path / "a")
+    _train(folder, one.model_copy(update={"seed": 1}), tmp_path / "b")
+    assert not _same(_weights(tmp_path / "a"), _weights(tmp_path / "b"))
+
+
+@pytest.mark.slow
+def test_dropout_of_the_baseline_resumes_as_well(folder: Path, tmp_path: Path) -> None:
+    recipe = TINY.model_copy(
+        update={
+            "model": "cegnn",
+            "epochs": 2,
+            "train_depth_mm": 1.5,
+            "train_softness": ["S0"],
+            "force_loss": "square",
+        }
+    )
+    _train(folder, recipe, tmp_path / "whole")
+    with pytest.raises(KeyboardInterrupt):
+        _train(folder, recipe, tmp_path / "parts", stop_after=1)
+    _train(folder, recipe, tmp_path / "parts", resume=True)
+    assert _same(_weights(tmp_path / "whole"), _weights(tmp_path / "parts"))
+
+
+def test_a_checkpoint_carries_dataset_recipe_and_statistics(folder: Path, tmp_path: Path) -> None:
+    _train(folder, TINY.model_copy(update={"epochs": 1}), tmp_path / "run")
+    run = load_run(tmp_path / "run")
+    assert run.uuid == open_store(folder).uuid
+    assert run.recipe.name == "tiny"
+    assert run.statistics.frames == 8
+    assert set(run.groups) == {"train", "validation", "test"}
+
+
+def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) -> None:
+    _train(folder, TINY.model_copy(update={"epochs": 1}), tmp_path / "run")
+    for name in ("best.pt", "last.pt"):
+        content = load_checkpoint(tmp_path / "run" / name)
+        save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
+    with pytest.raises(InputError, match="weights of version 1 of model invariant-gnn, this is version 2"):
+        load_run(tmp_path / "run")
+    with pytest.raises(InputError, match="train again"):
+        _train(folder, TINY, tmp_path / "run", resume=True)
+
+
+def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plain = learn.training.loop.loss_of
+    calls = 0
+
+    def broken(*args: object) -> learn.training.recipe.Loss:
+        nonlocal calls
+        calls += 1
+        loss = plain(*args)  # type: ignore[arg-type]
+        return learn.training.recipe.Loss(
+            loss.total * (float("nan") if calls > 3 else 1), loss.displacement, loss.force
+        )
+
+    monkeypatch.setattr(learn.training.loop, "loss_of", broken)
+    with pytest.raises(DivergedError, match="not finite"):
+        _train(folder, TINY, tmp_path / "run")
+    kept = load_checkpoint(tmp_path / "run" / "last.pt")
+    assert kept["epoch"] == 1
+    assert all(bool(torch.isfinite(v).all()) for v in kept["model"].values())
+
+
+def test_a_runaway_loss_ends_the_run(folder: Path, tmp_path: Path) -> None:
+    recipe = TINY.model_copy(update={"learning_rate": 30.0, "clip": 0.0, "warmup": 0.5, "epochs": 10})
+    with pytest.raises(DivergedError):
+        _train(folder, recipe, tmp_path / "run")
+
+
+def test_what_is_there_is_not_overwritten(folder: Path, tmp_path: Path) -> None:
+    one = TINY.model_copy(update={"epochs": 1})
+    _train(folder, one, tmp_path / "run")
+    before = (tmp_path / "run" / "last.pt").read_bytes()
+    with pytest.raises(InputError, match="--resume goes on"):
+        _train(folder, one, tmp_path / "run")
+    with pytest.raises(InputError, match="was trained with batch 4, the recipe now has 2"):
+        _train(folder, one.model_copy(update={"batch": 2}), tmp_path / "run", resume=True)
+    other = write_store(tmp_path / "other.zarr", seed=9, frames=2)
+    with pytest.raises(InputError, match="trained on dataset uuid-0-3"):
+        _train(other, one, tmp_path / "run", resume=True)
+    assert (tmp_path / "run" / "last.pt").read_bytes() == before
+    (tmp_path / "run" / "last.pt").write_bytes(before[:1000])
+    with pytest.raises(InputError, match="not a readable checkpoint"):
+        _train(folder, one, tmp_path / "run", resume=True)
+    with pytest.raises(InputError, match="no such checkpoint"):
+        _train(folder, one, tmp_path / "nothing", resume=True)
+    assert not (tmp_path / "nothing").exists()
+
+
+def test_recipes(tmp_path: Path) -> None:
+    paper = load_recipe("paper")
+    assert (paper.model, paper.learning_rate, paper.batch, paper.epochs) == ("cegnn", 1e-4, 64, 200)
+    assert set(RECIPES) >= {"fast", "paper"}
+    file = tmp_path / "mine.yaml"
+    file.write_text("name: mine\nepochs: 2\n")
+    assert load_recipe(str(file)).epochs == 2
+    file.write_text("name: mine\nepoch: 2\n")
+    with pytest.raises(InputError, match="key epoch"):
+        load_recipe(str(file))
+    file.write_text("[1, 2")
+    with pytest.raises(InputError, match="not YAML"):
+        load_recipe(str(file))
+    with pytest.raises(InputError, match="expected fast, quick, cegnn, paper or a YAML file"):
+        load_recipe("slow")
+
+
+def test_command_trains_and_refuses(folder: Path, tmp_path: Path) -> None:
+    runner = CliRunner()
+    arguments = [str(folder), "--recipe", "quick", "--split", "shape", "--epochs", "1", "--threads", "1"]
+    done = runner.invoke(app, [*arguments, "--out", str(tmp_path / "run")])
+    assert done.exit_code == 0, done.output
+    assert "best.pt" in done.output
+    again = runner.invoke(app, [*arguments, "--out", str(tmp_path / "run")])
+    assert again.exit_code == 2
+    assert again.stderr.count("\n") == 1
+    bad = runner.invoke(app, [str(folder), "--fold", "9", "--out", str(tmp_path / "x")])
+    assert bad.exit_code == 2
+    assert "key fold" in bad.stderr
+    nowhere = runner.invoke(app, [str(tmp_path / "no.zarr")])
+    assert nowhere.exit_code == 2
+    assert "no dataset there" in nowhere.stderr
+
+
+def _environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+
+
+@pytest.mark.slow
+def test_ctrl_c_says_how_to_go_on(folder: Path, tmp_path: Path) -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "learn.train",
+        str(folder),
+        "--epochs",
+        "500",
+        "--out",
+        str(tmp_path / "run"),
+    ]
+    process = subprocess.Popen(command, env=_environment(), cwd=ROOT, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 120
+    while not (tmp_path / "run" / "best.pt").exists() and time.monotonic() < until:
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "--resume goes on" in error
+    assert load_run(tmp_path / "run").recipe.epochs == 500
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("data", ["memory", "stream"])
+def test_two_processes_of_torchrun_train_one_model(tmp_path: Path, data: str) -> None:
+    folder = write_store(tmp_path / "s.zarr", sites=4, frames=3)  # three shards to train on
+    recipe = tmp_path / "two.yaml"
+    recipe.write_text(f"name: two\nepochs: 2\nbatch: 4\ndata: {data}\n")
+    command = [
+        sys.executable, "-m", "torch.distributed.run", "--nproc-per-node", "2", "--standalone",
+        "-m", "learn.train", str(folder), "--recipe", str(recipe), "--out", str(tmp_path / "run"),
+        "--threads", "1",
+    ]  # fmt: skip
+    done = subprocess.run(command, env=_environment(), cwd=ROOT, timeout=300, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    log = read_log(tmp_path / "run")
+    assert [line["epoch"] for line in log] == [0, 1]
+    assert log[-1]["step"] > 2
+    assert load_run(tmp_path / "run").epoch in (1, 2)
+
+
+def test_a_stream_of_fewer_shards_than_processes_is_refused(folder: Path, tmp_path: Path) -> None:
+    """It would train nothing: each process waits for the others' batches."""
+    recipe = TINY.model_copy(update={"data": "stream"})
+    group = ProcessGroup(0, 2, torch.device("cpu"))
+    with pytest.raises(InputError, match="1 shards to train on cannot be split among 2 processes"):
+        Trainer(open_store(folder), recipe, tmp_path / "run", process_group=group)

@@ -1,0 +1,69 @@
+"""Links between pages lead somewhere, and what the pages name exists."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.packaging.blocks import ROOT
+
+PAGES = sorted(
+    p.relative_to(ROOT).as_posix()
+    for folder in (".", "docs", "studies", "benchmarks", "datasets/measured")
+    for p in (ROOT / folder).glob("*.md" if folder in (".", "docs") else "**/*.md")
+)
+_LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
+_FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+_MODULE = re.compile(r"\bpython -m ((?:factory|calibration|learn|benchmarks|studies)[\w.]*)")
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.+)$", _FENCED.sub("", text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_to_files_of_the_repository(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for link in _LINK.findall(_FENCED.sub("", text)):
+        if re.match(r"[a-z]+:", link):
+            continue
+        target, _, anchor = link.partition("#")
+        path = (ROOT / page).parent / target if target else ROOT / page
+        assert path.exists(), f"{page}: {link}"
+        if anchor:
+            assert anchor in anchors(path.read_text(encoding="utf-8")), f"{page}: {link}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_name_modules_that_exist(page: str) -> None:
+    for name in _MODULE.findall((ROOT / page).read_text(encoding="utf-8")):
+        module = ROOT.joinpath(*name.rstrip(".").split("."))
+        runs = (module.with_suffix(".py"), module / "__main__.py")
+        assert any(p.exists() for p in runs), f"{page}: python -m {name}"
+
+
+def test_every_page_of_the_manual_is_in_its_index() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    linked = {link.partition("#")[0] for link in _LINK.findall(index)}
+    pages = {p.name for p in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert pages <= linked
+
+
+def test_pages_name_no_place_outside_the_repository() -> None:
+    for page in PAGES:
+        text = (ROOT / page).read_text(encoding="utf-8")
+        assert not re.search(
+            r"(?<![\w/])(\.\./shared|/home/|/root/)|(?<![\w/$.-])measured/(bench|real)", text
+        ), page
+
+
+def test_anchor_of_a_heading() -> None:
+    assert anchors("# A bar, let go\n```\n# no heading\n```\n## `kind: beam`\n") == {
+        "a-bar-let-go",
+        "kind-beam",
+    }
+    assert Path(ROOT, "README.md").exists()

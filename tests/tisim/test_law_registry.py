@@ -1,0 +1,213 @@
+"""Laws added from outside the package: from a file, a script and a prompt, in this and in other processes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import tisim
+from tisim import laws
+
+GENT = '''
+"""Gent's law (Rubber Chem. Technol. 69, 1996), isochoric plus volumetric: a law of somebody else's."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tisim.laws import Law, Moduli, by_invariants, first_isochoric, register, ti
+
+
+@ti.func
+def logarithm(x):
+    return ti.log(x)
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):
+    i1, slope = first_isochoric(I1, J)
+    room = 1.0 - (i1 - 3.0) / prm[1]
+    d = 0.5 * prm[0] / room
+    return by_invariants(-0.5 * prm[0] * prm[1] * logarithm(room), d, d / (prm[1] * room), i1, slope, J)
+
+
+LAW = register(
+    Law(
+        name="gent",
+        title="Gent",
+        parameters={"mu": ("Pa", "scalar"), "limit": ("-", "scalar"), "bulk": ("Pa", "scalar")},
+        family="invariant",
+        theta="log",
+        energy=energy,
+        pack=lambda p: np.array([p["mu"], p["limit"]]),
+        kappa=lambda p: p["bulk"],
+        moduli=lambda p: Moduli(shear_modulus=p["mu"], bulk_modulus=p["bulk"]),
+        from_moduli=lambda shear, bulk: {"mu": shear, "limit": 30.0, "bulk": bulk},
+        fault=lambda p: "" if p["limit"] > 0.0 else "parameter limit [-]: expected a number above 0",
+    )
+)
+'''
+MAIN = """
+import tisim
+
+if __name__ == "__main__":
+    {load}
+    soft = tisim.material_from_moduli("gent", shear_modulus=2e4, bulk_modulus=1e6)
+    scenes = [tisim.Coupon(material=soft, stretches=(1.5, 3.0)), tisim.Beam(material=soft, length=0.05)]
+    here = tisim.simulate(scenes, workers=1)
+    there = tisim.simulate(scenes, workers=2)
+    print(all(a.ok and (a.positions == b.positions).all() for a, b in zip(here, there, strict=True)))
+"""
+
+
+@pytest.fixture
+def gent(tmp_path: Path) -> Iterator[ModuleType]:
+    (tmp_path / "my_gent.py").write_text(GENT)
+    sys.path.insert(0, str(tmp_path))
+    try:
+        import my_gent
+
+        yield my_gent
+    finally:
+        laws.unregister("gent")
+        sys.path.remove(str(tmp_path))
+        sys.modules.pop("my_gent", None)
+
+
+@pytest.mark.parametrize("law", laws.all_names())
+def test_every_law_is_sound(law: str) -> None:
+    report = laws.check_law(law)
+    assert report.ok, str(report)
+
+
+def test_a_law_from_a_file_is_one_of_the_laws(gent: ModuleType) -> None:
+    assert laws.names()[-1] == laws.all_names()[-1] == "gent"
+    assert laws.get("gent") is gent.LAW
+    report = laws.check_law("gent")
+    assert report.ok, str(report)
+    soft = tisim.material_from_moduli("gent", shear_modulus=2e4, bulk_modulus=2e8)
+    (found,) = tisim.simulate([tisim.Coupon(material=soft, stretches=(1.5, 3.0))], workers=1)
+    s = found.load
+    i1 = s**2 + 2.0 / s
+    exact = 2e4 * (s - s**-2) * 30.0 / (30.0 - (i1 - 3.0))  # incompressible
+    assert found.nominal_stress == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "load"),
+    [
+        ("file", "import my_gent"),
+        ("script", "exec(compile(SOURCE, __file__ + ' cell', 'exec'), globals())"),
+    ],
+)
+def test_other_processes_know_an_added_law(tmp_path: Path, name: str, load: str) -> None:
+    """Imported from a file, and typed at a prompt or in a notebook, where no file holds the source."""
+    (tmp_path / "my_gent.py").write_text(GENT)
+    text = MAIN.format(load=load)
+    if name == "script":
+        cell = GENT.replace("from __future__ import annotations", "")
+        cell = cell.replace("prm: ti.template()", "prm: 'ti.template()'")
+        remember = (
+            "import linecache\n"
+            f"SOURCE = {cell!r}\n"
+            "linecache.cache[__file__ + ' cell'] = (1, None, SOURCE.splitlines(True), __file__ + ' cell')\n"
+        )
+        text = remember + text
+    (tmp_path / "run.py").write_text(text)
+    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
+    done = subprocess.run(
+        [sys.executable, str(tmp_path / "run.py")],
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.strip() == "True", done.stderr
+
+
+def test_a_law_registered_anew_takes_the_place_of_the_old(gent: ModuleType) -> None:
+    """As it happens in a notebook: no kernel of the old one is used again."""
+    stress = laws.evaluate("gent", {"mu": 1.0, "limit": 30.0, "bulk": 10.0}, np.diag([2.0, 1.0, 1.0])[None])[
+        1
+    ]
+    laws.register(replace(gent.LAW, energy=laws.get("yeoh").energy, pack=_as_yeoh))
+    other = laws.evaluate("gent", {"mu": 1.0, "limit": 30.0, "bulk": 10.0}, np.diag([2.0, 1.0, 1.0])[None])[1]
+    assert np.abs(stress - other).max() > 1e-3
+
+
+def _as_yeoh(p: laws.Parameters) -> np.ndarray:
+    return np.array([p["mu"], 0.5])
+
+
+def test_what_is_no_law_is_refused(gent: ModuleType) -> None:
+    with pytest.raises(ValueError, match="'ogden' is a law of tisim's own"):
+        laws.register(replace(gent.LAW, name="ogden"))
+    with pytest.raises(ValueError, match="expected a name of lower-case letters"):
+        laws.register(replace(gent.LAW, name="My law"))
+    with pytest.raises(TypeError, match="expected a Law, got str"):
+        laws.register("gent")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="has other moduli"):
+        laws.register(
+            replace(gent.LAW, moduli=lambda p: laws.Moduli(shear_modulus=1.0, bulk_modulus=p["bulk"]))
+        )
+
+
+def test_an_unsound_law_is_found(gent: ModuleType) -> None:
+    """Parameters in the wrong order: the stress at rest is right, the moduli are not."""
+    wrong = replace(gent.LAW, pack=lambda p: np.array([1.1 * p["mu"], p["limit"]]))
+    report = laws.check_law(wrong)
+    assert not report.ok
+    assert any("tangent at rest has the stated moduli" in fault for fault in report.faults)
+    assert "NOT sound" in str(report)
+
+
+def test_nothing_of_taichi_is_imported_before_a_law_is_evaluated(tmp_path: Path) -> None:
+    (tmp_path / "my_gent.py").write_text(GENT)
+    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
+    script = "import sys, tisim, my_gent; print('taichi' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == "False"
+
+
+def test_commands_know_the_laws_of_files_that_the_environment_names(tmp_path: Path) -> None:
+    file = tmp_path / "my_gent.py"
+    file.write_text(GENT)
+    environment = {**os.environ, "TISIM_EXTENSIONS": str(file)}
+    root = Path(tisim.__file__).parents[1]
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, *arguments],
+            env=environment,
+            cwd=root,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    assert "eight-chain, gent" in run("-m", "tisim").stdout
+    script = (
+        "import tisim; m = tisim.material_from_moduli('gent', shear_modulus=1e4, bulk_modulus=1e6);"
+        "print([r.ok for r in tisim.simulate([tisim.Coupon(material=m), tisim.Beam(material=m, length=0.05)],"
+        " workers=2)])"
+    )
+    done = run("-c", script)
+    assert done.stdout.strip() == "[True, True]", done.stderr
+    environment["TISIM_EXTENSIONS"] = str(tmp_path / "nowhere.py")
+    done = run("-m", "tisim")
+    assert "TISIM_EXTENSIONS: " in done.stderr
+    assert "expected a Python file that exists" in done.stderr.splitlines()[-1]

@@ -1,0 +1,201 @@
+"""The course of a test: what is driven, piece by piece in time.
+
+>>> from tisim.course import Course
+>>> pull = Course(start=1.0).ramp(to=1.5, speed=0.05).hold(60.0).ramp(to=1.0, speed=0.05).hold(60.0)
+>>> pull.duration
+140.0
+>>> pull.value(35.0)
+1.5
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tisim._checks import FieldError, check_number
+
+FRAMES_A_PIECE = 10
+STEPS_A_RAMP = 10
+SAME = 1e-12  # of the duration: times closer than this are one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop:
+    """The end of a time step.
+
+    Attributes
+    ----------
+    time : float
+        [s].
+    value : float
+        Of what is driven.
+    frame : bool
+        Whether the state there is kept.
+    """
+
+    time: float
+    value: float
+    frame: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """What a test drives over time: straight lines from corner to corner, and jumps.
+
+    What it is belongs to the scene: the stretch of a coupon or a compressed cylinder, the depth of a poke
+    [m], the part of a beam's load that acts. Quasi-static: there is no inertia.
+
+    Time steps follow from the course and the material alone. A step is at most `growth` times the time since
+    the last corner plus half of the shortest relaxation time, so that steps are fine after a corner and grow
+    by a constant ratio in a hold; a ramp has at least STEPS_A_RAMP steps; frames and corners are met exactly.
+    The error falls with the square of `growth`. A material without viscosity steps from frame to frame.
+
+    Attributes
+    ----------
+    start : float
+        Value at time 0.
+    times : tuple of float
+        When each piece ends [s], never falling; a piece that takes no time is a jump.
+    values : tuple of float
+        What each piece ends at.
+    frames : tuple of float, optional
+        Times at which frames are kept [s], rising. None: FRAMES_A_PIECE a piece, evenly. A frame at the time
+        of a jump is after it.
+    growth : float
+        As above, above 0 and up to 1.
+    """
+
+    start: float = 0.0
+    times: tuple[float, ...] = ()
+    values: tuple[float, ...] = ()
+    frames: tuple[float, ...] | None = None
+    growth: float = 0.7
+
+    def ramp(self, *, to: float, speed: float | None = None, duration: float | None = None) -> Course:
+        """This course, then a straight line to a value at a speed [1/s] (of either sign) or in a time [s]."""
+        if (speed is None) == (duration is None):
+            raise ValueError("course.ramp: expected either a speed or a duration")
+        if duration is None:
+            check_number("course.ramp.speed", speed, "a speed other than 0", lambda v: v != 0.0)
+            duration = abs((to - self._last) / float(speed))  # type: ignore[arg-type]
+        return self._then(duration, to)
+
+    def jump(self, to: float) -> Course:
+        """This course, then a jump to a value in no time."""
+        return self._then(0.0, to)
+
+    def hold(self, duration: float) -> Course:
+        """This course, then a rest at the value it ends at, for so long [s]."""
+        return self._then(duration, self._last)
+
+    def cycles(self, *, to: float, back: float, speed: float, count: int) -> Course:
+        """This course, then so many times a ramp to a value and a ramp back to another, at a speed [1/s]."""
+        course = self
+        for _ in range(count):
+            course = course.ramp(to=to, speed=speed).ramp(to=back, speed=speed)
+        return course
+
+    def _then(self, duration: float, to: float) -> Course:
+        end = self.duration + duration
+        return replace(self, times=(*self.times, end), values=(*self.values, to))
+
+    @property
+    def duration(self) -> float:
+        """Length of the course [s]."""
+        return self.times[-1] if self.times else 0.0
+
+    @property
+    def _last(self) -> float:
+        return self.values[-1] if self.values else self.start
+
+    def value(self, time: float) -> float:
+        """The value at a time [s]; after a jump there."""
+        at, before = 0.0, self.start
+        found = self.start
+        for end, value in zip(self.times, self.values, strict=True):
+            if time >= end:
+                found = value
+            elif time >= at:
+                return before + (value - before) * (time - at) / (end - at)
+            at, before = end, value
+        return found
+
+    def check(self, field: str = "course", *, start: float | None = None) -> None:
+        """Raise ValueError, in one sentence, for a course that cannot be; start: where it has to begin."""
+        if len(self.times) != len(self.values) or not self.times:
+            raise FieldError(f"{field}.times", "at least one piece, each with a time and a value", self.times)
+        for value in (self.start, *self.values):
+            check_number(f"{field}.values", value, "finite numbers", lambda _: True)
+        if start is not None and self.start != start:
+            raise FieldError(f"{field}.start", f"{start:g}, where the body is at rest", self.start)
+        for time in self.times:
+            check_number(f"{field}.times", time, "times of 0 s or more", lambda v: v >= 0.0)
+        if any(b < a for a, b in zip(self.times, self.times[1:], strict=False)):
+            raise FieldError(f"{field}.times", "times that never fall: a course cannot go back", self.times)
+        check_number(f"{field}.growth", self.growth, "a number above 0 and up to 1", lambda v: 0.0 < v <= 1.0)
+        if self.frames is None:
+            return
+        first = 0.0 if self.times[0] == 0.0 else np.nextafter(0.0, 1.0)
+        within = f"times within the course, {'from' if first == 0.0 else 'after'} 0 to {self.duration:g} s"
+        if not self.frames:
+            raise FieldError(f"{field}.frames", "at least one time, or None", self.frames)
+        for time in self.frames:
+            check_number(f"{field}.frames", time, within, lambda v: first <= v <= self.duration)
+        if any(b <= a for a, b in zip(self.frames, self.frames[1:], strict=False)):
+            raise FieldError(f"{field}.frames", "times that rise", self.frames)
+
+    def stops(self, shortest: float | None) -> list[Stop]:
+        """The ends of all time steps.
+
+        shortest: the shortest relaxation time of the material [s]; None: it has none, and steps from frame to
+        frame.
+        """
+        found = list(self._steps(shortest))
+        frames = self._frame_times()
+        same = SAME * max(self.duration, 1e-300)
+        stops = []
+        for i, (time, value) in enumerate(found):
+            last = i + 1 == len(found) or found[i + 1][0] - time > same  # of those at this time
+            kept = last and bool((np.abs(frames - time) <= same).any())
+            stops.append(Stop(time=time, value=value, frame=kept))
+        return stops
+
+    def _frame_times(self) -> np.ndarray:
+        if self.frames is not None:
+            return np.array(self.frames, dtype=float)
+        parts = np.arange(1, FRAMES_A_PIECE + 1) / FRAMES_A_PIECE
+        begins = np.array((0.0, *self.times[:-1]))
+        return np.unique(
+            np.concatenate([b + parts * (e - b) for b, e in zip(begins, self.times, strict=True)])
+        )
+
+    def _steps(self, shortest: float | None) -> Iterator[tuple[float, float]]:
+        frames = self._frame_times()
+        same = SAME * max(self.duration, 1e-300)
+        begin, before = 0.0, self.start
+        for end, value in zip(self.times, self.values, strict=True):
+            long = end - begin
+            if long <= same:
+                yield end, value
+                begin, before = end, value
+                continue
+            slope = (value - before) / long
+            inside = frames[(frames > begin + same) & (frames < end - same)]
+            now = begin
+            for must in (*inside, end):
+                while must - now > same:
+                    gap = must - now
+                    step = gap
+                    if shortest is not None:
+                        step = self.growth * (now - begin + 0.5 * shortest)
+                        if slope:
+                            step = min(step, long / STEPS_A_RAMP)
+                    if gap <= step * (1.0 + 1e-9):
+                        now = must
+                    else:
+                        now = now + (0.5 * gap if gap < 2.0 * step else step)
+                    yield float(now), value if now == end else before + slope * (now - begin)
+            begin, before = end, value

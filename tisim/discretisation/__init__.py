@@ -1,0 +1,1 @@
+"""A mesh with quadrature, numbering and sparsity, and a material on it."""

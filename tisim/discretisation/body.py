@@ -1,0 +1,253 @@
+"""A mesh's discretisation, shared by all candidates on it, and a body: a material on a discretisation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim import laws
+from tisim.discretisation.packed import features_of, history_of, pack
+from tisim.discretisation.quadrature import Reference, reference
+from tisim.linear.blocks import Pattern, pattern_of
+from tisim.linear.direct import DirectSolver
+from tisim.mesh import Mesh
+from tisim.scene import Material
+
+Array = NDArray[np.float64]
+
+# Bulk modulus that stays pointwise, what W itself resists included, in units of the shear modulus, by
+# element. One pressure a tet10 is too soft in bending without it: against benchmarks/references/beams.json
+# (K/mu 20 to 1000, mu 9 and 40 kPa) the default beams are within -0.43 and +0.61 % with 0 left to W of
+# Ogden, -0.51 and +0.16 % with 2/3, -0.70 and +0.03 % with 1. The Neo-Hookean W has 2/3 of its own.
+POINTWISE = {"tet4": np.inf, "tet10": 2.0 / 3.0, "hex8": 2.0}
+
+
+NO_STATE = np.zeros((1, 1, 1))
+
+
+@dataclass(eq=False)
+class Discretisation:
+    """What depends on the mesh and its supports only: quadrature, numbering, sparsity, symbolic factor.
+
+    held: boolean (n, 3), components of free nodes that may not move (mirror planes, platens).
+    stiffness, density: (m, q), factors of the material's stiffness and density at the quadrature points, None
+        where all are 1. The energy is linear in the stiffness (the element's mean volumetric strain becomes
+        the mean weighted by it), so the kernels take them as part of their weights.
+    """
+
+    mesh: Mesh
+    fixed: NDArray[np.int32]
+    held: NDArray[np.bool_]
+    reference: Reference
+    pattern: Pattern
+    solver: DirectSolver
+    _scratch: Array = field(repr=False)
+    stiffness: Array | None = None
+    density: Array | None = None
+
+    @staticmethod
+    def build(mesh: Mesh, fixed: NDArray[np.int32], held: NDArray[np.bool_] | None = None) -> Discretisation:
+        held = np.zeros((mesh.n_nodes, 3), dtype=bool) if held is None else held.copy()
+        for axis in mesh.symmetry:
+            held[mesh.node_sets[f"mirror_{axis}"], "xyz".index(axis)] = True
+        pattern = pattern_of(mesh.elements, mesh.n_nodes, fixed)
+        na = mesh.elements.shape[1]
+        return Discretisation(
+            mesh=mesh,
+            fixed=np.asarray(fixed, dtype=np.int32),
+            held=held[pattern.free],
+            reference=reference(mesh),
+            pattern=pattern,
+            solver=DirectSolver(pattern.indptr, pattern.indices),
+            _scratch=np.zeros((na, 9 * na + 3)),
+        )
+
+    @property
+    def multiplicity(self) -> float:
+        """How many copies of the mesh make the whole body."""
+        return 2.0 ** len(self.mesh.symmetry)
+
+    def nodal_volume(self) -> Array:
+        """Rest volume by node, the integral of each shape function, shape (n,); sums to the volume.
+
+        Where the discretisation has a density, that of the volume at the material's stated density with as
+        much mass.
+        """
+        ref, mesh = self.reference, self.mesh
+        weights = ref.weights if self.density is None else ref.weights * self.density
+        shares = weights @ ref.values
+        volume = np.zeros(mesh.n_nodes)
+        np.add.at(volume, mesh.elements.ravel(), shares.ravel())
+        return volume
+
+    def hold(self, blocks: Array) -> None:
+        """Decouple the held components: their rows and columns of the matrix become a scaled identity."""
+        if not self.held.any():
+            return
+        p = self.pattern
+        rows = np.repeat(np.arange(len(p.free)), np.diff(p.indptr))
+        diagonal = p.indptr[:-1]
+        scale = np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean()
+        partly: NDArray[np.bool_] = np.any(self.held, axis=1, keepdims=True)[:, 0]
+        touched = np.flatnonzero(partly[rows] | partly[p.indices])
+        keep = ~self.held[rows[touched]][:, :, None] & ~self.held[p.indices[touched]][:, None, :]
+        blocks[touched] *= keep
+        node, axis = np.nonzero(self.held)
+        blocks[diagonal[node], axis, axis] = scale
+
+
+class DiscretisedBody:
+    """A material on a discretisation under dead loads: potential, forces, stiffness at positions x (n, 3).
+
+    added_mass (n,): point masses at the nodes, of the dynamic methods [kg].
+    history: state (m, q, k) of points that another body keeps (see `follow`), for a part of a body.
+
+    Where the material remembers (`history` is not None), forces are those of the present step: `begin` it,
+    take it by `accept`. Without `accept` it leaves nothing behind.
+    """
+
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        material: Material,
+        *,
+        dead_load: Array | None = None,
+        added_mass: Array | None = None,
+        history: Array | None = None,
+    ) -> None:
+        from tisim.kernels.elements import element_kernels, isochoric_kernels  # imports Taichi
+
+        law = laws.get(material.law)
+        law.check(material.parameters)
+        self.discretisation = discretisation
+        self.material = material
+        self.law = law
+        self.moduli = law.moduli(material.parameters)
+        self.dead_load = np.zeros((discretisation.mesh.n_nodes, 3)) if dead_load is None else dead_load
+        self.added_mass = np.zeros(discretisation.mesh.n_nodes) if added_mass is None else added_mass
+        self.features = features_of(material)
+        self._energy, self._forces, self._stiffness, self._pressures = element_kernels(
+            law, features=self.features, sparse=discretisation.mesh.kind == "hex8"
+        )
+        weights = discretisation.reference.weights
+        self._weights = weights if discretisation.stiffness is None else weights * discretisation.stiffness
+        self._prm = pack(material)
+        points = (discretisation.mesh.n_elements, weights.shape[1])
+        self.history = history_of(material, points) if history is None else None
+        self.state = history if history is not None else NO_STATE
+        if self.history is not None:
+            self.state = self.history.state
+            self._set_scale(self.history.scale)
+            self._isochoric = isochoric_kernels(law, self.features)[0]
+        kappa = law.kappa(material.parameters)
+        wanted = POINTWISE[discretisation.mesh.kind] * self.moduli.shear_modulus - (
+            self.moduli.bulk_modulus - kappa
+        )
+        self._kp = float(np.clip(wanted, 0.0, kappa)) if kappa > 0 else kappa
+        self._kb = kappa - self._kp
+        if material.viscosity is not None:  # what there is at once
+            more = material.viscosity.spectrum().instantaneous
+            self.moduli = replace(self.moduli, shear_modulus=more * self.moduli.shear_modulus)
+
+    def _common(self, x: Array) -> tuple[Any, ...]:
+        ref = self.discretisation.reference
+        return (
+            x,
+            self.discretisation.mesh.elements,
+            ref.gradients,
+            self._weights,
+            self._prm,
+            self.state,
+            self._kp,
+            self._kb,
+        )
+
+    @property
+    def remembers(self) -> bool:
+        """Whether forces depend on the past."""
+        return self.features.state_size > 0
+
+    def begin(self, dt: float) -> None:
+        """Begin a step of length dt [s] from the last accepted state; 0: at once."""
+        if self.history is not None:
+            self.history.begin(dt)
+            self._set_scale(self.history.scale)
+
+    def accept(self, x: Array) -> None:
+        """Take the present step, which ends at x (n, 3)."""
+        if self.history is None:
+            return
+        ref, shape = self.discretisation.reference, self.history.dissipated.shape
+        found = np.empty((*shape, 6)), np.empty((*shape, 6)), np.empty(shape)
+        self._isochoric(x, self.discretisation.mesh.elements, ref.gradients, self._prm, self.state, *found)
+        self.history.accept(found)
+        self._set_scale(self.history.scale)
+
+    def follow(self, whole: DiscretisedBody, elements: NDArray[np.bool_]) -> None:
+        """Take over the state of another body of the same material, whose elements (m,) this body has."""
+        if whole.history is not None:
+            self.state[:] = whole.state[elements]
+            self._set_scale(whole.history.scale)
+
+    def _set_scale(self, scale: float) -> None:
+        self._prm[len(self._prm) - self.features.tail_size] = scale
+
+    def dissipated(self) -> float:
+        """Energy that the whole body has lost so far [J]."""
+        if self.history is None:
+            return 0.0
+        return float(np.vdot(self._weights, self.history.dissipated)) * self.discretisation.multiplicity
+
+    def pressures(self, x: Array, du: Array | None = None) -> Array:
+        """Element pressures kb mean(theta) at x, advanced to first order by du (n, 3), shape (m,) [Pa]."""
+        ref, out = self.discretisation.reference, np.zeros(self.discretisation.mesh.n_elements)
+        if self._kb != 0.0:
+            du = np.zeros_like(x) if du is None else du
+            self._pressures(
+                x, du, self.discretisation.mesh.elements, ref.gradients, self._weights, self._kb, out
+            )
+        return out
+
+    def energy(self, x: Array) -> tuple[float, float]:
+        """Potential energy [J] with the dead load, and the smallest det F."""
+        out = np.empty(2)
+        self._energy(*self._common(x), out)
+        return float(out[0] - np.vdot(self.dead_load, x - self.discretisation.mesh.nodes)), float(out[1])
+
+    def internal_forces(self, x: Array) -> tuple[Array, float]:
+        """dEnergy/dx without the dead load, shape (n, 3) [N], and the smallest det F."""
+        out = np.empty(2)
+        f = np.zeros_like(x)
+        self._forces(*self._common(x), f, out)
+        return f, float(out[1])
+
+    def forces_and_energy(self, x: Array) -> tuple[Array, float, float]:
+        """`internal_forces` and `energy` in one pass: forces (n, 3) [N], energy [J], smallest det F."""
+        out = np.empty(2)
+        f = np.zeros_like(x)
+        self._forces(*self._common(x), f, out)
+        energy = float(out[0] - np.vdot(self.dead_load, x - self.discretisation.mesh.nodes))
+        return f, energy, float(out[1])
+
+    def stiffness(self, x: Array, pressure: Array | None = None) -> tuple[Array, Array, float]:
+        """Blocks (nb, 3, 3) of the tangent [N/m], internal forces (n, 3), smallest det F.
+
+        pressure (m,): element pressures of the tangent where they are iterated as unknowns of their own.
+        """
+        pressure = self.pressures(x) if pressure is None else pressure
+        p = self.discretisation.pattern
+        out = np.empty(2)
+        f = np.zeros_like(x)
+        blocks = np.zeros((p.n_blocks, 3, 3))
+        self._stiffness(*self._common(x), pressure, p.slot, self.discretisation._scratch, f, blocks, out)
+        return blocks, f, float(out[1])
+
+
+def gravity_load(
+    discretisation: Discretisation, density: float, gravity: tuple[float, float, float]
+) -> Array:
+    """Consistent nodal weight, shape (n, 3) [N]."""
+    return density * discretisation.nodal_volume()[:, None] * np.asarray(gravity, dtype=float)

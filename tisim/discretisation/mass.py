@@ -1,0 +1,84 @@
+"""Mass of a body: the consistent matrix of the implicit method, the lumped one of the explicit method."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.special import roots_jacobi
+
+from tisim.discretisation.quadrature import facet_areas, shape
+from tisim.linear.blocks import Pattern
+from tisim.mesh import Mesh
+
+Array = NDArray[np.float64]
+
+
+def consistent_mass(mesh: Mesh, density: float, added: Array | None = None) -> sparse.csr_matrix:
+    """rho integral(N_a N_b) over the mesh, shape (n, n), the same for x, y and z [kg].
+
+    added (n,): point masses besides [kg].
+    """
+    local = _element_masses(mesh, density)
+    width = mesh.elements.shape[1]
+    rows = np.repeat(mesh.elements, width, axis=1).ravel()
+    columns = np.tile(mesh.elements, (1, width)).ravel()
+    mass = sparse.csr_matrix((local.ravel(), (rows, columns)), shape=(mesh.n_nodes, mesh.n_nodes))
+    return mass if added is None else sparse.csr_matrix(mass + sparse.diags_array(added))
+
+
+def lumped_mass(mesh: Mesh, density: float) -> Array:
+    """Diagonal mass, shape (n,) [kg], with the body's mass in total.
+
+    tet10: each element's consistent diagonal, scaled to the element's mass (Hinton, Rock & Zienkiewicz,
+    Earthquake Eng. Struct. Dyn. 4, 1976), because row sums are negative at the corners. Else row sums.
+    """
+    local = _element_masses(mesh, density)
+    if mesh.kind == "tet10":
+        share = np.einsum("eaa->ea", local)
+        share = share * (local.sum(axis=(1, 2)) / share.sum(axis=1))[:, None]
+    else:
+        share = local.sum(axis=2)
+    mass = np.zeros(mesh.n_nodes)
+    np.add.at(mass, mesh.elements.ravel(), share.ravel())
+    return mass
+
+
+def facet_mass(mesh: Mesh, facets: NDArray[np.int32], mass: float) -> Array:
+    """A mass spread evenly over facets, lumped, shape (n,) [kg]; sums to `mass`.
+
+    As in `lumped_mass`, by the consistent diagonal: a uniform load's shares are negative at some corners.
+    """
+    n, area = facet_areas(mesh, facets)
+    share = np.zeros(mesh.n_nodes)
+    np.add.at(share, facets.ravel(), (area @ n**2).ravel())
+    return share * (mass / share.sum())
+
+
+def on_pattern(mass: sparse.csr_matrix, pattern: Pattern) -> Array:
+    """The consistent mass at each block of the stiffness pattern, shape (nb,) [kg]."""
+    rows = np.repeat(np.arange(len(pattern.free)), np.diff(pattern.indptr))
+    return np.asarray(mass[pattern.free[rows], pattern.free[pattern.indices]]).ravel()
+
+
+def _element_masses(mesh: Mesh, density: float) -> Array:
+    """Consistent element matrices, shape (m, a, a) [kg]."""
+    points, weights = _fine_quadrature(mesh.kind)
+    n, d = shape(mesh.kind, points)
+    det = np.linalg.det(np.einsum("eai,qak->eqik", mesh.nodes[mesh.elements], d))
+    products = (n[:, :, None] * n[:, None, :]).reshape(len(n), -1)
+    width = n.shape[1]
+    return np.asarray(density * (det * weights) @ products).reshape(-1, width, width)
+
+
+def _fine_quadrature(kind: str) -> tuple[Array, Array]:
+    """27 Gauss points, exact to degree 5: the four points of the tet10's stiffness cannot hold N_a N_b."""
+    g, w = np.polynomial.legendre.leggauss(3)
+    if kind == "hex8":
+        x, y, z = (c.ravel() for c in np.meshgrid(g, g, g, indexing="ij"))
+        return np.column_stack([x, y, z]), np.einsum("i,j,k->ijk", w, w, w).ravel()
+    # a cube collapsed on a corner: Gauss-Jacobi weights (1 - b) and (1 - c)^2 take up its Jacobian
+    (gb, wb), (gc, wc) = roots_jacobi(3, 1.0, 0.0), roots_jacobi(3, 2.0, 0.0)
+    a, b, c = (0.5 * (1.0 + t.ravel()) for t in np.meshgrid(g, gb, gc, indexing="ij"))
+    points = np.column_stack([a * (1.0 - b) * (1.0 - c), b * (1.0 - c), c])
+    return points, np.einsum("i,j,k->ijk", w / 2.0, wb / 4.0, wc / 8.0).ravel()

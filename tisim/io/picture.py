@@ -1,0 +1,250 @@
+"""One frame of a result as a PNG, by matplotlib alone: no display and no graphics card needed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim import laws
+from tisim.bodies import Rod
+from tisim.io.export import checked_path, frame_index
+from tisim.mesh import Mesh, boundary_facets, unfold
+from tisim.problems import kind_of
+from tisim.result import Result
+from tisim.scene import Poke
+
+Array = NDArray[np.float64]
+
+# Facets as polygons, middle nodes in their places.
+_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5)}
+_COLOURS = "viridis"
+_STEEL = np.array([0.62, 0.65, 0.70])
+_EDGE = 0.82  # brightness of an element's edges against its face
+
+
+@dataclass(frozen=True, eq=False)
+class _Camera:
+    """Orthographic view: unit vectors to the right, up and towards the viewer."""
+
+    right: Array
+    up: Array
+    towards: Array
+
+    @staticmethod
+    def at(towards: Array) -> _Camera:
+        w = np.asarray(towards, dtype=float) / np.linalg.norm(towards)
+        right = np.cross([0.0, 0.0, 1.0], w)
+        right /= np.linalg.norm(right)
+        return _Camera(right, np.cross(w, right), w)
+
+    def flat(self, points: Array) -> Array:
+        return np.stack([points @ self.right, points @ self.up], axis=-1)
+
+
+def picture(
+    result: Result,
+    path: str | Path,
+    frame: int = -1,
+    *,
+    cut: bool | None = None,
+    title: str | None = None,
+    dpi: int = 150,
+) -> Path:
+    """Draw the deformed body at one frame into a PNG, coloured by displacement [mm].
+
+    Parameters
+    ----------
+    result : Result
+    path : path
+        Of the PNG.
+    frame : int
+        Negative ones count from the end.
+    cut : bool, optional
+        Leave out the half towards the viewer, to look into the body; the default for pokes, which are cut
+        through the rod's axis. Other bodies are drawn whole, with their rest shape behind.
+    title : str, optional
+        Instead of a line that describes the scene.
+    dpi : int
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    ValueError
+        For a frame that the result does not have.
+    FileNotFoundError
+        If the folder does not exist.
+    """
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+
+    path = checked_path(path)
+    frame = frame_index(result, frame)
+    mesh, x = unfold(result.mesh, result.positions[frame])
+    scene = result.scene
+    poke = scene if result.rod_tip is not None else None
+    cut = poke is not None if cut is None else cut
+    across = _across(poke)
+    camera = _camera(across, poke)
+    facets = _visible_facets(mesh, across, poke, cut=cut)
+    moved = 1e3 * np.linalg.norm(x - mesh.nodes, axis=1)
+    scale = Normalize(0.0, max(float(moved.max()), 1e-9))
+
+    polygons = x[facets]
+    colours = _colour_map()(scale(moved[facets].mean(axis=1)))[:, :3]
+    sheets = [_shaded(polygons, colours, camera, edges=True)]
+    if poke is not None and result.rod_tip is not None:
+        rod = rod_surface(poke.rod, result.rod_tip[frame], np.asarray(poke.direction, dtype=float))
+        sheets.append(_shaded(rod, np.tile(_STEEL, (len(rod), 1)), camera, edges=False))
+    figure = Figure(figsize=(8.0, 5.2), layout="constrained")
+    axes = figure.add_subplot()
+    if not cut:
+        ghost = mesh.nodes[facets]
+        front = _normals(ghost) @ camera.towards > 0
+        flat = camera.flat(1e3 * ghost[front])
+        axes.add_collection(PolyCollection(list(flat), facecolors="#e9ebee", edgecolors="#e9ebee", zorder=0))
+    flat_polygons, faces, edges = _painted(sheets, camera)
+    axes.add_collection(
+        PolyCollection(flat_polygons, facecolors=faces, edgecolors=edges, linewidths=0.25, zorder=1)
+    )
+    _finish(figure, axes, flat_polygons, scale, title or describe(result, frame), whole=not cut)
+    figure.savefig(path, dpi=dpi, format="png")
+    return path
+
+
+def describe(result: Result, frame: int = -1) -> str:
+    """A frame in one line."""
+    frame = frame_index(result, frame)
+    scene, load = result.scene, float(result.load[frame])
+    law = laws.get(scene.material.law)
+    shear = law.moduli(scene.material.parameters).shear_modulus
+    name = kind_of(scene).describe(result, frame)
+    time = f"; t = {load:.3f} s" if scene.solver.method != "static" else ""
+    return f"{name}; {law.title}, G = {shear * 1e-3:.3g} kPa{time}"
+
+
+def _colour_map() -> Any:
+    from matplotlib import colormaps
+
+    return colormaps[_COLOURS]
+
+
+def _across(poke: Poke | None) -> Array:
+    """Horizontal unit vector across the plane of a push; the cut is square to it."""
+    if poke is None or np.hypot(poke.direction[0], poke.direction[1]) < 1e-9:
+        return np.array([0.0, 1.0, 0.0])
+    d = np.array([poke.direction[0], poke.direction[1], 0.0])
+    d /= np.linalg.norm(d)
+    across = np.array([-d[1], d[0], 0.0])
+    return across if across[1] >= 0 else -across
+
+
+def _camera(across: Array, poke: Poke | None) -> _Camera:
+    along = np.cross(across, [0.0, 0.0, 1.0])
+    if poke is not None:
+        return _Camera.at(-across + 0.30 * along + 0.55 * np.array([0.0, 0.0, 1.0]))
+    return _Camera.at(-across + 0.35 * along + 0.35 * np.array([0.0, 0.0, 1.0]))
+
+
+def _visible_facets(mesh: Mesh, across: Array, poke: Poke | None, *, cut: bool) -> NDArray[np.int32]:
+    if not cut:
+        facets = mesh.facet_sets.get("surface")
+        return boundary_facets(mesh.kind, mesh.elements) if facets is None else facets
+    centre = mesh.nodes.mean(axis=0) if poke is None else np.array([*poke.site, 0.0])
+    side = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ across
+    kept = mesh.elements[side > -1e-9]
+    return boundary_facets(mesh.kind, kept)
+
+
+def _normals(polygons: Array) -> Array:
+    """Unit normals of polygons (k, p, 3), by their area vector."""
+    after = np.roll(polygons, -1, axis=1)
+    area = np.cross(polygons - polygons[:, :1], after - polygons[:, :1]).sum(axis=1)
+    size = np.linalg.norm(area, axis=1, keepdims=True)
+    return area / np.where(size > 0, size, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sheet:
+    polygons: Array
+    faces: Array
+    edges: Array
+
+
+def _shaded(polygons: Array, colours: Array, camera: _Camera, *, edges: bool) -> _Sheet:
+    """The polygons that face the viewer, lit from above his left shoulder."""
+    if polygons.shape[1] in _OUTLINE:
+        polygons = polygons[:, _OUTLINE[polygons.shape[1]]]
+    normals = _normals(polygons)
+    front = normals @ camera.towards > 0
+    light = camera.towards + 0.9 * camera.up - 0.5 * camera.right
+    light /= np.linalg.norm(light)
+    lit = 0.55 + 0.45 * np.clip(normals[front] @ light, 0.0, 1.0)
+    faces = np.clip(colours[front] * lit[:, None], 0.0, 1.0)
+    return _Sheet(polygons[front], faces, faces * _EDGE if edges else faces)
+
+
+def _painted(sheets: list[_Sheet], camera: _Camera) -> tuple[list[Array], Array, Array]:
+    """All polygons from the farthest to the nearest, flat [mm]."""
+    depth = np.concatenate([s.polygons.mean(axis=1) @ camera.towards for s in sheets])
+    flat = [p for s in sheets for p in camera.flat(1e3 * s.polygons)]
+    order = np.argsort(depth, kind="stable")
+    faces = np.concatenate([s.faces for s in sheets])[order]
+    edges = np.concatenate([s.edges for s in sheets])[order]
+    return [flat[i] for i in order], faces, edges
+
+
+def _finish(figure: Any, axes: Any, flat: list[Array], scale: Any, title: str, *, whole: bool) -> None:
+    from matplotlib.cm import ScalarMappable
+
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.margins(0.04)
+    axes.axis("off")
+    points = np.concatenate(flat)
+    width = float(np.ptp(points[:, 0]))
+    bar = next((b for b in (100, 50, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1) if b <= 0.3 * width), 0.1)
+    low, left = float(axes.dataLim.y0), float(axes.dataLim.x0)
+    y = low - 0.06 * width
+    axes.plot([left, left + bar], [y, y], color="#333333", linewidth=2.0, solid_capstyle="butt")
+    axes.text(left + 0.5 * bar, y - 0.012 * width, f"{bar:g} mm", ha="center", va="top", color="#333333")
+    if whole:
+        axes.text(axes.dataLim.x1, y - 0.012 * width, "grey: at rest", ha="right", va="top", color="#888888")
+    axes.set_title(title, fontsize=11)
+    mappable = ScalarMappable(norm=scale, cmap=_colour_map())
+    figure.colorbar(mappable, ax=axes, label="displacement [mm]", shrink=0.75, pad=0.02)
+
+
+def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array:
+    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`."""
+    radius, height = _profile(rod)
+    axis = axis / np.linalg.norm(axis)
+    u = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])
+    u /= np.linalg.norm(u)
+    v = np.cross(-axis, u)
+    turn = np.linspace(0.0, 2.0 * np.pi, around + 1)
+    circle = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
+    rings = tip - height[:, None, None] * axis + radius[:, None, None] * circle
+    low, high = rings[:-1], rings[1:]
+    quads = np.stack([low[:, :-1], low[:, 1:], high[:, 1:], high[:, :-1]], axis=2)
+    return quads.reshape(-1, 4, 3)
+
+
+def _profile(rod: Rod) -> tuple[Array, Array]:
+    """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
+    edge = rod.radius if rod.tip == "hemisphere" else min(rod.edge_radius, rod.radius)
+    angle = np.linspace(0.0, 0.5 * np.pi, 9)
+    # short pieces along the shaft, so that a painter's order of their centres is right
+    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / 1e-3)) + 1))[1:]
+    radius = np.concatenate([
+        [0.0], rod.radius - edge + edge * np.sin(angle), np.full(len(shaft), rod.radius), [0.0],
+    ])  # fmt: skip
+    height = np.concatenate([[0.0], edge * (1.0 - np.cos(angle)), shaft, [rod.length]])
+    return radius, height

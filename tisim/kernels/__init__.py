@@ -1,0 +1,1 @@
+"""Taichi kernels behind plain NumPy interfaces; nothing here knows what a scene is."""

@@ -1,0 +1,219 @@
+"""Contact of a facet set with a rigid rod: penalty on the signed distance, Coulomb friction with memory.
+
+The rod is a cylinder with a rounded edge (a hemisphere where the edge radius is the radius), axis `a`
+pointing ahead of the tip, centre of the tip `c`. Its signed distance in the meridian plane, with r the
+distance from the axis and s the height ahead of the tip, is that of a rounded box:
+q = (r - (R - e), s + e), d = |max(q, 0)| + min(max(q), 0) - e.
+
+Contact is integrated at many points a facet (at nodes alone the surface tunnels through the edge).
+Energy of a point of rest area A:   A [kn/2 min(d, 0)^2 + huber(g)],  with g the elastic part of the slip
+and huber(g) = kt/2 g^2 up to the Coulomb limit mu p, mu p g - (mu p)^2/(2 kt) beyond: a return mapping
+whose memory is g at the last converged step, so that a sticking point does not creep with the steps.
+p = kn max(-d, 0) is frozen during a line search and refreshed at every linearisation: the residual is
+Coulomb's law without lag. The dependence of mu p and of the tangent plane on x makes the tangent
+unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
+creeps where points slip and where they pass the rounded edge).
+A point that touches first in this step slips for the part of the step that it touches, as the step's
+start value sees it.
+"""
+
+# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
+
+_f1 = ti.types.ndarray(dtype=f64, ndim=1)
+_f2 = ti.types.ndarray(dtype=f64, ndim=2)
+_f3 = ti.types.ndarray(dtype=f64, ndim=3)
+_i2 = ti.types.ndarray(dtype=i32, ndim=2)
+_i3 = ti.types.ndarray(dtype=i32, ndim=3)
+
+
+@ti.func
+def rod_distance(y, rod: ti.template()):
+    """Signed distance d [m], outward normal n, and the two principal curvatures of d's level set with
+    their directions: along the meridian (km, m) and around the axis (kr, n x m). rod: see `pack_rod`."""
+    c = ti.Vector([rod[0], rod[1], rod[2]])
+    a = ti.Vector([rod[3], rod[4], rod[5]])
+    core = rod[6] - rod[7]
+    e = rod[7]
+    s = (y - c).dot(a)
+    radial = (y - c) - s * a
+    r = radial.norm()
+    er = radial / ti.max(r, 1e-12)
+    qr = r - core
+    qs = s + e
+    d = 0.0
+    n = a
+    km = 0.0
+    kr = 0.0
+    if qr > 0.0 and qs > 0.0:  # around the rounded edge
+        g = ti.sqrt(qr * qr + qs * qs)
+        d = g - e
+        n = (qr * er + qs * a) / ti.max(g, 1e-12)
+        km = 1.0 / ti.max(g, 1e-12)
+        kr = qr / ti.max(g, 1e-12) / ti.max(r, 1e-12)
+    elif qr > qs:  # beside the shaft
+        d = qr - e
+        n = er
+        kr = 1.0 / ti.max(r, 1e-12)
+    else:  # under the flat
+        d = qs - e
+    t = er.cross(a)  # around the axis
+    return d, n, km, kr, t
+
+
+@cache
+def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
+    """(measure, energy, assemble) kernels; see each."""
+    ensure_runtime()
+
+    @ti.func
+    def sample(x: ti.template(), conn: ti.template(), shape: ti.template(), f, q):
+        y = ti.Vector([0.0, 0.0, 0.0])
+        for b in range(conn.shape[1]):
+            n = conn[f, b]
+            for i in ti.static(range(3)):
+                y[i] += shape[q, b] * x[n, i]
+        return y
+
+    @ti.func
+    def total_slip(y, z, shift, memory: ti.template(), part: ti.template(), f, q):
+        """Slip since the last step, added to the remembered one; its tangential part is the elastic slip.
+
+        z: the point at the last converged step; shift: the rod's displacement since then; part: of the
+        step in which the point touches, 0 where it has no friction yet.
+        """
+        g = ti.Vector([memory[f, q, 0], memory[f, q, 1], memory[f, q, 2]])
+        return g + part[f, q] * (y - z - shift)
+
+    @ti.kernel
+    def measure(x: _f2, conn: _i2, shape: _f2, rod: _f1, distance: _f2):
+        """distance (f, q): signed distance of every point [m]."""
+        ti.loop_config(serialize=True)
+        for f in range(conn.shape[0]):
+            for q in range(shape.shape[0]):
+                d, _n, _km, _kr, _t = rod_distance(sample(x, conn, shape, f, q), rod)
+                distance[f, q] = d
+
+    @ti.kernel
+    def energy(
+        x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
+        memory: _f3, part: _f2, pressure: _f2, out: _f1,
+    ):  # fmt: skip
+        """out[0]: energy [J] with the pressures frozen; out[1]: smallest distance [m]."""
+        total = 0.0
+        least = 1e300
+        ti.loop_config(serialize=True)
+        for _ in range(1):
+            for f in range(conn.shape[0]):
+                for q in range(shape.shape[0]):
+                    y = sample(x, conn, shape, f, q)
+                    d, n, _km, _kr, _t = rod_distance(y, rod)
+                    least = ti.min(least, d)
+                    if d < 0.0:
+                        total += area[f, q] * 0.5 * law[0] * d * d
+                    limit = law[2] * pressure[f, q]
+                    if limit > 0.0 and part[f, q] > 0.0:
+                        shift = ti.Vector([rod[8], rod[9], rod[10]])
+                        g0 = total_slip(y, sample(z, conn, shape, f, q), shift, memory, part, f, q)
+                        g = (g0 - g0.dot(n) * n).norm()
+                        if law[1] * g <= limit:
+                            total += area[f, q] * 0.5 * law[1] * g * g
+                        else:
+                            total += area[f, q] * (limit * g - 0.5 * limit * limit / law[1])
+            out[0] = total
+            out[1] = least
+
+    @ti.kernel
+    def assemble(
+        x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
+        memory: _f3, part: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
+        force: _f2, blocks: _f3, out: _f1,
+    ):  # fmt: skip
+        """Refreshes `pressure` (f, q) and `slip` (f, q, 3; the elastic slip after return), adds energy
+        gradient to force (n, 3) and the tangent to blocks. out[0:3]: force of the body on the rod [N],
+        out[3]: smallest distance [m], out[4]: area in contact [m2], out[5]: 1 where friction acts.
+        skew (f, q, 9): what `blocks` lacks of each point's tangent, row by row."""
+        out[5] = 0.0
+        total = ti.Vector([0.0, 0.0, 0.0])
+        least = 1e300
+        touching = 0.0
+        ti.loop_config(serialize=True)
+        for _ in range(1):
+            for f in range(conn.shape[0]):
+                for q in range(shape.shape[0]):
+                    y = sample(x, conn, shape, f, q)
+                    d, n, km, kr, t = rod_distance(y, rod)
+                    least = ti.min(least, d)
+                    pressure[f, q] = law[0] * ti.max(0.0, -d)
+                    for i in ti.static(range(3)):
+                        slip[f, q, i] = 0.0
+                    for i in ti.static(range(9)):
+                        skew[f, q, i] = 0.0
+                    if d < 0.0:
+                        touching += area[f, q]
+                        m = n.cross(t)
+                        push = law[0] * d  # dphi/dd < 0
+                        grad = push * n
+                        H = law[0] * n.outer_product(n) + push * (
+                            km * m.outer_product(m) + kr * t.outer_product(t)
+                        )
+                        limit = law[2] * pressure[f, q]
+                        if limit > 0.0 and part[f, q] > 0.0:
+                            shift = ti.Vector([rod[8], rod[9], rod[10]])
+                            z_q = sample(z, conn, shape, f, q)
+                            g0 = total_slip(y, z_q, shift, memory, part, f, q)
+                            g = g0 - g0.dot(n) * n
+                            size = g.norm()
+                            N = km * m.outer_product(m) + kr * t.outer_product(t)  # dn/dy
+                            T = ti.Matrix.identity(f64, 3) - n.outer_product(n)
+                            G = part[f, q] * T - n.outer_product(N @ g0) - g0.dot(n) * N  # dg/dy
+                            D = law[1] * G
+                            symmetric = part[f, q] * law[1] * T
+                            pull = law[1] * g
+                            if law[1] * size > limit:
+                                u = g / size
+                                across = limit / size * (ti.Matrix.identity(f64, 3) - u.outer_product(u))
+                                pull = limit * u
+                                D = across @ G - law[2] * law[0] * u.outer_product(n)
+                                symmetric = part[f, q] * limit / size * (T - u.outer_product(u))
+                            grad += pull
+                            H += symmetric
+                            for i in ti.static(range(3)):
+                                slip[f, q, i] = pull[i] / law[1]
+                                for j in ti.static(range(3)):
+                                    skew[f, q, 3 * i + j] = area[f, q] * (D[i, j] - symmetric[i, j])
+                            out[5] = 1.0
+                        w = area[f, q]
+                        total += w * grad
+                        for b in range(conn.shape[1]):
+                            node = conn[f, b]
+                            for i in ti.static(range(3)):
+                                force[node, i] = force[node, i] + w * shape[q, b] * grad[i]
+                            for a in range(b + 1):
+                                s = slot[f, a, b]
+                                if s >= 0:
+                                    v = w * shape[q, a] * shape[q, b]
+                                    for i in ti.static(range(3)):
+                                        for j in ti.static(range(3)):
+                                            h = v * H[i, j]
+                                            if s % 4 != 1:
+                                                blocks[s // 4, i, j] = blocks[s // 4, i, j] + h
+                                            if s % 4 != 0:
+                                                blocks[s // 4, j, i] = blocks[s // 4, j, i] + h
+            for i in ti.static(range(3)):
+                out[i] = total[i]
+            out[3] = least
+            out[4] = touching
+
+    return measure, energy, assemble
+
+
+def pack_rod(tip: Any, axis: Any, radius: float, edge_radius: float, shift: Any) -> Any:
+    """The rod as the kernels read it: tip (3), unit axis (3), radius, edge radius, displacement (3)."""
+    return np.concatenate([tip, axis, [radius, edge_radius], shift]).astype(np.float64)

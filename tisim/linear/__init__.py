@@ -1,0 +1,1 @@
+"""Linear algebra of block matrices: sparsity, direct solvers, condensation, preconditioned GMRES."""

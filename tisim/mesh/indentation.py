@@ -1,0 +1,218 @@
+"""The block that a rod pokes, meshed for that rod: fine under its edge, coarse far away."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.bodies import Block, Rod, Vector
+from tisim.mesh._columns import extrude
+from tisim.mesh._elements import is_sound
+from tisim.mesh._inclusion import Outline, outline_of
+from tisim.mesh._mesh import ElementKind, Mesh, MeshError
+from tisim.mesh._ogrid import Focus, PlaneGrid, o_grid
+from tisim.mesh._snap import Snapped, snap
+
+Floats = NDArray[np.float64]
+
+STEEPEST = np.radians(45.5)
+# Grids tried until one meets the inclusion well: (spacing at the inclusion, turn of the rays in parts of
+# their spacing, rings more).
+ATTEMPTS = (
+    *((1.00, 0.0, 0), (1.00, 0.5, 1), (0.85, 0.25, 0), (0.85, 0.75, 1), (0.92, 0.33, 2), (0.78, 0.0, 0)),
+    *((0.78, 0.5, 1), (0.72, 0.67, 0), (0.65, 0.25, 1), (0.65, 0.75, 2), (0.78, 0.1, 3), (0.65, 0.4, 3)),
+    *((0.50, 0.0, 2), (0.50, 0.5, 4), (0.55, 0.33, 3), (0.45, 0.67, 1), (0.40, 0.25, 3), (0.40, 0.75, 5)),
+    *((0.35, 0.5, 2), (0.35, 0.0, 6), (0.30, 0.25, 4), (0.30, 0.8, 7)),
+)
+# cells at an inclusion, in parts of the radius of its outline's inscribed circle: some ten nodes on a
+# circle; more for a sphere, whose dome is met by facets too
+CELL_AT_OUTLINE = 0.65
+CELL_AT_DOME = 0.40
+# they grow by this factor where the rod is FAR [m] from the outline
+COARSER_FAR_AWAY = 1.3
+FAR = 0.020
+GOOD_QUALITY = 0.12
+WORST_QUALITY = 0.01
+# the part of its plan area that an inclusion may lose to the chords of its outline
+AREA_LOST = 0.10
+
+
+def poke_mesh(
+    *,
+    block: Block,
+    site: tuple[float, float],
+    direction: Vector = (0.0, 0.0, -1.0),
+    rod: Rod,
+    refinement: float = 1.0,
+    kind: ElementKind = "hex8",
+) -> Mesh:
+    """The block meshed for a rod pushed along `direction` at `site` (x, y) [m].
+
+    A round inclusion is met by chords and facets: the nodes lie on its surface, and its meshed volume is some
+    percent small. Soft material thinner than 1 mm between an inclusion and the base is meshed as rigid.
+
+    Parameters
+    ----------
+    block : Block
+    site : (float, float)
+        Where the rod's axis meets the top, (x, y) [m].
+    direction : (float, float, float)
+        Of the push, up to 45 degrees from -z.
+    rod : Rod
+    refinement : float
+        Spacings get smaller by this factor, 0.5 to 6; at 1 some 3,500 nodes without an inclusion.
+    kind : "hex8", "tet4" or "tet10"
+        "hex8" has wedges (hexahedra with repeated nodes) where an inclusion's outline cuts a cell; the others
+        are cut from these.
+
+    Returns
+    -------
+    Mesh
+        Node sets: "base" (all fixed nodes: on z = 0 and on the inclusion), "top". Facet sets: "top" (outward
+        is +z; in quad4 a triangle repeats a node), "surface" (the whole boundary).
+
+    Raises
+    ------
+    MeshError
+        In one sentence, for arguments out of range or an inclusion that no grid meets.
+    """
+    if kind not in ("hex8", "tet4", "tet10"):
+        raise MeshError(f"poke mesh: expected kind hex8, tet4 or tet10, got {kind!r}")
+    size = _checked_size(block)
+    grids = _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement)
+    if block.inclusion is None:
+        grid = grids.make(None)
+        return extrude(points=grid.points, cells=grid.cells, size=size, refinement=refinement, kind=kind)
+    outline = outline_of(block.inclusion, size=size)
+    away = float(np.clip((np.hypot(*(outline.centre - grids.site)) - outline.reach) / FAR, 0.0, 1.0))
+    coarser = 1.0 + away * (COARSER_FAR_AWAY - 1.0)
+    cell = coarser * (CELL_AT_OUTLINE if outline.dome is None else CELL_AT_DOME) * outline.radius / refinement
+    worse: list[tuple[float, PlaneGrid, Snapped]] = []
+    for spacing, turn, more in ATTEMPTS:
+        focus = Focus(centre=outline.centre, reach=outline.reach, spacing=spacing * cell)
+        grid = grids.make(focus, turn=turn, more=more)
+        snapped = snap(points=grid.points, cells=grid.cells, border=grid.border, outline=outline)
+        if snapped is None or not _meets(snapped, outline):
+            continue
+        if snapped.quality < GOOD_QUALITY:
+            worse.append((snapped.quality, grid, snapped))
+            continue
+        mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
+        if mesh is not None:
+            return mesh
+    met = sorted(worse, key=lambda one: -one[0])
+    for _, grid, snapped in [one for one in met if one[0] >= WORST_QUALITY]:
+        mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
+        if mesh is not None:
+            return mesh
+    raise MeshError(
+        f"inclusion: no grid around the poke site {tuple(site)} meets its outline without elements that turn "
+        "over; try a larger refinement, or an inclusion that is wider"
+    )
+
+
+def check_indentation(
+    *, block: Block, site: tuple[float, float], direction: Vector, rod: Rod, refinement: float
+) -> None:
+    """Raise the MeshError that `poke_mesh` would raise for arguments out of range; makes no mesh."""
+    size = _checked_size(block)
+    _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement)
+    if block.inclusion is not None:
+        outline_of(block.inclusion, size=size)
+
+
+def _raised(
+    grid: PlaneGrid,
+    snapped: Snapped,
+    *,
+    size: tuple[float, float, float],
+    refinement: float,
+    kind: ElementKind,
+    outline: Outline,
+) -> Mesh | None:
+    """The block's mesh over a plane grid; None where elements turn over."""
+    # above the inclusion the columns lean back to the undisturbed grid, if the cover has room for that
+    for top_points in (grid.points, None):
+        mesh = extrude(
+            points=snapped.points,
+            cells=snapped.cells,
+            size=size,
+            refinement=refinement,
+            kind=kind,
+            outline=outline,
+            side=snapped.side,
+            within=snapped.within,
+            top_points=top_points,
+        )
+        if is_sound(kind, mesh.nodes, mesh.elements):
+            return mesh
+    return None
+
+
+def _meets(snapped: Snapped, outline: Outline) -> bool:
+    lost = 1.0 - snapped.area / outline.area
+    return -1e-9 < lost < (1e-9 if len(outline.corners) else AREA_LOST)
+
+
+def _checked_size(block: Block) -> tuple[float, float, float]:
+    size = np.array(block.size, dtype=np.float64)
+    if size.shape != (3,) or not np.all(np.isfinite(size) & (size > 0.0)):
+        raise MeshError(f"block size: expected three lengths above 0 [m], got {block.size}")
+    return float(size[0]), float(size[1]), float(size[2])
+
+
+class _Grids:
+    """Checks a poke and makes plane grids for it."""
+
+    def __init__(
+        self,
+        *,
+        size: tuple[float, float, float],
+        site: tuple[float, float],
+        direction: Vector,
+        rod: Rod,
+        refinement: float,
+    ) -> None:
+        push = np.array(direction, dtype=np.float64)
+        norm = float(np.linalg.norm(push))
+        if push.shape != (3,) or not np.isfinite(norm) or norm == 0.0:
+            raise MeshError(f"poke direction: expected three finite numbers, not all zero, got {direction}")
+        push /= norm
+        tilt = float(np.arccos(np.clip(-push[2], -1.0, 1.0)))
+        if tilt > STEEPEST:
+            raise MeshError(f"poke direction: {np.degrees(tilt):.0f} degrees from straight down; at most 45")
+        if not 0.5 <= refinement <= 6.0:
+            raise MeshError(f"refinement: expected 0.5 to 6, got {refinement}")
+        if not (np.isfinite(rod.radius) and rod.radius > 0.0):
+            raise MeshError(f"rod radius: expected a length above 0 [m], got {rod.radius}")
+        self.half = 0.5 * np.array(size[:2])
+        self.site = np.array(site, dtype=np.float64)
+        # the outermost fine ring and a cell more
+        reach = 1.8 * rod.radius / float(np.cos(tilt))
+        if self.site.shape != (2,) or not np.all(np.abs(self.site) + reach <= self.half):
+            raise MeshError(
+                f"poke site {tuple(site)}: expected two coordinates [m] at least {1e3 * reach:.1f} mm inside "
+                f"the edge of the block ({1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm around (0, 0))"
+            )
+        flat = rod.radius - rod.edge_radius if rod.tip == "flat" else 0.0
+        self.flat = float(np.clip(flat, 0.5 * rod.radius, 0.8 * rod.radius))
+        self.rings = np.linspace(self.flat, 1.4 * rod.radius, max(3, round(4 * refinement)) + 1)[1:]
+        self.azimuth = float(np.arctan2(push[1], push[0]))
+        self.stretch = 1.0 / float(np.cos(tilt))
+        self.n_theta = 4 * max(3, round(5 * refinement))
+        self.n_outer = max(5, round(9 * refinement))
+
+    def make(self, focus: Focus | None, *, turn: float = 0.0, more: int = 0) -> PlaneGrid:
+        """A grid, fine at the focus too; its rays turned by parts of their spacing, with some rings more."""
+        return o_grid(
+            site=self.site,
+            half=self.half,
+            flat=self.flat,
+            rings=self.rings,
+            azimuth=self.azimuth,
+            stretch=self.stretch,
+            n_theta=self.n_theta + 4 * (more // 3),
+            n_outer=self.n_outer + more,
+            focus=focus,
+            turn=turn,
+        )

@@ -1,0 +1,125 @@
+"""Newton's method with line search for one load level, on anything that has a potential.
+
+The energy guides the line search, but equilibrium is judged by the force residual alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.linear.direct import LinearSolveError
+from tisim.result import Status
+
+Array = NDArray[np.float64]
+
+# det F below which an element counts as turned over: St Venant-Kirchhoff has equilibria of no volume at all.
+CRUSHED = 1e-4
+
+
+class System(Protocol):
+    """One load level of a scene. x is (n, 3) over all nodes, residual and step over free nodes.
+
+    min_jacobian: smallest det F at the last linearised x.
+    """
+
+    min_jacobian: float
+
+    def potential(self, x: Array) -> tuple[float, float]:
+        """Potential [J] and smallest det F."""
+
+    def linearise(self, x: Array) -> tuple[Array, float]:
+        """Residual at the free nodes (n_free, 3) [N] with held components zero, and the load scale [N]."""
+
+    def step(self, residual: Array, *, forcing: float) -> Array:
+        """Newton step -K^-1 r at the last linearised x, a descent direction; LinearSolveError."""
+
+    def second_step(self, residual: Array) -> Array | None:
+        """Another step to try where the line search refuses the first; None if there is none."""
+
+    def advance(self, x: Array, step: Array) -> Array:
+        """x with the step added at the free nodes."""
+
+    def searches(self) -> bool:
+        """Whether steps are damped by the potential; else taken whole while no element turns over."""
+
+    def residual_norm(self, x: Array) -> float:
+        """Size of the residual at x [N]; the second opinion of the line search."""
+
+    def largest_step(self) -> float:
+        """Largest displacement of a node one iteration may make [m]."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """x, how it ended, the residual relative to the load, iterations taken."""
+
+    x: Array
+    status: Status
+    residual: float
+    iterations: int
+
+
+def newton(system: System, x: Array, *, tolerance: float, max_iterations: int) -> Outcome:
+    """Minimise the system's potential from x until |residual| <= tolerance * load."""
+    relative, before = np.inf, x
+    for iteration in range(max_iterations + 1):
+        residual, load = system.linearise(x)
+        size = float(np.linalg.norm(residual))
+        if iteration > 0 and system.min_jacobian <= CRUSHED:
+            return Outcome(before, Status.INVERTED, relative, iteration)
+        if not np.isfinite(size):
+            return Outcome(x, Status.NOT_CONVERGED, np.inf, iteration)
+        previous, relative = relative, size / load if load > 0 else size
+        if relative <= tolerance:
+            return Outcome(x, Status.CONVERGED, relative, iteration)
+        if iteration == max_iterations:
+            break
+        try:
+            step = system.step(residual, forcing=float(np.clip(0.1 * relative / previous, 3e-3, 2e-2)))
+        except LinearSolveError:
+            return Outcome(x, Status.SINGULAR, relative, iteration)
+        found, status = _line_search(system, x, step, residual, _scale(system, step))
+        if found is None:
+            second = system.second_step(residual)
+            if second is not None:
+                found, status = _line_search(system, x, second, residual, _scale(system, second))
+        if found is None:
+            return Outcome(x, status, relative, iteration)
+        x, before = found, x
+    return Outcome(x, Status.NOT_CONVERGED, relative, max_iterations)
+
+
+def _scale(system: System, step: Array) -> float:
+    peak = float(np.sqrt((step * step).sum(axis=1).max()))
+    return min(1.0, system.largest_step() / peak) if peak > 0 else 1.0
+
+
+def _line_search(
+    system: System, x: Array, step: Array, residual: Array, scale: float
+) -> tuple[Array | None, Status]:
+    if not system.searches():  # the next linearisation sees whether an element has turned over
+        return system.advance(x, scale * step), Status.CONVERGED
+    start, _ = system.potential(x)
+    slope = float(np.vdot(residual, step))
+    # energy differences below this are rounding; the residual will judge
+    noise = 1e-13 * abs(start) + 1e-18
+    size = float(np.linalg.norm(residual))
+    turned = False
+    for _ in range(7):
+        trial = system.advance(x, scale * step)
+        energy, min_jacobian = system.potential(trial)
+        if min_jacobian > CRUSHED and np.isfinite(energy):
+            if energy <= start + 1e-4 * scale * min(slope, 0.0) + noise:
+                return trial, Status.CONVERGED
+            # friction has no potential: a step that lowers the energy too little may still be right
+            if system.residual_norm(trial) < (1.0 - 0.1 * scale) * size:
+                return trial, Status.CONVERGED
+            turned = False
+        else:
+            turned = True
+        scale *= 0.5
+    return None, Status.INVERTED if turned else Status.NOT_CONVERGED

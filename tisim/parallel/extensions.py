@@ -1,0 +1,60 @@
+"""Laws and kinds of scenes that a user added, sent to other processes with the scenes that need them."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import pickle
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tisim import laws
+from tisim.problems import _registry
+
+_log = logging.getLogger(__name__)
+_adopted: dict[str, str] = {}
+
+
+@dataclass(frozen=True)
+class Extension:
+    """One law or kind of scene, pickled, with the name and digest by which a process knows it."""
+
+    name: str
+    digest: str
+    pickled: bytes
+
+    @staticmethod
+    def of(name: str, thing: Any) -> Extension:
+        import cloudpickle  # type: ignore[import-untyped]  # loky needs it as well
+
+        data = bytes(cloudpickle.dumps(thing))
+        return Extension(name, hashlib.sha256(data).hexdigest(), data)
+
+
+def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
+    """What was added and these scenes use; None if it cannot be sent to another process."""
+    found: dict[str, Any] = {}
+    for scene in scenes:
+        law, kind = laws.added(scene.material.law), _registry.added(scene)
+        if law is not None:
+            found[f"law {law.name}"] = law
+        if kind is not None:
+            found[f"kind {kind.name}"] = kind
+    try:
+        return tuple(Extension.of(name, thing) for name, thing in sorted(found.items()))
+    except Exception as error:  # whatever a user's functions refer to
+        _log.warning(
+            "%s: cannot be sent to other processes (%s); solved in this one", ", ".join(found), error
+        )
+        return None
+
+
+def adopt(extensions: Sequence[Extension]) -> None:
+    """Register what another process has sent, unless it is registered here already."""
+    for extension in extensions:
+        if _adopted.get(extension.name) != extension.digest:
+            thing = pickle.loads(extension.pickled)
+            add: Callable[[Any], Any] = laws.register if isinstance(thing, laws.Law) else _registry.register
+            add(thing)
+            _adopted[extension.name] = extension.digest

@@ -1,0 +1,68 @@
+"""One family of fibres that stiffen exponentially (Holzapfel, Gasser and Ogden, J. Elasticity 61, 2000).
+
+    W = k1/(2 k2) [exp(k2 (I4bar - 1)^2) - 1]  where I4bar > 1, else 0;    I4bar = J^(-2/3) a.Ca
+
+Fibres carry no compression. W adds to the law's isochoric energy: softening, where there is any, sees their
+sum, and viscous terms relax both alike.
+"""
+
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`)
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tisim._checks import FieldError, check_not_negative, check_vector
+from tisim.laws import ti
+from tisim.parts._part import Array, Fibres
+
+
+@ti.func
+def energy(I4, prm):
+    e = ti.max(I4 - 1.0, 0.0)
+    grown = ti.exp(prm[1] * e * e)
+    # (grown - 1) / (2 k2), by its series where it would lose its digits
+    x = prm[1] * e * e
+    over = 0.5 * e * e * (1.0 + 0.5 * x * (1.0 + x / 3.0))
+    if x > 1e-5:
+        over = 0.5 * (grown - 1.0) / prm[1]
+    second = 0.0
+    if I4 > 1.0:
+        second = prm[0] * grown * (1.0 + 2.0 * prm[1] * e * e)
+    return ti.Vector([prm[0] * over, prm[0] * e * grown, second])
+
+
+@dataclass(frozen=True, kw_only=True)
+class HolzapfelGasserOgden(Fibres):
+    """One family of fibres.
+
+    Attributes
+    ----------
+    direction : (float, float, float)
+        Of the fibres in the body's rest frame, of any length above 0.
+    k1 : float
+        Stiffness [Pa], 0 or more: small stretches along the fibres meet 4 k1 more.
+    k2 : float
+        How fast they stiffen [-], 0 or more.
+    """
+
+    name: ClassVar[str] = "holzapfel-gasser-ogden"
+    title: ClassVar[str] = "Holzapfel-Gasser-Ogden fibres"
+    energy: ClassVar[Any] = energy
+
+    k1: float
+    k2: float = 0.0
+
+    def check(self) -> None:
+        check_vector("direction", self.direction)
+        if not np.linalg.norm(self.direction) > 0.0:
+            raise FieldError("direction", "a direction other than (0, 0, 0)", self.direction)
+        check_not_negative("k1", self.k1, "a stiffness of 0 Pa or more")
+        check_not_negative("k2", self.k2)
+
+    def pack(self) -> Array:
+        return np.array([self.k1, self.k2], dtype=float)

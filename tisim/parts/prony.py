@@ -1,0 +1,73 @@
+"""Finite linear viscoelasticity with a Prony series, isochoric.
+
+Simo, Comput. Methods Appl. Mech. Eng. 60, 1987; Holzapfel, Nonlinear Solid Mechanics, 2000, chapter 6.
+
+    S = S_vol + g_inf S_iso + sum Q_i,    dQ_i/dt + Q_i/tau_i = g_i dS_iso/dt
+
+with S_iso = 2 dW/dC of the isochoric energy that the law's parameters give (softened and with fibres, where
+the material has these). Stated by the long-time modulus, g_inf = 1 and the fractions g_i are parts of that:
+the instantaneous shear modulus is G (1 + sum g_i). Stated by the instantaneous modulus, g_i are parts of it
+and g_inf = 1 - sum g_i.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from tisim._checks import FieldError, check_choice
+from tisim.parts._part import Spectrum, Viscosity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prony(Viscosity):
+    """A Prony series on the isochoric stress.
+
+    Attributes
+    ----------
+    fractions : tuple of float
+        g_i of each term, parts of the modulus that is stated; 0 or more.
+    times : tuple of float
+        Relaxation times tau_i [s], above 0, no two alike.
+    modulus : "long-time" or "instantaneous"
+        Which modulus the law's parameters state: that in the long run (g_i may sum to any number), or that at
+        once (g_i sum to less than 1).
+    """
+
+    name: ClassVar[str] = "prony"
+    title: ClassVar[str] = "Prony series"
+
+    fractions: tuple[float, ...]
+    times: tuple[float, ...]
+    modulus: Literal["long-time", "instantaneous"] = "long-time"
+
+    def check(self) -> None:
+        fractions = _numbers("fractions", self.fractions, "parts of the modulus, 0 or more", lowest=0.0)
+        times = _numbers("times", self.times, "relaxation times above 0 s", lowest=np.nextafter(0.0, 1.0))
+        if len(fractions) != len(times):
+            raise FieldError("times", f"as many as there are fractions, {len(fractions)}", self.times)
+        if len(np.unique(times)) < len(times):
+            raise FieldError("times", "relaxation times of which no two are alike", self.times)
+        check_choice("modulus", self.modulus, ("long-time", "instantaneous"))
+        if self.modulus == "instantaneous" and fractions.sum() >= 1.0:
+            wanted = "parts of the instantaneous modulus that sum to less than 1"
+            raise FieldError("fractions", wanted, self.fractions)
+
+    def spectrum(self) -> Spectrum:
+        strengths = np.array(self.fractions, dtype=float)
+        left = 1.0 if self.modulus == "long-time" else 1.0 - float(strengths.sum())
+        return Spectrum(equilibrium=left, strengths=strengths, times=np.array(self.times, dtype=float))
+
+
+def _numbers(field: str, values: Any, expected: str, *, lowest: float) -> np.ndarray:
+    """The values as an array, at least one, finite and from `lowest` on."""
+    try:
+        found = np.array([float(v) for v in values]) if isinstance(values, Sequence | np.ndarray) else None
+    except (TypeError, ValueError):
+        found = None
+    if found is None or not found.size or not np.isfinite(found).all() or (found < lowest).any():
+        raise FieldError(field, f"one or more {expected}", values)
+    return found

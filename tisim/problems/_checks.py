@@ -1,0 +1,136 @@
+"""Whether a scene can be solved at all, stated in one sentence before any work is done."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from tisim import laws, parts
+from tisim._checks import (
+    FieldError,
+    check_choice,
+    check_not_negative,
+    check_number,
+    check_positive,
+    check_type,
+    check_whole,
+)
+from tisim.course import Course
+from tisim.mesh import Mesh
+from tisim.problems._registry import kind_of
+from tisim.scene import Material, Solver
+
+
+def check_scene(index: int, scene: Any) -> None:
+    """Raise ValueError that names the scene by its place in the list, the field and what is expected."""
+    try:
+        kind = kind_of(scene)
+    except ValueError as error:
+        raise ValueError(f"scene {index}: {error}") from None
+    try:
+        check_material(scene.material)
+        check_solver(scene.solver)
+        check_parts(scene.material, kind.takes(scene), kind.name)
+        kind.check(scene)
+    except ValueError as error:
+        raise ValueError(f"scene {index}: {kind.name}.{error}") from None
+
+
+def check_material(material: Material) -> None:
+    check_type("material", material, (Material,))
+    check_choice("material.law", material.law, laws.all_names())
+    check_positive("material.density", material.density, "a density above 0 kg/m3")
+    try:
+        laws.get(material.law).check(material.parameters)
+        # the packing has rules of its own (exponents other than zero)
+        laws.get(material.law).pack(material.parameters)
+    except (ValueError, TypeError) as error:
+        raise FieldError("material.parameters", f"a sound set ({error})", dict(material.parameters)) from None
+    kinds = {"viscosity": parts.Viscosity, "softening": parts.Softening, "fibres": parts.Fibres}
+    for name, kind in kinds.items():
+        part = getattr(material, name)
+        if part is None:
+            continue
+        check_type(f"material.{name}", part, (kind,))
+        try:
+            part.check()
+        except FieldError as bad:
+            raise bad.within(f"material.{name}") from None
+        except ValueError as error:
+            raise ValueError(f"material.{name}.{error}") from None
+
+
+def check_parts(material: Material, takes: tuple[str, ...], name: str) -> None:
+    """Raise for a part that a kind of scene would not take into account."""
+    for part in ("viscosity", "softening", "fibres"):
+        value = getattr(material, part)
+        if value is not None and part not in takes:
+            raise FieldError(
+                f"material.{part}", f"None, since this {name} does not take it into account", value
+            )
+
+
+def oblique_fibres(material: Material) -> bool:
+    """Whether the material has fibres that are oblique to x, y and z."""
+    fibres = material.fibres
+    return fibres is not None and int(np.count_nonzero(np.abs(fibres.axis()) > 1e-9)) > 1
+
+
+def check_course(scene: Any, *, start: float, instead_of: tuple[str, ...] = ()) -> None:
+    """Raise unless the scene's course is sound, begins at rest, and nothing that it replaces is given too.
+
+    A viscous material needs a course: without one there is no time.
+    """
+    course = scene.course
+    if course is None:
+        if scene.material.viscosity is not None:
+            raise FieldError("course", "a tisim.Course, since the material is viscous", course)
+        return
+    check_type("course", course, (Course,))
+    course.check(start=start)
+    for name in instead_of:
+        default = next(f.default for f in fields(scene) if f.name == name)
+        if getattr(scene, name) != default:
+            raise FieldError(name, "nothing, where a course is given", getattr(scene, name))
+
+
+def check_solver(solver: Solver) -> None:
+    check_type("solver", solver, (Solver,))
+    check_choice("solver.method", solver.method, ("static", "implicit", "explicit"))
+    check_number("solver.tolerance", solver.tolerance, "a number between 0 and 1", lambda v: 0.0 < v < 1.0)
+    check_positive("solver.duration", solver.duration, "a time above 0 s")
+    check_positive("solver.time_step", solver.time_step, "a time above 0 s")
+    check_not_negative("solver.mass_damping", solver.mass_damping)
+    check_not_negative("solver.stiffness_damping", solver.stiffness_damping)
+    check_whole("solver.max_iterations", solver.max_iterations)
+
+
+def check_static(solver: Solver, what: str) -> None:
+    """Raise unless the method is the static one; what: the scenes, in the plural."""
+    if solver.method != "static":
+        raise FieldError("solver.method", f"static, the only one offered for {what}", solver.method)
+
+
+def check_stretches(stretches: Any) -> None:
+    """Raise unless these are stretches above 0, at least one."""
+    if not isinstance(stretches, tuple | list | np.ndarray) or not len(stretches):
+        raise FieldError("stretches", "at least one stretch", stretches)
+    for value in stretches:
+        check_positive("stretches", value, "stretches above 0")
+
+
+def check_mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tuple[str, ...]) -> None:
+    if mesh is None:
+        return
+    check_type("mesh", mesh, (Mesh,))
+    for what, wanted, there in (
+        ("node", node_sets, mesh.node_sets),
+        ("facet", facet_sets, mesh.facet_sets),
+    ):
+        for name in wanted:
+            if name not in there or not len(there[name]):
+                raise FieldError("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
+    if not mesh.n_elements:
+        raise FieldError("mesh", "at least one element", 0)

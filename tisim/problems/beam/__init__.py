@@ -1,0 +1,1 @@
+"""Static beams, ideal and imperfect."""

@@ -1,0 +1,343 @@
+"""Beams whose load follows a course: quasi-static equilibria step by step in time.
+
+The first step is a static beam's, with the modulus that there is at once. Each later one starts from where
+the last ones point to; where it fails it is halved, in time and in load, from the last accepted state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from tisim.course import Stop
+from tisim.discretisation.body import Discretisation
+from tisim.discretisation.history import weight
+from tisim.nonlinear.newton import CRUSHED, Outcome, newton
+from tisim.parts import Spectrum
+from tisim.problems._stops import shortest_time
+from tisim.problems.beam.equilibrium import Neighbour, equilibrium, mixed_newton
+from tisim.problems.beam.imperfect import imperfect_equilibrium
+from tisim.problems.beam.rest_shape import is_ideal
+from tisim.problems.beam.system import BeamSystem, beam_system
+from tisim.result import Status
+from tisim.scene import Beam
+
+Array = NDArray[np.float64]
+
+SMALLEST_PART = 1.0 / 64.0  # of a step between two stops
+BETWEEN = 300.0  # tolerance of steps between frames, in units of the frames'
+LOOSEST = 1e-3  # tolerance of the first
+# Iterations of a step with earlier tangents. One whose step is more than SLOW of the last is slow: after
+# PATIENCE of them, or where a step is GROWN times the last, there is a new tangent, MOST_FACTORS times.
+CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
+NEAR = 1e-4  # of the largest displacement: what a state between frames may be wrong by
+DISTINCT = 1e-3  # of the strain: states closer than this are one
+ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
+KNOWN = 4  # states that the next one is predicted from
+
+
+@lru_cache(maxsize=4)
+def _gradient_operator(discretisation: Discretisation) -> tuple[Array, sparse.csr_array]:
+    """Elements' mean gradients of shape functions (m, a, 3) [1/m], and free nodes' means over elements."""
+    mesh, ref = discretisation.mesh, discretisation.reference
+    volume = ref.weights.sum(axis=1)
+    mean = np.einsum("mq,mqak->mak", ref.weights, ref.gradients) / volume[:, None, None]
+    m, a = mesh.elements.shape
+    rows, columns = mesh.elements.ravel(), np.repeat(np.arange(m), a)
+    around = sparse.csr_array((volume[columns], (rows, columns)), shape=(mesh.n_nodes, m))
+    around = around[discretisation.pattern.free]
+    return mean, sparse.csr_array(sparse.diags_array(1.0 / around.sum(axis=1)) @ around)
+
+
+class Warped:
+    """The last factor of a beam's tangent, carried along with the rotation of the body since.
+
+    A tangent's factor costs some fifteen solves with it. As a beam creeps, its material hardly gets stiffer
+    or softer from one step to the next, but its parts turn, and what resists a change of volume does so in
+    turned directions. K = R K_0 R^T, R the rotation of each node, follows that.
+    """
+
+    def __init__(self, discretisation: Discretisation, x: Array) -> None:
+        self._discretisation = discretisation
+        self._mean, self._around = _gradient_operator(discretisation)
+        self._at_factor = np.linalg.inv(self._gradients(x))
+        self._turned = np.broadcast_to(np.eye(3), (len(discretisation.pattern.free), 3, 3))
+
+    def _gradients(self, x: Array) -> Array:
+        """Mean deformation gradient around each free node, (n_free, 3, 3)."""
+        F = x[self._discretisation.mesh.elements].transpose(0, 2, 1) @ self._mean
+        return np.asarray(self._around @ F.reshape(len(F), 9)).reshape(-1, 3, 3)
+
+    def turn(self, x: Array) -> None:
+        """Carry the factor along to positions x (n, 3)."""
+        moved = self._gradients(x) @ self._at_factor
+        skew = 0.5 * (moved - moved.transpose(0, 2, 1))
+        axis = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
+        sine = np.minimum(np.linalg.norm(axis, axis=1), 1.0)[:, None, None]
+        # Rodrigues: I + K + K^2 (1 - cos)/sin^2, K = skew
+        self._turned = np.eye(3) + skew + skew @ skew / (1.0 + np.sqrt(1.0 - sine**2))
+
+    def solve(self, rhs: Array) -> Array:
+        """(R K_0 R^T)^-1 rhs, both (n_free, 3)."""
+        R = self._turned
+        back = np.einsum("nji,nj->ni", R, rhs)
+        held = self._discretisation.held
+        back[held] = 0.0
+        found: Array = np.einsum("nij,nj->ni", R, self._discretisation.solver.solve(back))
+        found[held] = 0.0
+        return found
+
+
+class LinearCreep:
+    """Strain of a spectrum's linear material under a stress, in 1/G, step by step as `History` takes them.
+
+    A beam's shape is very nearly a function of it: that of an elastic beam as much softer.
+    """
+
+    def __init__(self, spectrum: Spectrum) -> None:
+        self._spectrum = spectrum
+        self._branches = np.zeros(len(spectrum.times))
+        self._strain = 0.0
+
+    def strain(self, dt: float, stress: float) -> float:
+        """Strain at the end of a step of length dt [s] to this stress."""
+        decay, c = self._weights(dt)
+        carried = float(decay @ self._branches) - float(c.sum()) * self._strain
+        return (stress - carried) / (self._spectrum.equilibrium + float(c.sum()))
+
+    def accept(self, dt: float, strain: float) -> None:
+        """Take a step of length dt [s] to this strain."""
+        decay, c = self._weights(dt)
+        self._branches = decay * self._branches + c * (strain - self._strain)
+        self._strain = strain
+
+    def _weights(self, dt: float) -> tuple[Array, Array]:
+        h = dt / self._spectrum.times
+        return np.exp(-h), self._spectrum.strengths * weight(h)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A state that is kept: time [s], part of the load, positions, supports' force [N], energy lost [J]."""
+
+    time: float
+    value: float
+    x: Array
+    support: Array
+    dissipated: float
+    min_jacobian: float
+    residual: float
+
+
+@dataclass(eq=False)
+class Path:
+    """A beam on its course: where it is, and what was kept and done on the way.
+
+    linear: the linear material under the same load. known: its strain and the beam's positions in the last
+    states. warped: the discretisation's factor, where it is this beam's.
+    """
+
+    system: BeamSystem
+    outcome: Outcome
+    linear: LinearCreep
+    time: float = 0.0
+    value: float = 0.0
+    known: list[tuple[float, Array]] = field(default_factory=list)
+    warped: Warped | None = None
+    frames: list[Frame] = field(default_factory=list)
+    steps: int = 0
+    cuts: int = 0
+
+    def keep(self) -> None:
+        body = self.system.body
+        fixed = body.discretisation.fixed
+        force, min_jacobian = body.internal_forces(self.outcome.x)
+        support = (force[fixed] - body.dead_load[fixed]).sum(axis=0) * body.discretisation.multiplicity
+        for axis in body.discretisation.mesh.symmetry:
+            support["xyz".index(axis)] = 0.0
+        self.frames.append(
+            Frame(
+                self.time, self.value, self.outcome.x, support, body.dissipated(), min_jacobian,
+                self.outcome.residual,
+            )
+        )  # fmt: skip
+
+
+def follow(
+    scene: Beam, discretisation: Discretisation, neighbour: Neighbour | None
+) -> tuple[Path, Status, Neighbour | None]:
+    """A beam along its course, how that ended, and what the next beam on its mesh may start from."""
+    assert scene.course is not None
+    stops = scene.course.stops(shortest_time(scene.material))
+    path, found = _first(scene, discretisation, stops[0], neighbour)
+    status = path.outcome.status
+    if status is not Status.CONVERGED:
+        return path, status, None
+    path.system.step_limit = np.inf
+    path.system.least_load = float(np.linalg.norm(path.system.full_load[discretisation.pattern.free]))
+    path.linear.accept(0.0, path.linear.strain(0.0, path.value))
+    path.known = [(path.linear.strain(0.0, path.value), path.outcome.x)]
+    for stop in stops[1:] if path.steps else stops:
+        status = _advance(scene, path, stop)
+        if status is not Status.CONVERGED:
+            break
+        if stop.frame:
+            path.keep()
+    return path, status, found
+
+
+def _first(
+    scene: Beam, discretisation: Discretisation, stop: Stop, neighbour: Neighbour | None
+) -> tuple[Path, Neighbour | None]:
+    """The path to the first stop where that is the whole load at once, else at rest."""
+    at_once = stop.time == 0.0 and stop.value == 1.0
+    viscosity = scene.material.viscosity
+    linear = LinearCreep(ELASTIC if viscosity is None else viscosity.spectrum())
+    if not stop.frame:
+        loose = scene.solver.tolerance * BETWEEN
+        scene = replace(scene, solver=replace(scene.solver, tolerance=min(loose, LOOSEST)))
+    if not is_ideal(scene):  # checked: the whole load at once
+        found = imperfect_equilibrium(scene, discretisation, neighbour)
+        system, outcome, counts, next_one = found.system, found.outcome, found.counts, found.neighbour
+    else:
+        system = beam_system(scene, discretisation)
+        if not at_once:
+            rest = Outcome(discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
+            return Path(system, rest, linear), None
+        outcome, counts, next_one = equilibrium(scene, system, neighbour)
+    path = Path(system, outcome, linear, value=1.0, steps=counts["steps"], cuts=counts["cuts"])
+    if outcome.status is Status.CONVERGED:
+        system.body.accept(outcome.x)
+        if system.factored_at is not None:
+            path.warped = Warped(system.body.discretisation, system.factored_at)
+        if stop.frame:
+            path.keep()
+    return path, next_one
+
+
+def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
+    """On to a stop, in parts where it fails in one."""
+    system, body = path.system, path.system.body
+    begin, first = path.time, path.value
+    reached, part = 0.0, 1.0
+    while reached < 1.0:
+        end = min(1.0, reached + part)
+        time = stop.time if end == 1.0 else begin + end * (stop.time - begin)
+        value = stop.value if end == 1.0 else first + end * (stop.value - first)
+        body.begin(time - path.time)
+        system.set_factor(value)
+        tight = end == 1.0 and stop.frame
+        tolerance = scene.solver.tolerance * (1.0 if tight else BETWEEN)
+        strain = path.linear.strain(time - path.time, value)
+        trial = _solve(scene, path, strain, tolerance=tolerance)
+        path.steps += 1
+        if trial.status is Status.CONVERGED:
+            body.accept(trial.x)
+            path.linear.accept(time - path.time, strain)
+            path.known = [*path.known, (strain, trial.x)][-KNOWN:]
+            path.outcome, path.time, path.value, reached = trial, time, value, end
+            part *= 2.0
+            continue
+        part *= 0.5
+        path.cuts += 1
+        if part < SMALLEST_PART:
+            body.begin(0.0)
+            system.set_factor(path.value)
+            return trial.status
+    return Status.CONVERGED
+
+
+def _solve(scene: Beam, path: Path, strain: float, *, tolerance: float) -> Outcome:
+    """Equilibrium from where the last states point to: with few factors, by Newton, then on the potential."""
+    system, x = path.system, path.outcome.x
+    options = scene.solver
+    start = _predict(path, strain)
+    near = 0.0
+    if tolerance > options.tolerance:
+        near = NEAR * float(np.abs(x - system.body.discretisation.mesh.nodes).max())
+    if path.warped is not None:
+        outcome = _with_few_factors(path, start, tolerance, near)
+        if outcome is not None:
+            return outcome
+    relaxed = replace(scene, solver=replace(options, tolerance=tolerance))
+    path.warped = None
+    for guess in (start, x):
+        if system.potential(guess)[1] > 0.0:
+            outcome = mixed_newton(relaxed, system, guess, system.body.pressures(guess))
+            if outcome.status is Status.CONVERGED:
+                if system.factored_at is not None:
+                    path.warped = Warped(system.body.discretisation, system.factored_at)
+                return outcome
+    return newton(system, x, tolerance=tolerance, max_iterations=options.max_iterations)
+
+
+def _predict(path: Path, strain: float) -> Array:
+    """The last states carried on by Lagrange's formula, as functions of the linear model's strain."""
+    known: list[tuple[float, Array]] = []
+    for clock, x in reversed(path.known):
+        if all(abs(clock - other) > DISTINCT * abs(strain) for other, _ in known):
+            known.append((clock, x))
+    guess = np.zeros_like(path.outcome.x)
+    for i, (clock, x) in enumerate(known):
+        others = [other for j, (other, _) in enumerate(known) if j != i]
+        guess += float(np.prod([(strain - other) / (clock - other) for other in others])) * x
+    return guess
+
+
+def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Outcome | None:
+    """Newton's method with an earlier tangent and Anderson's mixing (J. ACM 12, 1965).
+
+    The tangent is renewed where that is slow.
+
+    near: a step in which no node moves further than this is the last [m]: the residual of a state that is not
+    kept is mostly pressure, and the history only knows isochoric stresses. None where it does not get there
+    with MOST_FACTORS new tangents.
+    """
+    system = path.system
+    body, discretisation = system.body, system.body.discretisation
+    free, held = discretisation.pattern.free, discretisation.held
+    load = max(system.load_norm(), system.least_load)
+    seen: list[tuple[Array, Array]] = []  # positions of free nodes, and the step from there
+    renewed, slow, before = 0, 0, np.inf
+    assert path.warped is not None
+    path.warped.turn(x)
+    for iteration in range(CHEAP):
+        force, min_jacobian = body.internal_forces(x)
+        residual = (force - body.dead_load)[free]
+        residual[held] = 0.0
+        relative = float(np.linalg.norm(residual)) / load
+        if not min_jacobian > CRUSHED or not np.isfinite(relative):
+            return None
+        if relative <= tolerance:
+            return Outcome(x, Status.CONVERGED, relative, iteration)
+        here, step = x[free], path.warped.solve(-residual)
+        size = float(np.abs(step).max())
+        slow = slow + 1 if size > SLOW * before else 0
+        if slow >= PATIENCE or (seen and size > GROWN * before):
+            if renewed == MOST_FACTORS:
+                return None
+            system.free_pressures(body.pressures(path.outcome.x))  # of a trial they may be wild
+            try:
+                step = system.step(system.linearise(x)[0], forcing=0.0)
+            finally:
+                system.free_pressures(None)
+            path.warped = Warped(discretisation, x)
+            renewed, slow, size = renewed + 1, 0, float(np.abs(step).max())
+            seen.clear()
+        before = size
+        moved = here + step
+        if seen:
+            turns = np.column_stack([(step - s).ravel() for _, s in seen])
+            parts = np.linalg.lstsq(turns.T @ turns, turns.T @ step.ravel())[0]
+            for part, (place, s) in zip(parts, seen, strict=True):
+                moved -= part * (here - place + step - s)
+        seen.append((here, step))
+        x = x.copy()
+        x[free] = moved
+        if near and float(np.abs(moved - here).max()) <= near:
+            return Outcome(x, Status.CONVERGED, relative, iteration)
+    return None

@@ -1,0 +1,271 @@
+"""Equilibria of beams with an imperfect specimen or imperfect clamps.
+
+Newton from a neighbour's or the rod's shape as for ideal beams; where that fails, from the ideal beam's
+answer with the imperfections let in step by step. A clamp's compliance is an outer iteration on its angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.discretisation.body import Discretisation
+from tisim.nonlinear.newton import Outcome
+from tisim.problems.beam.equilibrium import Neighbour, equilibrium, mixed_newton, rod_shape
+from tisim.problems.beam.rest_shape import specimen_discretisation
+from tisim.problems.beam.rods import body_positions, clamp_centres, clamped_positions, solve_rod
+from tisim.problems.beam.system import BeamSystem, beam_system
+from tisim.result import Status
+from tisim.scene import Beam, ClampImperfections, Imperfections
+
+Array = NDArray[np.float64]
+
+ANGLE_TOLERANCE = 1e-4  # of what compliance adds to a clamp's angle, against that angle
+SMALL_ANGLE = 1e-9  # that no iteration is asked to resolve [rad]
+MOST_ANGLES = 20  # tried, before the clamps' angles count as not converged
+SMALLEST_PART = 1.0 / 64.0  # of the imperfections, let in at once
+EARLY_TOLERANCE = 1e-3  # of equilibrium, before the clamps' angles are first corrected
+SMALL_TURN = 1e-6  # of a clamp, in difference quotients [rad]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """How it ended, the part of the imperfections that was reached, and what the next beam starts from."""
+
+    system: BeamSystem
+    outcome: Outcome
+    counts: dict[str, int]
+    part: float
+    neighbour: Neighbour | None
+
+
+def imperfect_equilibrium(
+    scene: Beam, discretisation: Discretisation, neighbour: Neighbour | None = None
+) -> Found:
+    """Equilibrium of an imperfect beam; discretisation: the ideal beam's."""
+    system = imperfect_system(scene, discretisation)
+    attempt = _Attempt(scene, discretisation, system)
+    for x, pressure in attempt.starts(neighbour):
+        outcome = attempt.solve(x, pressure)
+        if outcome.status is Status.CONVERGED:
+            return Found(system, outcome, {"steps": 1, "cuts": 0}, 1.0, attempt.neighbour(outcome.x))
+    return _continuation(scene, discretisation, system.counts)
+
+
+def imperfect_system(scene: Beam, discretisation: Discretisation) -> BeamSystem:
+    """Material and loads of a beam on its specimen's quadrature."""
+    system = beam_system(scene, specimen_discretisation(scene, discretisation))
+    system.clamps_load = True
+    return system
+
+
+class _Attempt:
+    """One imperfect beam, from start values to the angles of its clamps."""
+
+    def __init__(self, scene: Beam, discretisation: Discretisation, system: BeamSystem) -> None:
+        self.scene, self.discretisation, self.system = scene, discretisation, system
+        self.fixed = discretisation.fixed
+        self.tilts = np.array([scene.clamp_imperfections.tilt, scene.clamp_imperfections.far_tilt])
+        self.first_angles = self.tilts
+        if scene.clamp_imperfections.compliance > 0.0:
+            rod = solve_rod(scene, system.body.moduli)
+            if rod is not None:
+                self.first_angles = rod.clamp_angles
+                self.first_angles[1] *= scene.supports == "clamped-clamped"
+        self.angles = self.first_angles
+        self.guess = self._guess()
+
+    def _guess(self) -> Array | None:
+        """The rod's shape with the clamps at their first angles; the held nodes are where they are held."""
+        scene, mesh = self.scene, self.discretisation.mesh
+        planar = scene.gravity[1] == 0.0 and scene.tip_force[1] == 0.0
+        # a load across the plane y = 0 bends an ideal rod; the imperfections' unloaded shape is added to it
+        unloaded = replace(scene, gravity=(0.0, 0.0, 0.0), tip_force=(0.0, 0.0, 0.0))
+        rod = solve_rod(scene if planar else unloaded, self.system.body.moduli, self.first_angles)
+        if rod is None:
+            return None
+        x = body_positions(scene, mesh, rod)
+        if not planar:
+            bent = rod_shape(scene, self.system.body)
+            if bent is None:
+                return None
+            x += bent - mesh.nodes
+        return self._hold(x)
+
+    def _hold(self, x: Array) -> Array:
+        """x with the held nodes where the clamps, at their present angles, hold them."""
+        x = x.copy()
+        x[self.fixed] = clamped_positions(self.scene, self.discretisation.mesh, self.fixed, self.angles)
+        return x
+
+    def starts(self, neighbour: Neighbour | None) -> Iterator[tuple[Array, Array]]:
+        """Positions and element pressures to start from, the best first."""
+        if self.guess is None:
+            return
+        if neighbour is not None and neighbour.discretisation is self.discretisation:
+            yield self._hold(neighbour.x + (self.guess - neighbour.rod)), neighbour.pressure
+            self.angles = self.first_angles  # which a start that failed may have changed
+        yield self.guess, np.zeros(self.discretisation.mesh.n_elements)
+
+    def from_answer(self, x: Array, guess: Array | None) -> Array:
+        """The start from another answer x on this discretisation, moved on by the rods if both exist."""
+        moved = x if self.guess is None or guess is None else x + (self.guess - guess)
+        return self._hold(moved)
+
+    def neighbour(self, x: Array) -> Neighbour | None:
+        if self.guess is None:
+            return None
+        return Neighbour(self.discretisation, x, self.guess, self.system.body.pressures(x))
+
+    def solve(self, x: Array, pressure: Array) -> Outcome:
+        """Newton at the clamps' angles, and Newton on these angles, where the clamps yield."""
+        scene, yields = self.scene, self.scene.clamp_imperfections.compliance > 0.0
+        failed = Outcome(x, Status.INVERTED, np.inf, 0)
+        if not self.system.potential(x)[1] > 0.0:
+            return failed
+        early = scene
+        if yields and scene.solver.tolerance < EARLY_TOLERANCE:
+            early = replace(scene, solver=replace(scene.solver, tolerance=EARLY_TOLERANCE))
+        outcome = mixed_newton(early, self.system, x, pressure)
+        if not yields or outcome.status is not Status.CONVERGED:
+            return outcome
+        final = early is scene
+        for _ in range(MOST_ANGLES):
+            gap = self._gap(outcome.x)
+            small = ANGLE_TOLERANCE * float(np.abs(self.angles - self.tilts).max()) + SMALL_ANGLE
+            pressure = self.system.body.pressures(outcome.x)
+            if np.abs(gap).max() > small:
+                start, pressure = self._turned(outcome.x, gap)
+                if not self.system.potential(start)[1] > 0.0:  # nor where it is not a number
+                    return failed
+            elif final:
+                return outcome
+            else:
+                start = outcome.x
+            outcome = mixed_newton(scene, self.system, start, pressure)
+            final = True
+            if outcome.status is not Status.CONVERGED:
+                return outcome
+        return replace(outcome, status=Status.NOT_CONVERGED)
+
+    def _gap(self, x: Array) -> Array:
+        """The clamps' angles less what their moments make them, (2,) [rad]."""
+        moments = clamp_moments(self.scene, self.discretisation, self.system, x)
+        gap: Array = self.angles - self.tilts - self.scene.clamp_imperfections.compliance * moments
+        if self.scene.supports == "clamped-free":
+            gap[1] = 0.0
+        return gap
+
+    def _turned(self, x: Array, gap: Array) -> tuple[Array, Array]:
+        """The answer x, and its pressures, moved on to first order to angles at which the gap closes.
+
+        How x follows the clamps is solved for with the last factor of the tangent; differences of forces
+        stand for the tangent's rows at the held nodes, which are not assembled.
+        """
+        body, discretisation = self.system.body, self.discretisation
+        mesh, free = discretisation.mesh, discretisation.pattern.free
+        if not self.system.counts["factorisations"]:  # a start so near that no step was taken
+            self.system.step(self.system.linearise(x)[0], forcing=0.0)
+        force = body.internal_forces(x)[0]
+        centres = clamp_centres(self.scene)
+        near = mesh.nodes[self.fixed, 0] < 0.5 * self.scene.length
+        slope = np.eye(2)
+        ways = np.zeros((2, *x.shape))
+        for clamp in range(2 if self.scene.supports == "clamped-clamped" else 1):
+            nodes = self.fixed[near == (clamp == 0)]
+            arm = x[nodes] - centres[clamp]
+            way = ways[clamp]
+            way[nodes, 0], way[nodes, 2] = -arm[:, 2], arm[:, 0]
+            pulled = (body.internal_forces(x + SMALL_TURN * way)[0] - force)[free] / SMALL_TURN
+            pulled[discretisation.held] = 0.0
+            way[free] = discretisation.solver.solve(-pulled)
+            slope[:, clamp] = (self._gap(x + SMALL_TURN * way) - self._gap(x)) / SMALL_TURN
+            slope[clamp, clamp] += 1.0  # the gap's own angle, which `_gap` did not turn
+        if not np.isfinite(slope).all():
+            return np.full_like(x, np.nan), body.pressures(x)
+        step = np.linalg.lstsq(slope, -gap)[0]  # singular where a clamp's yield makes the beam buckle
+        moved = step[0] * ways[0] + step[1] * ways[1]
+        self.angles = self.angles + step
+        return self._hold(x + moved), body.pressures(x, moved)
+
+
+def clamp_moments(scene: Beam, discretisation: Discretisation, system: BeamSystem, x: Array) -> Array:
+    """Moments that the body exerts on the near and the far clamp, (2,) [N m].
+
+    About the middles of the clamps' faces; positive moments turn a clamp as a positive tilt does.
+    """
+    fixed = discretisation.fixed
+    body = system.body
+    # without the weight of what is in the grips: it is there or not, as the mesh has it
+    support = body.internal_forces(x)[0][fixed] * discretisation.multiplicity
+    near = discretisation.mesh.nodes[fixed, 0] < 0.5 * scene.length
+    arm = x[fixed] - clamp_centres(scene)[np.where(near, 0, 1)]
+    # of the support on the body, (r x f)_y; of the body on the clamp, its opposite; from x to z, about -y
+    turning = arm[:, 2] * support[:, 0] - arm[:, 0] * support[:, 2]
+    return np.array([turning[near].sum(), turning[~near].sum()])
+
+
+def _continuation(scene: Beam, discretisation: Discretisation, spent: dict[str, int]) -> Found:
+    """From the ideal beam's answer, with a growing part of the imperfections; halved where Newton fails."""
+    ideal = replace(scene, imperfections=Imperfections(), clamp_imperfections=ClampImperfections())
+    system = beam_system(ideal, discretisation)
+    outcome, ideal_counts, _ = equilibrium(ideal, system)
+    counts = dict(ideal_counts)
+    _spend(spent, system)
+    if outcome.status is not Status.CONVERGED:
+        return Found(system, outcome, counts, 0.0, None)
+    last = _Attempt(ideal, discretisation, system)
+    part, step = 0.0, 0.5
+    while part < 1.0:
+        wanted = min(1.0, part + step)
+        trial_scene = _portion(scene, wanted)
+        attempt = _Attempt(trial_scene, discretisation, imperfect_system(trial_scene, discretisation))
+        start = attempt.from_answer(outcome.x, last.guess)
+        trial = attempt.solve(start, last.system.body.pressures(outcome.x))
+        counts["steps"] += 1
+        _spend(spent, attempt.system)
+        if trial.status is Status.CONVERGED:
+            outcome, part, last = trial, wanted, attempt
+            continue
+        counts["cuts"] += 1
+        step *= 0.5
+        if step < SMALLEST_PART:
+            return Found(last.system, replace(trial, x=outcome.x), counts, part, None)
+    return Found(last.system, outcome, counts, 1.0, last.neighbour(outcome.x))
+
+
+def _spend(spent: dict[str, int], system: BeamSystem) -> None:
+    """Add a system's counts to what was spent before, and let it show the sum."""
+    for name, count in system.counts.items():
+        spent[name] = spent.get(name, 0) + count
+    system.counts = spent
+
+
+def _portion(scene: Beam, part: float) -> Beam:
+    """The scene with this part of each imperfection."""
+    if part == 1.0:
+        return scene
+    s, c = scene.imperfections, scene.clamp_imperfections
+    return replace(
+        scene,
+        imperfections=Imperfections(
+            curvature=part * s.curvature,
+            taper=part * s.taper,
+            axial_gradient=part * s.axial_gradient,
+            density_gradient=part * s.density_gradient,
+            transverse_gradient=part * s.transverse_gradient,
+            skin=part * s.skin,
+            skin_thickness=s.skin_thickness,
+            void=None if s.void is None else replace(s.void, fraction=part * s.void.fraction),
+        ),
+        clamp_imperfections=ClampImperfections(
+            tilt=part * c.tilt,
+            far_tilt=part * c.far_tilt,
+            far_shift=(part * c.far_shift[0], part * c.far_shift[1]),
+            compliance=part * c.compliance,
+            squeeze=part * c.squeeze,
+        ),
+    )

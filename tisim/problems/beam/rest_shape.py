@@ -1,0 +1,167 @@
+"""A beam's specimen on the mesh of the ideal prism: rest shape, stiffness and density by quadrature point.
+
+Sparsity and symbolic factor stay those of the ideal beam; only the quadrature is made anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.bodies import Circle, Rectangle
+from tisim.discretisation.quadrature import reference
+from tisim.mesh import Mesh
+from tisim.scene import Beam, ClampImperfections, Imperfections, Void
+
+if TYPE_CHECKING:  # scipy is imported when a scene is solved
+    from tisim.discretisation.body import Discretisation
+
+Array = NDArray[np.float64]
+
+
+def is_ideal(scene: Beam) -> bool:
+    """Whether neither specimen nor clamps change anything."""
+    return ideal_specimen(scene.imperfections) and scene.clamp_imperfections == ClampImperfections()
+
+
+def is_planar(scene: Beam) -> bool:
+    """Whether loads and fibres have the mirror plane y = 0, so that half a beam is enough."""
+    if scene.material.fibres is not None:
+        along = np.abs(scene.material.fibres.axis())
+        if along[1] > 1e-9 and max(along[0], along[2]) > 1e-9:
+            return False
+    return scene.gravity[1] == 0.0 and scene.tip_force[1] == 0.0
+
+
+def ideal_specimen(specimen: Imperfections) -> bool:
+    """Whether it is the ideal prism; the depth of no skin and the place of no void do not matter."""
+    void = specimen.void if specimen.void is not None and specimen.void.fraction else None
+    depth = specimen.skin_thickness if specimen.skin else Imperfections().skin_thickness
+    return replace(specimen, void=void, skin_thickness=depth) == Imperfections()
+
+
+def rest_positions(scene: Beam, mesh: Mesh) -> Array:
+    """Where the nodes of a beam's mesh lie free of stress and out of the clamps, (n, 3) [m].
+
+    mesh: the result's, or any other mesh of the ideal prism, x from 0 to scene.length; what lies beyond its
+    ends (in the grips) goes on straight.
+    """
+    specimen = scene.imperfections
+    x, y, z = mesh.nodes.T
+    inside = np.clip(x, 0.0, scene.length)
+    size = scale(scene, inside)
+    nodes = np.column_stack([x, size * y, size * z])
+    if specimen.curvature == 0.0:
+        return nodes
+    angle = specimen.curvature * inside
+    beyond = x - inside
+    axis = np.column_stack([np.sin(angle), 1.0 - np.cos(angle)]) / specimen.curvature
+    nodes[:, 0] = axis[:, 0] - nodes[:, 2] * np.sin(angle) + beyond * np.cos(angle)
+    nodes[:, 2] = axis[:, 1] + nodes[:, 2] * np.cos(angle) + beyond * np.sin(angle)
+    return nodes
+
+
+def scale(scene: Beam, x: Array) -> Array:
+    """Size of the section at x against the ideal one's."""
+    return np.asarray(1.0 + scene.imperfections.taper * (x - 0.5 * scene.length))
+
+
+def specimen_discretisation(scene: Beam, discretisation: Discretisation) -> Discretisation:
+    """The ideal beam's discretisation with the specimen's quadrature; unchanged for an ideal specimen."""
+    specimen = scene.imperfections
+    if ideal_specimen(specimen):
+        return discretisation
+    changes: dict[str, object] = {}
+    if specimen.curvature or specimen.taper:
+        rest = replace(discretisation.mesh, nodes=rest_positions(scene, discretisation.mesh))
+        changes["reference"] = reference(rest)
+    points = np.einsum(
+        "qa,eai->eqi",
+        discretisation.reference.values,
+        discretisation.mesh.nodes[discretisation.mesh.elements],
+    )
+    x, _, z = np.moveaxis(points, 2, 0)
+    stiffness = along(scene, x) * (1.0 + specimen.transverse_gradient * z)
+    if specimen.skin:
+        stiffness = stiffness * _skin(scene, points, discretisation.reference.weights)
+    if specimen.axial_gradient or specimen.transverse_gradient or specimen.skin or specimen.void:
+        changes["stiffness"] = np.ascontiguousarray(stiffness)
+    if specimen.density_gradient or specimen.void:
+        changes["density"] = np.ascontiguousarray(heaviness(scene, x))
+    return replace(discretisation, **changes)  # type: ignore[arg-type]
+
+
+def along(scene: Beam, x: Array) -> Array:
+    """Factor of the modulus along the beam: its gradient and the void."""
+    gradient = scene.imperfections.axial_gradient
+    return np.asarray(
+        (1.0 + gradient * (x - 0.5 * scene.length)) * (1.0 - missing(scene.imperfections.void, x))
+    )
+
+
+def heaviness(scene: Beam, x: Array) -> Array:
+    """Factor of the density along the beam: its gradient and the void."""
+    gradient = scene.imperfections.density_gradient
+    return np.asarray(
+        (1.0 + gradient * (x - 0.5 * scene.length)) * (1.0 - missing(scene.imperfections.void, x))
+    )
+
+
+def missing(void: Void | None, x: Array) -> Array:
+    """Part of the section that a void takes away."""
+    if void is None:
+        return np.zeros_like(x)
+    beyond = np.abs(x - void.position) - 0.5 * (void.length - void.edge)
+    phase = np.clip(beyond / void.edge, 0.0, 1.0)
+    return np.asarray(0.5 * void.fraction * (1.0 + np.cos(np.pi * phase)))
+
+
+def skin_factors(scene: Beam) -> tuple[float, float, float]:
+    """Stiffness of the section with its skin against that without: stretching, bending about y, about z."""
+    excess, depth = scene.imperfections.skin, scene.imperfections.skin_thickness
+    if isinstance(scene.section, Circle):
+        core = 1.0 - depth / scene.section.radius
+        bending = 1.0 + excess * (1.0 - core**4)
+        return 1.0 + excess * (1.0 - core**2), bending, bending
+    wide, high = 1.0 - 2.0 * depth / scene.section.width, 1.0 - 2.0 * depth / scene.section.height
+    return (
+        1.0 + excess * (1.0 - wide * high),
+        1.0 + excess * (1.0 - wide * high**3),
+        1.0 + excess * (1.0 - wide**3 * high),
+    )
+
+
+def skin_profile(scene: Beam) -> tuple[float, float, float]:
+    """(c0, cy, cz) of the section's stiffness c0 + cy (y/b)^2 + cz (z/h)^2 with the skin's three factors.
+
+    b, h: half width and half height, both the radius of a circle. From the moments of the continuous section.
+    """
+    if isinstance(scene.section, Circle):
+        square, fourth, mixed = 1.0 / 4.0, 1.0 / 8.0, 1.0 / 24.0
+    else:
+        square, fourth, mixed = 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0
+    stretching, about_y, about_z = skin_factors(scene)
+    matrix = np.array([[1.0, square, square], [square, fourth, mixed], [square, mixed, fourth]])
+    wanted = np.array([stretching, square * about_z, square * about_y])
+    c0, cy, cz = np.linalg.solve(matrix, wanted)
+    return float(c0), float(cy), float(cz)
+
+
+def _skin(scene: Beam, points: Array, weights: Array) -> Array:
+    """`skin_profile` at the points, with the moments that the mesh's own quadrature gives (exactly, so)."""
+    b, h = half_sizes(scene.section)
+    basis = np.stack([np.ones_like(weights), (points[..., 1] / b) ** 2, (points[..., 2] / h) ** 2])
+    moments = np.einsum("ieq,jeq,eq->ij", basis, basis, weights)
+    stretching, about_y, about_z = skin_factors(scene)
+    wanted = moments[0] * [stretching, about_z, about_y]
+    return np.asarray(np.einsum("i,ieq->eq", np.linalg.solve(moments, wanted), basis))
+
+
+def half_sizes(section: Circle | Rectangle) -> tuple[float, float]:
+    """Half width (y) and half height (z) [m]."""
+    if isinstance(section, Circle):
+        return section.radius, section.radius
+    return 0.5 * section.width, 0.5 * section.height

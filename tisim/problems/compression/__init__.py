@@ -1,0 +1,1 @@
+"""Uniaxial compression of a cylinder between two platens."""

@@ -1,0 +1,296 @@
+"""Uniaxial compression of a cylinder between two platens, stretch after stretch, by an eighth of it.
+
+A bonded cylinder's end faces move with the platens. Where its side comes down on a platen, the nodes that
+would pass through it stick to it from then on.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.course import Stop
+from tisim.discretisation.body import Discretisation, DiscretisedBody
+from tisim.mesh import ElementKind, Mesh
+from tisim.mesh.compression import press_mesh
+from tisim.nonlinear.newton import Outcome, newton
+from tisim.parallel.threads import one_thread
+from tisim.problems._registry import OnStep, skip
+from tisim.problems._stops import stops_of
+from tisim.problems.beam.system import BeamSystem
+from tisim.result import Cost, Result, Status
+from tisim.scene import Press
+
+Array = NDArray[np.float64]
+
+MOST_LANDINGS = 12  # rounds of nodes coming down within one step
+MOST_ITERATIONS = 15  # with free pressures Newton is quick or gets nowhere
+# Overlap of side and platen that counts as none, in parts of the height: rounding.
+TOUCH = 1e-9
+# Of the logarithm of the stretch: half of it changes the force by 0.03 % at most, to a third of the height.
+LARGEST_STEP = 0.03
+SMALLEST_STEP = LARGEST_STEP / 64.0
+MOST_PARTS = 64  # of a step in a hold
+
+
+class SideLandedError(Exception):
+    """The side came down on the platen, and the scene says to stop there."""
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """An equilibrium: stretch, positions (n, 3) [m], nodes carried by the platen (n,), residual, time [s]."""
+
+    stretch: float
+    x: Array
+    carried: NDArray[np.bool_]
+    residual: float = 0.0
+    time: float = 0.0
+
+
+@lru_cache(maxsize=8)
+def _discretise(
+    radius: float, height: float, kind: ElementKind, refinement: float, bonded: bool
+) -> Discretisation:
+    mesh = press_mesh(radius=radius, height=height, kind=kind, refinement=refinement)
+    held = np.zeros((mesh.n_nodes, 3), dtype=bool)
+    held[mesh.node_sets["top"]] = True if bonded else (False, False, True)
+    return Discretisation.build(mesh, np.zeros(0, dtype=np.int32), held)
+
+
+class PressSystem(BeamSystem):
+    """The upper quarter of the cylinder (`tisim.nonlinear.newton.System`), its held components in place in x.
+
+    What a bonded cylinder's side does on the platen: a node that would pass through it is held where its
+    path met it, all components, from then on (the side rolls onto the platen and sticks).
+    """
+
+    def __init__(self, scene: Press) -> None:
+        kind: ElementKind = "tet10" if scene.element == "default" else scene.element
+        self.bonded = scene.platens == "bonded"
+        shared = _discretise(scene.radius, scene.height, kind, scene.refinement, self.bonded)
+        # nodes that land are held in this scene only; no node is fixed, so held is by node
+        discretisation = replace(shared, held=shared.held.copy())
+        super().__init__(DiscretisedBody(discretisation, scene.material), tolerance=scene.solver.tolerance)
+        self.scene = scene
+        self._at_rest = 1e-6 * self.body.moduli.shear_modulus * scene.radius**2
+        self._faces = shared.held
+        self._side = discretisation.mesh.node_sets["side"]
+        self._iterations = min(MOST_ITERATIONS, scene.solver.max_iterations)
+
+    def rest(self) -> State:
+        carried = np.zeros(self.body.discretisation.mesh.n_nodes, dtype=bool)
+        carried[self.body.discretisation.mesh.node_sets["top"]] = True
+        return State(1.0, self.body.discretisation.mesh.nodes.copy(), carried)
+
+    def linearise(self, x: Array) -> tuple[Array, float]:
+        residual, _ = super().linearise(x)
+        force, _ = self.body.internal_forces(x)
+        # at rest there is no reaction to compare with
+        return residual, float(np.linalg.norm(force[self.body.discretisation.held])) + self._at_rest
+
+    def plane(self, stretch: float) -> float:
+        """Height of the upper platen over the middle [m]."""
+        return 0.5 * self.scene.height * stretch
+
+    def overlap(self, x: Array, stretch: float) -> float:
+        """How far the side reaches beyond the platen [m], 0 where it does not."""
+        return max(0.0, float((x[self._side, 2]).max()) - self.plane(stretch))
+
+    def equilibrium(
+        self, state: State, before: State | None, stretch: float, time: float
+    ) -> tuple[State | None, Status]:
+        """The state at `stretch` and a time [s], one step on from `state`; or None and the reason.
+
+        before: the state before that, for a secant guess. SideLandedError where the scene stops at it.
+        """
+        status = Status.NOT_CONVERGED
+        self.body.begin(time - state.time)
+        for guess in self._guesses(state, before, stretch):
+            carried = state.carried
+            outcome = self._solve(guess, carried, self.body.pressures(state.x))
+            for _ in range(MOST_LANDINGS):
+                if outcome.status is not Status.CONVERGED:
+                    break
+                landed = self._landed(outcome.x, carried, stretch)
+                if not len(landed):
+                    self.body.accept(outcome.x)
+                    return State(stretch, outcome.x, carried, outcome.residual, time), Status.CONVERGED
+                if self.scene.side == "stop":
+                    raise SideLandedError
+                x = self._put_down(state, outcome.x, landed, stretch)
+                carried = carried.copy()
+                carried[landed] = True
+                outcome = self._solve(x, carried, self.body.pressures(outcome.x))
+            status = Status.NOT_CONVERGED if outcome.status is Status.CONVERGED else outcome.status
+        return None, status
+
+    def _guesses(self, state: State, before: State | None, stretch: float) -> list[Array]:
+        """Where the last two states point to, then the last one scaled; held nodes in their places."""
+        ratio = stretch / state.stretch
+        scaled = state.x.copy()
+        scaled[:, 2] *= ratio
+        if not self.bonded:
+            scaled[:, :2] *= ratio**-0.5
+        guesses = [scaled]
+        if before is not None and stretch != state.stretch != before.stretch:
+            part = (stretch - state.stretch) / (state.stretch - before.stretch)
+            guesses.insert(0, state.x + part * (state.x - before.x))
+        for guess in guesses:
+            if self.bonded:
+                guess[state.carried, :2] = state.x[state.carried, :2]
+            guess[state.carried, 2] = self.plane(stretch)
+        return guesses
+
+    def _solve(self, x: Array, carried: NDArray[np.bool_], pressure: Array) -> Outcome:
+        """Newton with the element pressures as unknowns, the carried nodes held."""
+        held = self.body.discretisation.held
+        held[:] = self._faces
+        if self.bonded:
+            held[carried] = True
+        if self.potential(x)[1] <= 0.0:
+            return Outcome(x, Status.INVERTED, np.inf, 0)
+        self.free_pressures(pressure)
+        try:
+            return newton(self, x, tolerance=self.tolerance, max_iterations=self._iterations)
+        finally:
+            self.free_pressures(None)
+
+    def _landed(self, x: Array, carried: NDArray[np.bool_], stretch: float) -> NDArray[np.int32]:
+        beyond = x[self._side, 2] - self.plane(stretch) > TOUCH * self.scene.height
+        return self._side[beyond & ~carried[self._side]] if self.bonded else self._side[:0]
+
+    def _put_down(self, state: State, x: Array, landed: NDArray[np.int32], stretch: float) -> Array:
+        """x with the landed nodes where their straight paths from `state` met the moving platen."""
+        gap = self.plane(state.stretch) - state.x[landed, 2]
+        now = self.plane(stretch) - x[landed, 2]
+        part = np.clip(gap / (gap - now), 0.0, 1.0)[:, None]
+        x = x.copy()
+        x[landed, :2] = state.x[landed, :2] + part * (x[landed, :2] - state.x[landed, :2])
+        x[landed, 2] = self.plane(stretch)
+        return x
+
+
+@one_thread()
+def solve_press(scene: Press, *, on_step: OnStep = skip) -> Result:
+    """One frame a stretch, or as the course says, up to the first that has no equilibrium.
+
+    The middle plane stays at z = 0, the upper platen at stretch * height / 2. nominal_stress: force of the
+    platen on the body over the rest area, negative in compression; what the side carries where it lies on
+    the platen counts. support_force: of the lower platen. penetration: of the side and the platen.
+    """
+    start = time.process_time()
+    system = PressSystem(scene)
+    mesh_seconds = time.process_time() - start
+    here, before = system.rest(), None
+    frames: list[_Frame] = []
+    status, message, counts = Status.CONVERGED, "", _Counts()
+    try:
+        stops = stops_of(scene)
+        for count, stop in enumerate(stops, start=1):
+            here, before, status = _advance(system, here, before, stop, counts)
+            if status is not Status.CONVERGED:
+                message = f"no equilibrium beyond stretch {here.stretch:.4g} ({status.value})"
+                break
+            if stop.frame:
+                frames.append(_frame(system, here))
+            on_step(count / len(stops))
+    except SideLandedError:
+        status = Status.PENETRATION
+        message = f"the side comes down on the platen beyond stretch {counts.reached:.4g}, and side is 'stop'"
+    cost = Cost(
+        core_seconds=time.process_time() - start - mesh_seconds,
+        mesh_seconds=mesh_seconds,
+        steps=counts.steps,
+        newton_iterations=system.counts["newton"],
+        factorisations=system.counts["factorisations"],
+        step_cuts=counts.cuts,
+    )
+    return _result(scene, system.body.discretisation.mesh, frames, status, message, cost)
+
+
+@dataclass
+class _Counts:
+    """reached: the last stretch with an equilibrium."""
+
+    steps: int = 0
+    cuts: int = 0
+    reached: float = 1.0
+
+
+def _advance(
+    system: PressSystem, here: State, before: State | None, stop: Stop, counts: _Counts
+) -> tuple[State, State | None, Status]:
+    """From `here` to a stop in steps even in the logarithm of the stretch, halved where they fail."""
+    size, status, target = LARGEST_STEP, Status.CONVERGED, stop.value
+    shorter = 1  # a hold is cut in time
+    while here.stretch != target or here.time < stop.time:
+        left = float(np.log(target / here.stretch))
+        count = max(shorter, int(np.ceil(abs(left) / size - 1e-9)))
+        stretch = target if count == 1 else here.stretch * float(np.exp(left / count))
+        time = stop.time
+        if count > 1:  # the stretch is linear in time
+            part = (stretch - here.stretch) / (target - here.stretch) if left else 1.0 / count
+            time = here.time + part * (stop.time - here.time)
+        counts.steps += 1
+        found, status = system.equilibrium(here, before, stretch, time)
+        if found is None:
+            counts.cuts += 1
+            if left:
+                size = 0.5 * min(size, abs(left))
+            else:
+                shorter *= 2
+            if size < SMALLEST_STEP or shorter > MOST_PARTS:
+                system.body.begin(0.0)
+                return here, before, status
+            continue
+        before, here = here, found
+        counts.reached = stretch
+        size = min(2.0 * size, LARGEST_STEP)
+        shorter = max(1, shorter - 1)
+    return here, before, status
+
+
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    state: State
+    force: float  # of the upper platen on the body along z [N]
+    overlap: float
+    min_jacobian: float
+    dissipated: float
+
+
+def _frame(system: PressSystem, state: State) -> _Frame:
+    force, min_jacobian = system.body.internal_forces(state.x)
+    # the mesh has a quarter of each end
+    pushed = 4.0 * float(force[state.carried, 2].sum())
+    overlap, lost = system.overlap(state.x, state.stretch), system.body.dissipated()
+    return _Frame(state, pushed, overlap, min_jacobian, lost)
+
+
+def _result(
+    scene: Press, mesh: Mesh, frames: list[_Frame], status: Status, message: str, cost: Cost
+) -> Result:
+    n = len(frames)
+    support = np.zeros((n, 3))
+    support[:, 2] = [-f.force for f in frames]
+    return Result(
+        scene=scene,
+        status=status,
+        message=message,
+        mesh=mesh,
+        load=np.array([f.state.stretch for f in frames]),
+        positions=np.array([f.state.x for f in frames]).reshape(n, mesh.n_nodes, 3),
+        support_force=support,
+        penetration=np.array([f.overlap for f in frames]),
+        min_jacobian=np.array([f.min_jacobian for f in frames]),
+        residual=np.array([f.state.residual for f in frames]),
+        nominal_stress=np.array([f.force for f in frames]) / (np.pi * scene.radius**2),
+        time=None if scene.course is None else np.array([f.state.time for f in frames]),
+        dissipated=np.array([f.dissipated for f in frames]) if scene.material.remembers else None,
+        cost=cost,
+    )

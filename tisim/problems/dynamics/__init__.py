@@ -1,0 +1,1 @@
+"""Beams through time: BDF2 and central differences."""

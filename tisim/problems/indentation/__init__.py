@@ -1,0 +1,1 @@
+"""A rod pushed into a block, with frictional contact."""

@@ -1,0 +1,139 @@
+"""A rod whose depth follows a course: holds and ramps at a speed, each step an equilibrium in its time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.course import Stop
+from tisim.problems._registry import OnStep
+from tisim.problems._stops import shortest_time
+from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.steps import (
+    BETWEEN,
+    FIRST_STEP,
+    LARGEST_STEP,
+    SMALLEST_STEP,
+    Frame,
+    frame_of,
+    overlap_fault,
+    predict,
+    stiffen_where_deep,
+)
+from tisim.problems.indentation.system import PokeSystem
+from tisim.result import Status
+from tisim.scene import Poke
+
+Array = NDArray[np.float64]
+
+SMALLEST_PART = 1.0 / 64.0  # of a step in a hold
+
+
+def without_course(scene: Poke) -> Poke:
+    """The scene with the course's largest depth as its own: what mesh, contact and checks go by."""
+    if scene.course is None:
+        return scene
+    return replace(scene, depth=float(max(scene.course.values)), course=None)
+
+
+@dataclass(eq=False)
+class _Walk:
+    """Where the rod is, and how fast the body moved last: by depth in a ramp, by log time in a hold."""
+
+    x: Array
+    depth: float = 0.0
+    time: float = 0.0
+    step: float = FIRST_STEP
+    velocity: Array | None = None
+    steps: int = 0
+    cuts: int = 0
+
+
+def follow(
+    scene: Poke, system: PokeSystem, block: CondensedBlock, on_step: OnStep
+) -> tuple[list[Frame], Status, int, int]:
+    """Frames of a poke along its course, how it ended, steps and cuts."""
+    course = scene.course
+    assert course is not None
+    shortest = shortest_time(scene.material)
+    offset = 0.5 * (shortest or course.duration)
+    walk = _Walk(system.previous.copy())
+    frames: list[Frame] = []
+    corner = 0.0
+    stops = course.stops(shortest)
+    for count, stop in enumerate(stops, start=1):
+        if walk.time in (0.0, *course.times):
+            corner, walk.velocity = walk.time, None
+        way = np.sign(stop.value - walk.depth)
+        if way:
+            system.turn(float(way))
+        status = _advance(scene, system, block, walk, stop, corner - offset)
+        if status is not Status.CONVERGED:
+            return frames, status, walk.steps, walk.cuts
+        if stop.frame:
+            frames.append(frame_of(walk.x, system, block.last_residual, walk.time))
+        on_step(count / len(stops))
+    return frames, Status.CONVERGED, walk.steps, walk.cuts
+
+
+def _advance(
+    scene: Poke, system: PokeSystem, block: CondensedBlock, walk: _Walk, stop: Stop, origin: float
+) -> Status:
+    """On to a stop, in depth steps no larger than a poke's, and in parts of the time where a hold fails."""
+    part, refused = 1.0, 0
+    while walk.time < stop.time or walk.depth != stop.value:
+        left = stop.value - walk.depth
+        share = min(part, 1.0)
+        if left:
+            share = min(share, walk.step / abs(left))
+            if share > 0.7:  # no small rest
+                share = 1.0 if part >= 1.0 and abs(left) <= 1.25 * walk.step else 0.5
+        done = share == 1.0
+        target = stop.value if done else walk.depth + share * left
+        time = stop.time if done else walk.time + share * (stop.time - walk.time)
+        system.move_to(target)
+        system.begin(time - walk.time)
+        pace = _pace(walk, target, time, origin)
+        guess = walk.x.copy() if walk.velocity is None else predict(system, walk.x, walk.velocity * pace)
+        system.touch(guess)
+        kept = done and stop.frame
+        outcome = block.solve(
+            guess,
+            tolerance=(1.0 if kept else BETWEEN) * scene.solver.tolerance,
+            max_iterations=scene.solver.max_iterations * (1 + refused),
+            kept=kept,
+        )
+        walk.steps += 1
+        failed = overlap_fault(outcome, system)
+        if failed is not None:
+            walk.cuts += 1
+            refused += 1
+            if left:
+                walk.step = 0.4 * min(walk.step, abs(target - walk.depth))
+            else:
+                part = 0.5 * share
+            if walk.step < SMALLEST_STEP or part < SMALLEST_PART:
+                system.begin(0.0)
+                return failed
+            continue
+        walk.velocity = (outcome.x - walk.x) / pace if pace else None
+        if left:
+            if outcome.iterations <= 6:
+                walk.step = min(2.0 * walk.step, LARGEST_STEP)
+            elif outcome.iterations > 12:
+                walk.step *= 0.7
+        refused, part = 0, 1.0
+        walk.x, walk.depth, walk.time = outcome.x, target, time
+        block.last_residual = outcome.residual
+        system.accept(outcome.x)
+        stiffen_where_deep(system)
+    return Status.CONVERGED
+
+
+def _pace(walk: _Walk, depth: float, time: float, origin: float) -> float:
+    """What the step is long in what the motion goes by: depth, or the logarithm of time since the corner."""
+    if depth != walk.depth:
+        return depth - walk.depth
+    return float(np.log((time - origin) / (walk.time - origin))) if time > walk.time else 0.0

@@ -1,0 +1,185 @@
+"""A rod pushed into a block, and drawn back, each step an equilibrium with frictional contact."""
+
+from __future__ import annotations
+
+import logging
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.discretisation.body import Discretisation
+from tisim.mesh import Mesh
+from tisim.mesh.indentation import poke_mesh
+from tisim.nonlinear.newton import Outcome
+from tisim.parallel.threads import one_thread
+from tisim.problems._registry import OnStep, skip
+from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.course import follow, without_course
+from tisim.problems.indentation.steps import (
+    BETWEEN,
+    FIRST_STEP,
+    LARGEST_STEP,
+    SMALLEST_STEP,
+    Frame,
+    frame_of,
+    overlap_fault,
+    predict,
+    stiffen_where_deep,
+)
+from tisim.problems.indentation.system import PokeSystem
+from tisim.result import Cost, Result, Status
+from tisim.scene import Poke
+
+Array = NDArray[np.float64]
+_log = logging.getLogger(__name__)
+
+# A frame that finds no equilibrium, which is asked more of than the steps between, is tried again so much of
+# the spacing further on.
+LATER = 0.1
+SAME = 1e-9  # depths closer than this are one [m]
+
+
+@one_thread()
+def solve_poke(scene: Poke, *, on_step: OnStep = skip) -> Result:
+    """Push the rod in to the depth asked for, then draw it back if asked, or follow a course.
+
+    One frame every spacing, or as the course says.
+
+    Parameters
+    ----------
+    scene : Poke
+    on_step : callable (fraction), optional
+        Called after each accepted depth step with the fraction of the rod's way.
+
+    Returns
+    -------
+    Result
+        Frames up to where the solution ends; each step tried is logged at DEBUG.
+    """
+    mesh_start = time.process_time()
+    mesh = scene.mesh or poke_mesh(
+        block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod,
+        refinement=scene.refinement, kind="hex8" if scene.element == "default" else scene.element,
+    )  # fmt: skip
+    discretisation = Discretisation.build(mesh, mesh.node_sets["base"])
+    mesh_seconds = time.process_time() - mesh_start
+    start = time.process_time()
+    system = PokeSystem(without_course(scene), discretisation)
+    block = CondensedBlock(system)
+    walk = _push if scene.course is None else follow
+    frames, status, steps, cuts = walk(scene, system, block, on_step)
+    cost = Cost(
+        core_seconds=time.process_time() - start,
+        mesh_seconds=mesh_seconds,
+        steps=steps,
+        newton_iterations=block.iterations,
+        factorisations=block.factorisations,
+        linear_iterations=block.linear_iterations,
+        step_cuts=cuts,
+    )
+    return _result(scene, mesh, frames, status, cost)
+
+
+def _push(
+    scene: Poke, system: PokeSystem, block: CondensedBlock, on_step: OnStep
+) -> tuple[list[Frame], Status, int, int]:
+    x = system.previous.copy()
+    velocity = np.zeros_like(x)
+    refused = 0
+    depth = 0.0
+    frames: list[Frame] = []
+    travelled = 0.0
+    way_to_go = scene.depth if scene.retract_to is None else 2.0 * scene.depth - scene.retract_to
+    steps = cuts = 0
+    status = Status.CONVERGED
+    for goal in (scene.depth,) if scene.retract_to is None else (scene.depth, scene.retract_to):
+        way = 1.0 if goal > depth else -1.0
+        system.turn(way)
+        step, next_frame = FIRST_STEP, depth + way * scene.frame_spacing
+        while way * (goal - depth) > SAME:
+            wanted = way * min(way * next_frame, way * goal)
+            target = way * min(way * depth + step, way * wanted)
+            if SAME < way * (wanted - target) < 0.2 * step:
+                target = 0.5 * (depth + wanted)
+            system.move_to(target)
+            guess = predict(system, x, velocity * (target - depth))
+            system.touch(guess)
+            frame = way * (target - wanted) >= -SAME
+            outcome = block.solve(
+                guess,
+                tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
+                # what stops most steps is a snap, which no smaller step goes round: it takes iterations
+                max_iterations=scene.solver.max_iterations * (1 + refused),
+                kept=frame,
+            )
+            steps += 1
+            failed = overlap_fault(outcome, system)
+            if _log.isEnabledFor(logging.DEBUG):
+                _log.debug(
+                    "%7.3f mm, step %.3f mm: %s", target * 1e3, step * 1e3, _state(outcome, system, block)
+                )
+            if failed is not None:
+                status = failed
+                cuts += 1
+                refused += 1
+                if frame and way * (goal - target) > SAME:
+                    next_frame = way * min(way * target + LATER * scene.frame_spacing, way * goal)
+                    if refused == 1:
+                        continue
+                step *= 0.4
+                if step < SMALLEST_STEP:
+                    return frames, status, steps, cuts
+                continue
+            refused = 0
+            velocity = (outcome.x - x) / (target - depth)
+            travelled += abs(target - depth)
+            x, depth = outcome.x, target
+            on_step(travelled / way_to_go)
+            system.accept(x)
+            stiffen_where_deep(system)
+            if outcome.iterations <= 6:
+                step = min(step * 2.0, LARGEST_STEP)
+            elif outcome.iterations > 12:
+                step *= 0.7
+            if frame:
+                frames.append(frame_of(outcome.x, system, outcome.residual))
+                next_frame = depth + way * scene.frame_spacing
+    return frames, Status.CONVERGED, steps, cuts
+
+
+def _state(outcome: Outcome, system: PokeSystem, block: CondensedBlock) -> str:
+    return (
+        f"it {outcome.iterations:2d} {outcome.status.value:14s}"
+        f" F {system.report[:3] @ -system.axis:8.4f} overlap {-1e3 * float(system.report[3]):.3f}"
+        f" J {system.min_jacobian:.3f} res {outcome.residual:.1e} solves {block.linear_iterations}"
+        f" fac {block.factorisations} rounds {block.rounds} far {block.condensations}"
+    )
+
+
+def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: Cost) -> Result:
+    def stack(values: list[Array], width: tuple[int, ...]) -> Array:
+        return np.array(values) if values else np.zeros((0, *width))
+
+    reached = "0 mm"
+    if frames:  # what stops a poke shows there: tissue crushed against an inclusion, or a surface that folds
+        last = frames[-1]
+        size = float(np.linalg.norm(last.rod_force))
+        reached = f"{last.depth * 1e3:.2f} mm, {size:.3g} N and smallest det F {last.min_jacobian:.3f}"
+    return Result(
+        scene=scene,
+        status=status,
+        message="" if status is Status.CONVERGED else f"{status.value} after {reached}",
+        mesh=mesh,
+        load=np.array([f.depth for f in frames]),
+        positions=stack([f.x for f in frames], (mesh.n_nodes, 3)),
+        support_force=stack([f.base_force for f in frames], (3,)),
+        rod_force=stack([f.rod_force for f in frames], (3,)),
+        rod_tip=stack([f.tip for f in frames], (3,)),
+        penetration=np.array([f.penetration for f in frames]),
+        min_jacobian=np.array([f.min_jacobian for f in frames]),
+        residual=np.array([f.residual for f in frames]),
+        time=None if scene.course is None else np.array([f.time for f in frames]),
+        dissipated=np.array([f.dissipated for f in frames]) if scene.material.remembers else None,
+        cost=cost,
+    )

@@ -1,0 +1,271 @@
+"""A block under a rod at one pose: energy, residual and Newton step of body and contact together."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.bodies import Rod
+from tisim.discretisation.body import Discretisation, DiscretisedBody, gravity_load
+from tisim.discretisation.quadrature import TetrahedralParts, facet_areas, facet_quadrature
+from tisim.kernels.contact import contact_kernels, pack_rod
+from tisim.linear.blocks import FullMatrix
+from tisim.linear.krylov import FactorGMRES
+from tisim.mesh import Mesh
+from tisim.problems.indentation.far_field import FarField
+from tisim.scene import Poke
+
+Array = NDArray[np.float64]
+
+# Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
+# shear moduli is a twentieth of the edge radius. Points stick and slip less abruptly than at twice as much.
+NORMAL_STIFFNESS = 200.0
+TANGENT_STIFFNESS = 50.0
+# Of the radius: an edge that is rounder counts as this. By its whole radius a hemisphere would sink into the
+# body so far that its force is 1.3 % low, whatever the mesh.
+ROUNDEST = 0.4
+POINTS_PER_SIDE = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Some of a block's elements as a system of their own: body, solver, tangent, slots of the facets."""
+
+    body: DiscretisedBody
+    linear: FactorGMRES
+    full: FullMatrix
+    slot: NDArray[np.int32]
+
+
+def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
+    """Tip centre where the rod, its axis through the site, first touches the plane z = height."""
+    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
+    core = rod.radius - edge
+    tilt = np.sqrt(max(0.0, 1.0 - axis[2] ** 2))
+    # lowest point below the tip's centre: the edge torus, e ahead of its centre circle
+    reach = core * tilt + edge - edge * abs(axis[2])
+    target = np.array([site[0], site[1], height])
+    return target - axis * (reach / abs(axis[2]))
+
+
+class PokeSystem:
+    """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
+
+    far: what tissue beyond the body's elements adds, where the body is the near part of a block.
+    """
+
+    def __init__(self, scene: Poke, discretisation: Discretisation) -> None:
+        mesh, rod = discretisation.mesh, scene.rod
+        self._parts: TetrahedralParts | None = None
+        if mesh.kind == "hex8":  # on weights of its own: they change as the rod goes down
+            own = replace(discretisation.reference, weights=discretisation.reference.weights.copy())
+            discretisation = replace(discretisation, reference=own)
+            self._parts = TetrahedralParts(mesh, own)
+        self.scene, self.discretisation = scene, discretisation
+        self.body = DiscretisedBody(
+            discretisation,
+            scene.material,
+            dead_load=gravity_load(discretisation, scene.material.density, scene.gravity),
+        )
+        self.axis = np.asarray(scene.direction, dtype=float) / np.linalg.norm(scene.direction)
+        self.edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
+        height = float(mesh.nodes[mesh.facet_sets["top"], 2].max())
+        self.start = rod_start(rod, scene.site, height, self.axis)
+        self.facets = np.ascontiguousarray(self._near(mesh), dtype=np.int32)
+        self._slot = discretisation.pattern.slots(self.facets)
+        self._shape = np.ascontiguousarray(facet_quadrature(self.facets.shape[1], POINTS_PER_SIDE)[0])
+        self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE)[1]
+        points = self._area.shape
+        g = self.body.moduli.shear_modulus
+        edge = min(self.edge, ROUNDEST * rod.radius)
+        self._law = np.array([NORMAL_STIFFNESS * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction])
+        self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
+        self._skew = np.zeros((*points, 9))
+        self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
+        self._part = np.zeros(points)
+        self._measure, self._energy, self._assemble = contact_kernels()
+        self.linear = FactorGMRES(discretisation.pattern)
+        self.full = FullMatrix(discretisation.pattern, self.facets)
+        self.far: FarField | None = None
+        self.linearisations = 0
+        self.min_jacobian = 1.0
+        self._known: tuple[Array, tuple[Array, float, float]] | None = None
+        self.previous = mesh.nodes.copy()
+        self.depth = self.previous_depth = 0.0
+        self._pose(0.0)
+        self._measure(self.previous, self.facets, self._shape, self._rod, self._gap)
+        self.report = np.zeros(6)
+
+    def _near(self, mesh: Mesh) -> NDArray[np.int32]:
+        """Facets of the top that the rod can come to touch."""
+        top = mesh.facet_sets["top"]
+        centres = mesh.nodes[top].mean(axis=1)[:, :2] - np.asarray(self.scene.site)
+        along = np.array(self.axis[:2])
+        reach = 0.5 * self.scene.depth + 4.0 * self.scene.rod.radius
+        travel = np.clip(centres @ along / max(float(along @ along), 1e-12), 0.0, self.scene.depth)
+        off = np.linalg.norm(centres - travel[:, None] * along, axis=1)
+        return top[off < reach]
+
+    def _pose(self, depth: float) -> None:
+        self.depth = depth
+        rod = self.scene.rod
+        self._rod = pack_rod(
+            self.tip, self.axis, rod.radius, self.edge, (depth - self.previous_depth) * self.axis
+        )
+
+    @property
+    def tip(self) -> Array:
+        return self.start + self.depth * self.axis
+
+    def move_to(self, depth: float) -> None:
+        """Put the rod at this depth; slip counts from the last accepted state."""
+        self._pose(depth)
+
+    def turn(self, way: float) -> None:
+        """Go on down (way above 0) or back up: elements that the rod sets free may get their shape back."""
+        if self._parts is not None:
+            self._parts.mends = way < 0.0
+
+    def touch(self, guess: Array) -> None:
+        """Set the part of the step in which each point touches, by the step's start value."""
+        distance = np.empty_like(self._gap)
+        self._measure(guess, self.facets, self._shape, self._rod, distance)
+        gap = np.maximum(self._gap, 0.0)
+        overlap = np.maximum(-distance, 0.0)
+        self._part = np.where(self._gap <= 0.0, 1.0, overlap / (gap + overlap + 1e-15))
+
+    def begin(self, dt: float) -> None:
+        """Begin a step of length dt [s] from the last accepted state."""
+        self.body.begin(dt)
+        self._known = None
+
+    def accept(self, x: Array) -> None:
+        """Take x as the converged state: friction remembers it, and so do material and distorted elements."""
+        if self.body.remembers:
+            self.body.accept(x)
+            self._known = None
+        self._memory = self._slip.copy()
+        self._measure(x, self.facets, self._shape, self._rod, self._gap)
+        self.previous, self.previous_depth = x, self.depth
+        if self._parts is not None:
+            self._parts.update(x)
+            self._known = None
+
+    def restricted(self, part: Part, far: FarField) -> PokeSystem:
+        """This system at its depth on some of the elements, with `far` for the others.
+
+        What contact remembers of the last converged state is shared; what it makes of a trial is not.
+        """
+        it = copy(self)
+        it.discretisation, it.body, it.linear = part.body.discretisation, part.body, part.linear
+        it.full, it._slot, it.far = part.full, part.slot, far
+        it._pressure, it._slip, it._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
+        it._known, it.report = None, np.zeros(6)
+        return it
+
+    def stiffen(self) -> None:
+        """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
+        self._law[0] *= 2.0
+
+    def potential(self, x: Array) -> tuple[float, float]:
+        """Potential with the pressures of the friction frozen [J], and smallest det F."""
+        _, energy, min_jacobian = self._forces_at(x)
+        out = np.empty(2)
+        self._energy(
+            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
+            self._memory, self._part, self._pressure, out,
+        )  # fmt: skip
+        return energy + float(out[0]), min_jacobian
+
+    def _forces_at(self, x: Array) -> tuple[Array, float, float]:
+        """Internal forces (n, 3), energy and smallest det F of the body; an accepted trial is asked again."""
+        if self._known is None or self._known[0] is not x:
+            force, energy, min_jacobian = self.body.forces_and_energy(x)
+            if self.far is not None:
+                energy += self.far.add_to(force, x)
+            self._known = (x, (force, energy, min_jacobian))
+        return self._known[1]
+
+    def residual(self, x: Array) -> tuple[Array, float]:
+        """Residual at the free nodes (n_free, 3) and the load it is measured by [N]; sets the report."""
+        force, _, self.min_jacobian = self._forces_at(x)
+        none = np.full_like(self._slot, -1)
+        return self._with_contact(x, force, none, np.zeros((1, 3, 3)))
+
+    def linearise(self, x: Array) -> tuple[Array, float]:
+        """The same, and the tangent for the next steps."""
+        self._blocks, force, self.min_jacobian = self.body.stiffness(x)
+        if self.far is not None:
+            self.far.add_to(force, x)
+            self._blocks[self.far.slots] += self.far.paired
+        self.linearisations += 1
+        found = self._with_contact(x, force, self._slot, self._blocks)
+        self.discretisation.hold(self._blocks)
+        self._matrix = self.full.filled(self._blocks, self._unsymmetric())
+        return found
+
+    def _unsymmetric(self) -> Array | None:
+        """What friction adds to the tangent besides its symmetric part, by facet's node pair."""
+        if self.report[5] == 0.0:
+            return None
+        pairs = self._shape[:, :, None] * self._shape[:, None, :]  # (q, a, a)
+        points, nodes = self._shape.shape
+        return (pairs.reshape(points, -1).T @ self._skew).reshape(-1, nodes, nodes, 3, 3)
+
+    def _with_contact(
+        self, x: Array, force: Array, slot: NDArray[np.int32], blocks: Array
+    ) -> tuple[Array, float]:
+        self.internal = force
+        total = force.copy()
+        self._assemble(
+            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
+            self._part, self._pressure, self._slip, self._skew, slot, total, blocks, self.report,
+        )  # fmt: skip
+        # before first touch there is no force to compare with: a millinewton-scale floor
+        floor = 1e-4 * self.body.moduli.shear_modulus * self.edge**2
+        load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
+        return self._free(total), float(load)
+
+    def _free(self, force: Array) -> Array:
+        residual: Array = (force - self.body.dead_load)[self.discretisation.pattern.free]
+        residual[self.discretisation.held] = 0.0
+        return residual
+
+    def step(self, residual: Array, *, forcing: float) -> Array:
+        return self.linear.solve(self._blocks, -residual, tolerance=forcing, multiply=self.multiply)
+
+    def multiply(self, v: Array) -> Array:
+        """The tangent of the last linearisation times v (3 n_free,)."""
+        product: Array = self._matrix @ v
+        if self.far is not None:
+            self.far.add_unpaired(v, product)
+        return product
+
+    def residual_norm(self, x: Array) -> float:
+        """Size of the residual at a trial x [N]; changes nothing."""
+        total = self._forces_at(x)[0].copy()
+        report, pressure = np.zeros(6), np.zeros_like(self._pressure)
+        slip, skew = np.empty_like(self._slip), np.empty_like(self._skew)
+        none = np.full_like(self._slot, -1)
+        self._assemble(
+            x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
+            self._part, pressure, slip, skew, none, total, np.zeros((1, 3, 3)), report,
+        )  # fmt: skip
+        return float(np.linalg.norm(self._free(total)))
+
+    def rod_force(self) -> float:
+        """Size of the force on the rod, from the last residual or linearisation [N]."""
+        return float(np.linalg.norm(self.report[:3]))
+
+    def advance(self, x: Array, step: Array) -> Array:
+        moved = x.copy()
+        moved[self.discretisation.pattern.free] += step
+        return moved
+
+    def base_force(self) -> Array:
+        """Force of the fixed nodes on the body, from the last linearisation [N]."""
+        fixed = self.discretisation.fixed
+        return (self.internal[fixed] - self.body.dead_load[fixed]).sum(axis=0)
