@@ -81,13 +81,14 @@ def test_stress_and_tangent_of_a_step_are_slopes_of_its_potential(law: str, whic
 
     by_energy, by_stress = slope(lambda f: at(f, 0), F, 3e-4), slope(lambda f: at(f, 1), F, 3e-4)
     assert np.isfinite(psi)
-    # second slopes jump where fibres slacken and where the largest energy is passed
+    # where fibres slacken and where the largest energy is passed, second derivatives jump: there a difference
+    # across the jump is in error by its step, in the energy as in the stress
     stretch = F @ FIBRES.axis()
-    if abs(stretch @ stretch / np.linalg.det(F) ** (2 / 3) - 1.0) < 5e-3:
-        return
+    assume(abs(stretch @ stretch / np.linalg.det(F) ** (2 / 3) - 1.0) > 5e-3)
+    assume(not _near_the_largest_energy(points, F))
     assert np.abs(by_energy - P).max() < 1e-6 * np.abs(P).max() + 1e-10 * K
     error = np.abs(np.einsum("jLiK->iKjL", by_stress) - A).max() / np.abs(A).max()
-    assert error < 1e-6 or _near_the_largest_energy(points, F)
+    assert error < 1e-6
     assert np.abs(A - np.einsum("iKjL->jLiK", A)).max() <= 1e-12 * np.abs(A).max()
 
 
