@@ -13,16 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from tisim import laws
 from tisim.course import Stop
 from tisim.discretisation.body import Discretisation
-from tisim.discretisation.history import weight
 from tisim.nonlinear.newton import CRUSHED, Outcome, newton
 from tisim.parts import Spectrum
 from tisim.problems._stops import shortest_time
 from tisim.problems.beam.equilibrium import Neighbour, equilibrium, mixed_newton
-from tisim.problems.beam.imperfect import imperfect_equilibrium
+from tisim.problems.beam.imperfect import MOST_ANGLES, Clamped, imperfect_equilibrium
 from tisim.problems.beam.rest_shape import is_ideal
 from tisim.problems.beam.system import BeamSystem, beam_system
+from tisim.problems.beam.trail import LinearCreep, Trail, predict
 from tisim.result import Status
 from tisim.scene import Beam
 
@@ -35,9 +36,7 @@ LOOSEST = 1e-3  # tolerance of the first
 # PATIENCE of them, or where a step is GROWN times the last, there is a new tangent, MOST_FACTORS times.
 CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
 NEAR = 1e-4  # of the largest displacement: what a state between frames may be wrong by
-DISTINCT = 1e-3  # of the strain: states closer than this are one
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
-KNOWN = 4  # states that the next one is predicted from
 
 
 @lru_cache(maxsize=4)
@@ -92,34 +91,6 @@ class Warped:
         return found
 
 
-class LinearCreep:
-    """Strain of a spectrum's linear material under a stress, in 1/G, step by step as `History` takes them.
-
-    A beam's shape is very nearly a function of it: that of an elastic beam as much softer.
-    """
-
-    def __init__(self, spectrum: Spectrum) -> None:
-        self._spectrum = spectrum
-        self._branches = np.zeros(len(spectrum.times))
-        self._strain = 0.0
-
-    def strain(self, dt: float, stress: float) -> float:
-        """Strain at the end of a step of length dt [s] to this stress."""
-        decay, c = self._weights(dt)
-        carried = float(decay @ self._branches) - float(c.sum()) * self._strain
-        return (stress - carried) / (self._spectrum.equilibrium + float(c.sum()))
-
-    def accept(self, dt: float, strain: float) -> None:
-        """Take a step of length dt [s] to this strain."""
-        decay, c = self._weights(dt)
-        self._branches = decay * self._branches + c * (strain - self._strain)
-        self._strain = strain
-
-    def _weights(self, dt: float) -> tuple[Array, Array]:
-        h = dt / self._spectrum.times
-        return np.exp(-h), self._spectrum.strengths * weight(h)
-
-
 @dataclass(frozen=True, eq=False)
 class Frame:
     """A state that is kept: time [s], part of the load, positions, supports' force [N], energy lost [J]."""
@@ -137,16 +108,18 @@ class Frame:
 class Path:
     """A beam on its course: where it is, and what was kept and done on the way.
 
-    linear: the linear material under the same load. known: its strain and the beam's positions in the last
-    states. warped: the discretisation's factor, where it is this beam's.
+    linear: the linear material under the same load. trail: the states so far; other: the neighbour's.
+    warped: the discretisation's factor, where it is this beam's. clamps: where they are imperfect.
     """
 
     system: BeamSystem
     outcome: Outcome
     linear: LinearCreep
+    trail: Trail
     time: float = 0.0
     value: float = 0.0
-    known: list[tuple[float, Array]] = field(default_factory=list)
+    other: Trail | None = None
+    clamps: Clamped | None = None
     warped: Warped | None = None
     frames: list[Frame] = field(default_factory=list)
     steps: int = 0
@@ -180,14 +153,16 @@ def follow(
     path.system.step_limit = np.inf
     path.system.least_load = float(np.linalg.norm(path.system.full_load[discretisation.pattern.free]))
     path.linear.accept(0.0, path.linear.strain(0.0, path.value))
-    path.known = [(path.linear.strain(0.0, path.value), path.outcome.x)]
+    path.trail.add(0.0, path.linear.strain(0.0, path.value), path.outcome.x)
+    if neighbour is not None and neighbour.discretisation is discretisation:
+        path.other = neighbour.trail
     for stop in stops[1:] if path.steps else stops:
         status = _advance(scene, path, stop)
         if status is not Status.CONVERGED:
             break
         if stop.frame:
             path.keep()
-    return path, status, found
+    return path, status, None if found is None else replace(found, trail=path.trail)
 
 
 def _first(
@@ -197,19 +172,23 @@ def _first(
     at_once = stop.time == 0.0 and stop.value == 1.0
     viscosity = scene.material.viscosity
     linear = LinearCreep(ELASTIC if viscosity is None else viscosity.spectrum())
+    stiffness = laws.get(scene.material.law).moduli(scene.material.parameters).shear_modulus
+    trail = Trail(scene, scene.material.density / stiffness)
     if not stop.frame:
         loose = scene.solver.tolerance * BETWEEN
         scene = replace(scene, solver=replace(scene.solver, tolerance=min(loose, LOOSEST)))
     if not is_ideal(scene):  # checked: the whole load at once
         found = imperfect_equilibrium(scene, discretisation, neighbour)
         system, outcome, counts, next_one = found.system, found.outcome, found.counts, found.neighbour
+        clamps = found.clamps
     else:
-        system = beam_system(scene, discretisation)
+        system, clamps = beam_system(scene, discretisation), None
         if not at_once:
             rest = Outcome(discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
-            return Path(system, rest, linear), None
+            return Path(system, rest, linear, trail), None
         outcome, counts, next_one = equilibrium(scene, system, neighbour)
-    path = Path(system, outcome, linear, value=1.0, steps=counts["steps"], cuts=counts["cuts"])
+    steps, cuts = counts["steps"], counts["cuts"]
+    path = Path(system, outcome, linear, trail, value=1.0, steps=steps, cuts=cuts, clamps=clamps)
     if outcome.status is Status.CONVERGED:
         system.body.accept(outcome.x)
         if system.factored_at is not None:
@@ -233,12 +212,13 @@ def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
         tight = end == 1.0 and stop.frame
         tolerance = scene.solver.tolerance * (1.0 if tight else BETWEEN)
         strain = path.linear.strain(time - path.time, value)
-        trial = _solve(scene, path, strain, tolerance=tolerance)
+        start = predict(path.trail, path.other, time, strain)
+        trial = _clamped(scene, path, start, tolerance=tolerance)
         path.steps += 1
         if trial.status is Status.CONVERGED:
             body.accept(trial.x)
             path.linear.accept(time - path.time, strain)
-            path.known = [*path.known, (strain, trial.x)][-KNOWN:]
+            path.trail.add(time, strain, trial.x)
             path.outcome, path.time, path.value, reached = trial, time, value, end
             part *= 2.0
             continue
@@ -251,11 +231,32 @@ def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
     return Status.CONVERGED
 
 
-def _solve(scene: Beam, path: Path, strain: float, *, tolerance: float) -> Outcome:
-    """Equilibrium from where the last states point to: with few factors, by Newton, then on the potential."""
+def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
+    """Equilibrium with the clamps at the angles that their moments make, where they yield."""
+    clamps = path.clamps
+    if clamps is None or not clamps.yields:
+        return _solve(scene, path, start, tolerance=tolerance)
+    angles = clamps.angles
+    outcome = _solve(scene, path, clamps.hold(start), tolerance=tolerance)
+    for _ in range(MOST_ANGLES):
+        if outcome.status is not Status.CONVERGED:
+            break
+        if not clamps.opens(outcome.x):
+            return outcome
+        start, _ = clamps.turned(outcome.x)
+        outcome = _solve(scene, path, start, tolerance=tolerance)
+    clamps.angles = angles
+    if outcome.status is Status.CONVERGED:
+        return replace(outcome, status=Status.NOT_CONVERGED)
+    return outcome
+
+
+def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
+    """Equilibrium from where other states point to: with few factors, by Newton, then on the potential."""
     system, x = path.system, path.outcome.x
+    if path.clamps is not None:
+        x = path.clamps.hold(x)
     options = scene.solver
-    start = _predict(path, strain)
     near = 0.0
     if tolerance > options.tolerance:
         near = NEAR * float(np.abs(x - system.body.discretisation.mesh.nodes).max())
@@ -273,19 +274,6 @@ def _solve(scene: Beam, path: Path, strain: float, *, tolerance: float) -> Outco
                     path.warped = Warped(system.body.discretisation, system.factored_at)
                 return outcome
     return newton(system, x, tolerance=tolerance, max_iterations=options.max_iterations)
-
-
-def _predict(path: Path, strain: float) -> Array:
-    """The last states carried on by Lagrange's formula, as functions of the linear model's strain."""
-    known: list[tuple[float, Array]] = []
-    for clock, x in reversed(path.known):
-        if all(abs(clock - other) > DISTINCT * abs(strain) for other, _ in known):
-            known.append((clock, x))
-    guess = np.zeros_like(path.outcome.x)
-    for i, (clock, x) in enumerate(known):
-        others = [other for j, (other, _) in enumerate(known) if j != i]
-        guess += float(np.prod([(strain - other) / (clock - other) for other in others])) * x
-    return guess
 
 
 def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Outcome | None:
