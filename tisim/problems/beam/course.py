@@ -7,11 +7,9 @@ the last ones point to; where it fails it is halved, in time and in load, from t
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from tisim import laws
 from tisim.course import Stop
@@ -24,6 +22,7 @@ from tisim.problems.beam.imperfect import MOST_ANGLES, Clamped, imperfect_equili
 from tisim.problems.beam.rest_shape import is_ideal
 from tisim.problems.beam.system import BeamSystem, beam_system
 from tisim.problems.beam.trail import LinearCreep, Trail, predict
+from tisim.problems.beam.warped import Warped
 from tisim.result import Status
 from tisim.scene import Beam
 
@@ -37,58 +36,6 @@ LOOSEST = 1e-3  # tolerance of the first
 CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
 NEAR = 1e-4  # of the largest displacement: what a state between frames may be wrong by
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
-
-
-@lru_cache(maxsize=4)
-def _gradient_operator(discretisation: Discretisation) -> tuple[Array, sparse.csr_array]:
-    """Elements' mean gradients of shape functions (m, a, 3) [1/m], and free nodes' means over elements."""
-    mesh, ref = discretisation.mesh, discretisation.reference
-    volume = ref.weights.sum(axis=1)
-    mean = np.einsum("mq,mqak->mak", ref.weights, ref.gradients) / volume[:, None, None]
-    m, a = mesh.elements.shape
-    rows, columns = mesh.elements.ravel(), np.repeat(np.arange(m), a)
-    around = sparse.csr_array((volume[columns], (rows, columns)), shape=(mesh.n_nodes, m))
-    around = around[discretisation.pattern.free]
-    return mean, sparse.csr_array(sparse.diags_array(1.0 / around.sum(axis=1)) @ around)
-
-
-class Warped:
-    """The last factor of a beam's tangent, carried along with the rotation of the body since.
-
-    A tangent's factor costs some fifteen solves with it. As a beam creeps, its material hardly gets stiffer
-    or softer from one step to the next, but its parts turn, and what resists a change of volume does so in
-    turned directions. K = R K_0 R^T, R the rotation of each node, follows that.
-    """
-
-    def __init__(self, discretisation: Discretisation, x: Array) -> None:
-        self._discretisation = discretisation
-        self._mean, self._around = _gradient_operator(discretisation)
-        self._at_factor = np.linalg.inv(self._gradients(x))
-        self._turned = np.broadcast_to(np.eye(3), (len(discretisation.pattern.free), 3, 3))
-
-    def _gradients(self, x: Array) -> Array:
-        """Mean deformation gradient around each free node, (n_free, 3, 3)."""
-        F = x[self._discretisation.mesh.elements].transpose(0, 2, 1) @ self._mean
-        return np.asarray(self._around @ F.reshape(len(F), 9)).reshape(-1, 3, 3)
-
-    def turn(self, x: Array) -> None:
-        """Carry the factor along to positions x (n, 3)."""
-        moved = self._gradients(x) @ self._at_factor
-        skew = 0.5 * (moved - moved.transpose(0, 2, 1))
-        axis = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
-        sine = np.minimum(np.linalg.norm(axis, axis=1), 1.0)[:, None, None]
-        # Rodrigues: I + K + K^2 (1 - cos)/sin^2, K = skew
-        self._turned = np.eye(3) + skew + skew @ skew / (1.0 + np.sqrt(1.0 - sine**2))
-
-    def solve(self, rhs: Array) -> Array:
-        """(R K_0 R^T)^-1 rhs, both (n_free, 3)."""
-        R = self._turned
-        back = np.einsum("nji,nj->ni", R, rhs)
-        held = self._discretisation.held
-        back[held] = 0.0
-        found: Array = np.einsum("nij,nj->ni", R, self._discretisation.solver.solve(back))
-        found[held] = 0.0
-        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +109,9 @@ def follow(
             break
         if stop.frame:
             path.keep()
-    return path, status, None if found is None else replace(found, trail=path.trail)
+    if found is not None:
+        found = replace(found, trail=path.trail, warped=path.warped)
+    return path, status, found
 
 
 def _first(
@@ -186,16 +135,45 @@ def _first(
         if not at_once:
             rest = Outcome(discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
             return Path(system, rest, linear, trail), None
+        if neighbour is not None and neighbour.discretisation is discretisation:
+            beside = _beside(scene, system, linear, trail, neighbour, kept=stop.frame)
+            if beside is not None:
+                _begin(beside, stop)
+                return beside, neighbour
         outcome, counts, next_one = equilibrium(scene, system, neighbour)
     steps, cuts = counts["steps"], counts["cuts"]
     path = Path(system, outcome, linear, trail, value=1.0, steps=steps, cuts=cuts, clamps=clamps)
     if outcome.status is Status.CONVERGED:
-        system.body.accept(outcome.x)
         if system.factored_at is not None:
-            path.warped = Warped(system.body.discretisation, system.factored_at)
-        if stop.frame:
-            path.keep()
+            path.warped = Warped(system.body, system.factored_at)
+        _begin(path, stop)
     return path, next_one
+
+
+def _begin(path: Path, stop: Stop) -> None:
+    path.system.body.accept(path.outcome.x)
+    if stop.frame:
+        path.keep()
+
+
+def _beside(
+    scene: Beam, system: BeamSystem, linear: LinearCreep, trail: Trail, neighbour: Neighbour, *, kept: bool
+) -> Path | None:
+    """The path with the whole load at once, from the neighbour's states and factor; None where these fail."""
+    other = neighbour.trail
+    if other is None or neighbour.warped is None or not other.leads(scene):
+        return None
+    x = other.at(0.0, trail.unit * linear.strain(0.0, 1.0))
+    if x is None:
+        return None
+    start = Outcome(x, Status.CONVERGED, np.inf, 0)
+    path = Path(system, start, linear, trail, value=1.0, steps=1, warped=neighbour.warped.of(system.body))
+    near = 0.0 if kept else _near(path)
+    outcome = _with_few_factors(path, x, scene.solver.tolerance, near)
+    if outcome is None:
+        return None
+    path.outcome = outcome
+    return path
 
 
 def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
@@ -251,15 +229,18 @@ def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outc
     return outcome
 
 
+def _near(path: Path) -> float:
+    """What a state between frames may be wrong by [m]."""
+    return NEAR * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
+
+
 def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
     """Equilibrium from where other states point to: with few factors, by Newton, then on the potential."""
     system, x = path.system, path.outcome.x
     if path.clamps is not None:
         x = path.clamps.hold(x)
     options = scene.solver
-    near = 0.0
-    if tolerance > options.tolerance:
-        near = NEAR * float(np.abs(x - system.body.discretisation.mesh.nodes).max())
+    near = _near(path) if tolerance > options.tolerance else 0.0
     if path.warped is not None:
         outcome = _with_few_factors(path, start, tolerance, near)
         if outcome is not None:
@@ -271,7 +252,7 @@ def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcom
             outcome = mixed_newton(relaxed, system, guess, system.body.pressures(guess))
             if outcome.status is Status.CONVERGED:
                 if system.factored_at is not None:
-                    path.warped = Warped(system.body.discretisation, system.factored_at)
+                    path.warped = Warped(system.body, system.factored_at)
                 return outcome
     return newton(system, x, tolerance=tolerance, max_iterations=options.max_iterations)
 
@@ -313,7 +294,7 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
                 step = system.step(system.linearise(x)[0], forcing=0.0)
             finally:
                 system.free_pressures(None)
-            path.warped = Warped(discretisation, x)
+            path.warped = Warped(body, x)
             renewed, slow, size = renewed + 1, 0, float(np.abs(step).max())
             seen.clear()
         before = size

@@ -13,6 +13,7 @@ from tisim.nonlinear.newton import Outcome, newton
 from tisim.problems.beam.rods import planar_rod
 from tisim.problems.beam.system import BeamSystem
 from tisim.problems.beam.trail import Trail
+from tisim.problems.beam.warped import Warped
 from tisim.result import Status
 from tisim.scene import Beam
 
@@ -25,7 +26,7 @@ HELD = 0.5  # of the half thickness: how far a clamp keeps a bent section's shap
 class Neighbour:
     """A solved candidate that the next one starts from: discretisation, positions, rod shape, pressures.
 
-    trail: the states of one with a course.
+    trail, warped: the states, and the last factor, of one with a course.
     """
 
     discretisation: Discretisation
@@ -33,6 +34,7 @@ class Neighbour:
     rod: Array
     pressure: Array
     trail: Trail | None = None
+    warped: Warped | None = None
 
 
 def equilibrium(
