@@ -23,7 +23,7 @@ import numpy as np
 import psutil
 import pytest
 
-from factory import _assemble, _execution, _staging
+from factory import _assemble, _local, _staging
 from factory._build import build_dataset
 from factory._input import InputError
 from factory._staging import Staging, building_folder
@@ -281,14 +281,14 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
 
 _FIRST_WORKER = """
 from pathlib import Path
-from factory import _execution
+from factory import _local
 if __name__ == "__main__":
-    workers = [_execution._start("math:sqrt") for _ in range(2)]
+    workers = [_local._start("math:sqrt") for _ in range(2)]
     for worker in workers:
         status = Path(f"/proc/{worker.process.pid}/status").read_text()
         fields = dict(line.split(":", 1) for line in status.splitlines())
         print(int(fields["SigBlk"], 16) >> 1 & 1)  # bit 1: SIGINT
-        _execution._stop(worker)
+        _local._stop(worker)
 """
 
 
@@ -306,10 +306,10 @@ def test_no_worker_sees_ctrl_c_not_even_the_first(tmp_path: Path) -> None:
 def test_a_worker_that_loads_while_the_build_is_stopped_says_nothing(
     simulator: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(_execution, "end_with_parent", lambda _: None)
+    monkeypatch.setattr(_local, "end_with_parent", lambda _: None)
     ours, theirs = multiprocessing.Pipe()
     ours.close()
-    _execution._work(theirs, simulator, 0)
+    _local._work(theirs, simulator, 0)
 
 
 def _alive_in_group(group: int) -> list[str]:
