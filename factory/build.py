@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 import signal
 from collections.abc import Iterator
@@ -118,12 +117,13 @@ def main(
             from factory._report import Screen, derived_levels, effect_lines, estimate, plan_table
             from factory.plan import make_plan
             from factory.recipe import load_recipe
+            from tisim.parallel.pool import cores
 
             console = make_console()
             wanted = None if levels is None else [name.strip() for name in levels.split(",")]
             plan = make_plan(load_recipe(recipe), model, materials, levels=wanted)
             target = (out or default_target(plan.recipe.name, model, materials)).absolute()
-            count = workers or os.cpu_count() or 1
+            count = workers or cores()
             expected = estimate(plan, target, count)
             check_target(target, overwrite=not resume)
             if dry_run:

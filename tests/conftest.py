@@ -36,6 +36,8 @@ LONG = (
     "calibration/photo/test_trace_photo.py",
     "calibration/indentation/test_poke_objective.py",
 )
+# the processes of pytest-xdist use the cores: what a test starts without saying on how many, uses one
+os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
 
 
 def pytest_configure(config: pytest.Config) -> None:
