@@ -94,7 +94,7 @@ class CardEffect(Strict):
     def describe(self) -> str:
         """Its amplitude and its equivalent explanations in a few words."""
         amounts = ", ".join(f"{n} {a.value:.4g} +- {a.sd:.2g}" for n, a in self.parameters.items())
-        rivals = f"; not told from {' or '.join(self.rivals)}" if self.rivals else ""
+        rivals = f"; equivalent to {' or '.join(self.rivals)}" if self.rivals else ""
         return f"{self.effect} ({amounts}{rivals})"
 
 
