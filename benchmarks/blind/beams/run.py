@@ -171,7 +171,7 @@ def parsed(arguments: list[str] | None) -> argparse.Namespace:
         "--gain-from", type=float, default=0.0, help="held-out gain only of effects of so many sigmas"
     )
     parser.add_argument(
-        "--given-cause", action="store_true", help="effects of 10 sigmas and above once more, with no other in"
+        "--given-cause", action="store_true", help="effects of 10 sigmas and above once more, no other in"
         "\nthe catalogue: what their held-out error is compared with"
     )  # fmt: skip
     parser.add_argument("--advice", action="store_true", help="make what is advised in ambiguous cases")
