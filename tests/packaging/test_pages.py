@@ -2,8 +2,9 @@
 
 Commands run in this process, as `python -m` runs them in one of their own: a start costs seconds. A block
 that two pages state word for word runs once. Installation blocks are run by `.ci/run`, which then passes on
-the dataset of the README's first command, by TISIM_QUICK_STORE. `python -m pytest -m slow tests/packaging`
-runs whole pages with the slow blocks (an hour), each command in a process of its own.
+the dataset of the README's first command, by TISIM_QUICK_STORE; without it a stand-in is made.
+`python -m pytest -m slow tests/packaging` runs whole pages with the slow blocks (an hour), each command in a
+process of its own.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from factory import load_recipe, make_plan
+from factory._build import build_dataset
 from tests.packaging.blocks import ROOT, Block, blocks
 
 PAGES = ("README.md", "docs/tutorial.md")
@@ -36,8 +39,9 @@ QUICK = [b for i, b in enumerate(_BLOCKS) if b.text not in {before.text for befo
 _MODULE = re.compile(r"python -m ([\w.]+) ([^|&;<>$`]+?)( \|\| echo .*)?")
 
 
-def clone(folder: Path) -> None:
-    """The folders that commands name, without what was built in them."""
+def clone(folder: Path, *, simulated: bool = False) -> None:
+    """The folders that commands name, and the dataset that the README's first command builds; simulated: with
+    its real simulations where there is none, which takes minutes."""
     for name in ("datasets", "docs", "studies"):
         shutil.copytree(
             ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.zarr", "*.building", "*.png")
@@ -45,8 +49,11 @@ def clone(folder: Path) -> None:
     built = os.environ.get("TISIM_QUICK_STORE")
     if built:
         shutil.copytree(built, folder / STORE)
-    else:  # as the README's first command builds it
+    elif simulated:
         run([sys.executable, "-m", "factory.build", "--model", "ogden", "--recipe", "quick"], folder)
+    else:
+        plan = make_plan(load_recipe("quick"), "ogden")
+        build_dataset(plan, folder / STORE, workers=1, simulator="tests.factory.standin:simulate")
 
 
 def run(command: list[str], folder: Path) -> None:
@@ -122,7 +129,7 @@ def test_the_tutorial_finds_what_was_put_in(example: str, diagnosis: str, scratc
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_whole_page_runs(page: str, tmp_path: Path) -> None:
-    clone(tmp_path)
+    clone(tmp_path, simulated=True)
     for block in blocks(page):
         if not block.installs:
             run(block.command(sys.executable), tmp_path)
