@@ -43,6 +43,7 @@ class Course:
     first, count : first row of each point and how many it is the mean of, shape (k,).
     kept : of the k points, those that the record still has.
     before : stretch furthest from rest in earlier tests of the specimen; 1 without.
+    pushes : what drives it are platens, which push and do not pull.
     """
 
     time: Array
@@ -53,6 +54,7 @@ class Course:
     count: Array
     kept: Rows
     before: float
+    pushes: bool = False
 
     def means(self, values: Array) -> Array:
         """Means of values (f,) over the rows of each point that is kept."""
