@@ -14,6 +14,7 @@ from calibration.experiment.model import CouponMode, CouponTrial
 from calibration.measurements.homogeneous import nominal_stress, predicted
 from calibration.measurements.homogeneous._record import Record, records_of
 from calibration.measurements.indentation._memory_force import loads
+from tisim.course import Course
 from tisim.parts import respond
 
 PRONY = tisim.Prony(fractions=SOLID.prony.fractions, times=SOLID.prony.times)
@@ -38,8 +39,15 @@ def test_the_stress_is_the_blind_laboratorys(mode: CouponMode, course: object) -
     assert np.abs(stress(MATERIAL, made) - made.stress).max() < 5e-4 * np.abs(made.stress).max()
 
 
-@pytest.mark.parametrize("mode", ["uniaxial", "equibiaxial", "planar"])
-@pytest.mark.parametrize("parts", [(), ("viscosity",), ("softening",), ("viscosity", "softening")])
+# the laboratory follows a strip that shears slowly
+_OBLIQUE = [
+    pytest.param(mode, parts, marks=[pytest.mark.slow] if mode == "uniaxial" and parts else [])
+    for mode in ("uniaxial", "equibiaxial", "planar")
+    for parts in ((), ("viscosity",), ("softening",), ("viscosity", "softening"))
+]
+
+
+@pytest.mark.parametrize(("mode", "parts"), _OBLIQUE)
 def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     mode: CouponMode, parts: tuple[str, ...]
 ) -> None:
@@ -62,6 +70,29 @@ def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     )
     made = record(trial("t", mode, CYCLES, solid=solid))
     assert np.abs(stress(material, made) - made.stress).max() < 1e-3 * np.abs(made.stress).max()
+
+
+def test_a_strip_with_oblique_fibres_is_tisims() -> None:
+    """It shears, relaxes and softens."""
+    direction = (float(np.cos(0.6)), float(np.sin(0.6)), 0.0)
+    material = tisim.Material(
+        law="ogden",
+        parameters=OGDEN,
+        viscosity=PRONY,
+        softening=MULLINS,
+        fibres=tisim.HolzapfelGasserOgden(direction=direction, k1=1.5e4, k2=0.8),
+    )
+    course = Course(start=1.0, growth=0.3).ramp(to=1.5, duration=5.0).hold(20.0).ramp(to=1.05, duration=5.0)
+    simulated = tisim.simulate(tisim.Coupon(material=material, course=course))
+    assert simulated.nominal_stress is not None
+    assert simulated.time is not None
+    time = np.concatenate([[0.0], simulated.time])
+    stretch = np.array([course.value(t) for t in time])
+    made = CouponTrial(
+        id="t", material="M", mode="uniaxial", stretch=stretch, stress=stretch, time=time, stress_sd=1.0
+    )
+    own = stress(material, record(made))[1:]
+    assert np.abs(own - simulated.nominal_stress).max() < 2e-3 * simulated.nominal_stress.max()
 
 
 def test_a_cylinder_that_its_platens_have_left_recovers_freely() -> None:
