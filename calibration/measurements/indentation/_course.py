@@ -10,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import PokeTrial
-from calibration.measurements._records import bins
+from calibration.measurements._records import bins, holds
 from calibration.measurements.indentation._phases import Phase, phases_of
 from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
+STILL = 0.01  # fraction of the record's range within which a hold stays
+NOISE = 6.0  # standard deviations of the depth that are no motion
 BEGINNING = 4  # rows by which the speed of a first loading is known
 DIFFERENT = 1.1  # ratio of largest depths that count as two
 
@@ -55,7 +57,7 @@ def course_of(time: Array, depth: Array, phases: Sequence[Phase], points: Array,
     points, depths : times and depths of the points, means of neighbouring rows, shape (k,).
     """
     corners = np.unique([0, *(p.points.start for p in phases), time.size - 1])
-    lead = _lead(time, depth)
+    lead = _lead(time, depth, phases[0])
     every = np.concatenate([lead, time[corners], points])
     driven = np.concatenate([np.zeros(lead.size), depth[corners], depths])
     # a corner comes before a point at its time, which then adds nothing
@@ -65,15 +67,33 @@ def course_of(time: Array, depth: Array, phases: Sequence[Phase], points: Array,
     return Course(time=every[order], depth=driven[order], at=place[lead.size + corners.size :])
 
 
-def _lead(time: Array, depth: Array) -> Array:
+def _lead(time: Array, depth: Array, first: Phase) -> Array:
     """When the indenter touched [s], shape (1,), where the record begins below the surface; none else."""
     if depth[0] <= 0.0:
         return np.zeros(0)
-    last = min(BEGINNING, depth.size - 1)
+    last = min(BEGINNING, first.points.stop, depth.size - 1)
     made = depth[last] - depth[0]
     if made <= 0.0:
         return time[:1]  # it was there at once
     return np.array([time[0] - (time[last] - time[0]) * depth[0] / made])
+
+
+def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
+    """Phases with the holds that they contain as phases of their own: after a ramp of a few rows a hold is
+    most of a stroke, and counts as a part of it where time does not count."""
+    depth = trial.record.depth
+    rests = holds(trial.record.time, depth, max(STILL * float(np.ptp(depth)), NOISE * trial.depth_sd))
+    found = []
+    for p in phases:
+        inside = [h for h in rests if h.start < p.points.stop and h.stop > p.points.start]
+        cuts = {p.points.start, p.points.stop}
+        if p.direction != 0.0:
+            cuts |= {i for h in inside for i in (h.start, h.stop) if p.points.start < i < p.points.stop}
+        for a, b in pairwise(sorted(cuts)):
+            held = any(h.start <= a and b <= h.stop for h in inside)
+            direction = 0.0 if held and a > 0 else p.direction
+            found.append(replace(p, points=slice(a, b), direction=direction))
+    return found
 
 
 def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
@@ -89,18 +109,21 @@ def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
 
 def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
     """Between which times the ramps and holds of indentations show relaxation."""
-    ramps, holds, lengths, peaks = [], [], [], []
+    ramps, waits, lengths, peaks = [], [], [], []
     for trial in trials:
-        time, phases = trial.record.time, phases_of(trial)
+        time, phases = trial.record.time, with_holds(trial, phases_of(trial))
         lengths.append(float(time[-1] - time[0]))
         for p in phases:
             took = float(time[min(p.points.stop, time.size - 1)] - time[p.points.start])
-            (holds if p.direction == 0.0 and p.points.start > 0 else ramps).append(took)
+            if p.direction != 0.0:
+                ramps.append(took)
+            elif p.points.start > 0:
+                waits.append(took)
         for a, b in pairwise([p for p in phases if p.direction != 0.0]):
             if a.direction > 0.0 > b.direction:
                 peaks.append(float(trial.record.depth[a.points].max()))
     peaks.sort()
     different = sum(k == 0 or peak > DIFFERENT * peaks[k - 1] for k, peak in enumerate(peaks))
-    last = max(holds or lengths, default=0.0)
+    last = max(waits or lengths, default=0.0)
     first = min([r for r in ramps if r > 0.0], default=last)
     return ProtocolWindow(first=min(first, last), last=last, peaks=different)

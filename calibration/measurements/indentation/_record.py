@@ -13,7 +13,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
 from calibration.measurements._records import bins
 from calibration.measurements.homogeneous import relative_sd, scatter_scale
-from calibration.measurements.indentation._course import Course, bins_over_time, course_of
+from calibration.measurements.indentation._course import Course, bins_over_time, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
     Geometry,
@@ -247,7 +247,7 @@ def check_pushed(records: Sequence[Record]) -> None:
 
 def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: bool) -> Record:
     raw = trial.record
-    phases = phases_of(trial)
+    phases = with_holds(trial, phases_of(trial)) if courses else phases_of(trial)
     depth, degrees = smooth_depth(raw.time, raw.depth, phases, trial.depth_sd)
     depth = depth - approach(trial)
     peak = np.maximum.accumulate(np.maximum(depth, before))
