@@ -186,6 +186,24 @@ def remembered(
     return np.asarray(found[record.course.at])
 
 
+def at_depths(record: Record, shear_modulus: float, elastic: Callable[[Array], Array]) -> Array:
+    """Forces [N] at a record's depths, from elastic ones over the modulus against depth."""
+    return shear_modulus * elastic(record.depth)
+
+
+def along_course(
+    record: Record,
+    shear_modulus: float,
+    spectrum: Spectrum,
+    elastic: Callable[[Array], Array],
+    *,
+    shift: float = 0.0,
+) -> Array:
+    """The same of a material that relaxes, all depths moved by a shift [m]."""
+    moved = np.full(record.points, shift)
+    return shear_modulus * remembered(record, spectrum, lambda depth, _: elastic(depth), moved)
+
+
 def reached(curves: CurveCache, records: Sequence[Record]) -> tuple[list[Record], tuple[str, ...]]:
     """Simulate each geometry; leave out points deeper than its simulation reached.
 

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements.homogeneous._memory_stress import ramp_weights
-from tisim.parts import Spectrum
+from calibration.parameters import Parametrisation
+from tisim.parts import Spectrum, Viscosity
 
 Array = NDArray[np.float64]
 
@@ -62,3 +63,12 @@ def loads(spectrum: Spectrum, time: Array, depth: Array, met: Array) -> Array:
         found[n] = stiff[n] * new - own
         w = new
     return np.maximum(found, 0.0)
+
+
+def spectrum_of(law: Parametrisation, own: Array) -> Spectrum | None:
+    """By which a law with parts relaxes at its coordinates (n,); None without viscosity. ValueError where its
+    parts refuse them."""
+    values = law.values(own)
+    parts = [p.assembled(values) for p in law.parts]
+    viscosities = [p for p in parts if isinstance(p, Viscosity)]
+    return viscosities[0].spectrum() if viscosities else None

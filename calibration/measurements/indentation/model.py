@@ -29,13 +29,20 @@ from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
 from calibration.measurements.indentation._effect import IndentationEffect
-from calibration.measurements.indentation._forward import ForwardMap, difference_step, reached, remembered
+from calibration.measurements.indentation._forward import (
+    ForwardMap,
+    along_course,
+    at_depths,
+    difference_step,
+    reached,
+)
 from calibration.measurements.indentation._law_curves import LawCurves
+from calibration.measurements.indentation._memory_force import spectrum_of
 from calibration.measurements.indentation._noise import TOUCH, noise_of
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
 from calibration.measurements.indentation._scene import BULK_RATIO, FRICTION, geometry_of
 from calibration.measurements.indentation.experiments import EXPERIMENTS, IndentationTest
-from tisim.parts import Spectrum, Viscosity
+from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 
@@ -190,11 +197,7 @@ class IndentationModel(MeasurementModel):
         these coordinates."""
         if not self._remembers:
             return None
-        own = self.baseline.law_coordinates(record.material, u)
-        values = self.baseline.law.values(own)
-        parts = {p.field: p.assembled(values) for p in self.baseline.law.parts}
-        viscosity = parts.get("viscosity")
-        return viscosity.spectrum() if isinstance(viscosity, Viscosity) else None
+        return spectrum_of(self.baseline.law, self.baseline.law_coordinates(record.material, u))
 
     def _curve(self, record: Record, u: Array) -> Curve:
         """Force over shear modulus of a record's geometry and material, without effects."""
@@ -236,7 +239,7 @@ class IndentationModel(MeasurementModel):
         for material, curves_of_law in self._of_law.items():
             curves_of_law.take(self.baseline.law_coordinates(material, state.u))
         curves = [self._curve(r, state.u) for r in self.records]
-        forces, slopes = [], []
+        forces, slopes, follow = [], [], []
         for r, curve in zip(self.records, curves, strict=True):
             shear_modulus = self.baseline.shear_modulus(r.specimen, state.u)
             if rough and self.baseline.whole:
@@ -246,16 +249,14 @@ class IndentationModel(MeasurementModel):
             if spectrum is None:
                 forces.append(shear_modulus * curve.at(r.depth))
                 slopes.append(shear_modulus * curve.slope(r.depth, over))
+                follow.append(partial(at_depths, r, shear_modulus))
                 continue
-            here, above, below = (
-                shear_modulus
-                * remembered(r, spectrum, lambda d, _, c=curve: c.at(d), np.full(r.points, shift))  # type: ignore[misc]
-                for shift in (0.0, over, -over)
-            )
-            forces.append(here)
-            slopes.append((above - below) / (2.0 * over))
+            own = partial(along_course, r, shear_modulus, spectrum)
+            forces.append(own(curve.at))
+            slopes.append((own(curve.at, shift=over) - own(curve.at, shift=-over)) / (2.0 * over))
+            follow.append(own)
         self._elastic = forces
-        noise = noise_of(self.records, curves, forces, slopes)
+        noise = noise_of(self.records, curves, forces, slopes, follow)
         simulated = self._simulated()
         for r, inside in zip(self.records, simulated, strict=True):
             if np.count_nonzero(inside) < LEAST:
