@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.measurements._baseline import Baseline
+from calibration.measurements._joint import joint_fit
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._state import State
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
-from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of
+from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of, viscous
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
 from calibration.measurements.release._record import FIRST, LAST, Record, records_of
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
@@ -116,7 +117,11 @@ class ReleaseModel(MeasurementModel):
     # -- forward map --
 
     def suggested_start(self) -> Array:
-        return self.start()
+        u = self.start()
+        for _ in range(2):  # what FEM adds, and nuisances, are taken where the first fit ends
+            self.update_nuisances(State(u=u))
+            u = joint_fit(self, u)
+        return u
 
     def start(self) -> Array:
         """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
@@ -177,14 +182,15 @@ class ReleaseModel(MeasurementModel):
             self.forward = replace(self.forward, corrections=found)
             self._corrected_at = at
         own = [self.forward.own(k, state.u) for k in every]
-        columns = nuisance_columns(
+        columns, names = nuisance_columns(
             self.records,
             [self.parameters(k, state) for k in every],
             [o.release_time for o in own],
             self.corrections,
             lambda k, parameters: self.forward.rows(k, parameters, own[k]),
+            over_time=viscous(self.baseline),
         )
-        self.noise = self.noise.with_nuisances(columns)
+        self.noise = self.noise.with_nuisances(columns, names)
 
     def _shape(self, state: State) -> Array:
         """Coordinates of the baseline's laws other than moduli and K/G, which change what FEM adds."""
