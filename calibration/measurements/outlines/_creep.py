@@ -35,8 +35,8 @@ _REACH = np.array([-1, 0, 1, 2])  # beams to either side of a place on a curve t
 def compliance(spectrum: Spectrum, time: Array) -> Array:
     """Strain at times (t,) [s] after a unit stress is put on, in parts of what its law's modulus gives.
 
-    Each branch relaxes the strain behind it, tau_i dv_i/dt = e - v_i, with e = (1 + sum g_i v_i) / G_0: linear
-    equations, whose matrix is symmetric in sqrt(g_i tau_i) v_i.
+    Each branch relaxes the strain behind it, tau_i dv_i/dt = e - v_i, with e = (1 + sum g_i v_i) / G_0: these
+    equations are linear, with a matrix that is symmetric in sqrt(g_i tau_i) v_i.
     """
     there = spectrum.strengths > 0.0
     g, tau = np.asarray(spectrum.strengths)[there], np.asarray(spectrum.times)[there]
@@ -58,8 +58,8 @@ def settled_by_moduli(baseline: Baseline) -> bool:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CreepCurves:
-    """Curves of elastic beams of all trials, solved where they are first asked for; photographs : all of them;
-    workers : processes (None: all cores)."""
+    """Curves of elastic beams of all trials, solved where first asked for; photographs : all; workers :
+    processes (None: all cores)."""
 
     scenes: Scenes
     photographs: Sequence[TracedPhotograph]
