@@ -42,8 +42,8 @@ def test_one_spectrum_for_a_run_of_each_load() -> None:
 
 
 def test_what_hangs_rubs() -> None:
-    """With 52 g the damping ratio grows as the motion dies, as dry friction makes it; by itself the bar's does
-    not. No linear material does that."""
+    """With 52 g the damping ratio grows as the motion dies, as dry friction makes it; by itself the bar's
+    does not. No linear material does that."""
     for name, rows in swings(experiment_of(FOLDER)):
         ratios = np.array([ratio for _, _, ratio in rows])
         grown = ratios[3:].mean() / ratios[:2].mean()
