@@ -182,6 +182,7 @@ register(
         takes=("workers",),
         old_name="pokes",
         compares=_pushed,
+        over_time=_follower("indentation"),
     )
 )
 register(
@@ -203,6 +204,7 @@ register(
         claims=_all_compressed,
         old_name="presses",
         compares=lambda e: _coupons(e) if _all_compressed(e) else [],
+        over_time=_follower("compression"),
     )
 )
 register(

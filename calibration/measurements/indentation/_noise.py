@@ -9,7 +9,8 @@ deviation of its own. All fall with the square of the cell size.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +23,8 @@ from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation._scene import Geometry
 
 Array = NDArray[np.float64]
+# Elastic forces over the modulus at depths (k,), as (k,) or (k, m), -> forces at a record's points [N].
+Follow = Callable[[Callable[[Array], Array]], Array]
 
 # Relative sd at refinement 1: common to all indentations, and of each point by itself (contact points that
 # come and go, the curve between its frames).
@@ -75,7 +78,11 @@ def _shallow(depth: Array, radius: float) -> Array:
 
 
 def noise_of(
-    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+    records: Sequence[Record],
+    curves: Sequence[Curve],
+    forces: Sequence[Array],
+    slopes: Sequence[Array],
+    follow: Sequence[Follow],
 ) -> Noise:
     """Noise of all forces along the indenter, then of all across it.
 
@@ -83,12 +90,14 @@ def noise_of(
     ----------
     curves : of the records, without effects.
     forces, slopes : simulated force [N] and its slope [N/m] at the records' depths.
+    follow : elastic forces against depth -> forces at the records' points: at their depths, or along their
+        courses where the material remembers.
     """
     along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
     across = [
         np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
     ]
-    columns, names = nuisances(records, curves, forces, slopes)
+    columns, names = nuisances(records, curves, forces, slopes, follow)
     sd = np.concatenate([*along, *across])
     none = np.zeros((len(sd) - len(columns), columns.shape[1]))  # nuisances are along the indenter
     return Noise.independent(sd).with_nuisances(np.vstack([columns, none]), names)
@@ -115,13 +124,17 @@ def side_sd(record: Record, force: Array) -> Array:
 
 
 def nuisances(
-    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+    records: Sequence[Record],
+    curves: Sequence[Curve],
+    forces: Sequence[Array],
+    slopes: Sequence[Array],
+    follow: Sequence[Follow],
 ) -> tuple[Array, list[str]]:
     """One standard deviation of each nuisance in simulated less measured [N], shape (points, n), and names.
 
     In this order: the mesh error common to all indentations; of each geometry its wandering; of each record
     its first touch (positive where it is deeper than recorded), and the noise that smoothing leaves in the
-    depth of its phases.
+    depth of its phases. Parameters as in `noise_of`.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     rows = [np.arange(int(a), int(b)) for a, b in pairwise(starts)]
@@ -141,10 +154,12 @@ def nuisances(
         # records of one geometry have one curve, apart from its continuation by a deeper one
         curve = max((curves[k] for k in mine), key=lambda c: c.finer)
         where = np.concatenate([rows[k] for k in mine])
-        depth = np.maximum(np.concatenate([records[k].depth for k in mine]), 0.0)
         label = ", ".join(records[k].name for k in mine)
-        for m, mode in enumerate(_modes(depth, geometry, curve).T, 1):
-            add(f"mesh {m} of {label}", where, mode * whole[where])
+        deepest = max(float(records[k].depth.max()) for k in mine)
+        modes = _modes(max(deepest, 0.0), curve, geometry)
+        wandering = np.concatenate([follow[k](partial(_wandered, modes, curves[k])) for k in mine])
+        for m, column in enumerate(wandering.T, 1):
+            add(f"mesh {m} of {label}", where, column)
     for r, own, slope in zip(records, rows, slopes, strict=True):
         if r.depth_sd > 0.0:
             add(f"touch of {r.name}", own, -r.depth_sd * slope)
@@ -163,8 +178,13 @@ def _refinement(depth: Array, curve: Curve, geometry: Geometry) -> Array:
     return np.where(depth <= curve.finer, FINE, COARSE) * geometry.refinement
 
 
-def _modes(depth: Array, geometry: Geometry, curve: Curve) -> Array:
-    """Wandering modes at depths (k,), interpolated on a grid of depths, since records are long."""
-    grid = np.linspace(0.0, float(np.sqrt(depth.max())), GRID)[1:] ** 2
-    modes = wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
-    return np.column_stack([np.interp(depth, grid, mode) for mode in modes.T])
+def _modes(deepest: float, curve: Curve, geometry: Geometry) -> tuple[Array, Array]:
+    """A grid of depths (g,), and wandering modes there (g, m): on a grid, since records are long."""
+    grid = np.linspace(0.0, float(np.sqrt(deepest)), GRID)[1:] ** 2
+    return grid, wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
+
+
+def _wandered(modes: tuple[Array, Array], curve: Curve, depth: Array) -> Array:
+    """What modes on a grid change the elastic force over the modulus by at depths (k,), shape (k, m)."""
+    own = np.maximum(depth, 0.0)
+    return np.column_stack([np.interp(own, modes[0], mode) for mode in modes[1].T]) * curve.at(depth)[:, None]
