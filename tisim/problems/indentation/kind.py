@@ -85,7 +85,7 @@ def _check_way(scene: Poke, name: str, direction: Vector) -> None:
         raise FieldError(name, f"a push within {STEEPEST:g} degrees of (0, 0, -1)", direction)
     if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
         raise FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
-    out = leaves(scene, direction)
+    out = leaves(scene, direction, scene.depth)
     if out is not None:
         half = [0.5e3 * side for side in scene.block.size[:2]]
         wanted = (
@@ -95,10 +95,10 @@ def _check_way(scene: Poke, name: str, direction: Vector) -> None:
         raise FieldError(name, wanted, direction)
 
 
-def leaves(scene: Poke, direction: Vector) -> tuple[float, float] | None:
-    """Where a rod pushed along `direction` to its depth is, (x, y) [m], if outside the block's sides."""
+def leaves(scene: Poke, direction: Vector, depth: float) -> tuple[float, float] | None:
+    """Where a rod pushed along `direction` to a depth [m] is, (x, y) [m], if outside the block's sides."""
     size = float(np.linalg.norm(direction))
-    x, y = (scene.site[k] + scene.depth * direction[k] / size for k in range(2))
+    x, y = (scene.site[k] + depth * direction[k] / size for k in range(2))
     inside = all(abs(at) <= 0.5 * side for at, side in zip((x, y), scene.block.size[:2], strict=True))
     return None if inside else (x, y)
 
