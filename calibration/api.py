@@ -24,6 +24,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -258,6 +259,7 @@ def diagnose(
     domain: str | None = None,
     without: Sequence[str] = (),
     simulator: str = "ours",
+    law: str = "auto",
     gain: bool = True,
     seed: int = 0,
     workers: int | None = None,
@@ -274,6 +276,10 @@ def diagnose(
         Effects to leave out of the catalogue.
     simulator : str
         Simulator whose own faults are looked for as well.
+    law : str
+        Of the baseline, where the kind has a choice: "auto" for the simplest one and, where no cause explains
+        the data beside it, the one that predicts best as a cause of its own; or a name, with the terms of a
+        series law ("ogden:2").
     gain : bool
         Measure the improvement on held-out data.
     seed : int
@@ -293,17 +299,21 @@ def diagnose(
         An argument or the experiment cannot be used, or the baseline has no equilibrium anywhere.
     """
     from calibration.diagnosis import Rules, model_of
-    from calibration.diagnosis import diagnose as search
+    from calibration.diagnosis.laws import diagnose_with_law
 
     if seed < 0:
         raise OptionError("seed", seed, "expected 0 or more")
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
-    model = model_of(data, kind=domain, without=list(without), simulator=simulator, workers=workers)
+    make = partial(model_of, data, kind=domain, without=list(without), simulator=simulator, workers=workers)
     try:
-        found = search(
-            model, rules=Rules(seed=seed), gain=gain, on_progress=lambda text: report(Progress(message=text))
+        found, model = diagnose_with_law(
+            make,
+            law=law,
+            rules=Rules(seed=seed),
+            gain=gain,
+            on_progress=lambda text: report(Progress(message=text)),
         )
     except ValueError as error:  # no equilibrium of the baseline anywhere
         raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error

@@ -53,6 +53,13 @@ def main(
     simulator: Annotated[
         str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
     ] = "ours",
+    law: Annotated[
+        str,
+        typer.Option(
+            help="Law of the baseline, of homogeneous tests: auto, or a name with the terms of a series law"
+            " (ogden:2)."
+        ),
+    ] = "auto",
     gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
     seed: Seed = 0,
     workers: Workers = None,
@@ -79,6 +86,7 @@ def main(
             domain=domain,
             without=names_in(without),
             simulator=simulator,
+            law=law,
             gain=gain,
             seed=seed,
             workers=workers,

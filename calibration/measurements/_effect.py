@@ -86,6 +86,9 @@ class EffectModel:
         a candidate that no protocol shows has no column.
     variants : forms of the effect (a time constant, a direction), from the records that it applies to.
     variant_label : a variant in words.
+    switch : it is there or not: where it is named its amplitude is the upper bound.
+    further : it is looked for only where no other cause explains the data: it is rarer than they are, or so
+        free in its form that it would stand in for them.
     action : what to do about it with this kind of measurement, where that is not the catalogue's remedy.
     """
 
@@ -102,6 +105,8 @@ class EffectModel:
     identifiable: Callable[[Sequence[Any], Sequence[Any]], bool] = always
     variants: Callable[[Sequence[Any]], tuple[float | None, ...]] = one_variant
     variant_label: Callable[[float], str] = lambda variant: f"{variant:g}"
+    switch: bool = False
+    further: bool = False
     action: str = ""
 
     @property

@@ -30,7 +30,7 @@ class Kind:
         the options of `build` that `takes` names.
     refines : a kind whose trials these are too; `claims` decides which of the two is meant where none is
         named.
-    takes : options that its model has: workers, simulator.
+    takes : options that its model has: workers, simulator; law, terms and richer (of the baseline).
     old_name : that it had in earlier versions, still understood.
     """
 
@@ -92,8 +92,8 @@ def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
 def build(
     kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
 ) -> MeasurementModel:
-    """The model of an experiment's measurements of a kind. options : workers, simulator; those that the kind
-    does not take are left out."""
+    """The model of an experiment's measurements of a kind. options : see `Kind.takes`; those that
+    the kind does not take are left out."""
     own = {n: v for n, v in options.items() if n in kind.takes}
     return kind.load()(experiment, effects=effects, **own)
 
@@ -145,6 +145,7 @@ register(
         name="homogeneous",
         holds=lambda e: any(isinstance(t, CouponTrial) for t in e.trials),
         load=_loader("homogeneous", "HomogeneousModel"),
+        takes=("law", "terms", "richer"),
         old_name="coupons",
     )
 )

@@ -16,8 +16,8 @@ from calibration.measurements.homogeneous.kinematics import first_excess, stress
 Array = NDArray[np.float64]
 
 # -- rate-dependence --
-# The material is stiffer when it is strained faster: its stress grows by this part with each decade of the
-# rate, from 0.01 per second.
+# The material is stiffer when it is strained faster: its stress is a power of the rate, which grows by this
+# part a decade at 0.01 per second.
 
 
 REFERENCE_RATE = 0.01  # [1/s]: the shear modulus is that of this rate
@@ -28,7 +28,7 @@ DISTINCT_RATES = 1.5  # quotient of two rates from which they differ
 def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array:
     del s
     decades = np.log10(record.rate / REFERENCE_RATE)
-    return 1.0 + amplitude * np.where(np.isfinite(decades), decades, 0.0)
+    return np.exp(amplitude * np.where(np.isfinite(decades), decades, 0.0))
 
 
 def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
@@ -45,7 +45,8 @@ def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequenc
 RATE_DEPENDENCE = HomogeneousEffect(
     effect=catalogue.RATE_DEPENDENCE,
     step=1e-3,
-    bounds=(0.0, 0.3),
+    bounds=(0.0, 3.0),
+    start_fraction=0.1,
     prior_scale=0.15,
     factor=_factor_rate_dependence,
     identifiable=_identifiable_rate_dependence,
@@ -71,7 +72,8 @@ def _identifiable_hysteresis(reached: Sequence[Record], everything: Sequence[Rec
 HYSTERESIS = HomogeneousEffect(
     effect=catalogue.HYSTERESIS,
     step=1e-3,
-    bounds=(0.0, 0.95),
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),  # nothing is given back
     prior_scale=0.5,
     factor=_factor_hysteresis,
     identifiable=_identifiable_hysteresis,
@@ -105,7 +107,8 @@ def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record
 MULLINS = HomogeneousEffect(
     effect=catalogue.MULLINS,
     step=1e-3,
-    bounds=(0.0, 0.95),
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),  # softened to nothing at rest
     prior_scale=0.5,
     factor=_factor_mullins,
     identifiable=_identifiable_mullins,
@@ -167,14 +170,25 @@ STRAIN_OFFSET = HomogeneousEffect(
 
 
 # -- machine-compliance --
-# The rig gives way: part of the stretch that is written down is its own, in proportion to the stress.
+# The rig gives way: part of the stretch that is written down is its own, in proportion to the stress. A stiff
+# frame gives way by 0.001 to 0.02 strains/MPa; one that takes MOST_OF_RIG of the specimen's length at the
+# largest stress would be seen to.
+
+
+MOST_OF_RIG = 0.25
+
+
+def _bounds_machine_compliance(records: Sequence[Record]) -> tuple[float, float]:
+    largest = min(float(np.abs(r.stress).max()) for r in records)
+    return 0.0, MOST_OF_RIG / largest
 
 
 MACHINE_COMPLIANCE = HomogeneousEffect(
     effect=catalogue.MACHINE_COMPLIANCE,
     step=1e-9,
     bounds=(0.0, 1e-5),
-    prior_scale=1e-6,
+    prior_scale=2e-8,
+    bounds_in=_bounds_machine_compliance,
     yields=1.0,
     scopes=("mode", "trial"),
 )
@@ -294,6 +308,156 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
     extra=_extra_limited_extensibility,
 )
 
+
+# -- law-form --
+# Another law than the baseline's describes the material: the energy is (1 - a) W + a W', of one small-strain
+# modulus, and W' alone where it is named. Constants of W' are coordinates of the fit beside it. W' is the law that predicts best what its
+# fit has not seen (`calibration.diagnosis.laws`).
+
+
+LAW_FORM = HomogeneousEffect(
+    effect=catalogue.LAW_FORM,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),
+    start_fraction=1.0,
+    prior_scale=1.0,
+    switch=True,
+    richer=True,
+    further=True,
+    scopes=("material",),
+)
+
+
+# -- set-between-tests --
+# What is loaded again and again keeps part of its strain: it starts each test shorter (longer, where it was
+# pulled) by this part than the test before, while its strain is still counted from the first length. Its own
+# strain is the larger (smaller) one.
+
+
+REPEATS = 3  # tests alike: with two, one that is odd would look like what goes on from test to test
+
+
+def _shift_set_between_tests(s: Array, amplitude: float, record: Record) -> Array:
+    sign = np.where(record.stretch < 1.0, -1.0, 1.0)
+    return np.asarray((s - 1.0) * (1.0 / (1.0 + sign * amplitude * record.earlier) - 1.0))
+
+
+def _repeated(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some test that was repeated often enough."""
+    del everything
+    return any(r.alike >= REPEATS and r.earlier > 0 for r in reached)
+
+
+SET_BETWEEN_TESTS = HomogeneousEffect(
+    effect=catalogue.SET_BETWEEN_TESTS,
+    step=1e-5,
+    bounds=(0.0, 0.05),
+    prior_scale=5e-3,
+    shift=_shift_set_between_tests,
+    identifiable=_repeated,
+    further=True,
+)
+
+
+# -- test-order --
+# The stress grows, or falls, by the same part from each test to the next at all strains: what heals, dries or
+# wears between them, or a load cell that wanders.
+
+
+def _factor_test_order(s: Array, amplitude: float, record: Record) -> Array:
+    return np.full(s.shape, 1.0 + amplitude * record.earlier)
+
+
+TEST_ORDER = HomogeneousEffect(
+    effect=catalogue.TEST_ORDER,
+    step=1e-4,
+    bounds=(-0.15, 0.3),
+    prior_scale=0.01,
+    factor=_factor_test_order,
+    identifiable=_repeated,
+    further=True,
+)
+
+
+# -- tension-compression-asymmetry --
+# In compression the material is stiffer (softer, where negative) than in tension: its stress there is this
+# part higher, as of one of two moduli.
+
+
+def _factor_asymmetry(s: Array, amplitude: float, record: Record) -> Array:
+    pressed = (s < 1.0) & (record.mode == "uniaxial")
+    return np.where(pressed, 1.0 + amplitude, 1.0)
+
+
+def _both_signs(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Compression, and something else of the same material."""
+    for r in reached:
+        others = [q for q in everything if q.material == r.material]
+        pressed = [q.mode == "uniaxial" and float(q.stretch.min()) < PRESSED for q in others]
+        if any(pressed) and not all(pressed):
+            return True
+    return False
+
+
+TENSION_COMPRESSION_ASYMMETRY = HomogeneousEffect(
+    effect=catalogue.TENSION_COMPRESSION_ASYMMETRY,
+    step=1e-3,
+    bounds=(-0.9, 10.0),
+    prior_scale=0.5,
+    factor=_factor_asymmetry,
+    identifiable=_both_signs,
+    further=True,
+    scopes=("material",),
+)
+
+
+# -- permanent-set --
+# Having been strained, the material keeps this part of its largest strain: unloaded it comes to rest there.
+
+
+def _shift_permanent_set(s: Array, amplitude: float, record: Record) -> Array:
+    del s
+    gone = first_excess(record.mode, record.stretch)
+    new = np.where(gone >= np.maximum.accumulate(gone), np.arange(gone.size), 0)
+    furthest = record.stretch[np.maximum.accumulate(new)]
+    turned = np.maximum.accumulate(np.isfinite(record.turn))
+    return np.asarray(np.where(turned, amplitude * (record.stretch - furthest), 0.0))
+
+
+PERMANENT_SET = HomogeneousEffect(
+    effect=catalogue.PERMANENT_SET,
+    step=1e-4,
+    bounds=(0.0, 0.5),
+    prior_scale=0.05,
+    shift=_shift_permanent_set,
+    identifiable=_identifiable_hysteresis,
+    further=True,
+)
+
+
+# -- gauge-length --
+# The strain of a pulled strip is taken from its grips: ends that are wider, or that slip, stretch less
+# (more), and its middle stretches by this part more (less) than the record says.
+
+
+def _shift_gauge_length(s: Array, amplitude: float, record: Record) -> Array:
+    del s
+    return np.asarray(np.where(record.stretch > 1.0, amplitude * (record.stretch - 1.0), 0.0))
+
+
+GAUGE_LENGTH = HomogeneousEffect(
+    effect=catalogue.GAUGE_LENGTH,
+    step=1e-3,
+    bounds=(-0.3, 0.5),
+    prior_scale=0.1,
+    shift=_shift_gauge_length,
+    applies_to=lambda record: record.mode == "uniaxial" and bool(record.stretch.max() > 2.0 - PRESSED),
+    identifiable=_identifiable_anisotropy,
+    further=True,
+    scopes=("material", "trial"),
+)
+
 EFFECTS: dict[str, HomogeneousEffect] = {
     e.name: e
     for e in (
@@ -307,5 +471,11 @@ EFFECTS: dict[str, HomogeneousEffect] = {
         STRAIN_STIFFENING,
         SECOND_INVARIANT,
         LIMITED_EXTENSIBILITY,
+        LAW_FORM,
+        SET_BETWEEN_TESTS,
+        TEST_ORDER,
+        TENSION_COMPRESSION_ASYMMETRY,
+        PERMANENT_SET,
+        GAUGE_LENGTH,
     )
 }

@@ -312,7 +312,7 @@ VOID = OutlineEffect(
     prior_scale=0.5,
     bend=_bend_void,
     positions=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7),
-    scopes=("trial",),
+    scopes=("material", "trial"),  # one beam's, or its batch's
     in_all=False,
 )
 

@@ -104,7 +104,9 @@ def _step(
     for k, c in enumerate(wanted):
         low, high = model.effects[c.effect].bounds
         a = linear.state.amplitudes[c]
-        free[n + k] = not ((a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0))
+        free[n + k] = not model.effects[c.effect].switch and not (
+            (a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0)
+        )
     for _ in range(len(wanted) + 1):
         move = np.zeros(jacobian.shape[1])
         # columns differ by orders of magnitude in scale: bring them to one before the rank is judged

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,12 +25,17 @@ class HomogeneousEffect(EffectModel):
     factor : on the whole stress.
     shift : of the stretch.
     yields : strain of the rig by the stress [1/Pa], which the specimen does not see.
+    bounds_in : narrower bounds of the amplitude, from the records that it applies to [SI].
+    richer : the amplitude is the part of the strain energy that the model's richer law has in place of the
+        baseline's; only models with such a law have the effect.
     """
 
     extra: Term | None = None
     factor: Term | None = None
     shift: Term | None = None
     yields: float = 0.0
+    bounds_in: Callable[[Sequence[Record]], tuple[float, float]] | None = None
+    richer: bool = False
 
     @property
     def simulated(self) -> bool:
