@@ -39,13 +39,16 @@ if TYPE_CHECKING:
     from calibration.study import Task
 
 
-def read_experiment(folder: str | Path) -> Experiment:
+def read_experiment(folder: str | Path, *, leave_out_rows: bool = False) -> Experiment:
     """Read and check an experiment.
 
     Parameters
     ----------
     folder : path
         Holds experiment.yaml (format 1) and the files that it names.
+    leave_out_rows : bool
+        Go on without rows of homogeneous tests at which the clock runs backwards; `Experiment.notes` says
+        which. An error otherwise.
 
     Returns
     -------
@@ -57,7 +60,7 @@ def read_experiment(folder: str | Path) -> Experiment:
     InputError
         One sentence that names the file, the key or line, and what was expected.
     """
-    return read(Path(folder))
+    return read(Path(folder), leave_out_rows=leave_out_rows)
 
 
 def fit(

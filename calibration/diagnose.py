@@ -61,6 +61,10 @@ def main(
         ),
     ] = "auto",
     gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
+    leave_out_rows: Annotated[
+        bool,
+        typer.Option(help="Go on without rows of homogeneous tests at which the clock runs backwards."),
+    ] = False,
     seed: Seed = 0,
     workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
@@ -72,7 +76,7 @@ def main(
         from calibration import api
 
         folder = out or Path("diagnoses") / experiment.resolve().name
-        data = api.read_experiment(experiment)
+        data = api.read_experiment(experiment, leave_out_rows=leave_out_rows)
         _check_folder(folder, overwrite)
         begun = time.monotonic()
 

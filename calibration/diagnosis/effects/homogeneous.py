@@ -311,8 +311,8 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
 
 # -- law-form --
 # Another law than the baseline's describes the material: the energy is (1 - a) W + a W', of one small-strain
-# modulus, and W' alone where it is named. Constants of W' are coordinates of the fit beside it. W' is the law that predicts best what its
-# fit has not seen (`calibration.diagnosis.laws`).
+# modulus, and W' alone where it is named. Constants of W' are coordinates of the fit beside it. W' is the law
+# that predicts best what its fit has not seen (`calibration.diagnosis.laws`).
 
 
 LAW_FORM = HomogeneousEffect(
