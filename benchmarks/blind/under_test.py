@@ -170,10 +170,10 @@ def diagnose_indentation(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     """The content of diagnosis.json, without the held-out improvement."""
-    from calibration.diagnosis import diagnose, model_of
-    from calibration.experiment import read
+    import calibration
 
-    return diagnose(model_of(read(folder), kind="compression", without=without), gain=False).to_json()
+    data = calibration.read_experiment(folder)
+    return calibration.diagnose(data, domain="compression", without=without, gain=False).diagnosis.to_json()
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:

@@ -3,7 +3,7 @@
 Where the first round leaves the data unexplained, laws are compared by how well they predict what their fit
 has not seen. The best one enters the second round as a cause of its own (the effect whose `richer` is set),
 so that what else is wrong is asked beside it; causes that are rare, or free in their form (`further`), enter
-with it.
+with it. They are asked, too, where the first round needs several causes, and taken if fewer explain the data.
 """
 
 from __future__ import annotations
@@ -128,17 +128,28 @@ def diagnose_with_law(
         options["law"], options["terms"] = law_of(law)
     model = make(further=False, **options)
     found = diagnose(model, rules=rules, gain=gain, on_progress=on_progress)
-    if found.finding.verdict in EXPLAINED:
+    explained = found.finding.verdict in EXPLAINED
+    if explained and _causes(found) < 2:
         return found, model
-    choice = choose_law(model, on_progress=on_progress) if law == AUTO and model.laws else None
+    choice = None
+    if law == AUTO and model.laws and not explained:
+        choice = choose_law(model, on_progress=on_progress)
     if choice is not None and choice.best is not choice.simplest:
         options["richer"] = choice.best.law, choice.best.terms
     fuller = make(**options)
-    if set(fuller.effects) != set(model.effects):
-        on_progress("asking further causes, since the usual ones leave the data unexplained")
-        model, found = fuller, diagnose(fuller, rules=rules, gain=gain, on_progress=on_progress)
+    if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
+        on_progress("asking further causes, since no usual one explains the data alone")
+        again = diagnose(fuller, rules=rules, gain=gain, on_progress=on_progress)
+        fewer = again.finding.verdict in EXPLAINED and _causes(again) < _causes(found)
+        if not explained or fewer:
+            model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)
     return replace(found, notes=(*found.notes, *notes)), model
+
+
+def _causes(found: Diagnosis) -> int:
+    """How many are named together."""
+    return 0 if found.chosen is None else len(found.chosen.candidates)
 
 
 def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: None) -> LawChoice:

@@ -148,7 +148,8 @@ class Table:
 
     def growing(self, name: str, files: Files) -> Table:
         """The rows in which a column grows: all, or else those of the longest run through the table that
-        does, where `files` may leave rows out. InputError otherwise, and where more than MOST_LOST of them would go."""
+        does, where `files` may leave rows out. InputError otherwise, and where more than MOST_LOST of them
+        would go."""
         kept = longest_growing(self.numbers[name])
         lost = sorted(set(range(len(self))) - set(kept))
         if not lost:
