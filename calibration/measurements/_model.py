@@ -129,6 +129,16 @@ class MeasurementModel(ABC):
         """What the noise model consists of, for people."""
         return ""
 
+    def full_scale(self) -> Array | None:
+        """Largest measured value of each record [SI], shape (records,); None where records have none."""
+        return None
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        """What drives a record, by its index: its name for people, and its value at each of the record's
+        rows; None where rows are no points along anything."""
+        del k
+        return None
+
     def pictures(self, diagnosis: Any) -> list[Any]:
         """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
         del diagnosis

@@ -16,9 +16,12 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
 
 KEPT = 0.5  # fraction of an amplitude's information that every training set must keep
-FALLBACK = 0.2  # below this, no fold of a set is used at all
+FALLBACK = 0.2  # below this, folds of a set are used only where
+VISIBLE = 5.0  # standard deviations by which an effect shows in a fold
+SEEN = 10.0  # standard deviations of every amplitude are left in every training set
 UNSEEN_STEPS = 10  # of Gauss-Newton, over the coordinates that only a fold tells of
 
 
@@ -37,6 +40,7 @@ class HeldOut:
     note : why nothing was held out.
     parts : the prediction of each fold.
     amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
+    within : whether folds part single records: what all of a record shares is then in the training too.
     """
 
     held_out: str
@@ -49,6 +53,7 @@ class HeldOut:
     note: str = ""
     parts: tuple[Prediction, ...] = ()
     amplitudes: tuple[tuple[float, ...], ...] = ()
+    within: bool = False
 
     @property
     def skill(self) -> float:
@@ -63,20 +68,18 @@ class HeldOut:
 
 def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:
     """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold of the
-    first set that leaves at least KEPT of the information in training (of the best set otherwise)."""
-    kept = {name: _kept(model, folds, chosen) for name, folds in model.folds().items()}
-    usable = {name: k for name, k in kept.items() if k >= KEPT}
-    name = next(iter(usable), None) or max(kept, key=lambda n: kept[n], default=None)
-    if name is None or kept[name] < FALLBACK:
-        return _nothing(max(kept.values(), default=0.0), "no fold leaves enough of the effect in training")
-    folds = model.folds()[name]
+    set that `_choice` takes."""
+    choice = _choice(model, chosen)
+    if not choice.folds:
+        return _nothing(choice.kept, "no fold leaves enough of the effect in training")
+    name, folds = choice.name, choice.folds
     parts, amplitudes, better = [], [], 0.0
     for left_out, fold in folds:
         try:
             before = _predicted(model, fold, baseline, ())
             after = _predicted(model, fold, chosen, chosen.candidates)
         except ValueError as problem:
-            return _nothing(kept[name], f"{name}: {left_out} cannot be predicted: {problem}")
+            return _nothing(choice.kept, f"{name}: {left_out} cannot be predicted: {problem}")
         parts.append(
             Prediction(
                 name=left_out,
@@ -91,14 +94,25 @@ def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) ->
     whole = together(parts)
     return HeldOut(
         held_out=name,
-        kept=kept[name],
+        kept=choice.kept,
         rms_before=whole.rms_before,
         rms_after=whole.rms_after,
         rms_noise=whole.rms_noise,
         log_likelihood=better,
         folds=len(folds),
+        note=choice.note,
         parts=tuple(parts),
         amplitudes=tuple(amplitudes),
+        within=_within(model, [fold for _, fold in folds]),
+    )
+
+
+def _within(model: MeasurementModel, folds: Sequence[Rows]) -> bool:
+    """Whether some record is in several folds."""
+    used = model.noise.used
+    return any(
+        sum(bool((fold & used & (model.row_record == k)).any()) for fold in folds) > 1
+        for k in np.unique(model.row_record[used])
     )
 
 
@@ -116,16 +130,63 @@ def _nothing(kept: float, note: str) -> HeldOut:
     )
 
 
-def _kept(model: MeasurementModel, folds: Sequence[tuple[str, NDArray[np.bool_]]], chosen: Fit) -> float:
-    """Least fraction of any amplitude's information that a training set keeps."""
-    if len(folds) < 2:
-        return 0.0
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Choice:
+    """Folds of a set that are predicted, and the least information on an amplitude that their training keeps;
+    no folds where none may be."""
+
+    name: str = ""
+    folds: Sequence[tuple[str, Rows]] = ()
+    kept: float = 0.0
+    note: str = ""
+
+
+def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
+    """The first set of folds of which each leaves at least KEPT of the information in training; else the set
+    that leaves most. Else the first of which two or more folds that show the effect leave enough: the others
+    are not predicted, since that would be extrapolated. Else the first in which the amplitudes are still seen
+    well."""
+    sets = [(n, f, _kept(model, f, chosen)) for n, f in model.folds().items() if len(f) > 1]
+    for name, folds, kept in sets:
+        if kept.min() >= KEPT:
+            return _Choice(name=name, folds=folds, kept=float(kept.min()))
+    name, folds, worst = max(sets, key=lambda s: float(s[2].min()), default=("", [], np.zeros(1)))
+    if worst.min() >= FALLBACK:
+        return _Choice(name=name, folds=folds, kept=float(worst.min()))
+    for name, folds, kept in sets:
+        some = [k for k in range(len(folds)) if kept[k] >= KEPT and _shows(model, folds[k][1], chosen)]
+        if len(some) > 1:
+            left = ", ".join(folds[k][0] for k in range(len(folds)) if k not in some)
+            return _Choice(
+                name=name,
+                folds=[folds[k] for k in some],
+                kept=float(kept[some].min()),
+                note=f"Not predicted, since the others tell too little of the effect, or it does not act there:"
+                f" {left}.",
+            )
+    least = min(abs(value) / sd for value, sd in map(chosen.amplitude, chosen.candidates))
+    for name, folds, own in sets:
+        if least * np.sqrt(own.min()) >= SEEN:
+            return _Choice(name=name, folds=folds, kept=float(own.min()))
+    return _Choice(kept=float(worst.min()))
+
+
+def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], chosen: Fit) -> Array:
+    """Least fraction of any amplitude's information that is left without each fold, shape (folds,)."""
     everything = _information(chosen, np.ones(len(chosen.z), dtype=bool))
-    parts = [_information(chosen, ~model.rows(fold)) / everything for _, fold in folds]
-    return float(np.min(parts))
+    return np.array(
+        [float(np.min(_information(chosen, ~model.rows(fold)) / everything)) for _, fold in folds]
+    )
 
 
-def _information(chosen: Fit, rows: NDArray[np.bool_]) -> Array:
+def _shows(model: MeasurementModel, fold: Rows, chosen: Fit) -> bool:
+    """Whether each amplitude, as it was fitted, would show in a fold alone."""
+    rows = model.rows(fold)
+    values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
+    return bool((values**2 * _information(chosen, rows) >= VISIBLE**2).all())
+
+
+def _information(chosen: Fit, rows: Rows) -> Array:
     """One over the variance of each amplitude, from some of the rows."""
     n = len(chosen.state.u)
     found = []
@@ -154,7 +215,7 @@ class _Fold:
 
 
 def _predicted(
-    model: MeasurementModel, fold: NDArray[np.bool_], full: Fit, candidates: tuple[Candidate, ...]
+    model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]
 ) -> _Fold:
     trained = fit(model.subset(fold, others=True), full.state, candidates).state
     test = model.subset(fold, others=False)
@@ -163,7 +224,7 @@ def _predicted(
     return _Fold(state=state, chi2=float(z @ z), rms=test.distance_rms(state), points=test.points)
 
 
-def _with_unseen(test: MeasurementModel, trained: State, unseen: NDArray[np.bool_]) -> State:
+def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:
     """The coordinates that only the fold tells of (the modulus of a material that was left out, a release
     time) fitted to it. What the training tells of, and the amplitudes, stay as they were trained: were the
     seen ones to move beside the unseen, these would take up what belongs to those."""

@@ -225,13 +225,8 @@ def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Ar
     if trial.stress_sd is None:
         one = relative_sd(over, trial.stress[b.points])
         relative = np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE)
-        largest = np.abs(trial.stress).max(initial=0.0)
-        return np.asarray(relative * np.maximum(scatter_scale(stress), _FLOOR * largest))
+        return np.asarray(relative * float(scatter_scale(trial.stress).max(initial=0.0)))
     return np.asarray(trial.stress_sd / np.sqrt(count))
-
-
-# As in `_scatter`: below this fraction of the largest stress an error stays what it is there.
-_FLOOR = 0.05
 
 
 def turning(trial: CouponTrial) -> float:

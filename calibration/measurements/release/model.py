@@ -212,6 +212,12 @@ class ReleaseModel(MeasurementModel):
             self.row_record,
         )
 
+    def full_scale(self) -> Array | None:
+        return np.array([float(np.nanmax(np.abs(r.measured()))) for r in self.records])
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        return "seconds after the release", self.records[k].labels()[2]
+
     # -- advice and reports --
 
     def predicted_in(self, test: RepeatedRelease, state: State) -> Self | None:
