@@ -259,6 +259,7 @@ def diagnose(
     without: Sequence[str] = (),
     simulator: str = "ours",
     gain: bool = True,
+    noise: str = "stated",
     seed: int = 0,
     workers: int | None = None,
     on_progress: OnProgress | None = None,
@@ -276,6 +277,8 @@ def diagnose(
         Simulator whose own faults are looked for as well.
     gain : bool
         Measure the improvement on held-out data.
+    noise : str
+        "stated", or "data" where the scatter of the data shall replace a stated noise that it contradicts.
     seed : int
         Of the bootstrap.
     workers : int, optional
@@ -297,13 +300,19 @@ def diagnose(
 
     if seed < 0:
         raise OptionError("seed", seed, "expected 0 or more")
+    if noise not in ("stated", "data"):
+        raise OptionError("noise", noise, "expected stated or data")
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
     model = model_of(data, kind=domain, without=list(without), simulator=simulator, workers=workers)
     try:
         found = search(
-            model, rules=Rules(seed=seed), gain=gain, on_progress=lambda text: report(Progress(message=text))
+            model,
+            rules=Rules(seed=seed),
+            gain=gain,
+            noise="data" if noise == "data" else "stated",
+            on_progress=lambda text: report(Progress(message=text)),
         )
     except ValueError as error:  # no equilibrium of the baseline anywhere
         raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error

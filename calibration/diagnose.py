@@ -54,6 +54,12 @@ def main(
         str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
     ] = "ours",
     gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
+    noise: Annotated[
+        str,
+        typer.Option(
+            help="Noise where the data contradict what the lab states: stated, or data (their own scatter)."
+        ),
+    ] = "stated",
     seed: Seed = 0,
     workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
@@ -80,6 +86,7 @@ def main(
             without=names_in(without),
             simulator=simulator,
             gain=gain,
+            noise=noise,
             seed=seed,
             workers=workers,
             on_progress=show,

@@ -161,8 +161,8 @@ def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
                 name=name,
                 folds=[folds[k] for k in some],
                 kept=float(kept[some].min()),
-                note=f"Not predicted, since the others tell too little of the effect, or it does not act there:"
-                f" {left}.",
+                note="Not predicted, since the others tell too little of the effect, or it does not act"
+                f" there: {left}.",
             )
     least = min(abs(value) / sd for value, sd in map(chosen.amplitude, chosen.candidates))
     for name, folds, own in sets:
@@ -214,9 +214,7 @@ class _Fold:
     points: int
 
 
-def _predicted(
-    model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]
-) -> _Fold:
+def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]) -> _Fold:
     trained = fit(model.subset(fold, others=True), full.state, candidates).state
     test = model.subset(fold, others=False)
     state = _with_unseen(test, trained, model.unconstrained(fold))

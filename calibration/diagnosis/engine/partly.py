@@ -39,6 +39,7 @@ class Assessed:
     rivals : other sets of names that take as much.
     held_out : None where it was not measured.
     against : why it is not named, a clause each; nothing where it may be.
+    confidence : part of the replicates in which no other set of as many causes takes more.
     """
 
     explanation: Explanation
@@ -47,6 +48,7 @@ class Assessed:
     rivals: tuple[Names, ...] = ()
     held_out: HeldOut | None = None
     against: tuple[str, ...] = field(default=())
+    confidence: float = 0.0
 
 
 def assess(
@@ -131,10 +133,17 @@ def _judge(
     on_progress(f"predicting held-out measurements: {explanation.fit.label}")
     held_out = held_out_improvement(model, baseline, explanation.fit)
     against += _held_out(held_out, explanation, at_least, rules)
+    others = [
+        shares.drawn(m)
+        for e, m in sound
+        if e.names != explanation.names and len(e.names) == len(explanation.names)
+    ]
+    first = np.mean(np.all([drawn >= o for o in others], axis=0)) if others else 1.0
     return Assessed(
         explanation=explanation,
         share=share,
         at_least=at_least,
+        confidence=float(first),
         rivals=_rivals(explanation, drawn, sound, shares, rules),
         held_out=held_out,
         against=tuple(against),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -64,6 +64,22 @@ def remainder_of(model: MeasurementModel, fit: Fit) -> Remainder:
         records=_holders(model.records, squares),
         place=_place(model, left),
     )
+
+
+def about_remainder(left: Remainder) -> str:
+    """What to measure next of what is left, "" where nothing is."""
+    if left.rms == 0.0:
+        return ""
+    return {
+        "everywhere": "what is left is alike in all of them: test in another mode, at another rate or on"
+        " another rig, to tell the form of the model from the rig",
+        "within a material": "what is left is alike within each material: test one of them in another mode,"
+        " since the form of its law may be at fault",
+        "within a specimen": "what is left is alike within a specimen: turn it, or test another specimen of"
+        " the same batch",
+        "nowhere": "what is left differs from test to test: repeat tests, so that their scatter is known",
+        "not known": "repeat a test, so that it is known whether what is left repeats",
+    }[left.repeats]
 
 
 def beyond(rms: float, noise: float) -> float:
@@ -155,7 +171,7 @@ def _place(model: MeasurementModel, left: Sequence[Array]) -> str:
         return ""
     where, value = where[known], value[known]
     edges = np.linspace(where.min(), where.max(), 4)
-    held = [float(value[(where >= a) & (where <= b)].sum()) for a, b in zip(edges, edges[1:], strict=False)]
+    held = [float(value[(where >= a) & (where <= b)].sum()) for a, b in pairwise(edges)]
     best = int(np.argmax(held))
     if held[best] < MOST * float(value.sum()):
         return ""

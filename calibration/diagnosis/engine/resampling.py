@@ -72,9 +72,8 @@ def groups_of(model: MeasurementModel) -> Groups:
             if part.size:
                 of_row[part] = len(names)
                 names.append(f"{model.records[k].name}, part {n + 1}")
-    return Groups(
-        over="fifths of each record", of_row=np.concatenate([of_row, prior]).astype(np.intp), names=tuple(names)
-    )
+    rows = np.concatenate([of_row, prior]).astype(np.intp)
+    return Groups(over="fifths of each record", of_row=rows, names=tuple(names))
 
 
 def _test(record: object) -> str:

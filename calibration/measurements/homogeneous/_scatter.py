@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # Where the lab gives no stress_sd: an error relative to the curve's largest stress, since a load cell and a
-# digitised figure have an error of their range. As a part of each stress it would be absurdly small near rest,
-# where a record has many points, and these would decide which cause is named.
+# digitised figure have an error of their range. As a part of each stress it would be absurdly small near
+# rest, where a record has many points, and these would decide which cause is named.
 # Nobody's area, gauge length and load cell are known better than this; curves drawn smooth look so.
 SMALLEST_RELATIVE = 0.005
 _WINDOW = 0.15  # of the points, for the slope
