@@ -264,6 +264,7 @@ def diagnose(
     simulator: str = "ours",
     law: str = "auto",
     gain: bool = True,
+    noise: str = "stated",
     seed: int = 0,
     workers: int | None = None,
     on_progress: OnProgress | None = None,
@@ -285,6 +286,8 @@ def diagnose(
         series law ("ogden:2").
     gain : bool
         Measure the improvement on held-out data.
+    noise : str
+        "stated", or "data" where the scatter of the data shall replace a stated noise that it contradicts.
     seed : int
         Of the bootstrap.
     workers : int, optional
@@ -306,6 +309,8 @@ def diagnose(
 
     if seed < 0:
         raise OptionError("seed", seed, "expected 0 or more")
+    if noise not in ("stated", "data"):
+        raise OptionError("noise", noise, "expected stated or data")
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
@@ -316,6 +321,7 @@ def diagnose(
             law=law,
             rules=Rules(seed=seed),
             gain=gain,
+            noise="data" if noise == "data" else "stated",
             on_progress=lambda text: report(Progress(message=text)),
         )
     except ValueError as error:  # no equilibrium of the baseline anywhere

@@ -65,6 +65,12 @@ def main(
         bool,
         typer.Option(help="Go on without rows of homogeneous tests at which the clock runs backwards."),
     ] = False,
+    noise: Annotated[
+        str,
+        typer.Option(
+            help="Noise where the data contradict what the lab states: stated, or data (their own scatter)."
+        ),
+    ] = "stated",
     seed: Seed = 0,
     workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
@@ -92,6 +98,7 @@ def main(
             simulator=simulator,
             law=law,
             gain=gain,
+            noise=noise,
             seed=seed,
             workers=workers,
             on_progress=show,

@@ -19,6 +19,7 @@ from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise_known import Source
 from calibration.measurements._state import State
 from calibration.parameters import parametrisation
 
@@ -109,6 +110,7 @@ def diagnose_with_law(
     law: str = AUTO,
     rules: Rules | None = None,
     gain: bool = True,
+    noise: Source = "stated",
     on_progress: Progress = lambda _: None,
 ) -> tuple[Diagnosis, MeasurementModel]:
     """A diagnosis, and the model that it was made with.
@@ -116,6 +118,7 @@ def diagnose_with_law(
     Parameters
     ----------
     make : the model, of its options law, terms and richer (without them the simplest law), and further.
+    rules, gain, noise : see `engine.run.diagnose`.
     law : "auto", or a name with terms ("ogden:2"), which is then the baseline's in both rounds.
 
     Raises
@@ -127,7 +130,7 @@ def diagnose_with_law(
     if law != AUTO:
         options["law"], options["terms"] = law_of(law)
     model = make(further=False, **options)
-    found = diagnose(model, rules=rules, gain=gain, on_progress=on_progress)
+    found = diagnose(model, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
     explained = found.finding.verdict in EXPLAINED
     if explained and _causes(found) < 2:
         return found, model
@@ -139,7 +142,7 @@ def diagnose_with_law(
     fuller = make(**options)
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
-        again = diagnose(fuller, rules=rules, gain=gain, on_progress=on_progress)
+        again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
         fewer = again.finding.verdict in EXPLAINED and _causes(again) < _causes(found)
         if not explained or fewer:
             model, found = fuller, again

@@ -21,6 +21,7 @@ from calibration.measurements._baseline import Baseline, scatter_basis
 from calibration.measurements._effect import Candidate, EffectModel, candidates_of, reaches
 from calibration.measurements._folds import folds_of
 from calibration.measurements._noise import Noise
+from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import Linearisation, State
 
 Array = NDArray[np.float64]
@@ -141,6 +142,66 @@ class MeasurementModel(ABC):
     def noise_sentence(self) -> str:
         """What the noise model consists of, for people."""
         return ""
+
+    def point_noise(self) -> list[PointNoise]:
+        """What each record shows of its noise from point to point: the scatter of the misfit about a smooth
+        curve, in the order of its rows. Nothing where errors are correlated from row to row, or the baseline
+        has no answer to begin from."""
+        if self.noise.covariance is not None:
+            return []
+        misfit = self._misfit([State(u=self.start())])[0]
+        found = []
+        for k, r in enumerate(self.records):
+            rows = (self.row_record == k) & self.noise.used & np.isfinite(misfit)
+            sd = self.noise.sd[rows]
+            factor, points = roughness(misfit[rows] / sd)
+            if points >= FEWEST and factor > 0.0:
+                assumed = float(np.median(sd))
+                found.append(
+                    PointNoise(
+                        record=str(r.name),
+                        stated=self.states_noise(k),
+                        assumed=assumed,
+                        shown=factor * assumed,
+                        points=points,
+                    )
+                )
+        return found
+
+    def states_noise(self, k: int) -> bool:
+        """Whether the lab states the noise of a record, by its index."""
+        return not getattr(self.records[k], "estimated", False)
+
+    def repeated(self) -> tuple[str, ...]:
+        """Names of the tests whose repeats show how one differs from the next; () where none do."""
+        return ()
+
+    def noise_known(self) -> NoiseKnown:
+        """What is known of the noise, as it is used."""
+        stated = all(self.states_noise(k) for k in range(len(self.records)))
+        repeats = self.repeated()
+        return NoiseKnown(
+            known=stated or bool(repeats), points=tuple(self.point_noise()), repeats=repeats, unit=self.unit
+        )
+
+    def with_noise_of_data(self) -> NoiseKnown:
+        """Take the noise of each record as the data show it, where that is not what the lab states; what is
+        known of it then."""
+        known = self.noise_known()
+        factors = {p.record: p.factor for p in known.points if p.contradicts}
+        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
+        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
+        return replace(known, source="data")
+
+    def full_scale(self) -> Array | None:
+        """Largest measured value of each record [SI], shape (records,); None where records have none."""
+        return None
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        """What drives a record, by its index: its name for people, and its value at each of the record's
+        rows; None where rows are no points along anything."""
+        del k
+        return None
 
     def pictures(self, diagnosis: Any) -> list[Any]:
         """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""

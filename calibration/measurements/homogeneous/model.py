@@ -375,6 +375,13 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
+    def full_scale(self) -> Array | None:
+        return np.array([float(np.abs(r.stress).max()) for r in self.records])
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        r = self.records[k]
+        return "strain", np.abs(r.stretch - 1.0)
+
     def noise_sentence(self) -> str:
         stated = [r for r in self.records if not r.estimated]
         parts = []

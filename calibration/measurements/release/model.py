@@ -21,6 +21,7 @@ from calibration.experiment.model import Experiment
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
+from calibration.measurements._noise_known import FEWEST, PointNoise, roughness
 from calibration.measurements._state import State
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
@@ -211,6 +212,26 @@ class ReleaseModel(MeasurementModel):
             np.isfinite(time) & ~self._after_vibration(),
             self.row_record,
         )
+
+    def point_noise(self) -> list[PointNoise]:
+        """From the samples themselves: a vibration is smooth from one to the next, means of a sixth of a
+        period are not."""
+        found = []
+        for r in self.records:
+            each = [roughness(m.displacement[:, axis]) for m in r.trial.markers for axis in (0, 2)]
+            shown = [sd for sd, points in each if points >= FEWEST and sd > 0.0]
+            if shown:
+                # of the noisiest markers: others may hardly move, and are filtered
+                sd = float(np.quantile(shown, 0.75))
+                points = sum(points for _, points in each)
+                found.append(PointNoise(record=r.name, stated=True, assumed=r.sd, shown=sd, points=points))
+        return found
+
+    def full_scale(self) -> Array | None:
+        return np.array([float(np.nanmax(np.abs(r.measured()))) for r in self.records])
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        return "seconds after the release", self.records[k].labels()[2]
 
     # -- advice and reports --
 

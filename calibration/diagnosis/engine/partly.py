@@ -1,0 +1,195 @@
+"""A verdict in degrees: what may be named where every explanation leaves more than noise.
+
+No real bench passes a test for "nothing but noise is left". What is named then is the smallest set of causes
+that takes most of the explainable misfit, if
+
+1. it takes at least half of it, in 95 % of the replicates over specimens, tests or stretches of records;
+2. it predicts every part of the measurements that its fit has not seen better than the baseline does;
+3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
+4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
+
+Levels are in `rules.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from calibration.diagnosis.engine.explanation import Explanation, Names
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.multi_cause import inside_bounds
+from calibration.diagnosis.engine.remainder import relative_rms
+from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
+from calibration.measurements._model import MeasurementModel
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Assessed:
+    """An explanation, and what it buys.
+
+    Attributes
+    ----------
+    share : of the explainable misfit.
+    at_least : share that it takes in `Rules.sure` of the replicates.
+    rivals : other sets of names that take as much.
+    held_out : None where it was not measured.
+    against : why it is not named, a clause each; nothing where it may be.
+    confidence : part of the replicates in which no other set of as many causes takes more.
+    """
+
+    explanation: Explanation
+    share: Interval
+    at_least: float
+    rivals: tuple[Names, ...] = ()
+    held_out: HeldOut | None = None
+    against: tuple[str, ...] = field(default=())
+    confidence: float = 0.0
+
+
+def assess(
+    model: MeasurementModel,
+    baseline: Fit,
+    explanations: Sequence[Explanation],
+    shares: Shares,
+    rules: Rules,
+    *,
+    noise_known: bool = True,
+    on_progress: Progress = lambda _: None,
+) -> Assessed | None:
+    """The explanation that may be named, or the one that comes nearest (`against` says why it is not named);
+    None where there is none at all.
+
+    explanations : those that were confirmed in the simulator, of a search that calls them unexplained.
+    """
+    if not explanations or not shares.baseline.value > 0.0:
+        return None
+    found = [(e, shares.misfit(e.fit)) for e in explanations]
+    sound = [(e, m) for e, m in found if inside_bounds(model, e)]
+    ordered = _dominant(sound or found, shares, rules)
+    first: Assessed | None = None
+    for explanation, misfit in ordered[: rules.tries]:
+        judged = _judge(model, baseline, explanation, misfit, sound, shares, rules, noise_known, on_progress)
+        if not judged.against:
+            return judged
+        first = first or judged
+    return first
+
+
+def _dominant(
+    found: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules
+) -> list[tuple[Explanation, Misfit]]:
+    """In the order in which they are tried: the best of each number of causes, from the smallest set that one
+    cause more adds little to; then the larger ones, and the smaller ones."""
+    best: dict[int, tuple[Explanation, Misfit]] = {}
+    for e, m in found:
+        size = len(e.names)
+        if size not in best or m.value < best[size][1].value:
+            best[size] = (e, m)
+    sizes = sorted(best)
+    chosen = sizes[0]
+    for size in sizes[1:]:
+        gained = shares.share(best[size][1]).value - shares.share(best[chosen][1]).value
+        if gained >= rules.further_share * (size - chosen):
+            chosen = size
+    larger = [k for k in sizes if k > chosen]
+    return [best[k] for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen))]
+
+
+def _judge(
+    model: MeasurementModel,
+    baseline: Fit,
+    explanation: Explanation,
+    misfit: Misfit,
+    sound: Sequence[tuple[Explanation, Misfit]],
+    shares: Shares,
+    rules: Rules,
+    noise_known: bool,
+    on_progress: Progress,
+) -> Assessed:
+    share = shares.share(misfit)
+    drawn = shares.drawn(misfit)
+    at_least = float(np.quantile(drawn, 1.0 - rules.sure)) if shares.groups.count > 1 else -np.inf
+    at_least = min(at_least, share.value)
+    against = []
+    if not inside_bounds(model, explanation):
+        against.append("an amplitude is at the end of what makes sense")
+    if share.value < rules.least_share:
+        against.append(f"it takes less than {rules.least_share:.0%} of what noise leaves to explain")
+    elif at_least < rules.least_share:
+        against.append(
+            f"over {shares.groups.over} its share is not sure to be {rules.least_share:.0%} or more"
+        )
+    part = relative_rms(model, baseline)
+    if not noise_known and part is not None and part < rules.smooth_error:
+        against.append(
+            f"the departure is {100.0 * part:.2g} % of full scale, which a smooth error that nobody stated"
+            " may have"
+        )
+    on_progress(f"predicting held-out measurements: {explanation.fit.label}")
+    held_out = held_out_improvement(model, baseline, explanation.fit)
+    against += _held_out(held_out, explanation, at_least, rules)
+    others = [
+        shares.drawn(m)
+        for e, m in sound
+        if e.names != explanation.names and len(e.names) == len(explanation.names)
+    ]
+    first = np.mean(np.all([drawn >= o for o in others], axis=0)) if others else 1.0
+    return Assessed(
+        explanation=explanation,
+        share=share,
+        at_least=at_least,
+        confidence=float(first),
+        rivals=_rivals(explanation, drawn, sound, shares, rules),
+        held_out=held_out,
+        against=tuple(against),
+    )
+
+
+def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rules: Rules) -> list[str]:
+    if not held_out.held_out:
+        return [held_out.note]
+    found = []
+    if not held_out.helps_everywhere:
+        worse = [p.name for p in held_out.parts if not p.helps]
+        named = worse[0] if len(worse) == 1 else f"{len(worse)} of {len(held_out.parts)} parts"
+        found.append(f"{named} of the measurements, held out, is predicted no better than without it")
+    if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
+        found.append("held-out measurements are predicted no better with it")
+    for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
+        value, sd = explanation.fit.amplitude(c)
+        allowed = max(rules.same_amplitude * abs(value), rules.same_sds * sd)
+        if np.abs(values - value).max() > allowed:
+            found.append(f"the amplitude of {c.effect} changes with the part that is left out")
+    if held_out.within and rules.least_share <= at_least < rules.least_share_within:
+        found.append(
+            f"measurements could be held out from within the tests only, where its share must be sure to be"
+            f" {rules.least_share_within:.0%}"
+        )
+    return found
+
+
+def _rivals(
+    explanation: Explanation,
+    drawn: np.ndarray,
+    sound: Sequence[tuple[Explanation, Misfit]],
+    shares: Shares,
+    rules: Rules,
+) -> tuple[Names, ...]:
+    """Other sets of as many names, or fewer, that take as much in some of the replicates; best first."""
+    found: list[tuple[float, Names]] = []
+    for e, m in sound:
+        if e.names == explanation.names or len(e.names) > len(explanation.names):
+            continue
+        if shares.share(m).value < rules.least_share:
+            continue
+        if set(e.names) < set(explanation.names):
+            continue
+        as_much = float(np.mean(shares.drawn(m) >= drawn))
+        if as_much > rules.as_good and e.names not in [n for _, n in found]:
+            found.append((m.value, e.names))
+    return tuple(n for _, n in sorted(found))

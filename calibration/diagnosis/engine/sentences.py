@@ -1,0 +1,126 @@
+"""A verdict in sentences for people who have not read the documentation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from calibration.diagnosis.engine.explanation import Explanation, Names
+    from calibration.diagnosis.engine.held_out import HeldOut
+    from calibration.diagnosis.engine.remainder import Remainder
+    from calibration.diagnosis.engine.shares import Interval
+    from calibration.diagnosis.engine.verdict import Diagnosis
+
+
+def sentence(diagnosis: Diagnosis) -> str:
+    """The verdict."""
+    finding = diagnosis.finding
+    if finding.verdict == "none":
+        return "The simulation agrees with the measurements to within their noise: no cause to name."
+    if finding.verdict == "unexplained":
+        return _unexplained(diagnosis)
+    chosen = diagnosis.chosen
+    assert chosen is not None
+    named, short = _named(diagnosis, chosen), " + ".join(chosen.names)
+    if finding.verdict == "found":
+        return f"Found: {named} ({short})."
+    if finding.verdict == "partly explained":
+        return _partly(diagnosis, chosen)
+    others = "; or ".join(" + ".join(names) for names in finding.equivalent[1:])
+    return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
+
+
+def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
+    sets = diagnosis.finding.equivalent
+    short = " + ".join(chosen.names)
+    share = "" if diagnosis.share is None else percent(diagnosis.share)
+    text = (
+        f"Partly explained: {_named(diagnosis, chosen)} ({short}), which takes {share} of what noise leaves"
+        " to explain"
+    )
+    skill = _skill(diagnosis.held_out)
+    text += f"{skill}." if skill else "."
+    if len(sets) > 1:
+        common = [n for n in chosen.names if all(n in s for s in sets)]
+        others = "; or ".join(" + ".join(s) for s in sets[1:])
+        text += (
+            f" {_and(common)} is in every explanation that does as well; the others are {others}."
+            if common
+            else f" These data cannot tell it from {others}."
+        )
+    left = diagnosis.remainder
+    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+
+
+def _unexplained(diagnosis: Diagnosis) -> str:
+    text = "The measurements depart from the simulation, and no effect of the catalogue explains most of how."
+    nearest = diagnosis.nearest
+    if nearest is None:
+        return f"{text} Look at the residuals."
+    names = " + ".join(nearest.explanation.names)
+    skill = _skill(nearest.held_out)
+    why = f" It is not named: {'; '.join(nearest.against)}." if nearest.against else ""
+    return (
+        f"{text} Nearest comes {names}, which would take {percent(nearest.share)} of what noise leaves to"
+        f" explain{skill}.{why}"
+    )
+
+
+def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
+    """How much is left, where it lives, and whether it repeats."""
+    if left.rms == 0.0:
+        return "What remains is no more than noise."
+    size = f"{unit[1] * left.rms:.2g} {unit[0]}"
+    if left.of_full_scale is not None:
+        size += f" rms, {100.0 * left.of_full_scale:.2g} % of full scale"
+    parts = []
+    if left.place:
+        parts.append(f"most of it at {left.place}")
+    if left.records:
+        parts.append(f"more than half of it in {_few(left.records)}")
+    where = f" ({'; '.join(parts)})" if parts else ""
+    again = {
+        "everywhere": "is alike in all of them",
+        "within a material": "is alike within each material",
+        "within a specimen": "is alike within a specimen, not from one to the next",
+        "nowhere": "differs from test to test",
+        "not known": "cannot be said to repeat, since no test was done twice",
+    }[left.repeats]
+    return f"What remains, {size}{where}, {again}."
+
+
+def percent(share: Interval) -> str:
+    """A share with its interval, as it is read."""
+
+    def part(x: float) -> str:
+        return f"{100.0 * min(max(x, 0.0), 1.0):.0f}"
+
+    if not (math.isfinite(share.low) and math.isfinite(share.high)):
+        return f"{part(share.value)} %"
+    return f"{part(share.value)} % [{part(share.low)}, {part(share.high)}]"
+
+
+def _skill(held_out: HeldOut | None) -> str:
+    if held_out is None or not held_out.held_out or not math.isfinite(held_out.skill):
+        return ""
+    if held_out.skill <= 0.0:
+        return ", and nothing of measurements that its fit has not seen"
+    return f", and {100.0 * min(held_out.skill, 1.0):.0f} % on measurements that its fit has not seen"
+
+
+def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:
+    parts = [
+        f"{diagnosis.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
+        for c in chosen.candidates
+    ]
+    return " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
+
+
+def _and(names: Sequence[str] | Names) -> str:
+    return " and ".join(names)
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) < 4 else f"{', '.join(names[:3])} and {len(names) - 3} more"
