@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._effect import Candidate
 
@@ -61,6 +63,32 @@ def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str
         if k != index:
             found[name] = _part(row[n + k], sds[index] * sds[k])
     return found
+
+
+def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[str, Any]:
+    """What a material is without the effects: a prediction's yardstick."""
+    numbers, fit = diagnosis.baseline, diagnosis.finding.baseline
+    n = len(fit.state.u)
+    covariance = fit.covariance()[:n, :n] * max(numbers.reduced_chi2, 1.0)
+    return {
+        "law": diagnosis.subject.law,
+        "shear_modulus": rounded(numbers.shear_modulus_Pa[name]),
+        "shear_modulus_sd": rounded(
+            numbers.shear_modulus_Pa[name] * np.sqrt(modulus.weights @ covariance @ modulus.weights)
+        ),
+        "bulk_modulus": rounded(numbers.shear_modulus_Pa[name] * diagnosis.subject.bulk_ratio),
+        "model_error": model_error(fit, modulus.weights),
+    }
+
+
+def model_error(fit: Fit, weights: Array) -> float:
+    """What a fit leaves beyond noise, over what a change of the modulus would do: the relative error of the
+    modulus (weights (n,): derivatives of its logarithm by u) that has the same whitened squares."""
+    used = np.linalg.norm(fit.jacobian, axis=0) > 0.0
+    excess = fit.chi2 - (len(fit.z) - np.count_nonzero(used))
+    change = fit.linear.by_u @ (weights / (weights @ weights))
+    size = float(change @ change)
+    return rounded(float(np.sqrt(max(excess, 0.0) / size))) if size > 0.0 else 0.0
 
 
 def valid_range(candidate: Candidate, diagnosis: Diagnosis) -> dict[str, list[float]]:

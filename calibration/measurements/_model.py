@@ -18,7 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, scatter_basis
-from calibration.measurements._effect import Candidate, EffectModel, candidates_of, reaches
+from calibration.measurements._effect import (
+    Candidate,
+    EffectModel,
+    HandedOn,
+    Occurrence,
+    candidates_of,
+    reaches,
+)
 from calibration.measurements._folds import folds_of
 from calibration.measurements._noise import Noise
 from calibration.measurements._state import Linearisation, State
@@ -358,6 +365,27 @@ class MeasurementModel(ABC):
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
         return self.baseline.shear_moduli(u)
+
+    def hands_on(self, candidate: Candidate, state: State) -> Mapping[str, HandedOn]:
+        """The part of the material that an effect is at a state, by material; none for other effects, and for
+        one that was found in a specimen or a trial alone."""
+        effect = self.effects[candidate.effect]
+        if effect.hands_on is None or candidate not in state.amplitudes:
+            return {}
+        hit = self.reached(candidate)
+        moduli = self.shear_moduli(state.u)
+        found = {}
+        for material, shear_modulus in moduli.items():
+            mine = [r for r, h in zip(self.records, hit, strict=True) if h and r.material == material]
+            if mine and candidate.at in ("all", material):
+                occurrence = Occurrence(
+                    amplitude=state.amplitudes[candidate],
+                    variant=candidate.variant,
+                    shear_modulus=shear_modulus,
+                    records=mine,
+                )
+                found[material] = effect.hands_on(occurrence)
+        return found
 
     def valid_range(self, candidate: Candidate) -> dict[str, tuple[float, float]]:
         """Between what an effect was measured, by the quantity's name in files."""

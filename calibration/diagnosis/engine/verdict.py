@@ -14,7 +14,7 @@ from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut
 from calibration.diagnosis.engine.search import Finding
-from calibration.measurements._effect import Candidate
+from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
 
 Array = NDArray[np.float64]
@@ -77,6 +77,7 @@ class Subject:
         coordinates, shape (n,).
     ranges : between what each named candidate was measured, by the quantity's name in files.
     materials : that each named candidate concerns.
+    handed_on : the part of each material that each named candidate is, where it is one.
     """
 
     kind: str
@@ -86,6 +87,7 @@ class Subject:
     modulus_weights: Mapping[str, Array] = field(default_factory=dict)
     ranges: Mapping[Candidate, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
     materials: Mapping[Candidate, frozenset[str]] = field(default_factory=dict)
+    handed_on: Mapping[Candidate, Mapping[str, HandedOn]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, model: MeasurementModel, fit: Fit) -> Subject:
@@ -104,6 +106,7 @@ class Subject:
                 )
                 for c in fit.candidates
             },
+            handed_on={c: model.hands_on(c, fit.state) for c in fit.candidates},
         )
 
 

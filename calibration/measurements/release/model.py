@@ -27,7 +27,7 @@ from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
 from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
-from calibration.measurements.release._record import FIRST, LAST, Record, records_of
+from calibration.measurements.release._record import FIRST, LAST, Record, records_of, reference_time
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ class ReleaseModel(MeasurementModel):
             records, baseline or Baseline.per_specimen(records, bulk_ratio=BULK_RATIO)
         )
         self.baseline = self.coordinates.baseline
-        self.reference_time = float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)
+        self.reference_time = reference_time(records)
         self.forward = ForwardMap(
             records=records,
             coordinates=self.coordinates,

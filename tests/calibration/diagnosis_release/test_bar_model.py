@@ -129,7 +129,7 @@ def test_names_of_earlier_versions_are_understood(tmp_path: Path) -> None:
     """`radius` and `relaxation` meant other quantities in other kinds."""
     experiment = read(write_bars(tmp_path / "e", Truth()))
     model = model_of(experiment, kind="bars", without=["radius", "relaxation"])
-    assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation-branch"}
+    assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation"}
     assert not {"radius", "relaxation"} & set(EFFECTS)
 
 
