@@ -69,6 +69,7 @@ def fit(
     damage: str | None = None,
     fibres: bool = False,
     objective: str = "likelihood",
+    free_bulk_ratio: bool = False,
     rig: str | Path | None = None,
     out: str | Path | None = None,
     seed: int = 1,
@@ -103,6 +104,9 @@ def fit(
         homogeneous tests.
     objective : str
         "likelihood", or "dice" for the overlap of bodies as in the paper (no error bars).
+    free_bulk_ratio : bool
+        Find K/G too, where there are photographs of beams. Else it is held at 300, as a diagnosis holds it,
+        and the other constants' intervals have their part of its uncertainty.
     rig : path, optional
         rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
     out : path, optional
@@ -140,6 +144,7 @@ def fit(
             damage=damage,
             fibres=fibres,
             objective=objective,
+            free_bulk_ratio=free_bulk_ratio,
             rig=rig,
             out=out if out is not None else memory,
             seed=seed,
@@ -199,6 +204,7 @@ def plan_fit(
     damage: str | None,
     fibres: bool,
     objective: str,
+    free_bulk_ratio: bool,
     rig: str | Path | None,
     out: str | Path,
     seed: int,
@@ -248,6 +254,7 @@ def plan_fit(
         objective="likelihood" if objective == "likelihood" else "dice",
         setup=setup,
         specs=specs,
+        free_bulk_ratio=free_bulk_ratio,
     )
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 

@@ -102,6 +102,11 @@ class Record:
         return self.trial.specimen or self.trial.material
 
     @property
+    def relaxation_time(self) -> float:
+        """Of the stiffness-proportional damping that has this damping ratio [s]."""
+        return self.damping_ratio * self.period / np.pi
+
+    @property
     def loaded(self) -> bool:
         return self.parameters.tip_mass > 0.0
 
@@ -253,6 +258,16 @@ def records_of(experiment: Experiment) -> list[Record]:
     """One record for each trial with markers; InputError names what one of them lacks."""
     trials = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
     return [_record(t, experiment) for t in trials]
+
+
+def not_swinging(trial: BeamTrial, experiment: Experiment) -> str:
+    """Why a trial with markers has no free vibration to compare, in the words of `records_of`; "" where it
+    has one."""
+    try:
+        _record(trial, experiment)
+    except InputError as problem:
+        return str(problem)
+    return ""
 
 
 def _record(trial: BeamTrial, experiment: Experiment) -> Record:

@@ -29,6 +29,7 @@ from calibration.measurements.release._forward import Coordinates, ForwardMap, s
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
 from calibration.measurements.release._record import FIRST, LAST, Record, records_of, reference_time
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
+from tisim import Material
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -114,6 +115,9 @@ class ReleaseModel(MeasurementModel):
 
     # -- forward map --
 
+    def suggested_start(self) -> Array:
+        return self.start()
+
     def start(self) -> Array:
         """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
         release nearest to the data. ValueError where a beam has no equilibrium."""
@@ -158,18 +162,20 @@ class ReleaseModel(MeasurementModel):
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         """Take the nuisances and the corrections by FEM at a state; rough : without running FEM."""
         every = range(len(self.records))
-        moduli = np.array([state.u[self.baseline.specimens.index(r.specimen)] for r in self.records])
-        far = self._corrected_at is None or np.abs(moduli - self._corrected_at).max() > MOVED
+        beams = [self.parameters(k, state) for k in every]
+        at = np.concatenate([np.log([b.shear_modulus for b in beams]), self._shape(state)])
+        far = self._corrected_at is None or np.abs(at - self._corrected_at).max() > MOVED
         if self.fem and not rough and far:
-            beams = [self.parameters(k, state) for k in every]
             found, self.not_corrected = corrections(
                 self.records,
+                [self._elastic(r, b.shear_modulus, state) for r, b in zip(self.records, beams, strict=True)],
                 [b.shear_modulus for b in beams],
-                [b.relaxation_time for b in beams],
+                # a spectrum damps as a relaxation time that gives the measured damping ratio
+                [b.relaxation_time or r.relaxation_time for r, b in zip(self.records, beams, strict=True)],
                 workers=self.workers,
             )
             self.forward = replace(self.forward, corrections=found)
-            self._corrected_at = moduli
+            self._corrected_at = at
         own = [self.forward.own(k, state.u) for k in every]
         columns = nuisance_columns(
             self.records,
@@ -179,6 +185,29 @@ class ReleaseModel(MeasurementModel):
             lambda k, parameters: self.forward.rows(k, parameters, own[k]),
         )
         self.noise = self.noise.with_nuisances(columns)
+
+    def _shape(self, state: State) -> Array:
+        """Coordinates of the baseline's laws other than moduli and K/G, which change what FEM adds."""
+        b = self.baseline
+        kept = [k for k, c in enumerate(b.law.coordinates) if c.start is not None and c.name != "bulk_ratio"]
+        kept = [
+            k
+            for k in kept
+            if b.law.coordinates[k].name not in {c.name for p in b.law.parts for c in p.coordinates}
+        ]
+        found = [b.law_coordinates(m, state.u)[kept] for m in b.materials]
+        return np.concatenate(found)
+
+    def _elastic(self, record: Record, shear: float, state: State) -> Material:
+        """A record's material without memory, of a shear modulus [Pa]."""
+        b = self.baseline
+        own = b.law_coordinates(record.material, state.u)
+        moduli = np.array([c.start is None for c in b.law.coordinates])
+        own = np.where(moduli, own + np.log(shear / b.law.moduli(own).shear_modulus), own)
+        density = record.parameters.density
+        if not b.whole:
+            return replace(b.law.material(b.scaled(own, shear)), density=density, viscosity=None)
+        return replace(b.law.material(own, density=density), viscosity=None)
 
     def noise_rms(self) -> float:
         return float(np.sqrt(np.mean(self.noise.sd[self.noise.used] ** 2)))
