@@ -24,6 +24,11 @@ class Modulus:
     relative_sd: float
     weights: Array
 
+    @property
+    def direction(self) -> Array:
+        """The change of u (n,) by which its logarithm rises by 1."""
+        return np.asarray(self.weights / (self.weights @ self.weights))
+
 
 def moduli(diagnosis: Diagnosis) -> dict[str, Modulus]:
     """Of each material that was diagnosed. ValueError where the coordinates of the fit do not give the moduli
@@ -77,16 +82,19 @@ def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[st
             numbers.shear_modulus_Pa[name] * np.sqrt(modulus.weights @ covariance @ modulus.weights)
         ),
         "bulk_modulus": rounded(numbers.shear_modulus_Pa[name] * diagnosis.subject.bulk_ratio),
-        "model_error": model_error(fit, modulus.weights),
+        "model_error": model_error(fit, modulus.direction),
     }
 
 
-def model_error(fit: Fit, weights: Array) -> float:
-    """What a fit leaves beyond noise, over what a change of the modulus would do: the relative error of the
-    modulus (weights (n,): derivatives of its logarithm by u) that has the same whitened squares."""
+def model_error(fit: Fit, direction: Array) -> float:
+    """What a fit leaves beyond noise, over what a change of the moduli would do: the relative error of the
+    moduli that has the same whitened squares.
+
+    direction : change of u (n,) by which the logarithms of the moduli rise by 1.
+    """
     used = np.linalg.norm(fit.jacobian, axis=0) > 0.0
     excess = fit.chi2 - (len(fit.z) - np.count_nonzero(used))
-    change = fit.linear.by_u @ (weights / (weights @ weights))
+    change = fit.linear.by_u @ direction
     size = float(change @ change)
     return rounded(float(np.sqrt(max(excess, 0.0) / size))) if size > 0.0 else 0.0
 

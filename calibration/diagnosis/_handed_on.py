@@ -1,4 +1,4 @@
-"""Effects that are parts of a material: which of a diagnosis become the card's viscosity, softening, fibres."""
+"""Effects that are parts of a material: which of them become a card's viscosity, softening and fibres."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
         " root of the reduced chi-square where that is above 1. The bulk"
         f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
     )
-    content["model_error"] = model_error(diagnosis.fit, modulus.weights)
+    content["model_error"] = model_error(diagnosis.fit, modulus.direction)
     content["baseline"] = baseline_entry(name, modulus, diagnosis)
     content.update({h.field: part_entry(h.part) for h in handed.values() if h.part is not None})
     effects = [

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
@@ -52,6 +52,30 @@ class Record(Protocol):
 
     @property
     def ranges(self) -> Mapping[str, tuple[float, float]]: ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Shown:
+    """A record as people look at it, point by point.
+
+    Attributes
+    ----------
+    axis : what x is, with its unit. x : shape (p,), in that unit.
+    quantity : what is compared. unit : of it in files, and how many of them are one SI unit.
+    measured : shape (p,) [SI]; 0 where what is compared is a distance between simulated and measured.
+    of_rows : points by the record's rows, shape (p, rows); None where they are the same.
+    """
+
+    axis: str
+    x: Array
+    quantity: str
+    unit: tuple[str, float]
+    measured: Array
+    of_rows: Array | None = None
+
+    def points(self, rows: Array) -> Array:
+        """Values of the record's rows, shape (rows,) or (rows, k), at the points."""
+        return rows if self.of_rows is None else np.asarray(self.of_rows @ rows)
 
 
 class MeasurementModel(ABC):
@@ -141,6 +165,17 @@ class MeasurementModel(ABC):
         """What the noise model consists of, for people."""
         return ""
 
+    def shown(self, k: int) -> Shown:
+        """A record, by index, as people look at it."""
+        rows = int(np.count_nonzero(self.row_record == k))
+        return Shown(
+            axis="row of the record",
+            x=np.arange(float(rows)),
+            quantity="simulated less measured",
+            unit=self.unit,
+            measured=np.zeros(rows),
+        )
+
     def pictures(self, diagnosis: Any) -> list[Any]:
         """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
         del diagnosis
@@ -182,6 +217,12 @@ class MeasurementModel(ABC):
             candidates=tuple(candidates),
             alias_tolerance=self.alias_tolerance,
         )
+
+    def sensitivities(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array]:
+        """Simulated less measured (rows,), and its derivatives (rows, n + c) by u and by amplitudes [SI];
+        rows that the noise does not use need not be right. ValueError where the state has no answer."""
+        misfit, by_u, columns = self._differences(state, candidates)
+        return misfit, np.column_stack([by_u, columns])
 
     def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
         """Misfit (rows,), its derivatives by u (rows, n) and by amplitudes (rows, c) [SI]."""

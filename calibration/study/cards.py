@@ -22,6 +22,8 @@ from calibration.study.calibration import Calibration
 from tisim import laws
 from tisim.parts import Part
 
+PART_UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key of a part may end with
+
 # How a mixture is given to a surrogate: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
 _STIFFEST, _PER_RATIO = 0.8, 0.8
 

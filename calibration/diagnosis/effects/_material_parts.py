@@ -123,8 +123,8 @@ def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -
     if off > ALIKE:
         said.append(f"the softening departs from the effect by up to {off:.0%} of the stress")
     said.append(
-        f"softening was seen up to an energy of {energy:.3g} J/m3; residual set, recovery and the further loss"
-        " of later cycles are not in it"
+        f"softening was seen up to an energy of {energy:.3g} J/m3; residual set, recovery and the further"
+        " loss of later cycles are not in it"
     )
     states = "the modulus of the first loading"
     return HandedOn(field="softening", part=part, states=states, remarks=tuple(said))
