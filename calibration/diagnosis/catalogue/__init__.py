@@ -3,7 +3,14 @@
 How an effect acts in a kind of measurement stands in `calibration.diagnosis.effects`.
 """
 
-from calibration.diagnosis.catalogue._registry import ALIASES, effects_of, register, true_name, unregister
+from calibration.diagnosis.catalogue._registry import (
+    ALIASES,
+    effects_of,
+    register,
+    true_name,
+    true_parameter,
+    unregister,
+)
 from calibration.diagnosis.catalogue.instrument import (
     CAMERA_ROLL,
     CLOCK_RATE,
@@ -26,7 +33,6 @@ from calibration.diagnosis.catalogue.material import (
     PERMANENT_SET,
     RATE_DEPENDENCE,
     RELAXATION,
-    RELAXATION_BRANCH,
     SECOND_INVARIANT,
     STRAIN_STIFFENING,
     TENSION_COMPRESSION_ASYMMETRY,
@@ -120,7 +126,6 @@ __all__ = [
     "RADIUS",
     "RATE_DEPENDENCE",
     "RELAXATION",
-    "RELAXATION_BRANCH",
     "RESIDUAL_CURVATURE",
     "ROD_ANGLE",
     "SECOND_INVARIANT",
@@ -140,5 +145,6 @@ __all__ = [
     "effects_of",
     "register",
     "true_name",
+    "true_parameter",
     "unregister",
 ]
