@@ -143,12 +143,13 @@ def pose_of(name: str, trials: set[str]) -> Callable[[Any, Any], Any]:
 
 def diagnose_coupons(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     """As `_searched`; "next": the name of the advised experiment, None where the verdict is not ambiguous."""
-    from calibration.diagnosis import model_of
+    import calibration
     from calibration.diagnosis.engine.advice import advise
-    from calibration.experiment import read
 
-    model = model_of(read(folder), kind="homogeneous", without=without)
-    finding, found = _searched(model)
+    data = calibration.read_experiment(folder)
+    result = calibration.diagnose(data, domain="homogeneous", without=without, gain=False)
+    model, finding = result.model, result.diagnosis.finding
+    found = _scored(model, finding)
     found["next"] = None
     if finding.verdict == "ambiguous":
         one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.equivalent]
@@ -177,11 +178,17 @@ def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The search, and the part of diagnosis.json that is scored; rms in the model's own unit."""
+    """The search, and what is scored of it."""
     from calibration.diagnosis import search
-    from calibration.diagnosis.engine.held_out import held_out_improvement
 
     finding = search(model)
+    return finding, _scored(model, finding)
+
+
+def _scored(model: MeasurementModel, finding: Finding) -> Verdict:
+    """The part of diagnosis.json that is scored; rms in the model's own unit."""
+    from calibration.diagnosis.engine.held_out import held_out_improvement
+
     chosen = finding.chosen
     causes: list[dict[str, Any]] = []
     found: Verdict = {
@@ -199,7 +206,7 @@ def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
         "tried": [(e.fit.label, e.fit.chi2, e.lack_of_fit.p_value) for e in finding.explanations],
     }
     if chosen is None:
-        return finding, found
+        return found
     for c in chosen.candidates:
         effect = model.effects[c.effect]
         value, sd = chosen.fit.amplitude(c)
@@ -221,7 +228,7 @@ def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
         "rms_noise": held_out.rms_noise,
         "log_likelihood": held_out.log_likelihood,
     }
-    return finding, found
+    return found
 
 
 def noise_free_fits(kind: str, folder: Path, truth: str) -> dict[str, float]:
