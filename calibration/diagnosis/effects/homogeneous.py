@@ -11,6 +11,7 @@ from scipy.special import erf
 from calibration.diagnosis import catalogue
 from calibration.diagnosis.effects._material_parts import (
     fibres_along_the_load,
+    one_time,
     softening_of,
     viscosity_of,
 )
@@ -57,7 +58,7 @@ def _viscosity_rate_dependence(found: Occurrence) -> HandedOn:
     first = min(first, 0.5 * last)
 
     def falling(t: Array) -> Array:
-        return np.asarray(-found.amplitude * np.log10(np.clip(t, first, last) / first))
+        return np.asarray(np.exp(-found.amplitude * np.log10(np.clip(t, first, last) / first)))
 
     heights, weights = [], []
     for r in records:
@@ -66,12 +67,12 @@ def _viscosity_rate_dependence(found: Occurrence) -> HandedOn:
         begun = np.r_[2.0 * r.time[0] - r.time[1], r.time[:-1]]
         since = r.time[:, None] - 0.5 * (r.time + begun)[None, :]
         remembered = (np.where(since > 0.0, falling(since), 0.0) * rise).sum(axis=1)
-        wanted = elastic * _factor_rate_dependence(r.stretch, found.amplitude, r) - remembered
+        wanted = elastic * _factor_rate_dependence(r.stretch, found.amplitude, r)
         used = np.isfinite(r.rate)
-        heights.append(float(elastic[used] @ wanted[used]))
-        weights.append(float(elastic[used] @ elastic[used]))
+        heights.append(float(remembered[used] @ wanted[used]))
+        weights.append(float(remembered[used] @ remembered[used]))
     height = sum(heights) / sum(weights)
-    return viscosity_of(lambda t: height + falling(t), first=first, last=last)
+    return viscosity_of(lambda t: height * falling(t), first=first, last=last)
 
 
 RATE_DEPENDENCE = HomogeneousEffect(
@@ -498,6 +499,56 @@ PERMANENT_SET = HomogeneousEffect(
 )
 
 
+# -- relaxation --
+# The stress relaxes with one time: of the modulus before it does, this fraction goes with it. Over the course
+# of the record, as a linear solid remembers the stress of the neo-Hookean one (Boltzmann's superposition);
+# the shear modulus of the baseline is that of a quick strain.
+
+
+def _extra_relaxation(s: Array, amplitude: float, record: Record, time: float) -> Array:
+    elastic = stress_of(record.mode, s, 0.5)
+    steps = np.diff(record.time, prepend=record.time[0])
+    kept = np.exp(-steps / time)
+    # over a step the elastic stress is a straight line in time
+    gained = np.where(steps > 0.0, -np.expm1(-steps / time) * time / np.where(steps > 0.0, steps, 1.0), 1.0)
+    remembered = elastic.copy()
+    for k in range(1, elastic.shape[-1]):
+        rise = elastic[..., k] - elastic[..., k - 1]
+        remembered[..., k] = kept[k] * remembered[..., k - 1] + gained[k] * rise
+    return np.asarray(-amplitude * (elastic - remembered))
+
+
+def _times_of(records: Sequence[Record]) -> tuple[float | None, ...]:
+    """One a decade, from a hundredth of the longest record to its length."""
+    longest = max((float(np.ptp(r.time)) for r in records if np.isfinite(r.time).all()), default=0.0)
+    if longest <= 0.0:
+        return (1.0,)
+    top = int(np.round(np.log10(longest)))
+    return tuple(10.0**k for k in range(top - 2, top + 1))
+
+
+def _viscosity_relaxation(found: Occurrence) -> HandedOn:
+    assert found.variant is not None
+    first = min(float(np.ptp(r.time)) / r.points for r in found.records)
+    last = max(float(np.ptp(r.time)) for r in found.records)
+    return one_time(found.amplitude, found.variant, first=first, last=last)
+
+
+RELAXATION = HomogeneousEffect(
+    effect=catalogue.RELAXATION,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    prior_scale=0.3,
+    extra_of=lambda time: lambda s, amplitude, record: _extra_relaxation(s, amplitude, record, time),
+    applies_to=lambda record: bool(np.isfinite(record.time).all()),
+    identifiable=_identifiable_rate_dependence,
+    variants=_times_of,
+    variant_label=lambda time: f"relaxation time {time:g} s",
+    hands_on=_viscosity_relaxation,
+    further=True,
+)
+
+
 # -- gauge-length --
 # The strain of a pulled strip is taken from its grips: ends that are wider, or that slip, stretch less
 # (more), and its middle stretches by this part more (less) than the record says.
@@ -538,6 +589,7 @@ EFFECTS: dict[str, HomogeneousEffect] = {
         TEST_ORDER,
         TENSION_COMPRESSION_ASYMMETRY,
         PERMANENT_SET,
+        RELAXATION,
         GAUGE_LENGTH,
     )
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ class HomogeneousEffect(EffectModel):
     Attributes
     ----------
     extra : a stress beside the baseline's, over its shear modulus.
+    extra_of : the same of a variant. form : the variant that it has become.
     factor : on the whole stress.
     shift : of the stretch.
     yields : strain of the rig by the stress [1/Pa], which the specimen does not see.
@@ -31,11 +32,19 @@ class HomogeneousEffect(EffectModel):
     """
 
     extra: Term | None = None
+    extra_of: Callable[[float], Term] | None = None
+    form: float | None = None
     factor: Term | None = None
     shift: Term | None = None
     yields: float = 0.0
     bounds_in: Callable[[Sequence[Record]], tuple[float, float]] | None = None
     richer: bool = False
+
+    def formed(self, variant: float | None) -> HomogeneousEffect:
+        """The effect in one of its variants."""
+        if variant is None or self.extra_of is None:
+            return self
+        return replace(self, extra=self.extra_of(variant), form=variant)
 
     @property
     def simulated(self) -> bool:

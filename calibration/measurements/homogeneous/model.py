@@ -255,11 +255,11 @@ class HomogeneousModel(MeasurementModel):
 
     def _effects_in(self, state: State, k: int) -> Acting:
         """Effects in a record, by index, with the sums of their amplitudes there."""
-        found: dict[str, float] = {}
+        found: dict[tuple[str, float | None], float] = {}
         for c, a in state.amplitudes.items():
             if self.visible.get(c, True) and self.reached(c)[k]:
-                found[c.effect] = found.get(c.effect, 0.0) + a
-        return [(self.effects[name], a) for name, a in found.items()]
+                found[c.effect, c.variant] = found.get((c.effect, c.variant), 0.0) + a
+        return [(self.effects[name].formed(variant), a) for (name, variant), a in found.items()]
 
     def reached(self, candidate: Candidate) -> NDArray[np.bool_]:
         if candidate not in self._reached:
