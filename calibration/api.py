@@ -345,6 +345,7 @@ def predict(
     predict: str | None = None,
     baseline: str | Path | None = None,
     domain: str | None = None,
+    law: str = "auto",
     specimen_scatter: float | None = None,
     seed: int = 0,
     workers: int | None = None,
@@ -365,6 +366,8 @@ def predict(
         Cards that stand beside `cards` in place of the baseline that they state.
     domain : str, optional
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
+    law : str
+        Of the baseline beside which a fit looks for causes, as in `diagnose`.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
         specimen: 0.15 where left out.
@@ -406,7 +409,7 @@ def predict(
 
     if calibrate is not None and predict is not None:
         fitted, wanted = split(data, calibrate, predict)
-        found = from_trials(data, fitted, wanted, domain=domain, seed=seed, workers=workers, say=say)
+        found = from_trials(data, fitted, wanted, domain=domain, law=law, seed=seed, workers=workers, say=say)
         return PredictionResult(found)
     assert cards is not None
     some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from factory._effects import BASE, CardEffect, extended
+from factory._effects import BASE, CardEffect, Text, extended
 from factory._input import InputError, Strict, read_mapping, read_yaml, shipped_folder
 from factory._laws import LAWS as LAWS
 from factory._laws import Laws, Modulus
