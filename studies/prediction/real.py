@@ -2,8 +2,8 @@
 
     TISIM_MEASURED=FOLDER python -m studies.prediction.real [NAME ...] [--out DIR]
 
-Names: treloar, meunier (fit in tension, predict the other modes), ecoflex (fit to three repeats of a cylinder,
-predict the next two). The data are not in the repository.
+Names: treloar, meunier (fit in tension, predict the other modes), ecoflex (fit to three repeats of
+a cylinder, predict the next two). The data are not in the repository.
 """
 
 from __future__ import annotations
