@@ -193,7 +193,7 @@ def effect_lines(plan: Plan) -> list[tuple[str, str]]:
     for card in plan.cards:
         for effect in card.effects:
             left = effect.left_out(card.material)
-            if effect.becomes:
+            if effect.becomes not in (None, "law"):
                 word = f"taken over as the card's {effect.becomes}"
             else:
                 word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"

@@ -10,9 +10,12 @@ from scipy.special import erf
 
 from calibration.diagnosis import catalogue
 from calibration.diagnosis.effects._material_parts import (
+    eight_chain,
     fibres_along_the_load,
+    mooney_rivlin,
     one_time,
     softening_of,
+    stiffening,
     viscosity_of,
 )
 from calibration.measurements._effect import HandedOn, Occurrence
@@ -305,6 +308,7 @@ STRAIN_STIFFENING = HomogeneousEffect(
     prior_scale=0.5,
     extra=_extra_strain_stiffening,
     action="pull to larger strain",
+    hands_on=stiffening,
 )
 
 
@@ -322,6 +326,7 @@ SECOND_INVARIANT = HomogeneousEffect(
     bounds=(-0.5, 1.5),
     prior_scale=0.3,
     extra=_extra_second_invariant,
+    hands_on=mooney_rivlin,
 )
 
 
@@ -371,6 +376,7 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
     bounds=(0.0, 1.0),
     prior_scale=0.5,
     extra=_extra_limited_extensibility,
+    hands_on=eight_chain,
 )
 
 

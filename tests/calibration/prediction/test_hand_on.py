@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from calibration.experiment.model import CouponTrial
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements._state import State
 from calibration.measurements.homogeneous.model import HomogeneousModel
+from calibration.measurements.homogeneous.stress import nominal_stresses
 
 G = 3e4
 
@@ -85,6 +87,30 @@ def test_fibres_have_the_effects_stress() -> None:
     assert (part.k2, part.direction) == (0.0, (1.0, 0.0, 0.0))
     s = np.linspace(1.0, 1.5, 6)
     np.testing.assert_allclose(2.0 * part.k1 * s * (s**2 - 1.0), 0.5 * 0.5 * G * s * (s**2 - 1.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "amplitude", "law"),
+    [
+        ("strain-stiffening", 0.4, "yeoh"),
+        ("second-invariant", 0.3, "mooney-rivlin"),
+        ("limited-extensibility", 0.05, "eight-chain"),
+    ],
+)
+def test_a_laws_form_is_a_law_with_the_effects_stress(name: str, amplitude: float, law: str) -> None:
+    """Closed forms of `tisim`'s laws against baseline and effect in tension, at constant volume."""
+    effect = effects_of("homogeneous")[name]
+    assert effect.hands_on is not None
+    found = effect.hands_on(Occurrence(amplitude=amplitude, variant=None, shear_modulus=G, records=()))
+    assert found.law is not None
+    told, parameters = found.law(G, 3e3 * G)
+    assert told == law
+    s = np.linspace(1.05, 1.8, 5)
+    material = tisim.Material(law=law, parameters=dict(parameters))
+    (stress,) = nominal_stresses(material, [("uniaxial", s)])
+    plain = s - s**-2
+    expected = G * (plain + effect.extra(s, amplitude, SimpleNamespace(mode="uniaxial")))  # type: ignore[attr-defined]
+    np.testing.assert_allclose(stress, expected, rtol=3e-3)
 
 
 def test_earlier_names_of_parameters_are_understood() -> None:
