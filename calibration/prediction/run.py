@@ -106,20 +106,18 @@ class Prediction:
         said = []
         for kind, mine in self.of_kind().items():
             unit, per_si = mine[0].shown.unit
-            each = " and ".join(
-                f"{per_si * self.rms(mine, m):.3g} {unit} by the {m}{_named(m, self.labels[m])}"
-                for m in self.models
-            )
             trials = len({r.trial for r in mine})
+            each = ", ".join(
+                f"{m}{_named(m, self.labels[m])} {per_si * self.rms(mine, m):.3g} {unit}" for m in self.models
+            )
             text = (
-                f"{kind}: {trials} trial{'s' * (trials > 1)} that no model had seen, predicted to {each}"
-                f" (rms; noise alone {per_si * self.noise(mine):.3g} {unit})"
+                f"{trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, rms of predicted"
+                f" less measured: {each}, noise alone {per_si * self.noise(mine):.3g} {unit}"
             )
             skill = self.skill(mine)
-            text += "" if skill is None else f": skill {skill:.2f}"
-            last = self.models[-1]
-            text += f"; {self.coverage(mine, last):.0%} of the points within the 95 % intervals"
-            said.append(text + ".")
+            text += "" if skill is None else f"; skill {skill:.2f}"
+            inside = self.coverage(mine, self.models[-1])
+            said.append(f"{text}; {inside:.0%} of the points within the 95 % intervals.")
         return " ".join(said)
 
 
