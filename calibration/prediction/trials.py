@@ -152,17 +152,21 @@ def _stated(make: Make, *, law: str, effects: Sequence[str], say: Say) -> _Fitte
     )
 
 
+STARTS = (0.0, 0.03, 0.3)  # of the way to a bound: a fit may end in the wrong valley from one of them
+
+
 def _with(model: MeasurementModel, before: Fit, candidate: Candidate) -> Fit | None:
-    """A fit with one effect more; None where it has no answer."""
-    low, high = model.effects[candidate.effect].bounds
-    for part in (0.1, 0.0):
-        amplitude = part * (high if high > 0.0 else low)
+    """The best fit with one effect more; None where it has no answer."""
+    tried = []
+    for amplitude in dict.fromkeys(
+        part * end for end in model.effects[candidate.effect].bounds for part in STARTS
+    ):
         start = replace(before.state, amplitudes={**before.state.amplitudes, candidate: amplitude})
         try:
-            return fit(model, start, (*before.candidates, candidate))
+            tried.append(fit(model, start, (*before.candidates, candidate)))
         except ValueError:
             continue
-    return None
+    return min(tried, key=lambda f: f.chi2, default=None)
 
 
 def _within(
@@ -219,8 +223,38 @@ def _within(
         model_errors={n: dict.fromkeys(materials, known.model_error) for n, (_, known) in made.items()},
         shear_moduli={n: model.shear_moduli(known.state.u) for n, (_, known) in made.items()},
         records=records,
-        notes=(found.sentence, *notes),
+        notes=(found.sentence, *notes, *_extrapolations(model, fold)),
     )
+
+
+BEYOND = 0.02  # of a range that was fitted: a prediction further outside is said
+
+
+def _extrapolations(model: MeasurementModel, fold: Rows) -> list[str]:
+    """In what the predicted records are unlike those that were fitted, a sentence each: there the model's
+    error may be larger than the fit shows."""
+    ahead = set(np.unique(model.row_record[fold]).tolist())
+    wanted = [r for k, r in enumerate(model.records) if k in ahead]
+    fitted = [r for k, r in enumerate(model.records) if k not in ahead]
+    found: dict[str, None] = {}
+    for r in wanted:
+        for level, label in r.groups.items():
+            if level in ("material", "specimen", "trial"):
+                continue
+            if label not in {f.groups.get(level) for f in fitted}:
+                found[f"{level} {label}"] = None
+    for name in dict.fromkeys(n for r in wanted for n in r.ranges):
+        seen = [x for f in fitted for x in f.ranges.get(name, ())]
+        here = [x for r in wanted for x in r.ranges.get(name, ())]
+        slack = BEYOND * (max(seen) - min(seen)) if seen else 0.0
+        if not seen or min(here) < min(seen) - slack or max(here) > max(seen) + slack:
+            found[f"{name} {min(here):.3g} to {max(here):.3g}"] = None
+    if not found:
+        return []
+    return [
+        f"not among the trials that were fitted: {', '.join(found)}; there the model's error may be larger"
+        " than the intervals know"
+    ]
 
 
 def _calibrated(model: MeasurementModel, fold: Rows, found: Fit, name: str) -> Calibrated:
