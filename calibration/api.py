@@ -99,7 +99,7 @@ def fit(
     terms : int
         Terms of a series law (Ogden).
     time : str, optional
-        Relaxation beside each law, from homogeneous tests with a column time_s: "prony:1" to "prony:3" for so
+        Relaxation beside each law, from tests with a column time_s: "prony:1" to "prony:3" for so
         many terms with free times, "prony" where the data choose their number, "prony:spectrum" for two
         stated times a decade.
     damage : str, optional
