@@ -177,11 +177,13 @@ def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The search, and the part of diagnosis.json that is scored; rms in the model's own unit."""
-    from calibration.diagnosis import search
+    """The diagnosis without its refinement, and the part of diagnosis.json that is scored; rms in the model's
+    own unit."""
+    from calibration.diagnosis import diagnose
     from calibration.diagnosis.engine.held_out import held_out_improvement
 
-    finding = search(model)
+    made = diagnose(model, gain=False)
+    finding = made.finding
     chosen = finding.chosen
     causes: list[dict[str, Any]] = []
     found: Verdict = {
@@ -196,6 +198,8 @@ def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
             "worst": finding.lack_of_fit.worst,
         },
         "baseline": {"shear_modulus_Pa": model.shear_moduli(finding.baseline.state.u)},
+        "share": made.to_json()["share"],
+        "nearest": made.to_json()["nearest"],
         "tried": [(e.fit.label, e.fit.chi2, e.lack_of_fit.p_value) for e in finding.explanations],
     }
     if chosen is None:

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from calibration.diagnosis.engine.remainder import about_remainder
+from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._units import quantity_and_unit
 from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
@@ -24,7 +25,7 @@ BUDGET = (
     "what would settle it",
 )
 FOLDS = ("left out", "baseline", "extended", "noise alone", "skill")
-ALTERNATIVES = ("set of causes", "what it is", "worse than the best by", "belongs to")
+ALTERNATIVES = ("set of causes", "what it is", "against the best", "belongs to")
 FITS = ("", "baseline", "extended", "change")
 TESTS = ("test of what is left", "baseline", "best explanation")
 INVISIBLE = ("effect", "what it is", "amplitude needed for 5 sd", "what to do instead")
@@ -146,13 +147,19 @@ def alternative_rows(diagnosis: Diagnosis) -> Rows:
     for k, names in enumerate(finding.equivalent):
         score = min(e.score for e in finding.explanations if e.names == names)
         parts = [diagnosis.effects[n] for n in names]
+        if names in diagnosis.rivals:
+            share = diagnosis.rivals[names]
+            worse = Cell(text=f"takes {percent(share)}", value=share.value)
+        elif diagnosis.rivals and diagnosis.share is not None:
+            worse = Cell(text=f"takes {percent(diagnosis.share)}", value=diagnosis.share.value)
+        else:
+            text = "the best" if k == 0 else f"{significant(score - best, 2)} of χ²"
+            worse = Cell(text=text, value=score - best)
         rows.append(
             [
                 Cell(text=" + ".join(names), mark="chosen" if k == 0 else ""),
                 Cell(text="; and ".join(p.sentence for p in parts)),
-                Cell(
-                    text="the best" if k == 0 else f"{significant(score - best, 2)} of χ²", value=score - best
-                ),
+                worse,
                 Cell(text=", ".join(dict.fromkeys(p.belongs_to for p in parts))),
             ]
         )
