@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from calibration.api import diagnose, fit, read_experiment, reconstruct
+    from calibration.diagnosis.file import read_diagnosis
     from calibration.errors import InputError
     from calibration.results import DiagnosisResult, Fits, Reconstruction
 
@@ -30,6 +31,7 @@ __all__ = [
     "Reconstruction",
     "diagnose",
     "fit",
+    "read_diagnosis",
     "read_experiment",
     "reconstruct",
 ]
@@ -42,6 +44,7 @@ _HOME = {
     "Reconstruction": "calibration.results",
     "diagnose": "calibration.api",
     "fit": "calibration.api",
+    "read_diagnosis": "calibration.diagnosis.file",
     "read_experiment": "calibration.api",
     "reconstruct": "calibration.api",
 }
