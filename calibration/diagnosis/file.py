@@ -20,7 +20,16 @@ Part = Annotated[float, Field(ge=0.0, le=1.0)]
 _RMS = "rms_"
 
 
-class _Measured(Strict):
+class _Told(Strict):
+    """A part of the file in which null says that there is no such value."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_null(cls, data: Any) -> Any:
+        return {k: v for k, v in data.items() if v is not None} if isinstance(data, dict) else data
+
+
+class _Measured(_Told):
     """A part of the file whose keys rms_UNIT, rms_UNIT_before, ... hold a unit."""
 
     unit: str = ""
@@ -47,17 +56,18 @@ class Amplitude(Strict):
     sd: Annotated[float, Field(ge=0.0)]
 
 
-class Share(Strict):
+class Share(_Told):
     """Of the explainable misfit, with its 95 % interval; low and high are None where nothing could be
     resampled. By chance a share may lie beyond 0 and 1."""
 
     value: float
-    low: float | None
-    high: float | None
+    low: float | None = None
+    high: float | None = None
 
 
-class Cause(Strict):
-    """scope: "all", or the material, specimen or trial that it is in. kind: its form, where it has several."""
+class Cause(_Told):
+    """scope: "all", or the material, specimen or trial that it is in. kind: its form, where it has
+    several."""
 
     effect: str
     parameters: dict[str, Amplitude]
@@ -83,29 +93,29 @@ class Fold(_Measured):
     rms_before: float
     rms_after: float
     rms_noise: float
-    skill: float | None
+    skill: float | None = None
 
 
 class Gain(_Measured):
     """On held-out data; None where nothing was held out."""
 
     held_out: str
-    rms_before: float | None
-    rms_after: float | None
-    rms_noise: float | None
-    log_likelihood: float | None
+    rms_before: float | None = None
+    rms_after: float | None = None
+    rms_noise: float | None = None
+    log_likelihood: float | None = None
     information_kept: float
     note: str
     skill: float | None = None
     folds: tuple[Fold, ...] = ()
 
 
-class Nearest(Strict):
+class Nearest(_Told):
     """What comes nearest where nothing is named, and why it is not."""
 
     causes: tuple[Cause, ...]
     share: Share
-    gain: Gain | None
+    gain: Gain | None = None
     not_named_because: tuple[str, ...]
 
 
@@ -113,7 +123,7 @@ class RemainderNumbers(_Measured):
     """What is left beside noise; see `calibration.diagnosis.engine.remainder.Remainder`."""
 
     rms: float
-    of_full_scale: float | None
+    of_full_scale: float | None = None
     repeats: Literal["everywhere", "within a material", "within a specimen", "nowhere", "not known"]
     cosines: dict[str, float]
     records: tuple[str, ...]
@@ -124,11 +134,11 @@ class ModelErrorNumbers(_Measured):
     """The remainder as an error of the model; see `calibration.diagnosis.engine.model_error.ModelError`."""
 
     rms: float
-    of_full_scale: float | None
+    of_full_scale: float | None = None
     shear_modulus_relative_sd: dict[str, float]
 
 
-class NoiseNumbers(Strict):
+class NoiseNumbers(_Told):
     """What is known of the noise. records: of each that could be looked at, what was assumed and what its
     scatter shows at most, in names that end with the unit."""
 
@@ -138,12 +148,13 @@ class NoiseNumbers(Strict):
     records: tuple[dict[str, str | bool | float], ...]
 
 
-class Invisible(Strict):
-    """threshold: amplitude, in `parameter`, that would show at 5 standard deviations; None where none does."""
+class Invisible(_Told):
+    """threshold: amplitude, in `parameter`, that would show at 5 standard deviations; None where none
+    does."""
 
     effect: str
     parameter: str
-    threshold: float | None
+    threshold: float | None = None
     instead: str
 
     @model_validator(mode="before")
@@ -161,7 +172,7 @@ class Invisible(Strict):
         }
 
 
-class DiagnosisFile(Strict):
+class DiagnosisFile(_Told):
     """Content of diagnosis.json."""
 
     format: Literal[1, 2]
@@ -173,8 +184,8 @@ class DiagnosisFile(Strict):
     share: Share | None = None
     resampled_over: str = ""
     baseline: FitNumbers
-    extended: FitNumbers | None
-    gain: Gain | None
+    extended: FitNumbers | None = None
+    gain: Gain | None = None
     nearest: Nearest | None = None
     remainder: RemainderNumbers | None = None
     model_error: ModelErrorNumbers | None = None
