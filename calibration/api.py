@@ -1,4 +1,4 @@
-"""The Python interface: `calibration.read_experiment`, `reconstruct`, `fit` and `diagnose`.
+"""The Python interface: `calibration.read_experiment`, `reconstruct`, `fit`, `diagnose` and `predict`.
 
 >>> import calibration
 >>> experiment = calibration.read_experiment(folder)
@@ -23,14 +23,14 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
-from calibration.results import DiagnosisResult, Fits, Reconstruction
+from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 from tisim import laws
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ def fit(
     damage: str | None = None,
     fibres: bool = False,
     objective: str = "likelihood",
+    free_bulk_ratio: bool = False,
     rig: str | Path | None = None,
     out: str | Path | None = None,
     seed: int = 1,
@@ -103,6 +104,9 @@ def fit(
         homogeneous tests.
     objective : str
         "likelihood", or "dice" for the overlap of bodies as in the paper (no error bars).
+    free_bulk_ratio : bool
+        Find K/G too, where there are photographs of beams. Else it is held at 300, as a diagnosis holds it,
+        and the other constants' intervals have their part of its uncertainty.
     rig : path, optional
         rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
     out : path, optional
@@ -140,6 +144,7 @@ def fit(
             damage=damage,
             fibres=fibres,
             objective=objective,
+            free_bulk_ratio=free_bulk_ratio,
             rig=rig,
             out=out if out is not None else memory,
             seed=seed,
@@ -199,6 +204,7 @@ def plan_fit(
     damage: str | None,
     fibres: bool,
     objective: str,
+    free_bulk_ratio: bool,
     rig: str | Path | None,
     out: str | Path,
     seed: int,
@@ -248,6 +254,7 @@ def plan_fit(
         objective="likelihood" if objective == "likelihood" else "dice",
         setup=setup,
         specs=specs,
+        free_bulk_ratio=free_bulk_ratio,
     )
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
@@ -317,6 +324,92 @@ def diagnose(
     except ValueError as error:  # no equilibrium of the baseline anywhere
         raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error
     return DiagnosisResult(found, data, model)
+
+
+def predict(
+    experiment: str | Path | Experiment,
+    cards: str | Path | None = None,
+    *,
+    calibrate: str | None = None,
+    predict: str | None = None,
+    baseline: str | Path | None = None,
+    domain: str | None = None,
+    specimen_scatter: float | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    on_progress: OnProgress | None = None,
+) -> PredictionResult:
+    """Measured against predicted, for trials that no model was fitted to.
+
+    Parameters
+    ----------
+    experiment : path or Experiment
+    cards : path, optional
+        Folder of material cards (or one), by which all trials are predicted; in place of `calibrate`.
+    calibrate, predict : str, optional
+        Trials to fit, and trials to predict: ids with * and ?, or material=, specimen=, length= (of a beam in
+        mm) or mode= (of a coupon) with a value, several by commas. Beside `cards`, `predict` alone: the
+        trials that the cards predict.
+    baseline : path, optional
+        Cards that stand beside `cards` in place of the baseline that they state.
+    domain : str, optional
+        Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
+    specimen_scatter : float, optional
+        Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
+        specimen: 0.15 where left out.
+    seed : int
+        Of the diagnosis.
+    workers : int, optional
+        Processes; all cores where left out.
+    on_progress : callable, optional
+        Called with a `calibration.progress.Progress`.
+
+    Returns
+    -------
+    PredictionResult
+
+    Raises
+    ------
+    InputError
+        An argument, a card or the experiment cannot be used.
+    """
+    from calibration.prediction import from_cards, from_trials
+    from calibration.prediction._select import chosen, split
+
+    if (cards is None) == (calibrate is None):
+        raise OptionError("calibrate", calibrate, "expected either cards, or the trials to fit")
+    if calibrate is not None and predict is None:
+        raise OptionError("predict", None, "expected the trials to predict, beside --calibrate")
+    if calibrate is not None and baseline is not None:
+        raise OptionError("baseline", baseline, "expected with cards only, a fit has its own")
+    if specimen_scatter is not None and not 0.0 <= specimen_scatter < 2.0:
+        raise OptionError("specimen_scatter", specimen_scatter, "expected a number from 0 to 2")
+    if seed < 0:
+        raise OptionError("seed", seed, "expected 0 or more")
+    processes(workers)
+    data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    report = on_progress or to_log
+
+    def say(text: str) -> None:
+        report(Progress(message=text))
+
+    if calibrate is not None and predict is not None:
+        fitted, wanted = split(data, calibrate, predict)
+        found = from_trials(data, fitted, wanted, domain=domain, seed=seed, workers=workers, say=say)
+        return PredictionResult(found)
+    assert cards is not None
+    some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))
+    return PredictionResult(
+        from_cards(
+            Path(cards),
+            some,
+            baseline=None if baseline is None else Path(baseline),
+            domain=domain,
+            specimen_scatter=specimen_scatter,
+            workers=workers,
+            say=say,
+        )
+    )
 
 
 def reconstruct(

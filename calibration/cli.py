@@ -1,4 +1,4 @@
-"""Shared by the four commands of calibration: options, progress, tables, error sentences, exit codes."""
+"""Shared by the commands of calibration: options, progress, tables, error sentences, exit codes."""
 
 from __future__ import annotations
 
@@ -37,6 +37,7 @@ VERBS = {
     "reconstruct": "photographs to outlines, mid lines and bodies",
     "fit": "material parameters of constitutive laws, with error bars, cards and a report",
     "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",
+    "predict": "measured against predicted for trials that were not used, with intervals and skill",
     "table": "the paper's table of calibration results for an experiment",
 }
 

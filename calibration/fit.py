@@ -90,6 +90,13 @@ def main(
     objective: Annotated[
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
     ] = "likelihood",
+    free_bulk_ratio: Annotated[
+        bool,
+        typer.Option(
+            "--free-bulk-ratio",
+            help="Find K/G too, from photographed beams. Default: held at 300, as a diagnosis holds it.",
+        ),
+    ] = False,
     rig: Annotated[
         Path | None,
         typer.Option(
@@ -126,6 +133,7 @@ def main(
             damage=damage,
             fibres=fibres,
             objective=objective,
+            free_bulk_ratio=free_bulk_ratio,
             rig=rig,
             out=out or Path("calibrations") / experiment.resolve().name,
             seed=seed,

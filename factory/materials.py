@@ -154,6 +154,8 @@ class CardEffect(Strict):
         Correlation of its first parameter with others of the same fit.
     gain : dict, optional
         Improvement on held-out data.
+    becomes : {"viscosity", "softening", "fibres"}, optional
+        Part of the card that it is: that part is taken over, not the amplitude.
     experiment_sha256 : str
         Digest of the experiment that it was found in.
     """
@@ -168,6 +170,7 @@ class CardEffect(Strict):
     rivals: tuple[Text, ...] = ()
     correlations: dict[str, float] = Field(default_factory=dict)
     gain: dict[str, float | str | None] | None = None
+    becomes: Literal["viscosity", "softening", "fibres"] | None = None
     experiment_sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 
     @field_validator("belongs_to")
@@ -186,6 +189,8 @@ class CardEffect(Strict):
             return "belongs to the beam's form"
         if self.scope not in ("all", material):
             return f"found in {self.scope} alone, not in all of the material"
+        if self.becomes is not None:
+            return f"the card's {self.becomes} has it"
         return "" if self.effect in TAKEN else "no law of the static simulator has it"
 
     def describe(self) -> str:
@@ -193,6 +198,16 @@ class CardEffect(Strict):
         amounts = ", ".join(f"{n} {a.value:.4g} +- {a.sd:.2g}" for n, a in self.parameters.items())
         rivals = f"; not told from {' or '.join(self.rivals)}" if self.rivals else ""
         return f"{self.effect} ({amounts}{rivals})"
+
+
+class CardBaseline(Strict):
+    """A material without its effects, as fitted to the same measurements [Pa]; see `Card.model_error`."""
+
+    law: Text
+    shear_modulus: Modulus
+    shear_modulus_sd: Annotated[float, Field(ge=0)]
+    bulk_modulus: Modulus
+    model_error: Annotated[float, Field(ge=0)]
 
 
 class Card(Strict):
@@ -216,6 +231,12 @@ class Card(Strict):
         Code in the stiffness profiles, from 0 (softest) to below 1 (1 is rigid).
     laws : Laws
         Parameters law by law.
+    law : str, optional
+        The law that was fitted, or fitted best; others are filled in from its moduli, or fitted too.
+    model_error : float, optional
+        What the fit leaves beyond noise, as a relative error of the modulus.
+    baseline : CardBaseline, optional
+        The material without the effects.
     effects : tuple of CardEffect
         What a diagnosis found in the specimen beyond the neo-Hookean law (see `material_of`).
     viscosity, softening, fibres : parts of `tisim.parts`, optional
@@ -231,6 +252,9 @@ class Card(Strict):
     density: Modulus
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
+    law: Text | None = None
+    model_error: Annotated[float, Field(ge=0)] | None = None
+    baseline: CardBaseline | None = None
     effects: tuple[CardEffect, ...] = ()
     viscosity: Viscosity = None
     softening: Softening = None

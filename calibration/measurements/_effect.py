@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
+from tisim.parts import Part
+
 Owner = Literal["specimen", "rig", "camera", "simulator"]
 
 
@@ -43,6 +45,44 @@ class Effect:
     def in_file(self, amplitude: float) -> float:
         """The amplitude in the file's unit."""
         return amplitude * self.per_unit
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Occurrence:
+    """An effect as it was found in a material, for `EffectModel.hands_on`.
+
+    Attributes
+    ----------
+    amplitude : [SI].
+    variant : which of its forms.
+    shear_modulus : of the material, as fitted beside it [Pa].
+    records : that it was found in.
+    """
+
+    amplitude: float
+    variant: float | None
+    shear_modulus: float
+    records: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandedOn:
+    """The part of a material that an effect is (`tisim.parts`).
+
+    Attributes
+    ----------
+    field : of `tisim.Material` (viscosity, softening, fibres).
+    part : None where the effect makes none; `remarks` say why.
+    modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
+    states : which modulus that is, for people.
+    remarks : what the measurement did not see, and what differs from the effect, a sentence each.
+    """
+
+    field: Literal["viscosity", "softening", "fibres"]
+    part: Part | None
+    modulus_ratio: float = 1.0
+    states: str = ""
+    remarks: tuple[str, ...] = ()
 
 
 def everywhere(record: Any) -> bool:
@@ -87,6 +127,7 @@ class EffectModel:
     variants : forms of the effect (a time constant, a direction), from the records that it applies to.
     variant_label : a variant in words.
     action : what to do about it with this kind of measurement, where that is not the catalogue's remedy.
+    hands_on : the part of the material that it is, for extended cards; None for an effect that is none.
     """
 
     effect: Effect
@@ -103,6 +144,7 @@ class EffectModel:
     variants: Callable[[Sequence[Any]], tuple[float | None, ...]] = one_variant
     variant_label: Callable[[float], str] = lambda variant: f"{variant:g}"
     action: str = ""
+    hands_on: Callable[[Occurrence], HandedOn] | None = None
 
     @property
     def name(self) -> str:

@@ -3,19 +3,24 @@
 A new kind is one file with a `MeasurementModel`, and one registration::
 
     register(Kind(name="torsion", holds=lambda experiment: ..., load=lambda: TorsionModel))
+
+A kind that a fit follows over time says so by `over_time`, once more imported when needed::
+
+    register(Kind(..., compares=lambda experiment: ..., over_time=lambda: OVER_TIME))
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial
+from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial, Trial
 from calibration.measurements._effect import EffectModel
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._over_time import OverTime
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +37,10 @@ class Kind:
         named.
     takes : options that its model has: workers, simulator.
     old_name : that it had in earlier versions, still understood.
+    compares : trials of one material that a fit compares by this kind's model; no trial for a kind that only
+        diagnoses.
+    over_time : what it follows of materials with parts beside their law, imported when needed; None where it
+        follows none.
     """
 
     name: str
@@ -41,6 +50,8 @@ class Kind:
     claims: Callable[[Experiment], bool] = lambda _: False
     takes: tuple[str, ...] = ()
     old_name: str = ""
+    compares: Callable[[Experiment], Sequence[Trial]] = lambda _: ()
+    over_time: Callable[[], OverTime] | None = None
 
 
 _KINDS: dict[str, Kind] = {}
@@ -89,6 +100,16 @@ def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
     return _KINDS[there[0]]
 
 
+def compared(experiment: Experiment) -> list[tuple[Kind, Experiment]]:
+    """Kinds that a fit of an experiment of one material compares, each with its trials alone."""
+    found = []
+    for kind in _KINDS.values():
+        trials = tuple(kind.compares(experiment))
+        if trials:
+            found.append((kind, replace(experiment, trials=trials)))
+    return found
+
+
 def build(
     kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
 ) -> MeasurementModel:
@@ -108,18 +129,38 @@ def _loader(module: str, name: str) -> Callable[[], Callable[..., MeasurementMod
     return load
 
 
-def _traced(experiment: Experiment) -> bool:
-    return any(isinstance(t, BeamTrial) and any(c.outline for c in t.captures) for t in experiment.trials)
+def _follower(module: str) -> Callable[[], OverTime]:
+    def load() -> OverTime:
+        found: OverTime = import_module(f"calibration.measurements.{module}.over_time").OVER_TIME
+        return found
+
+    return load
 
 
-def _marked(experiment: Experiment) -> bool:
-    return any(isinstance(t, BeamTrial) and t.markers for t in experiment.trials)
+def _traced(experiment: Experiment) -> list[Trial]:
+    return [t for t in experiment.trials if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)]
+
+
+def _marked(experiment: Experiment) -> list[Trial]:
+    return [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
+
+
+def _pushed(experiment: Experiment) -> list[Trial]:
+    return [t for t in experiment.trials if isinstance(t, PokeTrial) and t.inclusion_mesh is None]
+
+
+def _coupons(experiment: Experiment) -> list[Trial]:
+    return [t for t in experiment.trials if isinstance(t, CouponTrial)]
 
 
 def _compressed(experiment: Experiment) -> list[bool]:
     from calibration.measurements.compression._record import goes_into_compression
 
     return [goes_into_compression(t.mode, t.stretch) for t in experiment.trials if isinstance(t, CouponTrial)]
+
+
+def _all_compressed(experiment: Experiment) -> bool:
+    return all(_compressed(experiment))
 
 
 register(
@@ -129,6 +170,7 @@ register(
         load=_loader("outlines", "OutlineModel"),
         takes=("workers", "simulator"),
         old_name="beams",
+        compares=_traced,
     )
 )
 register(
@@ -138,6 +180,7 @@ register(
         load=_loader("indentation", "IndentationModel"),
         takes=("workers",),
         old_name="pokes",
+        compares=_pushed,
     )
 )
 register(
@@ -146,6 +189,8 @@ register(
         holds=lambda e: any(isinstance(t, CouponTrial) for t in e.trials),
         load=_loader("homogeneous", "HomogeneousModel"),
         old_name="coupons",
+        compares=lambda e: [] if _all_compressed(e) else _coupons(e),
+        over_time=_follower("homogeneous"),
     )
 )
 register(
@@ -154,18 +199,20 @@ register(
         holds=lambda e: any(_compressed(e)),
         load=_loader("compression", "CompressionModel"),
         refines="homogeneous",
-        claims=lambda e: all(_compressed(e)),
+        claims=_all_compressed,
         old_name="presses",
+        compares=lambda e: _coupons(e) if _all_compressed(e) else [],
     )
 )
 register(
     Kind(
         name="release",
-        holds=_marked,
+        holds=lambda e: bool(_marked(e)),
         load=_loader("release", "ReleaseModel"),
         refines="outlines",
         claims=lambda e: not _traced(e),
         takes=("workers",),
         old_name="bars",
+        compares=_marked,
     )
 )

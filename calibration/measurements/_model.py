@@ -11,14 +11,21 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, scatter_basis
-from calibration.measurements._effect import Candidate, EffectModel, candidates_of, reaches
+from calibration.measurements._effect import (
+    Candidate,
+    EffectModel,
+    HandedOn,
+    Occurrence,
+    candidates_of,
+    reaches,
+)
 from calibration.measurements._folds import folds_of
 from calibration.measurements._noise import Noise
 from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
@@ -46,6 +53,30 @@ class Record(Protocol):
 
     @property
     def ranges(self) -> Mapping[str, tuple[float, float]]: ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Shown:
+    """A record as people look at it, point by point.
+
+    Attributes
+    ----------
+    axis : what x is, with its unit. x : shape (p,), in that unit.
+    quantity : what is compared. unit : of it in files, and how many of them are one SI unit.
+    measured : shape (p,) [SI]; 0 where what is compared is a distance between simulated and measured.
+    of_rows : points by the record's rows, shape (p, rows); None where they are the same.
+    """
+
+    axis: str
+    x: Array
+    quantity: str
+    unit: tuple[str, float]
+    measured: Array
+    of_rows: Array | None = None
+
+    def points(self, rows: Array) -> Array:
+        """Values of the record's rows, shape (rows,) or (rows, k), at the points."""
+        return rows if self.of_rows is None else np.asarray(self.of_rows @ rows)
 
 
 class MeasurementModel(ABC):
@@ -106,6 +137,11 @@ class MeasurementModel(ABC):
     @abstractmethod
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Labels of all rows, for each set of folds, in order of preference."""
+
+    def suggested_start(self) -> Array | None:
+        """Coordinates (n,) near which a fit has to begin, where a scan over moduli would not find it; None
+        where one does. ValueError where there are none."""
+        return None
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         """Take nuisances and discretisation errors at a state; linearisations from before are void. rough :
@@ -181,14 +217,27 @@ class MeasurementModel(ABC):
         return replace(known, source="data")
 
     def full_scale(self) -> Array | None:
-        """Largest measured value of each record [SI], shape (records,); None where records have none."""
-        return None
+        """Largest measured value of each record [SI], shape (records,); None where what is compared has no
+        scale (distances between simulated and measured)."""
+        found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
+        return found if (found > 0.0).all() else None
 
     def along(self, k: int) -> tuple[str, Array] | None:
         """What drives a record, by its index: its name for people, and its value at each of the record's
         rows; None where rows are no points along anything."""
         del k
         return None
+
+    def shown(self, k: int) -> Shown:
+        """A record, by index, as people look at it."""
+        rows = int(np.count_nonzero(self.row_record == k))
+        return Shown(
+            axis="row of the record",
+            x=np.arange(float(rows)),
+            quantity="simulated less measured",
+            unit=self.unit,
+            measured=np.zeros(rows),
+        )
 
     def pictures(self, diagnosis: Any) -> list[Any]:
         """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
@@ -231,6 +280,12 @@ class MeasurementModel(ABC):
             candidates=tuple(candidates),
             alias_tolerance=self.alias_tolerance,
         )
+
+    def sensitivities(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array]:
+        """Simulated less measured (rows,), and its derivatives (rows, n + c) by u and by amplitudes [SI];
+        rows that the noise does not use need not be right. ValueError where the state has no answer."""
+        misfit, by_u, columns = self._differences(state, candidates)
+        return misfit, np.column_stack([by_u, columns])
 
     def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
         """Misfit (rows,), its derivatives by u (rows, n) and by amplitudes (rows, c) [SI]."""
@@ -419,6 +474,27 @@ class MeasurementModel(ABC):
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
         return self.baseline.shear_moduli(u)
+
+    def hands_on(self, candidate: Candidate, state: State) -> Mapping[str, HandedOn]:
+        """The part of the material that an effect is at a state, by material; none for other effects, and for
+        one that was found in a specimen or a trial alone."""
+        effect = self.effects[candidate.effect]
+        if effect.hands_on is None or candidate not in state.amplitudes:
+            return {}
+        hit = self.reached(candidate)
+        moduli = self.shear_moduli(state.u)
+        found = {}
+        for material, shear_modulus in moduli.items():
+            mine = [r for r, h in zip(self.records, hit, strict=True) if h and r.material == material]
+            if mine and candidate.at in ("all", material):
+                occurrence = Occurrence(
+                    amplitude=state.amplitudes[candidate],
+                    variant=candidate.variant,
+                    shear_modulus=shear_modulus,
+                    records=mine,
+                )
+                found[material] = effect.hands_on(occurrence)
+        return found
 
     def valid_range(self, candidate: Candidate) -> dict[str, tuple[float, float]]:
         """Between what an effect was measured, by the quantity's name in files."""

@@ -20,6 +20,7 @@ from calibration.parameters._coordinates import (
 )
 from calibration.parameters._laws import arruda_boyce, mooney_rivlin, ogden
 from calibration.parameters._parts import (
+    Option,
     PartCoordinates,
     PartKind,
     ProtocolWindow,
@@ -73,6 +74,7 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
 
 __all__ = [
     "Coordinate",
+    "Option",
     "Parametrisation",
     "PartCoordinates",
     "PartKind",

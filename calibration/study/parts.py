@@ -1,5 +1,5 @@
-"""Parts beside the law in a fit: which are asked for, what the tests can show of them, the choice among
-several.
+"""Parts beside the law in a fit: which are asked for, whether the kinds of measurement follow them
+(`calibration.measurements._over_time`), the choice among several.
 
 Where the number of Prony terms is left to the data, one fit is made with each number, and the Bayesian
 information criterion chooses (G. Schwarz, Ann. Stat. 6, 1978): it needs no further fit, where held-out
@@ -16,9 +16,9 @@ from itertools import product
 import numpy as np
 
 from calibration.errors import InputError, OptionError
-from calibration.experiment.model import CouponTrial, Experiment
-from calibration.measurements._kinds import kind_of
-from calibration.measurements.homogeneous import protocol_window
+from calibration.experiment.model import Experiment
+from calibration.measurements._kinds import compared
+from calibration.measurements._over_time import union
 from calibration.parameters import (
     Parametrisation,
     ProtocolWindow,
@@ -69,45 +69,34 @@ def _one_of(usage: str) -> str:
 def check(experiment: Experiment, materials: Sequence[str], specs: Sequence[str]) -> None:
     """InputError, in one sentence, where a material's tests cannot be fitted with these parts."""
     for material in materials if specs else ():
-        mine = [t for t in experiment.trials if t.material == material]
-        options = " and ".join(f"--{part_kind(s).option}" for s in specs)
-        for t in mine:
-            if not isinstance(t, CouponTrial):
-                raise InputError(
-                    f"trial {t.id}: {options}: expected homogeneous tests alone, since beams and indentations"
-                    " are not fitted over time yet"
-                )
-        if kind_of(replace(experiment, trials=tuple(mine))).name != "homogeneous":
-            raise InputError(
-                f"trial {mine[0].id}: {options}: expected homogeneous tests alone, since cylinders between"
-                " platens are not fitted over time yet"
-            )
-        strips = [t.id for t in mine if t.mode == "uniaxial"]  # type: ignore[union-attr]
-        if "fibres" in specs and strips:
-            raise InputError(
-                f"trial {strips[0]}: --fibres: expected planar, equibiaxial or shear tests, since a strip"
-                " shears where its fibres are oblique, which a fit does not follow yet"
-            )
-        for spec in specs:
-            kind = part_kind(spec)
-            missing = [t.id for t in mine if kind.needs_time and t.time is None]  # type: ignore[union-attr]
-            if missing:
-                raise InputError(
-                    f"trial {missing[0]}: --{kind.option} {spec}: expected a column time_s in its record"
-                )
+        for kind, own in compared(_of(experiment, material)):
+            follows = None if kind.over_time is None else kind.over_time()
+            for part in map(part_kind, specs):
+                if follows is None or part.option not in follows.options:
+                    why = "which is not fitted with it yet" if follows is None else follows.why_not
+                    raise InputError(
+                        f"trial {own.trials[0].id}: --{part.option}: expected no {kind.name}, {why}"
+                    )
+            assert follows is not None
+            follows.check(own, specs)
 
 
 def with_parts(
     law: Parametrisation, specs: Sequence[str], experiment: Experiment, material: str
 ) -> Parametrisation:
-    """The law with parts that are fitted to a material's homogeneous tests; each spec says all."""
+    """The law with parts that are fitted to a material's tests of all kinds; each spec says all."""
     if not specs:
         return law
-    trials = [t for t in experiment.trials if isinstance(t, CouponTrial) and t.material == material]
-    window = protocol_window(trials)
+    window = union(
+        [kind.over_time().window(own) for kind, own in compared(_of(experiment, material)) if kind.over_time]
+    )
     if any(part_kind(s).needs_time for s in specs) and not window.last > 0.0:
         raise InputError(f"material {material}: expected records that last longer than 0 s")
     return law.with_parts([part_coordinates(s, window) for s in specs])
+
+
+def _of(experiment: Experiment, material: str) -> Experiment:
+    return replace(experiment, trials=tuple(t for t in experiment.trials if t.material == material))
 
 
 def label(law: str, specs: Sequence[str]) -> str:

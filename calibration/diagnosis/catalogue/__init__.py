@@ -3,7 +3,14 @@
 How an effect acts in a kind of measurement stands in `calibration.diagnosis.effects`.
 """
 
-from calibration.diagnosis.catalogue._registry import ALIASES, effects_of, register, true_name, unregister
+from calibration.diagnosis.catalogue._registry import (
+    ALIASES,
+    effects_of,
+    register,
+    true_name,
+    true_parameter,
+    unregister,
+)
 from calibration.diagnosis.catalogue.instrument import (
     CAMERA_ROLL,
     CLOCK_RATE,
@@ -24,7 +31,6 @@ from calibration.diagnosis.catalogue.material import (
     MULLINS,
     RATE_DEPENDENCE,
     RELAXATION,
-    RELAXATION_BRANCH,
     SECOND_INVARIANT,
     STRAIN_STIFFENING,
 )
@@ -111,7 +117,6 @@ __all__ = [
     "RADIUS",
     "RATE_DEPENDENCE",
     "RELAXATION",
-    "RELAXATION_BRANCH",
     "RESIDUAL_CURVATURE",
     "ROD_ANGLE",
     "SECOND_INVARIANT",
@@ -128,5 +133,6 @@ __all__ = [
     "effects_of",
     "register",
     "true_name",
+    "true_parameter",
     "unregister",
 ]

@@ -94,6 +94,7 @@ RATE_DEPENDENCE = Effect(
     with_material=True,
 )
 
+# of the modulus at 1 s, the fraction that goes with each decade of time
 CREEP = Effect(
     name="creep",
     parameter="per_decade",
@@ -104,22 +105,14 @@ CREEP = Effect(
     with_material=True,
 )
 
+# of the modulus before it relaxes, the fraction that goes with the relaxation time that is named beside it;
+# where none is named (log-time relaxation, indentation), the fraction that goes with each decade
 RELAXATION = Effect(
     name="relaxation",
-    parameter="loss",
+    parameter="fraction_of_modulus",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the force relaxes: it falls with time while the rod rests, and depends on its speed",
-    remedy="hold the rod at the deepest depth for a minute, or poke at a tenth and ten times the speed",
-    with_material=True,
-)
-
-RELAXATION_BRANCH = Effect(
-    name="relaxation-branch",
-    parameter="part_of_modulus",
-    per_unit=1.0,
-    belongs_to="specimen",
-    sentence="the material has a second relaxation time",
-    remedy="release it with other masses, so that it vibrates at other frequencies",
+    sentence="the material relaxes: its modulus falls with time under load, and depends on the speed",
+    remedy="hold a constant load or strain for a minute, or load at a tenth and at ten times the speed",
     with_material=True,
 )

@@ -9,6 +9,12 @@ from numpy.typing import NDArray
 from scipy.special import erf
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import (
+    fibres_along_the_load,
+    softening_of,
+    viscosity_of,
+)
+from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
 from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
@@ -42,6 +48,32 @@ def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequenc
     return False
 
 
+def _viscosity_rate_dependence(found: Occurrence) -> HandedOn:
+    """A relaxation function that falls by the amplitude a decade, as high as it has to be for the records to
+    have on average the stress that the effect gives them: a convolution along each record's course."""
+    records: list[Record] = [r for r in found.records if np.isfinite(r.rate).any()]
+    first = min(float(np.ptp(r.stretch) / np.nanmax(r.rate)) for r in records)
+    last = max(float(np.ptp(r.time)) for r in records)
+    first = min(first, 0.5 * last)
+
+    def falling(t: Array) -> Array:
+        return np.asarray(-found.amplitude * np.log10(np.clip(t, first, last) / first))
+
+    heights, weights = [], []
+    for r in records:
+        elastic = stress_of(r.mode, r.stretch, 0.5)
+        rise = np.diff(elastic, prepend=0.0)
+        begun = np.r_[2.0 * r.time[0] - r.time[1], r.time[:-1]]
+        since = r.time[:, None] - 0.5 * (r.time + begun)[None, :]
+        remembered = (np.where(since > 0.0, falling(since), 0.0) * rise).sum(axis=1)
+        wanted = elastic * _factor_rate_dependence(r.stretch, found.amplitude, r) - remembered
+        used = np.isfinite(r.rate)
+        heights.append(float(elastic[used] @ wanted[used]))
+        weights.append(float(elastic[used] @ elastic[used]))
+    height = sum(heights) / sum(weights)
+    return viscosity_of(lambda t: height + falling(t), first=first, last=last)
+
+
 RATE_DEPENDENCE = HomogeneousEffect(
     effect=catalogue.RATE_DEPENDENCE,
     step=1e-3,
@@ -49,6 +81,7 @@ RATE_DEPENDENCE = HomogeneousEffect(
     prior_scale=0.15,
     factor=_factor_rate_dependence,
     identifiable=_identifiable_rate_dependence,
+    hands_on=_viscosity_rate_dependence,
 )
 
 
@@ -68,6 +101,22 @@ def _identifiable_hysteresis(reached: Sequence[Record], everything: Sequence[Rec
     return any(r.unloads for r in reached)
 
 
+def _largest_energy(found: Occurrence) -> float:
+    """Of a neo-Hookean solid in the records [J/m3]."""
+    return 0.5 * found.shear_modulus * max(float(r.peak.max()) for r in found.records)
+
+
+def _softening_hysteresis(found: Occurrence) -> HandedOn:
+    return softening_of(
+        lambda ratio: found.amplitude * (1.0 - ratio),
+        energy=_largest_energy(found),
+        remarks=(
+            "hysteresis is handed on as softening: a loading after the unloading goes back the unloading's"
+            " way",
+        ),
+    )
+
+
 HYSTERESIS = HomogeneousEffect(
     effect=catalogue.HYSTERESIS,
     step=1e-3,
@@ -75,6 +124,7 @@ HYSTERESIS = HomogeneousEffect(
     prior_scale=0.5,
     factor=_factor_hysteresis,
     identifiable=_identifiable_hysteresis,
+    hands_on=_softening_hysteresis,
 )
 
 
@@ -102,6 +152,12 @@ def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record
     return any(r.reloaded for r in reached)
 
 
+def _softening_mullins(found: Occurrence) -> HandedOn:
+    return softening_of(
+        lambda ratio: found.amplitude * erf(1.0 - ratio) / erf(1.0), energy=_largest_energy(found)
+    )
+
+
 MULLINS = HomogeneousEffect(
     effect=catalogue.MULLINS,
     step=1e-3,
@@ -109,6 +165,7 @@ MULLINS = HomogeneousEffect(
     prior_scale=0.5,
     factor=_factor_mullins,
     identifiable=_identifiable_mullins,
+    hands_on=_softening_mullins,
 )
 
 
@@ -136,6 +193,10 @@ def _identifiable_anisotropy(reached: Sequence[Record], everything: Sequence[Rec
     return False
 
 
+def _fibres_anisotropy(found: Occurrence) -> HandedOn:
+    return fibres_along_the_load(0.25 * found.shear_modulus * found.amplitude)
+
+
 ANISOTROPY = HomogeneousEffect(
     effect=catalogue.ANISOTROPY,
     step=1e-3,
@@ -143,6 +204,7 @@ ANISOTROPY = HomogeneousEffect(
     prior_scale=0.6,
     extra=_extra_anisotropy,
     identifiable=_identifiable_anisotropy,
+    hands_on=_fibres_anisotropy,
     scopes=("material", "specimen", "trial"),
 )
 

@@ -19,7 +19,7 @@ from calibration.diagnosis.engine.remainder import Remainder
 from calibration.diagnosis.engine.search import Finding
 from calibration.diagnosis.engine.sentences import sentence
 from calibration.diagnosis.engine.shares import Interval
-from calibration.measurements._effect import Candidate
+from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import STATED, NoiseKnown
 
@@ -83,6 +83,7 @@ class Subject:
         coordinates, shape (n,).
     ranges : between what each named candidate was measured, by the quantity's name in files.
     materials : that each named candidate concerns.
+    handed_on : the part of each material that each named candidate is, where it is one.
     """
 
     kind: str
@@ -92,6 +93,7 @@ class Subject:
     modulus_weights: Mapping[str, Array] = field(default_factory=dict)
     ranges: Mapping[Candidate, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
     materials: Mapping[Candidate, frozenset[str]] = field(default_factory=dict)
+    handed_on: Mapping[Candidate, Mapping[str, HandedOn]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, model: MeasurementModel, fit: Fit) -> Subject:
@@ -110,6 +112,7 @@ class Subject:
                 )
                 for c in fit.candidates
             },
+            handed_on={c: model.hands_on(c, fit.state) for c in fit.candidates},
         )
 
 

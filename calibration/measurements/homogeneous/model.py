@@ -22,9 +22,9 @@ from calibration.measurements._basis import Columns, legendre
 from calibration.measurements._effect import Candidate
 from calibration.measurements._folds import fifths
 from calibration.measurements._memory import Memory
-from calibration.measurements._model import MeasurementModel
+from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
-from calibration.measurements._records import listed
+from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._forward import (
@@ -290,9 +290,6 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
-    def full_scale(self) -> Array | None:
-        return np.array([float(np.abs(r.stress).max()) for r in self.records])
-
     def along(self, k: int) -> tuple[str, Array] | None:
         r = self.records[k]
         return "strain", np.abs(r.stretch - 1.0)
@@ -311,6 +308,15 @@ class HomogeneousModel(MeasurementModel):
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
             + "; ".join(parts)
             + "; the shear modulus free for each specimen."
+        )
+
+    def shown(self, k: int) -> Shown:
+        r = self.records[k]
+        return Shown(
+            **over_time(r.time, "stretch", r.stretch),
+            quantity="nominal stress",
+            unit=self.unit,
+            measured=r.stress,
         )
 
     def pictures(self, diagnosis: Any) -> list[Any]:

@@ -1,6 +1,6 @@
 """Cantilever releases: markers of a beam in free vibration and at static equilibrium."""
 
-from calibration.measurements.release._record import hung_mass
+from calibration.measurements.release._record import hung_mass, not_swinging
 from calibration.measurements.release.fit import MotionFit, fit_motion
 from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
 from calibration.measurements.release.objective import Damping, Fidelity, MarkerObjective, Match, Nuisances
@@ -19,5 +19,6 @@ __all__ = [
     "hung_mass",
     "marker_displacements",
     "marker_motion",
+    "not_swinging",
     "ringdown",
 ]

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, Extra
-from calibration.measurements.release._beam import BeamParameters
+from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._fem import Correction
 from calibration.measurements.release._record import LAST, Record
 from calibration.measurements.release._vibration import beam_markers, clamp_markers, free_vibration
 from calibration.measurements.release.experiments import unchanged
+from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -30,6 +31,7 @@ LOAD, LOAD_SD = 0.02, 0.003
 # Periods by which a vibration may get out of phase until its end; further out, a search does not find back.
 OUT_OF_PHASE = 0.4
 REMEMBERED = 400
+ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,10 +52,11 @@ class Own:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s; of each trial its
-    release time (in 10 ms after the first guess) and start (in tenths of the way to equilibrium); the reduced
-    beam's error at each load but the first (in 2 % of the modulus); of each specimen with markers next to the
-    clamp the fraction by which these move with the clamp.
+    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s, unless its law has a
+    spectrum (`tisim.Prony`), which damps as well; of each trial its release time (in 10 ms after the first
+    guess) and start (in tenths of the way to equilibrium); the reduced beam's error at each load but the
+    first (in 2 % of the modulus); of each specimen with markers next to the clamp the fraction by which these
+    move with the clamp.
 
     Attributes
     ----------
@@ -77,6 +80,7 @@ class Coordinates:
             *(
                 Extra(name=f"{m} relaxation time", sd=RELAXATION_SD, centre=float(np.log(RELAXATION_TIME)))
                 for m in plain.materials
+                if not viscous(plain)
             ),
             *(
                 Extra(name=f"{t} {quantity}", sd=sd)
@@ -89,13 +93,22 @@ class Coordinates:
         return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, near=near)
 
     def shear_modulus(self, record: Record, u: Array) -> float:
-        """Shear modulus of a record's beam [Pa], with the error of its load."""
+        """Shear modulus of a record's beam [Pa], with the error of its load: the long-time one where its
+        material has a spectrum."""
         error = LOAD * float(u[self.of_load(record.load)]) if record.load != self.loads[0] else 0.0
-        return float(np.exp(u[self.baseline.specimens.index(record.specimen)] + error))
+        return self.baseline.shear_modulus(record.specimen, u) * float(np.exp(error))
 
     def relaxation_time(self, record: Record, u: Array) -> float:
-        """Relaxation time of a record's material [s]."""
-        return float(np.exp(u[self.of_material(record.material)]))
+        """Relaxation time of a record's material [s]; 0 where it has a spectrum."""
+        return 0.0 if viscous(self.baseline) else float(np.exp(u[self.of_material(record.material)]))
+
+    def spectrum(self, record: Record, u: Array) -> Spectrum:
+        """Relaxation of a record's material, over its long-time modulus."""
+        if not viscous(self.baseline):
+            return ELASTIC
+        found = self.baseline.material(record.specimen, u).viscosity
+        assert found is not None
+        return found.spectrum()
 
     def own(self, record: Record, u: Array) -> Own:
         """When and from where a record's beam was released, and how far its markers move with the clamp."""
@@ -126,7 +139,7 @@ class Coordinates:
             mine = compared & (row_record == k)
             if mine.any():
                 found |= self.baseline.informed_by(r, whole_material=False)
-                found[self.of_material(r.material)] = True
+                found[self.of_material(r.material)] |= not viscous(self.baseline)
                 if r.load != self.loads[0]:
                     found[self.of_load(r.load)] = True
             if (mine & vibrating).any():
@@ -137,7 +150,7 @@ class Coordinates:
     def depended_on(self, record: Record) -> Rows:
         """Coordinates (n,) that the simulation of a record depends on."""
         found = self.baseline.informed_by(record, whole_material=False)
-        found[self.of_material(record.material)] = True
+        found[self.of_material(record.material)] |= not viscous(self.baseline)
         first = self.of_trial(record)
         found[first : first + 2] = True
         if record.load != self.loads[0]:
@@ -147,12 +160,14 @@ class Coordinates:
         return found
 
     def of_material(self, material: str) -> int:
-        """Index of a material's relaxation time."""
+        """Index of a material's relaxation time, where it has no spectrum."""
         return self.baseline.first_extra + self.baseline.materials.index(material)
 
     def of_trial(self, record: Record) -> int:
         """Index of the first of a trial's own coordinates."""
-        begin = self.baseline.first_extra + len(self.baseline.materials)
+        begin = self.baseline.first_extra
+        if not viscous(self.baseline):
+            begin += len(self.baseline.materials)
         return begin + 2 * self.trials.index(record.name)
 
     def of_load(self, load: str) -> int:
@@ -162,6 +177,24 @@ class Coordinates:
     def _of_near(self, specimen: str) -> int:
         """Index of the fraction by which a specimen's markers move with the clamp."""
         return len(self.baseline.names) - len(self.near) + self.near.index(specimen)
+
+
+def viscous(baseline: Baseline) -> bool:
+    """Whether a baseline is of a law with a relaxation spectrum."""
+    return any(p.field == "viscosity" for p in baseline.law.parts)
+
+
+def at_frequency(
+    long_time: float, spectrum: Spectrum, reference_time: float
+) -> tuple[float, tuple[Pair, ...]]:
+    """Storage modulus of a material at the angular frequency 1 / `reference_time`, and the branches that are
+    parts of it (`BeamParameters.branches`), from its long-time modulus [Pa] and spectrum."""
+    ratio = np.asarray(spectrum.times) / reference_time
+    strengths = np.asarray(spectrum.strengths)
+    storage = float(spectrum.equilibrium + np.sum(strengths * ratio**2 / (1.0 + ratio**2)))
+    parts = [float(g) for g in strengths / storage]
+    branches = tuple((g, float(t)) for g, t in zip(parts, spectrum.times, strict=True) if g != 0.0)
+    return long_time * storage, branches
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -186,9 +219,13 @@ class ForwardMap:
     def baseline_parameters(self, k: int, u: Array) -> BeamParameters:
         """Parameters of a record's beam without effects."""
         r = self.records[k]
+        shear, branches = at_frequency(
+            self.coordinates.shear_modulus(r, u), self.coordinates.spectrum(r, u), self.reference_time
+        )
         return replace(
             r.parameters,
-            shear_modulus=self.coordinates.shear_modulus(r, u),
+            shear_modulus=shear,
+            branches=branches,
             relaxation_time=self.coordinates.relaxation_time(r, u),
             stiff_root=self.corrections[k].stiff_root,
             reference_time=self.reference_time,
@@ -250,9 +287,12 @@ def start_of(forward: ForwardMap) -> Array:
         logs = [np.log(_modulus(r, forward.corrections[0].stiff_root)) for r in mine]
         moduli[name] = float(np.exp(np.mean(logs)))
     u = baseline.start(moduli)
-    for name in baseline.materials:
+    if viscous(baseline):  # the modulus that the vibration shows is not the long-time one
+        ratio = at_frequency(1.0, coordinates.spectrum(records[0], u), forward.reference_time)[0]
+        u = baseline.start({name: shear / ratio for name, shear in moduli.items()})
+    for name in baseline.materials if not viscous(baseline) else ():
         mine = [r for r in records if r.material == name]
-        u[coordinates.of_material(name)] = np.mean([np.log(r.damping_ratio * r.period / np.pi) for r in mine])
+        u[coordinates.of_material(name)] = np.mean([np.log(r.relaxation_time) for r in mine])
     for k, r in enumerate(records):
         parameters, own = forward.baseline_parameters(k, u), forward.own(k, u)
         there = np.isfinite(r.deviations())

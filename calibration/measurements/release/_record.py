@@ -102,6 +102,11 @@ class Record:
         return self.trial.specimen or self.trial.material
 
     @property
+    def relaxation_time(self) -> float:
+        """Of the stiffness-proportional damping that has this damping ratio [s]."""
+        return self.damping_ratio * self.period / np.pi
+
+    @property
     def loaded(self) -> bool:
         return self.parameters.tip_mass > 0.0
 
@@ -255,6 +260,16 @@ def records_of(experiment: Experiment) -> list[Record]:
     return [_record(t, experiment) for t in trials]
 
 
+def not_swinging(trial: BeamTrial, experiment: Experiment) -> str:
+    """Why a trial with markers has no free vibration to compare, in the words of `records_of`; "" where it
+    has one."""
+    try:
+        _record(trial, experiment)
+    except InputError as problem:
+        return str(problem)
+    return ""
+
+
 def _record(trial: BeamTrial, experiment: Experiment) -> Record:
     where = f"experiment.yaml: trials.{trial.id}"
     if trial.supports != "clamped-free":
@@ -349,3 +364,8 @@ def _means(time: Array, plane: Array, index: Index, period: float, where: str) -
     begin = np.array(starts) - first
     measured = np.add.reduceat(plane[used], begin, axis=0) / counts[:, None]
     return Sampled(index=index[used], starts=begin, counts=counts, measured=measured)
+
+
+def reference_time(records: Sequence[Record]) -> float:
+    """One over the angular frequency of records' vibrations, their geometric mean [s]."""
+    return float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)
