@@ -21,6 +21,7 @@ from calibration.diagnosis.engine.shares import Shares
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.measurements._effect import Candidate
+from calibration.measurements._layers import Curve, deviations, layers_of
 from calibration.measurements._noise_known import NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import State
 
@@ -212,6 +213,38 @@ def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytes
     known = model.with_noise_of_data()
     assert known.source == "data"
     assert np.median(model.noise.sd) == pytest.approx(0.1, rel=0.4)
+
+
+def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Curve]:
+    """Repeats of one test of full scale 2, each off by a smooth curve of its own, and a trend in their
+    order."""
+    random = np.random.default_rng(seed)
+    x = np.linspace(0.0, 1.0, 50)
+    found = []
+    for n in range(tests):
+        own = spread * sum(
+            np.sqrt(2.0) * random.standard_normal() * np.cos(np.pi * k * x) / np.sqrt(4.0)
+            for k in range(1, 5)
+        )
+        misfit = 2.0 * (np.sin(3.0 * x) + own + trend * n / max(tests - 1, 1))
+        found.append(Curve(name=f"t{n}", material="m", specimen="s", test=0, x=x, misfit=misfit, scale=2.0))
+    return found
+
+
+def test_repeats_show_their_scatter_beside_the_trend_of_their_order() -> None:
+    found = [layers_of(curves(trend=0.05, spread=0.01, seed=k)) for k in range(20)]
+    assert np.mean([f.repeat for f in found if f.repeat is not None]) == pytest.approx(0.01, rel=0.3)
+    assert np.mean([f.order for f in found if f.order is not None]) == pytest.approx(0.05, rel=0.15)
+    assert found[0].repeats == tuple(f"t{n}" for n in range(6))
+    assert "6 repeats differ by" in found[0].sentences()[0]
+    assert layers_of(curves(trend=0.0, spread=0.01, seed=1, tests=3)).repeat is None
+    assert layers_of([]).sentences() == []
+
+
+def test_a_records_own_deviation_is_as_large_as_repeats_differ() -> None:
+    (bends,) = deviations(curves(trend=0.0, spread=0.0, seed=1, tests=1), 0.01)
+    whole = np.sqrt(np.sum(np.array(bends) ** 2, axis=0).mean())
+    assert whole == pytest.approx(2.0 * 0.01, rel=0.1)
 
 
 # -- the file --
