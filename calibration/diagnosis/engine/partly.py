@@ -162,7 +162,8 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
             found.append(f"{worse[0]}, held out, is predicted no better than without it")
         else:
             found.append(
-                f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without it"
+                f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
+                " it"
                 if worse
                 else "it acts in no part that could be held out"
             )

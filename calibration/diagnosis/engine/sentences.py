@@ -35,8 +35,8 @@ def sentence(diagnosis: Diagnosis) -> str:
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
         takes = _takes(diagnosis, common)
         return (
-            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and these"
-            f" data cannot say which: {rest}."
+            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and"
+            f" these data cannot say which: {rest}."
         )
     others = "; or ".join(" + ".join(names) for names in sets[1:])
     return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
