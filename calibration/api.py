@@ -24,6 +24,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,19 +33,23 @@ from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 from tisim import laws
+from tisim.parallel.pool import cores
 
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
     from calibration.study import Task
 
 
-def read_experiment(folder: str | Path) -> Experiment:
+def read_experiment(folder: str | Path, *, leave_out_rows: bool = False) -> Experiment:
     """Read and check an experiment.
 
     Parameters
     ----------
     folder : path
         Holds experiment.yaml (format 1) and the files that it names.
+    leave_out_rows : bool
+        Go on without rows of homogeneous tests at which the clock runs backwards; `Experiment.notes` says
+        which. An error otherwise.
 
     Returns
     -------
@@ -56,7 +61,7 @@ def read_experiment(folder: str | Path) -> Experiment:
     InputError
         One sentence that names the file, the key or line, and what was expected.
     """
-    return read(Path(folder))
+    return read(Path(folder), leave_out_rows=leave_out_rows)
 
 
 def fit(
@@ -119,7 +124,7 @@ def fit(
     held_out : bool
         Predict each beam from the others.
     workers : int, optional
-        Processes; all cores where left out.
+        Processes; all cores that this process may use where left out.
     overwrite : bool
         Start anew instead of going on.
     on_progress : callable, optional
@@ -265,6 +270,7 @@ def diagnose(
     domain: str | None = None,
     without: Sequence[str] = (),
     simulator: str = "ours",
+    law: str = "auto",
     gain: bool = True,
     noise: str = "stated",
     seed: int = 0,
@@ -282,6 +288,10 @@ def diagnose(
         Effects to leave out of the catalogue.
     simulator : str
         Simulator whose own faults are looked for as well.
+    law : str
+        Of the baseline, where the kind has a choice: "auto" for the simplest one and, where no cause explains
+        the data beside it, the one that predicts best as a cause of its own; or a name, with the terms of a
+        series law ("ogden:2").
     gain : bool
         Measure the improvement on held-out data.
     noise : str
@@ -303,7 +313,7 @@ def diagnose(
         An argument or the experiment cannot be used, or the baseline has no equilibrium anywhere.
     """
     from calibration.diagnosis import Rules, model_of
-    from calibration.diagnosis import diagnose as search
+    from calibration.diagnosis.laws import diagnose_with_law
 
     if seed < 0:
         raise OptionError("seed", seed, "expected 0 or more")
@@ -312,10 +322,11 @@ def diagnose(
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
-    model = model_of(data, kind=domain, without=list(without), simulator=simulator, workers=workers)
+    make = partial(model_of, data, kind=domain, without=list(without), simulator=simulator, workers=workers)
     try:
-        found = search(
-            model,
+        found, model = diagnose_with_law(
+            make,
+            law=law,
             rules=Rules(seed=seed),
             gain=gain,
             noise="data" if noise == "data" else "stated",
@@ -334,6 +345,7 @@ def predict(
     predict: str | None = None,
     baseline: str | Path | None = None,
     domain: str | None = None,
+    law: str = "auto",
     specimen_scatter: float | None = None,
     seed: int = 0,
     workers: int | None = None,
@@ -354,6 +366,8 @@ def predict(
         Cards that stand beside `cards` in place of the baseline that they state.
     domain : str, optional
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
+    law : str
+        Of the baseline beside which a fit looks for causes, as in `diagnose`.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
         specimen: 0.15 where left out.
@@ -395,7 +409,7 @@ def predict(
 
     if calibrate is not None and predict is not None:
         fitted, wanted = split(data, calibrate, predict)
-        found = from_trials(data, fitted, wanted, domain=domain, seed=seed, workers=workers, say=say)
+        found = from_trials(data, fitted, wanted, domain=domain, law=law, seed=seed, workers=workers, say=say)
         return PredictionResult(found)
     assert cards is not None
     some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))
@@ -481,7 +495,7 @@ def processes(workers: int | None) -> int:
     """The number of processes; InputError where it is less than 1."""
     if workers is not None and workers < 1:
         raise OptionError("workers", workers, "expected 1 or more")
-    return workers or os.cpu_count() or 1
+    return workers or cores()
 
 
 def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:

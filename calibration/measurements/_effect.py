@@ -67,22 +67,29 @@ class Occurrence:
 
 @dataclass(frozen=True, kw_only=True)
 class HandedOn:
-    """The part of a material that an effect is (`tisim.parts`).
+    """What an effect is of a material: one of its parts (`tisim.parts`), or another law.
 
     Attributes
     ----------
-    field : of `tisim.Material` (viscosity, softening, fibres).
+    field : of `tisim.Material` (viscosity, softening, fibres, law).
     part : None where the effect makes none; `remarks` say why.
+    law : small-strain shear and bulk moduli [Pa] to the name of a law and its parameters.
     modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
     states : which modulus that is, for people.
     remarks : what the measurement did not see, and what differs from the effect, a sentence each.
     """
 
-    field: Literal["viscosity", "softening", "fibres"]
-    part: Part | None
+    field: Literal["viscosity", "softening", "fibres", "law"]
+    part: Part | None = None
+    law: Callable[[float, float], tuple[str, Mapping[str, float]]] | None = None
     modulus_ratio: float = 1.0
     states: str = ""
     remarks: tuple[str, ...] = ()
+
+    @property
+    def made(self) -> bool:
+        """Whether the material has it."""
+        return self.part is not None or self.law is not None
 
 
 def everywhere(record: Any) -> bool:
@@ -126,6 +133,9 @@ class EffectModel:
         a candidate that no protocol shows has no column.
     variants : forms of the effect (a time constant, a direction), from the records that it applies to.
     variant_label : a variant in words.
+    switch : it is there or not: where it is named its amplitude is the upper bound.
+    further : it is looked for only where no other cause explains the data: it is rarer than they are, or so
+        free in its form that it would stand in for them.
     action : what to do about it with this kind of measurement, where that is not the catalogue's remedy.
     hands_on : the part of the material that it is, for extended cards; None for an effect that is none.
     """
@@ -143,6 +153,8 @@ class EffectModel:
     identifiable: Callable[[Sequence[Any], Sequence[Any]], bool] = always
     variants: Callable[[Sequence[Any]], tuple[float | None, ...]] = one_variant
     variant_label: Callable[[float], str] = lambda variant: f"{variant:g}"
+    switch: bool = False
+    further: bool = False
     action: str = ""
     hands_on: Callable[[Occurrence], HandedOn] | None = None
 

@@ -94,6 +94,8 @@ class MeasurementModel(ABC):
     experiments : what a lab can do next, the cheapest first.
     enough : improvement of chi-square from which on two explanations are separated by an experiment.
     separates : whether advice asks for an experiment that separates "all" explanations, or "most" of them.
+    laws : that may be its baseline's, the simplest first, with terms of a series law; none where the kind
+        knows one only.
     no_answer : what a ValueError says of a state without an answer.
     noise_scale : the noise from point to point over what `noise` has (`NoiseKnown.scale`).
     records : in the order of the rows, as far as rows belong to one record each.
@@ -111,6 +113,7 @@ class MeasurementModel(ABC):
     experiments: ClassVar[Sequence[Any]] = ()
     enough: ClassVar[float] = 25.0
     separates: ClassVar[Literal["all", "most"]] = "all"
+    laws: ClassVar[Sequence[tuple[str, int]]] = ()
     no_answer: ClassVar[str] = "the simulation has no answer at this state"
     noise_scale: float = 1.0
 
@@ -155,6 +158,16 @@ class MeasurementModel(ABC):
         """The same specimens in one of `experiments`, as a state predicts it; None where it cannot be."""
         del test, state
         return None
+
+    def with_law(self, law: str, terms: int) -> Self:
+        """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
+        no answer."""
+        raise NotImplementedError(f"{self.kind}: has one law, not {law} of {terms}")
+
+    def brings(self, candidate: Candidate) -> int:
+        """Coordinates that matter only beside a candidate: they count as parameters of its own."""
+        del candidate
+        return 0
 
     def remarks(self) -> list[str]:
         """What a reader of the verdict should know of the model, a sentence each."""

@@ -44,6 +44,16 @@ LIMITED_EXTENSIBILITY = Effect(
     with_material=True,
 )
 
+LAW_FORM = Effect(
+    name="law-form",
+    parameter="in_its_place",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the law has the wrong form for this material: another one describes how it stiffens",
+    remedy="use the law that is named; a mode of loading that its fit has not seen confirms its form",
+    with_material=True,
+)
+
 COMPRESSIBILITY = Effect(
     name="compressibility",
     parameter="poisson_drop",
@@ -81,6 +91,26 @@ MULLINS = Effect(
     belongs_to="specimen",
     sentence="the first loading softens the material (Mullins): the second one needs less force",
     remedy="load the same specimen twice to the same strain",
+    with_material=True,
+)
+
+TENSION_COMPRESSION_ASYMMETRY = Effect(
+    name="tension-compression-asymmetry",
+    parameter="compression_excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is stiffer, or softer, in compression than in tension",
+    remedy="pull and press one specimen, bonded to the same plates, through zero",
+    with_material=True,
+)
+
+PERMANENT_SET = Effect(
+    name="permanent-set",
+    parameter="part_of_largest_strain",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material keeps part of its largest strain: unloaded it does not come back to its length",
+    remedy="measure the specimen's length after the test, at once and an hour later",
     with_material=True,
 )
 

@@ -225,7 +225,7 @@ def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]
     found = []
     for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
         effect = model.effects[c.effect]
-        if a in effect.physical_limits:
+        if a in effect.physical_limits and not effect.switch:
             found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is as far as it goes")
     return found
 
