@@ -79,7 +79,7 @@ def diagnose(
         if finding.verdict == "unexplained":
             shares = _shares(model, baseline, rules, known)
     fit_now = baseline if refined is None else refined.fit
-    left = remainder_of(model, fit_now) if shares is not None else None
+    left = remainder_of(model, fit_now, negligible=rules.negligible) if shares is not None else None
     named_whole = finding.verdict in ("none", "found", "ambiguous")
     if left is not None and not named_whole:
         next_experiment = "; ".join(x for x in (next_experiment, about_remainder(left)) if x)
