@@ -50,7 +50,8 @@ class Remainder:
 
 
 def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Remainder:
-    """What a fit leaves; negligible : part of full scale that does not matter in practice. ValueError where its state has no answer."""
+    """What a fit leaves; negligible : part of full scale that does not matter in practice. ValueError where
+    its state has no answer."""
     left = [np.asarray(x) for x in model.registered(fit.state)]
     rms = beyond(model.distance_rms(fit.state), model.noise_rms())
     scale = model.full_scale()
