@@ -72,6 +72,9 @@ def diagnose(
         if gain:
             on_progress("predicting held-out measurements")
             held_out = held_out_improvement(model, baseline, refined.fit)
+            if not held_out.held_out and nearest is not None and nearest.held_out is not None:
+                # as it was found: where nuisances are taken anew, a fold may have no answer
+                held_out = nearest.held_out
         shares = _shares(model, baseline, rules, known)
         causes = shares.of_causes(model, baseline, refined, null)
     else:
