@@ -47,6 +47,7 @@ Array = NDArray[np.float64]
 # holds K/G (`Parametrisation.holding`) has these curves too, whatever its prior says.
 BULK_RATIO = 3000.0
 REMEMBERED = 8192  # stresses of a record
+ALIKE = 0.15  # of range and rate: of two repeats of one test
 # The simplest first, by the number of their constants; terms of a series law. St Venant-Kirchhoff and the
 # stable neo-Hookean law are no rubber's, and the latter has the neo-Hookean curve at this K/G.
 LAWS = (
@@ -358,8 +359,8 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the stress; its median is"
-                f" {100 * typical:.2g} % of the largest stress"
+                " scatter about a smooth curve, at least 0.5 % of the largest stress; its median is"
+                f" {100 * typical:.2g} %"
             )
         loops = [r for r in records if r.unloads and not r.reloaded]
         if loops:
@@ -375,8 +376,14 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
-    def full_scale(self) -> Array | None:
-        return np.array([float(np.abs(r.stress).max()) for r in self.records])
+    def repeat_of(self, k: int) -> Hashable | None:
+        """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
+        own = _protocol(self.records[k])
+        for j, other in enumerate(self.records):
+            there = _protocol(other)
+            if there[:2] == own[:2] and np.allclose(there[2:], own[2:], rtol=ALIKE):
+                return j
+        raise AssertionError("a record is a repeat of itself")
 
     def along(self, k: int) -> tuple[str, Array] | None:
         r = self.records[k]
@@ -390,7 +397,7 @@ class HomogeneousModel(MeasurementModel):
         if len(stated) < len(self.records):
             parts.append(
                 "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " stress"
+                " largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
@@ -411,6 +418,13 @@ class HomogeneousModel(MeasurementModel):
         from calibration.measurements.homogeneous.pictures import pictures
 
         return pictures(self, diagnosis)
+
+
+def _protocol(r: Record) -> tuple[str, int, float, float]:
+    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    rates = r.rate[np.isfinite(r.rate)]
+    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
+    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0
 
 
 def _clock(r: Record) -> Array:
