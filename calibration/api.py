@@ -32,6 +32,7 @@ from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, Reconstruction
 from tisim import laws
+from tisim.parallel.pool import cores
 
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
@@ -119,7 +120,7 @@ def fit(
     held_out : bool
         Predict each beam from the others.
     workers : int, optional
-        Processes; all cores where left out.
+        Processes; all cores that this process may use where left out.
     overwrite : bool
         Start anew instead of going on.
     on_progress : callable, optional
@@ -386,7 +387,7 @@ def processes(workers: int | None) -> int:
     """The number of processes; InputError where it is less than 1."""
     if workers is not None and workers < 1:
         raise OptionError("workers", workers, "expected 1 or more")
-    return workers or os.cpu_count() or 1
+    return workers or cores()
 
 
 def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:

@@ -34,6 +34,11 @@ TOGETHER, SCATTER = 0.025, 0.002
 WANDERING = ((0.008, 0.04), (0.006, 0.5))
 SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wandering grow
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
+# Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,
+# and the powers of how far it went back that it has. What a viscous material has stored at a large strain
+# acts on as that strain goes, and a force made of the elastic one knows no strains
+# (studies/indentation/over-time.md).
+RETRACTION, RETRACTED = 0.03, (1, 2, 3)
 
 GRID = 120  # depths at which wandering is evaluated
 TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
@@ -83,6 +88,7 @@ def noise_of(
     forces: Sequence[Array],
     slopes: Sequence[Array],
     follow: Sequence[Follow],
+    relaxing: Sequence[float],
 ) -> Noise:
     """Noise of all forces along the indenter, then of all across it.
 
@@ -92,12 +98,13 @@ def noise_of(
     forces, slopes : simulated force [N] and its slope [N/m] at the records' depths.
     follow : elastic forces against depth -> forces at the records' points: at their depths, or along their
         courses where the material remembers.
+    relaxing : fraction of the instantaneous modulus that each record's material loses in time.
     """
     along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
     across = [
         np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
     ]
-    columns, names = nuisances(records, curves, forces, slopes, follow)
+    columns, names = nuisances(records, curves, forces, slopes, follow, relaxing)
     sd = np.concatenate([*along, *across])
     none = np.zeros((len(sd) - len(columns), columns.shape[1]))  # nuisances are along the indenter
     return Noise.independent(sd).with_nuisances(np.vstack([columns, none]), names)
@@ -129,12 +136,14 @@ def nuisances(
     forces: Sequence[Array],
     slopes: Sequence[Array],
     follow: Sequence[Follow],
+    relaxing: Sequence[float],
 ) -> tuple[Array, list[str]]:
     """One standard deviation of each nuisance in simulated less measured [N], shape (points, n), and names.
 
     In this order: the mesh error common to all indentations; of each geometry its wandering; of each record
-    its first touch (positive where it is deeper than recorded), and the noise that smoothing leaves in the
-    depth of its phases. Parameters as in `noise_of`.
+    its first touch (positive where it is deeper than recorded), the noise that smoothing leaves in the depth
+    of its phases, and where its material relaxes the error of its force in retraction. Parameters as in
+    `noise_of`.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     rows = [np.arange(int(a), int(b)) for a, b in pairwise(starts)]
@@ -170,6 +179,13 @@ def nuisances(
             left = r.depth_sd * remaining_noise(r.time[phase], int(r.count[phase].sum()), degree)
             for m, part in enumerate(left.T, 1):
                 add(f"depth {m} of {r.labels[n]} of {r.name}", own[phase], part * slope[phase])
+    for r, own, force, part in zip(records, rows, forces, relaxing, strict=True):
+        deepest = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
+        turned = np.logical_or.accumulate(r.direction < 0.0)
+        back = np.where(turned, np.clip(1.0 - r.depth / deepest, 0.0, 1.0), 0.0)
+        for power in RETRACTED if part > 0.0 and back.any() else ():
+            size = RETRACTION * part * float(np.abs(force).max())
+            add(f"retraction {power} of {r.name}", own, size * back**power)
     return np.column_stack(found), names
 
 

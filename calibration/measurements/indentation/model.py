@@ -239,13 +239,14 @@ class IndentationModel(MeasurementModel):
         for material, curves_of_law in self._of_law.items():
             curves_of_law.take(self.baseline.law_coordinates(material, state.u))
         curves = [self._curve(r, state.u) for r in self.records]
-        forces, slopes, follow = [], [], []
+        forces, slopes, follow, relaxing = [], [], [], []
         for r, curve in zip(self.records, curves, strict=True):
             shear_modulus = self.baseline.shear_modulus(r.specimen, state.u)
             if rough and self.baseline.whole:
                 shear_modulus = self._nearest_modulus(r.material, curves)
             over = max(TOUCH * r.depth_sd, 1e-6)
             spectrum = self._spectrum(r, state.u)
+            relaxing.append(0.0 if spectrum is None else 1.0 - spectrum.equilibrium / spectrum.instantaneous)
             if spectrum is None:
                 forces.append(shear_modulus * curve.at(r.depth))
                 slopes.append(shear_modulus * curve.slope(r.depth, over))
@@ -256,7 +257,7 @@ class IndentationModel(MeasurementModel):
             slopes.append((own(curve.at, shift=over) - own(curve.at, shift=-over)) / (2.0 * over))
             follow.append(own)
         self._elastic = forces
-        noise = noise_of(self.records, curves, forces, slopes, follow)
+        noise = noise_of(self.records, curves, forces, slopes, follow, relaxing)
         simulated = self._simulated()
         for r, inside in zip(self.records, simulated, strict=True):
             if np.count_nonzero(inside) < LEAST:
