@@ -87,8 +87,8 @@ def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
         if alarms:
             yield f"something named or unexplained: {kind}", goal, part(alarms)
     out = [v["verdict"] for t, v in pairs if t["kind"] == "outside" and sigma(t) >= 10.0]
-    unsure = [said in ("unexplained", "ambiguous") for said in out]
-    yield "outside the library, 10 sigmas: unexplained or ambiguous", "90 %", part(unsure)
+    unsure = [said in ("unexplained", "partly explained", "ambiguous") for said in out]
+    yield "outside the library, 10 sigmas: unexplained, in part or ambiguous", "90 %", part(unsure)
     alone = [said == "found" for said in out]
     yield "outside the library, 10 sigmas: one name", "at most 5 %", part(alone)
     for kind in SEVERAL:
@@ -147,7 +147,7 @@ def confusion(pairs: Sequence[Pair]) -> str:
             said = v["verdict"]
         else:
             said = "right" if named(v) == true_names(t) else "+".join(named(v))
-            said += " (ambiguous)" if v["verdict"] == "ambiguous" else ""
+            said += "" if v["verdict"] == "found" else f" ({v['verdict']})"
         lines.setdefault(truth, Counter())[said] += 1
     width = max(len(n) for n in lines)
     return "\n".join(

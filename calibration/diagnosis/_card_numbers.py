@@ -110,7 +110,8 @@ def gain(diagnosis: Diagnosis) -> dict[str, float | str | None] | None:
     found = diagnosis.to_json()["gain"]
     if found is None:
         return None
-    return {k: v if v is None or isinstance(v, str) else rounded(v) for k, v in found.items()}
+    single = {k: v for k, v in found.items() if k != "folds"}
+    return {k: v if v is None or isinstance(v, str) else rounded(v) for k, v in single.items()}
 
 
 def rounded(x: float) -> float:

@@ -230,8 +230,10 @@ class MeasurementModel(ABC):
         return replace(known, source="data")
 
     def full_scale(self) -> Array | None:
-        """Largest measured value of each record [SI], shape (records,); None where records have none."""
-        return None
+        """Largest measured value of each record [SI], shape (records,); None where what is compared has no
+        scale (distances between simulated and measured)."""
+        found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
+        return found if (found > 0.0).all() else None
 
     def along(self, k: int) -> tuple[str, Array] | None:
         """What drives a record, by its index: its name for people, and its value at each of the record's

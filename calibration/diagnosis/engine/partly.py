@@ -36,7 +36,7 @@ class Assessed:
     ----------
     share : of the explainable misfit.
     at_least : share that it takes in `Rules.sure` of the replicates.
-    rivals : other sets of names that take as much.
+    rivals : other sets of names that take as much, with their shares.
     held_out : None where it was not measured.
     against : why it is not named, a clause each; nothing where it may be.
     confidence : part of the replicates in which no other set of as many causes takes more.
@@ -45,7 +45,7 @@ class Assessed:
     explanation: Explanation
     share: Interval
     at_least: float
-    rivals: tuple[Names, ...] = ()
+    rivals: tuple[tuple[Names, Interval], ...] = ()
     held_out: HeldOut | None = None
     against: tuple[str, ...] = field(default=())
     confidence: float = 0.0
@@ -179,9 +179,9 @@ def _rivals(
     sound: Sequence[tuple[Explanation, Misfit]],
     shares: Shares,
     rules: Rules,
-) -> tuple[Names, ...]:
+) -> tuple[tuple[Names, Interval], ...]:
     """Other sets of as many names, or fewer, that take as much in some of the replicates; best first."""
-    found: list[tuple[float, Names]] = []
+    found: dict[Names, Misfit] = {}
     for e, m in sound:
         if e.names == explanation.names or len(e.names) > len(explanation.names):
             continue
@@ -190,6 +190,7 @@ def _rivals(
         if set(e.names) < set(explanation.names):
             continue
         as_much = float(np.mean(shares.drawn(m) >= drawn))
-        if as_much > rules.as_good and e.names not in [n for _, n in found]:
-            found.append((m.value, e.names))
-    return tuple(n for _, n in sorted(found))
+        if as_much > rules.as_good and (e.names not in found or m.value < found[e.names].value):
+            found[e.names] = m
+    ordered = sorted(found.items(), key=lambda pair: pair[1].value)
+    return tuple((names, shares.share(misfit)) for names, misfit in ordered)

@@ -98,6 +98,7 @@ def diagnose(
         shares=causes,
         resampled=shares.groups.over if shares else "",
         nearest=nearest if refined is None else None,
+        rivals=dict(nearest.rivals) if nearest is not None and refined is not None else {},
         remainder=left,
         model_error=model_error_of(model, fit_now, left, shares, reduced(fit_now))
         if shares is not None and left is not None and not named_whole
@@ -130,7 +131,7 @@ def _in_degrees(
         finding,
         verdict="partly explained",
         dominant=nearest.explanation,
-        equivalent=(nearest.explanation.names, *nearest.rivals),
+        equivalent=(nearest.explanation.names, *(names for names, _ in nearest.rivals)),
         confidence=nearest.confidence,
     )
     return named, nearest

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from calibration.diagnosis.engine.explanation import Explanation, Names
+    from calibration.diagnosis.engine.explanation import Explanation
     from calibration.diagnosis.engine.held_out import HeldOut
     from calibration.diagnosis.engine.remainder import Remainder
     from calibration.diagnosis.engine.shares import Interval
@@ -34,24 +34,32 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
     sets = diagnosis.finding.equivalent
-    short = " + ".join(chosen.names)
     share = "" if diagnosis.share is None else percent(diagnosis.share)
-    text = (
-        f"Partly explained: {_named(diagnosis, chosen)} ({short}), which takes {share} of what noise leaves"
-        " to explain"
-    )
-    skill = _skill(diagnosis.held_out)
-    text += f"{skill}." if skill else "."
-    if len(sets) > 1:
-        common = [n for n in chosen.names if all(n in s for s in sets)]
-        others = "; or ".join(" + ".join(s) for s in sets[1:])
-        text += (
-            f" {_and(common)} is in every explanation that does as well; the others are {others}."
-            if common
-            else f" These data cannot tell it from {others}."
+    takes = f"which takes {share} of what noise leaves to explain{_skill(diagnosis.held_out)}."
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if len(sets) == 1:
+        text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
+    elif common:
+        # what all explanations share comes first: it is what these data do tell
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = [" + ".join(n for n in s if n not in common) for s in sets]
+        text = (
+            f"Partly explained: {first} ({' + '.join(common)}), together with {_or(rest)}, which these data"
+            f" cannot tell apart; with {rest[0]} it takes {takes.removeprefix('which takes ')}"
+        )
+    else:
+        others = _or([" + ".join(s) for s in sets[1:]])
+        text = (
+            f"Partly explained, by one of several causes that these data cannot tell apart: most likely"
+            f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
     left = diagnosis.remainder
     return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+
+
+def _or(names: Sequence[str]) -> str:
+    known = [n for n in dict.fromkeys(names) if n]
+    return known[0] if len(known) == 1 else f"{', '.join(known[:-1])} or {known[-1]}"
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
@@ -116,10 +124,6 @@ def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:
         for c in chosen.candidates
     ]
     return " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
-
-
-def _and(names: Sequence[str] | Names) -> str:
-    return " and ".join(names)
 
 
 def _few(names: Sequence[str]) -> str:

@@ -375,9 +375,6 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
-    def full_scale(self) -> Array | None:
-        return np.array([float(np.abs(r.stress).max()) for r in self.records])
-
     def along(self, k: int) -> tuple[str, Array] | None:
         r = self.records[k]
         return "strain", np.abs(r.stretch - 1.0)
