@@ -137,8 +137,10 @@ class HomogeneousModel(MeasurementModel):
             effect = replace(effect, bounds=(max(low, least), min(high, most)))
         if self.richer is None or not effect.richer:
             return effect
-        label = self.richer.law.label
-        return replace(effect, variants=lambda _: (1.0,), variant_label=lambda _: label)
+        label, plain = self.richer.law.label, self.baseline.law.label
+        sentence = f"{effect.effect.sentence}: {plain} does not describe its stress, {label} does"
+        said = replace(effect.effect, sentence=sentence)
+        return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
 
     def with_law(self, law: str, terms: int) -> Self:
         """The same measurements with another law as baseline and no effects, to compare laws.
