@@ -112,6 +112,15 @@ PLATEN_BONDING = Effect(
     remedy="lubricate the platens and repeat, or press cylinders of two heights",
 )
 
+PLATEN_SLIP = Effect(
+    name="platen-slip",
+    parameter="coefficient",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the ends of the compressed cylinder rub at the platens, and slip in part (Coulomb friction)",
+    remedy="lubricate the platens and repeat, or press cylinders of two heights",
+)
+
 PLATEN_TILT = Effect(
     name="platen-tilt",
     parameter="gap_percent",

@@ -18,7 +18,7 @@ from calibration.diagnosis.effects._material_parts import (
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
-from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
+from calibration.measurements.homogeneous.kinematics import first_excess, slab_factor, stress_of
 
 Array = NDArray[np.float64]
 
@@ -269,10 +269,7 @@ PRESSED = 0.97  # stretch below which platens press
 
 def _factor_platen_friction(s: Array, amplitude: float, record: Record) -> Array:
     del record
-    x = 3.0 * amplitude * np.maximum(s, 1e-3) ** -1.5
-    small = np.abs(x) < 1e-2
-    large = np.where(small, 1.0, x)
-    whole = np.where(small, 1.0 + x / 3.0 + x**2 / 12.0, 2.0 * (np.expm1(large) - large) / large**2)
+    whole = slab_factor(3.0 * amplitude * np.maximum(s, 1e-3) ** -1.5)
     return np.where(s < 1.0, whole, 1.0)
 
 
