@@ -65,6 +65,8 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     handed = handed_on(name, diagnosis)
     stated = shear * prod(h.modulus_ratio for h in handed.values())
     relative_sd = modulus.relative_sd * sqrt(max(numbers.reduced_chi2, 1.0))
+    if diagnosis.model_error is not None:
+        relative_sd = max(relative_sd, diagnosis.model_error.shear_modulus_relative_sd.get(name, 0.0))
     fit = Calibration(
         material=name,
         law=law,
@@ -82,7 +84,8 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
-        " root of the reduced chi-square where that is above 1. The bulk"
+        " root of the reduced chi-square where that is above 1, and at least the modulus' spread over"
+        " resampled measurements where the data are explained in part or not at all. The bulk"
         f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
     )
     content["model_error"] = model_error(diagnosis.fit, modulus.direction)

@@ -139,12 +139,14 @@ class ModelErrorNumbers(_Measured):
 
 
 class NoiseNumbers(_Told):
-    """What is known of the noise. records: of each that could be looked at, what was assumed and what its
-    scatter shows at most, in names that end with the unit."""
+    """What is known of the noise. layers: repeat, order and specimen as parts of full scale, where repeats
+    show them. records: of each that could be looked at, what was assumed and what its scatter shows at
+    most, in names that end with the unit."""
 
     source: Literal["stated", "data"]
     known: bool
     repeats: tuple[str, ...]
+    layers: dict[str, float] = Field(default_factory=dict)
     records: tuple[dict[str, str | bool | float], ...]
 
 

@@ -7,12 +7,14 @@ from point to point, and nothing of an error that all of its points share.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from calibration.measurements._layers import Layers
 
 Array = NDArray[np.float64]
 
@@ -65,6 +67,7 @@ class NoiseKnown:
     dof : degrees of freedom of its estimate; inf where it is taken as known.
     points : what each record shows.
     repeats : names of the tests that show how one differs from the next.
+    layers : what they show, where the kind of measurement does not model it.
     unit : of rms residuals in files, and how many of them one SI unit is.
     """
 
@@ -73,6 +76,7 @@ class NoiseKnown:
     dof: float = inf
     points: tuple[PointNoise, ...] = ()
     repeats: tuple[str, ...] = ()
+    layers: Layers = field(default_factory=Layers)
     unit: tuple[str, float] = ("", 1.0)
 
     def sentences(self) -> list[str]:
@@ -94,6 +98,7 @@ class NoiseKnown:
                 f"the data scatter by {text} than the lab states in {len(off)} of {len(self.points)} records:"
                 f" {shown:.2g} {name} from point to point, stated {stated:.2g} {name} ({used})"
             )
+        found += self.layers.sentences()
         if not self.known:
             found.append(
                 "the noise is not known: the lab does not state it, and no test was repeated often enough to"
@@ -107,6 +112,7 @@ class NoiseKnown:
             "source": self.source,
             "known": self.known,
             "repeats": list(self.repeats),
+            "layers": self.layers.to_json(),
             "records": [
                 {
                     "record": p.record,

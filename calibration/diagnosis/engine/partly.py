@@ -144,7 +144,7 @@ def _judge(
         share=share,
         at_least=at_least,
         confidence=float(first),
-        rivals=_rivals(explanation, drawn, sound, shares, rules),
+        rivals=_rivals(explanation, share, drawn, sound, shares, rules),
         held_out=held_out,
         against=tuple(against),
     )
@@ -175,12 +175,14 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
 
 def _rivals(
     explanation: Explanation,
+    share: Interval,
     drawn: np.ndarray,
     sound: Sequence[tuple[Explanation, Misfit]],
     shares: Shares,
     rules: Rules,
 ) -> tuple[tuple[Names, Interval], ...]:
-    """Other sets of as many names, or fewer, that take as much in some of the replicates; best first."""
+    """Other sets of as many names, or fewer, that take as much, altogether or in some of the replicates; best
+    first."""
     found: dict[Names, Misfit] = {}
     for e, m in sound:
         if e.names == explanation.names or len(e.names) > len(explanation.names):
@@ -189,8 +191,9 @@ def _rivals(
             continue
         if set(e.names) < set(explanation.names):
             continue
-        as_much = float(np.mean(shares.drawn(m) >= drawn))
-        if as_much > rules.as_good and (e.names not in found or m.value < found[e.names].value):
+        as_much = float(np.mean(shares.drawn(m) >= drawn)) > rules.as_good
+        as_much |= shares.share(m).value > share.value - rules.alike
+        if as_much and (e.names not in found or m.value < found[e.names].value):
             found[e.names] = m
     ordered = sorted(found.items(), key=lambda pair: pair[1].value)
     return tuple((names, shares.share(misfit)) for names, misfit in ordered)

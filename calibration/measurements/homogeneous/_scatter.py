@@ -7,22 +7,31 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Where the lab gives no stress_sd: an error relative to the curve's largest stress, since a load cell and a
-# digitised figure have an error of their range. As a part of each stress it would be absurdly small near
-# rest, where a record has many points, and these would decide which cause is named.
-# Nobody's area, gauge length and load cell are known better than this; curves drawn smooth look so.
+# Where the lab gives no stress_sd: an error relative to the stress, which below FLOOR of the largest stress
+# stays what it is there (a load cell and a digitised figure have an error of their range).
+FLOOR = 0.05
+# Nobody's area, gauge length and load cell are known better than this; curves drawn smooth look so. Of the
+# largest stress: as a part of each it would be absurdly small near rest, where a record has many points, and
+# these would decide which cause is named.
 SMALLEST_RELATIVE = 0.005
 _WINDOW = 0.15  # of the points, for the slope
 
 
 def scatter_scale(stress: Array) -> Array:
-    """What the relative error is relative to [Pa], (k,): the largest |stress|."""
-    largest = float(np.abs(stress).max(initial=0.0))
-    return np.full(np.shape(stress), max(largest, float(np.finfo(float).tiny)))
+    """What the relative error is relative to [Pa], (k,): |stress|, at least FLOOR of the largest."""
+    size = np.abs(stress)
+    return np.maximum(size, max(FLOOR * float(size.max(initial=0.0)), np.finfo(float).tiny))
+
+
+def unstated_sd(relative: Array | float, stress: Array, largest: float) -> Array:
+    """Standard deviation [Pa], (k,), of points whose error the lab does not state: their scatter relative to
+    the stress, at least SMALLEST_RELATIVE of the curve's largest stress."""
+    size = np.maximum(np.abs(stress), FLOOR * largest)
+    return np.asarray(np.maximum(relative * size, SMALLEST_RELATIVE * largest))
 
 
 def relative_sd(stretch: Array, stress: Array) -> float:
-    """Error of a curve over its largest stress, from its scatter about itself.
+    """Relative error of a curve, from its scatter about itself.
 
     Each inner point is compared with the cubic through its two neighbours on either side (points of one
     stretch are averaged first); 1.4826 times the median of what is left, at least SMALLEST_RELATIVE. A

@@ -57,6 +57,7 @@ LAWS = (
     ("ogden", 2),
     ("ogden", 3),
 )
+ALIKE = 0.15  # of range and rate: of two repeats of one test
 BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
 
 
@@ -377,6 +378,15 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
+    def repeat_of(self, k: int) -> Hashable | None:
+        """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
+        own = _protocol(self.records[k])
+        for j, other in enumerate(self.records):
+            there = _protocol(other)
+            if there[:2] == own[:2] and np.allclose(there[2:], own[2:], rtol=ALIKE):
+                return j
+        raise AssertionError("a record is a repeat of itself")
+
     def along(self, k: int) -> tuple[str, Array] | None:
         r = self.records[k]
         return "strain", np.abs(r.stretch - 1.0)
@@ -410,6 +420,13 @@ class HomogeneousModel(MeasurementModel):
         from calibration.measurements.homogeneous.pictures import pictures
 
         return pictures(self, diagnosis)
+
+
+def _protocol(r: Record) -> tuple[str, int, float, float]:
+    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    rates = r.rate[np.isfinite(r.rate)]
+    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
+    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0
 
 
 def _clock(r: Record) -> Array:
