@@ -85,6 +85,15 @@ LOAD_HEIGHT = Effect(
     remedy="measure where on the end face the mass hangs",
 )
 
+LOOSE_LOAD = Effect(
+    name="loose-load",
+    parameter="part_of_inertia",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the hung mass is tied loosely: it does not move with the beam as one body",
+    remedy="clamp or glue the mass to the end face, and repeat",
+)
+
 AIR_DRAG = Effect(
     name="air-drag",
     parameter="rate_per_s",
