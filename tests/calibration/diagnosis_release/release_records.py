@@ -28,7 +28,7 @@ MARKERS = {  # x, y, z [mm]
 @dataclass(frozen=True, kw_only=True)
 class Truth:
     """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm]. loose: part
-    of the hung mass that does not move with the bar. extra: a further height of the tip [m], of the time [s]."""
+    of the hung mass that does not move with the bar. extra: a further height of the tip [m], by the time."""
 
     shear: float = 6e5
     viscous: float = 4e-4
