@@ -145,7 +145,8 @@ def diagnose_with_law(
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
         again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-        if not explained or _simpler(again, found, rules or Rules()):
+        better = _simpler(again, found, rules or Rules()) if explained else _says(again) >= _says(found)
+        if better:
             model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)
     return replace(found, notes=(*found.notes, *notes)), model
@@ -154,6 +155,12 @@ def diagnose_with_law(
 def _causes(found: Diagnosis) -> int:
     """How many are named together."""
     return 0 if found.chosen is None else len(found.chosen.candidates)
+
+
+def _says(found: Diagnosis) -> int:
+    """How much a verdict says: nothing that explains, something in part, all."""
+    verdict = found.finding.verdict
+    return 2 if verdict in EXPLAINED else 0 if verdict == "unexplained" else 1
 
 
 def _simpler(again: Diagnosis, found: Diagnosis, rules: Rules) -> bool:
