@@ -38,7 +38,7 @@ from calibration.measurements.homogeneous._record import Record, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
-from calibration.parameters import parametrisation
+from calibration.parameters import Parameters, parametrisation
 
 Array = NDArray[np.float64]
 
@@ -149,6 +149,16 @@ class HomogeneousModel(MeasurementModel):
         ValueError where the law has no answer.
         """
         return type(self)(self.experiment, law=law, terms=terms)
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        mine = [k for k, r in enumerate(self.records) if r.material == material]
+        acting = self._effects_in(state, mine[0]) if mine else []
+        own = self._richer_constants(self.records[mine[0]], state, acting) if mine else np.zeros(0)
+        if self.richer is None or not own.size:
+            return None
+        of_law = replace(self.baseline, law=self.richer.law, extras=())
+        shear = self.baseline.shear_moduli(state.u)[material]
+        return self.richer.law.law, self.richer.law.parameters(of_law.scaled(own, shear))
 
     def brings(self, candidate: Candidate) -> int:
         if self.richer is None or not self.effects[candidate.effect].richer:
