@@ -98,6 +98,7 @@ class MeasurementModel(ABC):
     laws : that may be its baseline's, the simplest first, with terms of a series law; none where the kind
         knows one only.
     no_answer : what a ValueError says of a state without an answer.
+    noise_scale : the noise from point to point over what `noise` has (`NoiseKnown.scale`).
     records : in the order of the rows, as far as rows belong to one record each.
     row_record : index of the record of each row, shape (rows,).
     effects : by name. candidates : of all effects. visible : whether the records identify a candidate at all.
@@ -115,6 +116,7 @@ class MeasurementModel(ABC):
     separates: ClassVar[Literal["all", "most"]] = "all"
     laws: ClassVar[Sequence[tuple[str, int]]] = ()
     no_answer: ClassVar[str] = "the simulation has no answer at this state"
+    noise_scale: float = 1.0
 
     records: Sequence[Any]
     row_record: NDArray[np.intp]
@@ -510,7 +512,7 @@ class MeasurementModel(ABC):
 
     def noise_rms(self) -> float:
         """What `distance_rms` would be of the noise alone [SI]."""
-        return float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
+        return self.noise_scale * float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
 
     def _measured_points(self) -> int:
         """Measured points behind the rows that are used."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, sqrt
 from typing import Any, Literal
 
 import numpy as np
@@ -78,6 +78,17 @@ class NoiseKnown:
     repeats: tuple[str, ...] = ()
     layers: Layers = field(default_factory=Layers)
     unit: tuple[str, float] = ("", 1.0)
+
+    @property
+    def scale(self) -> float:
+        """What the noise from point to point is at most, over what was assumed: below 1 where an error that
+        nobody stated was taken for larger than the scatter (areas and load cells have errors that all points
+        of a record share)."""
+        unstated = [p for p in self.points if not p.stated]
+        if not unstated or len(unstated) < len(self.points):
+            return 1.0
+        total = sum(p.points * min(p.factor, 1.0) ** 2 for p in unstated)
+        return sqrt(total / sum(p.points for p in unstated))
 
     def sentences(self) -> list[str]:
         """For people: what is not known, what contradicts what."""

@@ -98,7 +98,7 @@ def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
         here = np.isfinite(x)
         rows = (model.row_record == k) & model.noise.used
         total += float(np.sum(x[here] ** 2)) / scale[k] ** 2
-        noise += float(np.sum(model.noise.sd[rows] ** 2)) / scale[k] ** 2
+        noise += float(np.sum((model.noise_scale * model.noise.sd[rows]) ** 2)) / scale[k] ** 2
         points += int(np.count_nonzero(here))
     return float(np.sqrt(max(total - noise, 0.0) / points)) if points else 0.0
 

@@ -52,6 +52,7 @@ def diagnose(
     begun = time.monotonic()
     rules = rules or Rules()
     known = model.with_noise_of_data() if noise == "data" else model.noise_known()
+    model.noise_scale = known.scale
     finding = search(model, rules=rules, on_progress=on_progress)
     baseline = finding.baseline
     before = _numbers(model, baseline, finding.lack_of_fit.p_value)
@@ -108,7 +109,14 @@ def diagnose(
 
 
 def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKnown) -> Shares:
-    return Shares(model, baseline, draws=rules.draws, seed=rules.seed, noise_dof=noise.dof)
+    return Shares(
+        model,
+        baseline,
+        draws=rules.draws,
+        seed=rules.seed,
+        noise_dof=noise.dof,
+        noise_scale=noise.scale,
+    )
 
 
 def _in_degrees(

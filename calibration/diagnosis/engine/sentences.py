@@ -28,7 +28,16 @@ def sentence(diagnosis: Diagnosis) -> str:
         return f"Found: {named} ({short})."
     if finding.verdict == "partly explained":
         return _partly(diagnosis, chosen)
-    others = "; or ".join(" + ".join(names) for names in finding.equivalent[1:])
+    sets = finding.equivalent
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if common:
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
+        return (
+            f"Found in part: {first} ({' + '.join(common)}). Something else is wrong beside it, and these"
+            f" data cannot say which: {rest}."
+        )
+    others = "; or ".join(" + ".join(names) for names in sets[1:])
     return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
 
 

@@ -20,7 +20,7 @@ from calibration.measurements.homogeneous._course import (
     largest_before,
     window_of,
 )
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, slope, unstated_sd
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, slope, unstated_sd
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -245,9 +245,10 @@ def _sd_over_time(
 def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
     """Of the stress alone; over : what its scatter is taken about a smooth curve of."""
     if trial.stress_sd is None:
-        one = relative_sd(over, trial.stress[b.points])
-        relative = np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE)
-        return unstated_sd(relative, stress, float(np.abs(trial.stress).max(initial=0.0)))
+        return np.maximum(
+            unstated_sd(over, trial.stress[b.points], stress, count),
+            SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
+        )
     return np.asarray(trial.stress_sd / np.sqrt(count))
 
 

@@ -371,8 +371,8 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the stress; its median is"
-                f" {100 * typical:.2g} % of the largest stress"
+                " scatter about a smooth curve, at least 0.5 % of the largest stress; its median is"
+                f" {100 * typical:.2g} %"
             )
         loops = [r for r in records if r.unloads and not r.reloaded]
         if loops:
@@ -409,7 +409,7 @@ class HomogeneousModel(MeasurementModel):
         if len(stated) < len(self.records):
             parts.append(
                 "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " stress"
+                " largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
