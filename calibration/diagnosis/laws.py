@@ -149,7 +149,23 @@ def diagnose_with_law(
         if better:
             model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)
-    return replace(found, notes=(*found.notes, *notes)), model
+    return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model
+
+
+def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
+    """A cause that these records cannot tell from others that are in no catalogue explains in part at most."""
+    if found.chosen is None or found.finding.verdict not in EXPLAINED:
+        return found
+    for c in found.chosen.candidates:
+        effect = model.effects[c.effect]
+        hit = [r for r, here in zip(model.records, model.reached(c), strict=True) if here]
+        if not effect.conclusive(hit, model.records):
+            said = f"{c.label} may stand in for anything that is smooth along these records: {effect.remedy}"
+            finding = replace(
+                found.finding, verdict="partly explained", dominant=found.finding.explanations[0]
+            )
+            return replace(found, finding=finding, notes=(*found.notes, said))
+    return found
 
 
 def _causes(found: Diagnosis) -> int:

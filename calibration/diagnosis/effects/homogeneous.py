@@ -375,6 +375,16 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
 # that predicts best what its fit has not seen (`calibration.diagnosis.laws`).
 
 
+def _several_modes(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Each material in two modes of loading, of which pulling and pressing are two."""
+    del everything
+    for material in {r.material for r in reached}:
+        mine = [r for r in reached if r.material == material]
+        if len({(r.mode, bool(r.stretch.min() < PRESSED)) for r in mine}) < 2:
+            return False
+    return True
+
+
 LAW_FORM = HomogeneousEffect(
     effect=catalogue.LAW_FORM,
     step=1e-3,
@@ -382,6 +392,7 @@ LAW_FORM = HomogeneousEffect(
     physical_limits=(1.0,),
     start_fraction=1.0,
     prior_scale=1.0,
+    conclusive=_several_modes,
     switch=True,
     richer=True,
     further=True,
