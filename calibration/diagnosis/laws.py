@@ -153,7 +153,7 @@ def diagnose_with_law(
 
 
 def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
-    """A cause that these records cannot tell from others that are in no catalogue explains in part at most."""
+    """A cause that these records cannot tell from what is in no catalogue explains in part at most."""
     if found.chosen is None or found.finding.verdict not in EXPLAINED:
         return found
     for c in found.chosen.candidates:
