@@ -205,7 +205,7 @@ def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: Non
             name = PREFERRED if PREFERRED in folds else next(iter(folds))
             held_out, squares, points = 0.0, 0.0, 0
             for _, fold in folds[name]:
-                trained = fit(own.subset(fold, others=True), whole.state, max_steps=20).state
+                trained = fit(own.subset(fold, others=True), whole.state, max_steps=8).state
                 left = own.subset(fold, others=False)
                 z = left.residuals([trained])[0][: left.points]
                 held_out += float(z @ z)
