@@ -33,6 +33,7 @@ from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 from tisim import laws
+from tisim.parallel.pool import cores
 
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
@@ -123,7 +124,7 @@ def fit(
     held_out : bool
         Predict each beam from the others.
     workers : int, optional
-        Processes; all cores where left out.
+        Processes; all cores that this process may use where left out.
     overwrite : bool
         Start anew instead of going on.
     on_progress : callable, optional
@@ -344,6 +345,7 @@ def predict(
     predict: str | None = None,
     baseline: str | Path | None = None,
     domain: str | None = None,
+    law: str = "auto",
     specimen_scatter: float | None = None,
     seed: int = 0,
     workers: int | None = None,
@@ -364,6 +366,8 @@ def predict(
         Cards that stand beside `cards` in place of the baseline that they state.
     domain : str, optional
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
+    law : str
+        Of the baseline beside which a fit looks for causes, as in `diagnose`.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
         specimen: 0.15 where left out.
@@ -405,7 +409,7 @@ def predict(
 
     if calibrate is not None and predict is not None:
         fitted, wanted = split(data, calibrate, predict)
-        found = from_trials(data, fitted, wanted, domain=domain, seed=seed, workers=workers, say=say)
+        found = from_trials(data, fitted, wanted, domain=domain, law=law, seed=seed, workers=workers, say=say)
         return PredictionResult(found)
     assert cards is not None
     some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))
@@ -491,7 +495,7 @@ def processes(workers: int | None) -> int:
     """The number of processes; InputError where it is less than 1."""
     if workers is not None and workers < 1:
         raise OptionError("workers", workers, "expected 1 or more")
-    return workers or os.cpu_count() or 1
+    return workers or cores()
 
 
 def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:

@@ -65,6 +65,9 @@ def main(
         str | None,
         typer.Option("--domain", "--kind", help="Kind of measurement, where the experiment has several."),
     ] = None,
+    law: Annotated[
+        str, typer.Option(help="Of the baseline of --calibrate: auto, or a name with terms (ogden:2).")
+    ] = "auto",
     specimen_scatter: Annotated[
         float | None,
         typer.Option(
@@ -100,6 +103,7 @@ def main(
             predict=predict,
             baseline=baseline,
             domain=domain,
+            law=law,
             specimen_scatter=specimen_scatter,
             seed=seed,
             workers=workers,

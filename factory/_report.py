@@ -20,11 +20,11 @@ from rich.table import Table
 from factory._build import BuildProgress, Built
 from factory._cli import duration, size_text
 from factory._course import HoldRecipe, deepest
+from factory._effects import TAKEN
 from factory._input import describe_os_error
 from factory._parts import part_entries
 from factory._staging import Staging
 from factory._store import read_ledger
-from factory.materials import TAKEN
 from factory.plan import Plan
 from tisim.problems._stops import shortest_time
 from tisim.problems.indentation.steps import LARGEST_STEP
@@ -193,7 +193,7 @@ def effect_lines(plan: Plan) -> list[tuple[str, str]]:
     for card in plan.cards:
         for effect in card.effects:
             left = effect.left_out(card.material)
-            if effect.becomes:
+            if effect.becomes not in (None, "law"):
                 word = f"taken over as the card's {effect.becomes}"
             else:
                 word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"

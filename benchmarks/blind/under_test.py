@@ -112,12 +112,14 @@ class VerdictFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.said: dict[str, Verdict] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        self.answers: dict[str, Verdict] = (
+            json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        )
 
-    def add(self, key: str, said: Verdict) -> None:
-        self.said[key] = said
+    def add(self, key: str, answer: Verdict) -> None:
+        self.answers[key] = answer
         part = self.path.with_suffix(".part")
-        part.write_text(json.dumps(self.said), encoding="utf-8")
+        part.write_text(json.dumps(self.answers), encoding="utf-8")
         part.replace(self.path)
 
 
@@ -178,7 +180,7 @@ def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The diagnosis without its held-out improvement, and what is scored of it."""
+    """The diagnosis without its refinement, and what is scored of it."""
     from calibration.diagnosis import diagnose
 
     made = diagnose(model, gain=False)
@@ -189,7 +191,7 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
     """The part of diagnosis.json that is scored; rms in the model's own unit."""
     from calibration.diagnosis.engine.held_out import held_out_improvement
 
-    finding = made.finding
+    finding, content = made.finding, made.to_json()
     chosen = finding.chosen
     causes: list[dict[str, Any]] = []
     found: Verdict = {
@@ -204,8 +206,8 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
             "worst": finding.lack_of_fit.worst,
         },
         "baseline": {"shear_modulus_Pa": model.shear_moduli(finding.baseline.state.u)},
-        "share": made.to_json()["share"],
-        "nearest": made.to_json()["nearest"],
+        "share": content["share"],
+        "nearest": content["nearest"],
         "tried": [(e.fit.label, e.fit.chi2, e.lack_of_fit.p_value) for e in finding.explanations],
     }
     if chosen is None:

@@ -11,7 +11,7 @@ from calibration.measurements._effect import Candidate, HandedOn
 
 
 def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedOn]:
-    """Parts of a material by the effects of the chosen explanation that state them, in its order.
+    """Parts and law of a material by the effects of the chosen explanation that state them, in its order.
 
     A material has one part of each field: of two effects that ask for the same, the first has it.
     """
@@ -21,10 +21,10 @@ def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedO
         part = diagnosis.subject.handed_on.get(c, {}).get(material)
         if part is None:
             continue
-        if part.part is not None and part.field in taken:
+        if part.made and part.field in taken:
             said = f"not handed on: the card's {part.field} is that of {taken[part.field]}"
-            part = replace(part, part=None, modulus_ratio=1.0, remarks=(said,))
-        elif part.part is not None:
+            part = replace(part, part=None, law=None, modulus_ratio=1.0, remarks=(said,))
+        elif part.made:
             taken[part.field] = c.label
         found[c] = part
     return found
@@ -32,4 +32,12 @@ def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedO
 
 def becomes(part: HandedOn | None) -> dict[str, Any]:
     """What an effect's entry in a card says of its part."""
-    return {} if part is None or part.part is None else {"becomes": part.field}
+    return {} if part is None or not part.made else {"becomes": part.field}
+
+
+def law_of(
+    handed: Mapping[Candidate, HandedOn], shear: float, bulk: float
+) -> tuple[str, Mapping[str, float]] | None:
+    """The law that an effect asks for with these small-strain moduli [Pa], and its parameters."""
+    found = next((h.law for h in handed.values() if h.law is not None), None)
+    return None if found is None else found(shear, bulk)

@@ -24,7 +24,7 @@ from calibration.diagnosis._card_numbers import (
     rounded,
     valid_range,
 )
-from calibration.diagnosis._handed_on import becomes, handed_on
+from calibration.diagnosis._handed_on import becomes, handed_on, law_of
 from calibration.diagnosis._rig_file import FORMAT, USES, corrects
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
@@ -92,6 +92,10 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     content["model_error"] = model_error(diagnosis.fit, modulus.direction)
     content["baseline"] = baseline_entry(name, modulus, diagnosis)
     content.update({h.field: part_entry(h.part) for h in handed.values() if h.part is not None})
+    asked = law_of(handed, stated, bulk_ratio * shear)
+    if asked is not None:
+        content["law"] = asked[0]
+        content["laws"][asked[0]] = {n: rounded(x) for n, x in asked[1].items()}
     effects = [
         {
             **_entry(k, diagnosis),
@@ -190,6 +194,8 @@ def _provenance(
                 f"{c.label} is the card's {h.field} ({h.part.title}); the laws' modulus is {h.states},"
                 f" {h.modulus_ratio:.4g} times that beside the effect."
             )
+        elif h.law is not None:
+            lines.append(f"{c.label} is the card's law, {h.law(1.0, 1.0)[0]}.")
         lines += [f"{c.label}: {remark}." for remark in h.remarks]
     if diagnosis.finding.verdict == "unexplained":
         lines.append("Unexplained: this is the baseline's modulus, and the measurements depart from it.")

@@ -67,22 +67,29 @@ class Occurrence:
 
 @dataclass(frozen=True, kw_only=True)
 class HandedOn:
-    """The part of a material that an effect is (`tisim.parts`).
+    """What an effect is of a material: one of its parts (`tisim.parts`), or another law.
 
     Attributes
     ----------
-    field : of `tisim.Material` (viscosity, softening, fibres).
+    field : of `tisim.Material` (viscosity, softening, fibres, law).
     part : None where the effect makes none; `remarks` say why.
+    law : small-strain shear and bulk moduli [Pa] to the name of a law and its parameters.
     modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
     states : which modulus that is, for people.
     remarks : what the measurement did not see, and what differs from the effect, a sentence each.
     """
 
-    field: Literal["viscosity", "softening", "fibres"]
-    part: Part | None
+    field: Literal["viscosity", "softening", "fibres", "law"]
+    part: Part | None = None
+    law: Callable[[float, float], tuple[str, Mapping[str, float]]] | None = None
     modulus_ratio: float = 1.0
     states: str = ""
     remarks: tuple[str, ...] = ()
+
+    @property
+    def made(self) -> bool:
+        """Whether the material has it."""
+        return self.part is not None or self.law is not None
 
 
 def everywhere(record: Any) -> bool:

@@ -56,7 +56,7 @@ class _Effect(_Lenient):
     parameters: dict[str, _Amplitude]
     applies_to: Literal["material", "shape"] = "material"
     scope: str = "all"
-    becomes: Literal["viscosity", "softening", "fibres"] | None = None
+    becomes: Literal["viscosity", "softening", "fibres", "law"] | None = None
 
 
 class _Uncertainty(_Lenient):

@@ -137,14 +137,14 @@ def draw(found: Prediction) -> Picture:
     some = [found.records[int(k)] for k in _evenly(len(found.records))]
     columns = min(COLUMNS, len(some))
     lines = -(-len(some) // columns)
-    figure = paper(4.2 * columns, 3.1 * lines + 0.5)
+    figure = paper(4.2 * columns, 3.1 * lines + 0.8)
     panels = figure.subplots(lines, columns, squeeze=False).ravel()
     for axes, r in zip(panels, some, strict=False):
         _panel(plain(axes), found, r)
     for axes in panels[len(some) :]:
         axes.set_axis_off()
     handles, names = panels[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside upper center", ncols=len(names), frameon=False, fontsize=8)
+    figure.legend(handles, names, loc="outside upper center", ncols=columns, frameon=False, fontsize=8)
     left_out = len(found.records) - len(some)
     caption = "Measured points and predictions; bands hold 95 % of measurements where the models are right."
     if left_out:

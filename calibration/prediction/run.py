@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis._card_numbers import model_error
+from calibration.diagnosis.engine.fitting import Fit, fit
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, Trial
 from calibration.measurements._baseline import SCATTER, Baseline
@@ -104,20 +106,18 @@ class Prediction:
         said = []
         for kind, mine in self.of_kind().items():
             unit, per_si = mine[0].shown.unit
-            each = " and ".join(
-                f"{per_si * self.rms(mine, m):.3g} {unit} by the {m}{_named(m, self.labels[m])}"
-                for m in self.models
-            )
             trials = len({r.trial for r in mine})
+            each = ", ".join(
+                f"{m}{_named(m, self.labels[m])} {per_si * self.rms(mine, m):.3g} {unit}" for m in self.models
+            )
             text = (
-                f"{kind}: {trials} trial{'s' * (trials > 1)} that no model had seen, predicted to {each}"
-                f" (rms; noise alone {per_si * self.noise(mine):.3g} {unit})"
+                f"{trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, rms of predicted"
+                f" less measured: {each}, noise alone {per_si * self.noise(mine):.3g} {unit}"
             )
             skill = self.skill(mine)
-            text += "" if skill is None else f": skill {skill:.2f}"
-            last = self.models[-1]
-            text += f"; {self.coverage(mine, last):.0%} of the points within the 95 % intervals"
-            said.append(text + ".")
+            text += "" if skill is None else f"; skill {skill:.2f}"
+            inside = self.coverage(mine, self.models[-1])
+            said.append(f"{text}; {inside:.0%} of the points within the 95 % intervals.")
         return " ".join(said)
 
 
@@ -275,6 +275,7 @@ def from_trials(
     wanted: Sequence[Trial],
     *,
     domain: str | None = None,
+    law: str = "auto",
     seed: int = 0,
     workers: int | None = None,
     say: Say = lambda _: None,
@@ -286,6 +287,7 @@ def from_trials(
     ----------
     fitted, wanted : its trials to fit, and those to predict.
     domain : the kind of measurement of the fit, where it is not plain.
+    law : of the diagnosis' baseline, as `calibration.diagnose` takes it.
 
     Raises
     ------
@@ -300,13 +302,19 @@ def from_trials(
         if t.material not in {f.material for f in fitted}:
             raise InputError(f"trial {t.id}: material {t.material}: expected one of the trials to fit")
     if _same_kind(kind, theirs):
-        found = _within(kind, experiment, fitted, wanted, seed=seed, workers=workers, say=say)
+        found = _within(kind, experiment, fitted, wanted, law=law, seed=seed, workers=workers, say=say)
         return replace(found, source=source, seconds=time.monotonic() - begun)
     from calibration.api import diagnose
     from calibration.diagnosis.card import write_cards
 
     result = diagnose(
-        ours, domain=kind.name, gain=False, seed=seed, workers=workers, on_progress=lambda p: say(str(p))
+        ours,
+        domain=kind.name,
+        law=law,
+        gain=False,
+        seed=seed,
+        workers=workers,
+        on_progress=lambda p: say(str(p)),
     )
     with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
         write_cards(Path(folder), result.diagnosis, ours)
@@ -328,32 +336,49 @@ def _within(
     fitted: Sequence[Trial],
     wanted: Sequence[Trial],
     *,
+    law: str,
     seed: int,
     workers: int | None,
     say: Say,
 ) -> Prediction:
-    """One model of all these trials, of which a part is fitted: coordinates and effects are the same."""
-    from calibration.diagnosis import Rules, diagnose, model_of
-    from calibration.diagnosis._card_numbers import model_error
-    from calibration.diagnosis.engine.fitting import Fit, fit
+    """The diagnosis' model once more, of all these trials, of which a part is fitted: coordinates and effects
+    are the same."""
+    from calibration.diagnosis import Rules, model_of
+    from calibration.diagnosis.laws import diagnose_with_law
+
+    asked: dict[int, dict[str, Any]] = {}
+
+    def make(**options: Any) -> MeasurementModel:
+        own = replace(experiment, trials=tuple(fitted))
+        made = model_of(own, kind=kind.name, workers=workers, **options)
+        asked[id(made)] = options
+        return made
 
     ids = {t.id for t in wanted}
     some = ids | {t.id for t in fitted}
     together = replace(experiment, trials=tuple(t for t in experiment.trials if t.id in some))
-    model = model_of(together, kind=kind.name, workers=workers)
-    fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
-    train = model.subset(fold, others=True)
+    notes = []
     try:
-        found = diagnose(train, rules=Rules(seed=seed), gain=False, on_progress=say)
+        found, diagnosed = diagnose_with_law(
+            make, law=law, rules=Rules(seed=seed), gain=False, on_progress=say
+        )
+        model = model_of(together, kind=kind.name, workers=workers, **asked[id(diagnosed)])
+        fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
+        train = model.subset(fold, others=True)
         named = [(BASELINE, found.finding.baseline)]
         if found.chosen is not None:
             named.append((EXTENDED, found.chosen.fit))
         say("predicting")
         made: dict[str, tuple[MeasurementModel, Calibrated]] = {}
-        for name, start in named:
-            train.update_nuisances(start.state)
-            again: Fit = fit(train, start.state, start.candidates)
-            made[name] = (model.subset(fold, others=False), _from_fit(model, fold, again, name, model_error))
+        for name, old in named:
+            known = dict(zip(diagnosed.names, old.state.u, strict=True))
+            u = np.array([known.get(n, x) for n, x in zip(model.names, model.start(), strict=True)])
+            start = replace(old.state, u=u)
+            train.update_nuisances(start)
+            again: Fit = fit(train, start, old.candidates)
+            if not again.converged:
+                notes.append(f"the fit of the {name} did not converge: {again.message}")
+            made[name] = (model.subset(fold, others=False), _from_fit(model, fold, again, name))
         records = predict_records(model.subset(fold, others=False), made)
     except ValueError as error:
         raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error
@@ -365,16 +390,15 @@ def _within(
         model_errors={n: dict.fromkeys(materials, known.model_error) for n, (_, known) in made.items()},
         shear_moduli={n: model.shear_moduli(known.state.u) for n, (_, known) in made.items()},
         records=records,
-        notes=(found.sentence(),),
+        notes=(found.sentence(), *notes),
     )
 
 
 def _from_fit(
     model: MeasurementModel,
     fold: NDArray[np.bool_],
-    found: Any,
+    found: Fit,
     name: str,
-    model_error: Callable[[Any, Array], float],
 ) -> Calibrated:
     """What a fit to all rows but a fold's knows. Where it leaves more than noise, its covariance is wider by
     the reduced chi-square; what specimens of a material may differ by is not."""

@@ -1,5 +1,5 @@
-"""Effects of a material as its parts (`tisim.parts`): relaxation as a Prony series, losses as softening,
-stiffness in one direction as fibres.
+"""Effects of a material as its parts (`tisim.parts`) or its law: relaxation as a Prony series, losses as
+softening, stiffness in one direction as fibres.
 
 An effect is a phenomenon of one kind of measurement (a stress that grows by so much a decade of the rate);
 a part is what the simulator has (a relaxation spectrum). The part is the one that shows the phenomenon over
@@ -9,13 +9,14 @@ the times, or energies, that the measurement saw; beyond them it stays as it is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares, nnls
 from scipy.special import erf
 
-from calibration.measurements._effect import HandedOn
+from calibration.measurements._effect import HandedOn, Occurrence
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 
 Array = NDArray[np.float64]
@@ -58,7 +59,9 @@ def branches(fractions: Array, times: Array, *, reference: float, first: float, 
     """A Prony series whose fractions are parts of the storage modulus at 1 / reference [rad/s]."""
     slow = (times / reference) ** 2
     left = 1.0 - float(np.sum(fractions * slow / (1.0 + slow)))
-    return _prony(left, fractions, times, first=first, last=last, off=0.0)
+    found = _prony(left, fractions, times, first=first, last=last, off=0.0)
+    own = "the vibration's own damping, which was fitted beside it, is not in the viscosity"
+    return replace(found, remarks=(*found.remarks, own))
 
 
 def _prony(left: float, strengths: Array, times: Array, *, first: float, last: float, off: float) -> HandedOn:
@@ -147,6 +150,32 @@ def fibres_along_the_load(k1: float) -> HandedOn:
             " another body; they carry no compression",
         ),
     )
+
+
+def stiffening(found: Occurrence) -> HandedOn:
+    """Yeoh's law with one constant more, c2 over c1."""
+    if found.amplitude < 0.0:
+        text = "no law: one that softens with strain has no least energy"
+        return HandedOn(field="law", remarks=(text,))
+    return _law("yeoh", lambda g, k: {"mu": g, "stiffening": found.amplitude, "bulk": k})
+
+
+def mooney_rivlin(found: Occurrence) -> HandedOn:
+    """A fraction of the modulus is the second invariant's."""
+    c = found.amplitude
+    return _law("mooney-rivlin", lambda g, k: {"c10": 0.5 * g * (1.0 - c), "c01": 0.5 * g * c, "bulk": k})
+
+
+def eight_chain(found: Occurrence) -> HandedOn:
+    """Chains lock at a stretch of which the amplitude is one over the square."""
+    if not 0.0 < found.amplitude < 1.0:
+        text = "no law: the chains would lock at rest"
+        return HandedOn(field="law", remarks=(text,))
+    return _law("eight-chain", lambda g, k: {"mu": g, "locking": found.amplitude**-0.5, "bulk": k})
+
+
+def _law(name: str, parameters: Callable[[float, float], dict[str, float]]) -> HandedOn:
+    return HandedOn(field="law", law=lambda g, k: (name, parameters(g, k)), states="the small-strain modulus")
 
 
 def seen(times: list[Array]) -> tuple[float, float]:

@@ -10,9 +10,12 @@ from scipy.special import erf
 
 from calibration.diagnosis import catalogue
 from calibration.diagnosis.effects._material_parts import (
+    eight_chain,
     fibres_along_the_load,
+    mooney_rivlin,
     one_time,
     softening_of,
+    stiffening,
     viscosity_of,
 )
 from calibration.measurements._effect import HandedOn, Occurrence
@@ -49,30 +52,32 @@ def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequenc
     return False
 
 
+SHOWN = 0.1  # of a ramp's time: what relaxes faster has relaxed all along it
+
+
 def _viscosity_rate_dependence(found: Occurrence) -> HandedOn:
-    """A relaxation function that falls by the amplitude a decade, as high as it has to be for the records to
-    have on average the stress that the effect gives them: a convolution along each record's course."""
+    """A relaxation function that falls evenly in the logarithm of time, at the height and with the slope at
+    which the records, each along its own course, come nearest to the stress that the effect gives them: a
+    ramp remembers its beginning, so that the slope is not quite the amplitude."""
     records: list[Record] = [r for r in found.records if np.isfinite(r.rate).any()]
-    first = min(float(np.ptp(r.stretch) / np.nanmax(r.rate)) for r in records)
     last = max(float(np.ptp(r.time)) for r in records)
-    first = min(first, 0.5 * last)
+    first = min(SHOWN * min(float(np.ptp(r.stretch) / np.nanmax(r.rate)) for r in records), 0.5 * last)
 
-    def falling(t: Array) -> Array:
-        return np.asarray(np.exp(-found.amplitude * np.log10(np.clip(t, first, last) / first)))
+    def decades(t: Array) -> Array:
+        return np.asarray(np.log10(np.clip(t, first, last) / first))
 
-    heights, weights = [], []
+    columns, wanted = [], []
     for r in records:
         elastic = stress_of(r.mode, r.stretch, 0.5)
-        rise = np.diff(elastic, prepend=0.0)
         begun = np.r_[2.0 * r.time[0] - r.time[1], r.time[:-1]]
         since = r.time[:, None] - 0.5 * (r.time + begun)[None, :]
-        remembered = (np.where(since > 0.0, falling(since), 0.0) * rise).sum(axis=1)
-        wanted = elastic * _factor_rate_dependence(r.stretch, found.amplitude, r)
+        remembered = np.where(since > 0.0, decades(since), 0.0) @ np.diff(elastic, prepend=0.0)
         used = np.isfinite(r.rate)
-        heights.append(float(remembered[used] @ wanted[used]))
-        weights.append(float(remembered[used] @ remembered[used]))
-    height = sum(heights) / sum(weights)
-    return viscosity_of(lambda t: height * falling(t), first=first, last=last)
+        weight = (1.0 / r.sd)[used]
+        columns.append(weight[:, None] * np.column_stack([elastic, remembered])[used])
+        wanted.append(weight * (elastic * _factor_rate_dependence(r.stretch, found.amplitude, r))[used])
+    height, slope = np.linalg.lstsq(np.concatenate(columns), np.concatenate(wanted), rcond=None)[0]
+    return viscosity_of(lambda t: height + slope * decades(t), first=first, last=last)
 
 
 RATE_DEPENDENCE = HomogeneousEffect(
@@ -300,6 +305,7 @@ STRAIN_STIFFENING = HomogeneousEffect(
     prior_scale=0.5,
     extra=_extra_strain_stiffening,
     action="pull to larger strain",
+    hands_on=stiffening,
 )
 
 
@@ -317,6 +323,7 @@ SECOND_INVARIANT = HomogeneousEffect(
     bounds=(-0.5, 1.5),
     prior_scale=0.3,
     extra=_extra_second_invariant,
+    hands_on=mooney_rivlin,
 )
 
 
@@ -366,6 +373,7 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
     bounds=(0.0, 1.0),
     prior_scale=0.5,
     extra=_extra_limited_extensibility,
+    hands_on=eight_chain,
 )
 
 

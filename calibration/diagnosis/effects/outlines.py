@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
-from calibration.diagnosis.effects._material_parts import viscosity_of
+from calibration.diagnosis.effects._material_parts import stiffening, viscosity_of
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.outlines import COARSE
 from calibration.measurements.outlines._effect import (
@@ -336,6 +336,7 @@ STRAIN_STIFFENING = OutlineEffect(
     bounds=(0.0, 4.0),
     prior_scale=1.5,
     bend=_bend_strain_stiffening,
+    hands_on=stiffening,
 )
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.diagnosis import catalogue
-from calibration.diagnosis.effects._material_parts import branches
+from calibration.diagnosis.effects._material_parts import branches, stiffening
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._effect import ReleaseEffect, hung
@@ -216,6 +216,7 @@ STRAIN_STIFFENING = ReleaseEffect(
     prior_scale=1.5,
     alter=_alter_strain_stiffening,
     action="hang a larger mass; pull a coupon to large strain",
+    hands_on=stiffening,
 )
 
 

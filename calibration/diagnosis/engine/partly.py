@@ -119,10 +119,12 @@ def _judge(
     if not inside_bounds(model, explanation):
         against.append("an amplitude is at the end of what makes sense")
     if share.value < rules.least_share:
-        against.append(f"it takes less than {rules.least_share:.0%} of what noise leaves to explain")
+        against.append(
+            f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
+        )
     elif at_least < rules.least_share:
         against.append(
-            f"over {shares.groups.over} its share is not sure to be {rules.least_share:.0%} or more"
+            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.least_share:.0f} % or more"
         )
     part = relative_rms(model, baseline)
     if not noise_known and part is not None and part < rules.smooth_error:
@@ -155,9 +157,16 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
         return [held_out.note]
     found = []
     if not held_out.helps_everywhere:
-        worse = [p.name for p in held_out.parts if not p.helps]
-        named = worse[0] if len(worse) == 1 else f"{len(worse)} of {len(held_out.parts)} parts"
-        found.append(f"{named} of the measurements, held out, is predicted no better than without it")
+        worse = held_out.worse
+        if len(worse) == 1:
+            found.append(f"{worse[0]}, held out, is predicted no better than without it")
+        else:
+            found.append(
+                f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
+                " it"
+                if worse
+                else "it acts in no part that could be held out"
+            )
     if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
         found.append("held-out measurements are predicted no better with it")
     for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
@@ -168,7 +177,7 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
     if held_out.within and rules.least_share <= at_least < rules.least_share_within:
         found.append(
             f"measurements could be held out from within the tests only, where its share must be sure to be"
-            f" {rules.least_share_within:.0%}"
+            f" {100.0 * rules.least_share_within:.0f} %"
         )
     return found
 

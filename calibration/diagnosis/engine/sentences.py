@@ -33,12 +33,19 @@ def sentence(diagnosis: Diagnosis) -> str:
     if common:
         first = " and ".join(diagnosis.effects[n].sentence for n in common)
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
+        takes = _takes(diagnosis, common)
         return (
-            f"Found in part: {first} ({' + '.join(common)}). Something else is wrong beside it, and these"
-            f" data cannot say which: {rest}."
+            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and"
+            f" these data cannot say which: {rest}."
         )
     others = "; or ".join(" + ".join(names) for names in sets[1:])
     return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
+
+
+def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
+    """The share of one cause, in the middle of a sentence."""
+    own = [s for c, s in diagnosis.shares.items() if c.effect in names]
+    return f", {percent(own[0])} of what noise leaves to explain" if len(own) == 1 else ""
 
 
 def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:

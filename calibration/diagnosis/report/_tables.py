@@ -33,7 +33,8 @@ INVISIBLE = ("effect", "what it is", "amplitude needed for 5 sd", "what to do in
 
 def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
     """One row a cause (named, or nearest), then what is not modelled; no rows where all is well."""
-    rows = [_cause_row(diagnosis, c, told, named=True) for c in told["causes"]]
+    causes = sorted(told["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
+    rows = [_cause_row(diagnosis, c, told, named=True) for c in causes]
     nearest = told["nearest"]
     if nearest is not None:
         rows += [_cause_row(diagnosis, c, nearest, named=False) for c in nearest["causes"]]
@@ -81,7 +82,7 @@ def _cause_row(
     """Several parameters of one cause stand in one cell each under the other."""
     effect = diagnosis.effects[cause["effect"]]
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
-    share = cause.get("share") or (told["share"] if len(told["causes"]) == 1 else None)
+    share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
     evidence = _evidence(cause, told["gain"])
     return [
         Cell(text=cause["effect"] + ("" if named else " (not named)"), mark="chosen" if named else ""),
@@ -89,7 +90,8 @@ def _cause_row(
         Cell(text=scope(cause["scope"])),
         Cell(text="; ".join(t for t, _ in values), value=values[0][1], mark="chosen" if named else ""),
         Cell(
-            text=NOTHING if share is None else _share(share), value=None if share is None else share["value"]
+            text=NOTHING if share is None else _share(share) + ("" if alone else " together"),
+            value=None if share is None else share["value"],
         ),
         Cell(text=meaning(effect)),
         Cell(text=evidence, value=cause.get("confidence")),

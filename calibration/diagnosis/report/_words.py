@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from calibration.diagnosis._rig_file import corrects
 from calibration.diagnosis.engine.null import EVERYTHING
+from calibration.diagnosis.engine.search import Finding
 from calibration.measurements._baseline import SPECIMENS
 from calibration.measurements._effect import EffectModel, Owner
 from calibration.report import significant
@@ -63,6 +64,14 @@ def pattern(name: str, kind: str) -> str:
     """A set of patterns for people, in the words of a kind of measurement; what that kind calls it where it
     is not known here."""
     return _PATTERNS.get(name) or _OF_KIND.get(kind, {}).get(name, name)
+
+
+def headline(finding: Finding) -> str:
+    """The verdict in a few words."""
+    sets = finding.equivalent
+    if finding.verdict == "ambiguous" and any(all(n in s for s in sets) for n in sets[0]):
+        return "A cause found, and one more that cannot be told"
+    return HEADLINE[finding.verdict]
 
 
 def meaning(effect: EffectModel) -> str:

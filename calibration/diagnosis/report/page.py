@@ -12,7 +12,7 @@ from calibration.diagnosis.report import _tables as tables
 from calibration.diagnosis.report._evidence import draw_evidence
 from calibration.diagnosis.report._method import alarm, lack_of_fit, method, troubles
 from calibration.diagnosis.report._template import PAGE
-from calibration.diagnosis.report._words import HEADLINE
+from calibration.diagnosis.report._words import headline
 from calibration.measurements._model import MeasurementModel
 from calibration.report import Picture, file_name, picture, template
 
@@ -55,7 +55,7 @@ def render(
     return template(PAGE).render(
         title=title,
         verdict=finding.verdict,
-        headline=HEADLINE[finding.verdict],
+        headline=headline(finding),
         sentence=diagnosis.sentence(),
         budget_headings=tables.BUDGET,
         budget=tables.budget_rows(diagnosis, told),
@@ -74,7 +74,9 @@ def render(
         alarm=alarm(diagnosis),
         extended=diagnosis.extended is not None,
         fit_headings=tables.FITS if diagnosis.extended else tables.FITS[:2],
-        fits=tables.fit_rows(told, len(finding.null.noise)),
+        fits=[
+            row[: 4 if diagnosis.extended else 2] for row in tables.fit_rows(told, len(finding.null.noise))
+        ],
         gain=tables.gain_sentence(told),
         invisible_headings=tables.INVISIBLE,
         invisible=tables.invisible_rows(diagnosis),
