@@ -65,12 +65,14 @@ class HeldOut:
     @property
     def helps_everywhere(self) -> bool:
         """Whether the extension predicts every fold in which it acts better than the baseline does."""
-        return any(self.acts) and not self.worse
+        return bool(self.parts) and not self.worse
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Folds in which it acts, and that it predicts no better."""
-        return tuple(p.name for p, acts in zip(self.parts, self.acts, strict=True) if acts and not p.helps)
+        """Folds in which it acts, and that it predicts no better. An effect that shows in no fold alone (a
+        law that brings constants of its own) acts in all."""
+        acts = self.acts if any(self.acts) else (True,) * len(self.parts)
+        return tuple(p.name for p, own in zip(self.parts, acts, strict=True) if own and not p.helps)
 
 
 def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:

@@ -27,6 +27,8 @@ from calibration.diagnosis.engine.rules import Progress, Rules
 from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
 from calibration.measurements._model import MeasurementModel
 
+EACH = 2  # sets of as many causes that are tried
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Assessed:
@@ -83,21 +85,22 @@ def assess(
 def _dominant(
     found: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules
 ) -> list[tuple[Explanation, Misfit]]:
-    """In the order in which they are tried: the best of each number of causes, from the smallest set that one
-    cause more adds little to; then the larger ones, and the smaller ones."""
-    best: dict[int, tuple[Explanation, Misfit]] = {}
-    for e, m in found:
-        size = len(e.names)
-        if size not in best or m.value < best[size][1].value:
-            best[size] = (e, m)
+    """In the order in which they are tried: the best of the smallest number of causes that one cause more
+    adds little to; then those of one cause more each, and of fewer. Of each number the best `EACH` sets of
+    names."""
+    best: dict[int, list[tuple[Explanation, Misfit]]] = {}
+    for e, m in sorted(found, key=lambda pair: pair[1].value):
+        own = best.setdefault(len(e.names), [])
+        if len(own) < EACH and e.names not in [other.names for other, _ in own]:
+            own.append((e, m))
     sizes = sorted(best)
     chosen = sizes[0]
     for size in sizes[1:]:
-        gained = shares.share(best[size][1]).value - shares.share(best[chosen][1]).value
+        gained = shares.share(best[size][0][1]).value - shares.share(best[chosen][0][1]).value
         if gained >= rules.further_share * (size - chosen):
             chosen = size
     larger = [k for k in sizes if k > chosen]
-    return [best[k] for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen))]
+    return [pair for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen)) for pair in best[k]]
 
 
 def _judge(
@@ -164,8 +167,6 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
             found.append(
                 f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
                 " it"
-                if worse
-                else "it acts in no part that could be held out"
             )
     if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
         found.append("held-out measurements are predicted no better with it")

@@ -57,6 +57,6 @@ class Rules:
     alike: float = 0.02
     same_amplitude: float = 0.5
     same_sds: float = 3.0
-    tries: int = 3
+    tries: int = 5
     smooth_error: float = 0.01
     negligible: float = 0.01

@@ -96,7 +96,7 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
     """How much is left, where it lives, and whether it repeats."""
     if left.rms == 0.0:
         return "What remains is no more than noise."
-    size = f"{unit[1] * left.rms:.2g} {unit[0]}"
+    size = f"{unit[1] * left.rms:.3g} {unit[0]}"
     if left.of_full_scale is not None:
         size += f" rms, {100.0 * left.of_full_scale:.2g} % of full scale"
     parts = []
