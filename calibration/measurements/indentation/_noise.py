@@ -179,12 +179,12 @@ def nuisances(
             left = r.depth_sd * remaining_noise(r.time[phase], int(r.count[phase].sum()), degree)
             for m, part in enumerate(left.T, 1):
                 add(f"depth {m} of {r.labels[n]} of {r.name}", own[phase], part * slope[phase])
-    for r, own, force, part in zip(records, rows, forces, relaxing, strict=True):
-        deepest = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
+    for r, own, force, fraction in zip(records, rows, forces, relaxing, strict=True):
+        reached = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
         turned = np.logical_or.accumulate(r.direction < 0.0)
-        back = np.where(turned, np.clip(1.0 - r.depth / deepest, 0.0, 1.0), 0.0)
-        for power in RETRACTED if part > 0.0 and back.any() else ():
-            size = RETRACTION * part * float(np.abs(force).max())
+        back = np.where(turned, np.clip(1.0 - r.depth / reached, 0.0, 1.0), 0.0)
+        for power in RETRACTED if fraction > 0.0 and back.any() else ():
+            size = RETRACTION * fraction * float(np.abs(force).max())
             add(f"retraction {power} of {r.name}", own, size * back**power)
     return np.column_stack(found), names
 
