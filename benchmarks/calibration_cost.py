@@ -3,11 +3,12 @@
     python -m calibration.fit EXPERIMENT --model all --out FITS
     python -m benchmarks.calibration_cost EXPERIMENT FITS [--no-peers]
 
-EXPERIMENT: beams of 50 and 100 mm and a 150 mm bridge, as in measured/bench/clean. Set OMP_NUM_THREADS,
-MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1; CalculiX (`ccx`) is the peer. A candidate: all beams of one
-material solved with one set of parameters, and their likelihood. Core seconds, kernels loaded, median of 5
-populations of 8. The seconds of a calibration are those that calibration.fit wrote. CalculiX: the same three
-beams, 10-node tetrahedra on the half beam (as in static_beams.py), G = 40 kPa, K = 100 G, one run each.
+EXPERIMENT: beams of 50 and 100 mm and a 150 mm bridge, as in datasets/measured/bench/clean. Set
+OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1; CalculiX (`ccx`) is the peer. A candidate: all
+beams of one material solved with one set of parameters, and their likelihood. Core seconds, kernels loaded,
+median of 5 populations of 8. The seconds of a calibration are those that calibration.fit wrote. CalculiX: the
+same three beams, 10-node tetrahedra on the half beam (as in static_beams.py), G = 40 kPa, K = 100 G, one run
+each.
 """
 
 from __future__ import annotations

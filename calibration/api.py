@@ -32,6 +32,7 @@ from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, Reconstruction
 from tisim import laws
+from tisim.parallel.pool import cores
 
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
@@ -69,6 +70,7 @@ def fit(
     damage: str | None = None,
     fibres: bool = False,
     objective: str = "likelihood",
+    free_bulk_ratio: bool = False,
     rig: str | Path | None = None,
     out: str | Path | None = None,
     seed: int = 1,
@@ -103,6 +105,9 @@ def fit(
         homogeneous tests.
     objective : str
         "likelihood", or "dice" for the overlap of bodies as in the paper (no error bars).
+    free_bulk_ratio : bool
+        Find K/G too, where there are photographs of beams. Else it is held at 300, as a diagnosis holds it,
+        and the other constants' intervals have their part of its uncertainty.
     rig : path, optional
         rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
     out : path, optional
@@ -115,7 +120,7 @@ def fit(
     held_out : bool
         Predict each beam from the others.
     workers : int, optional
-        Processes; all cores where left out.
+        Processes; all cores that this process may use where left out.
     overwrite : bool
         Start anew instead of going on.
     on_progress : callable, optional
@@ -140,6 +145,7 @@ def fit(
             damage=damage,
             fibres=fibres,
             objective=objective,
+            free_bulk_ratio=free_bulk_ratio,
             rig=rig,
             out=out if out is not None else memory,
             seed=seed,
@@ -199,6 +205,7 @@ def plan_fit(
     damage: str | None,
     fibres: bool,
     objective: str,
+    free_bulk_ratio: bool,
     rig: str | Path | None,
     out: str | Path,
     seed: int,
@@ -248,6 +255,7 @@ def plan_fit(
         objective="likelihood" if objective == "likelihood" else "dice",
         setup=setup,
         specs=specs,
+        free_bulk_ratio=free_bulk_ratio,
     )
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
@@ -379,7 +387,7 @@ def processes(workers: int | None) -> int:
     """The number of processes; InputError where it is less than 1."""
     if workers is not None and workers < 1:
         raise OptionError("workers", workers, "expected 1 or more")
-    return workers or os.cpu_count() or 1
+    return workers or cores()
 
 
 def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import signal
-import threading
 import time
 from collections.abc import Iterator, Sequence
 from importlib.metadata import PackageNotFoundError, version
@@ -22,6 +20,7 @@ from rich.table import Table
 
 from calibration.errors import InputError, OptionError
 from tisim import laws
+from tisim.parallel.termination import terminable
 
 if TYPE_CHECKING:
     from calibration.progress import FitProgress
@@ -84,7 +83,7 @@ def plain_ends(stopped: str = "Stopped: nothing was written.") -> Iterator[None]
     `@app.command()`. Errors of any other kind are faults of the program and pass through.
     """
     try:
-        with _terminable():
+        with terminable():
             yield
     except OptionError as error:
         _end(f"error: {error.option}", 2)
@@ -108,23 +107,6 @@ def plain_ends(stopped: str = "Stopped: nothing was written.") -> Iterator[None]
 def _end(sentence: str, code: int) -> NoReturn:
     typer.echo(" ".join(sentence.split()), err=True)
     raise typer.Exit(code)
-
-
-@contextlib.contextmanager
-def _terminable() -> Iterator[None]:
-    """Lets SIGTERM end the work as Ctrl-C does (signals reach the main thread only)."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def interrupt(_number: int, _frame: object) -> NoReturn:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 class FitScreen:

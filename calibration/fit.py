@@ -71,9 +71,9 @@ def main(
     time: Annotated[
         str | None,
         typer.Option(
-            help="Relaxation beside the law, from tests with a column time_s: prony (the data"
-            " choose the number of terms), prony:1 to prony:3, or prony:spectrum (two stated times a decade)."
-            " Moduli are then long-time ones."
+            help="Relaxation beside the law, from tests over time (a column time_s, photographs at several"
+            " times, released bars): prony (the data choose the number of terms), prony:1 to prony:3, or"
+            " prony:spectrum (two stated times a decade). Moduli are then long-time ones."
         ),
     ] = None,
     damage: Annotated[
@@ -92,6 +92,13 @@ def main(
     objective: Annotated[
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
     ] = "likelihood",
+    free_bulk_ratio: Annotated[
+        bool,
+        typer.Option(
+            "--free-bulk-ratio",
+            help="Find K/G too, from photographed beams. Default: held at 300, as a diagnosis holds it.",
+        ),
+    ] = False,
     rig: Annotated[
         Path | None,
         typer.Option(
@@ -128,6 +135,7 @@ def main(
             damage=damage,
             fibres=fibres,
             objective=objective,
+            free_bulk_ratio=free_bulk_ratio,
             rig=rig,
             out=out or Path("calibrations") / experiment.resolve().name,
             seed=seed,

@@ -11,8 +11,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from factory._assemble import assemble
-from factory._execution import CLUSTER_TIMEOUT, SIMULATOR, run_cluster, run_local
+from factory._cluster import CLUSTER_TIMEOUT, run_cluster
+from factory._execution import SIMULATOR
 from factory._input import InputError, describe_os_error
+from factory._local import run_local
 from factory._record import Outcome
 from factory._staging import DamagedResultError, Staging, set_damaged_aside
 from factory._store import DamagedError, is_store, root_attributes

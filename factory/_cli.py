@@ -116,7 +116,7 @@ def fail(error: InputError) -> NoReturn:
 
 
 def duration(seconds: float) -> str:
-    """Seconds as people say them."""
+    """Seconds as people read them."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     if seconds < 5400:
@@ -125,7 +125,7 @@ def duration(seconds: float) -> str:
 
 
 def size_text(count: float) -> str:
-    """Bytes as people say them."""
+    """Bytes as people read them."""
     for unit in ("B", "kB", "MB"):
         if count < 1000:
             return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"

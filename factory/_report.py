@@ -20,11 +20,11 @@ from rich.table import Table
 from factory._build import BuildProgress, Built
 from factory._cli import duration, size_text
 from factory._course import HoldRecipe, deepest
+from factory._effects import TAKEN
 from factory._input import describe_os_error
 from factory._parts import part_entries
 from factory._staging import Staging
 from factory._store import read_ledger
-from factory.materials import TAKEN
 from factory.plan import Plan
 from tisim.problems._stops import shortest_time
 from tisim.problems.indentation.steps import LARGEST_STEP

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from factory._course import PHASES
+from factory._laws import LAWS
 from factory._record import COUNTERS, STATUSES
 from factory._sampling import LEVELS, SIZE
-from factory.materials import LAWS
 
 # what the first dimension counts; "value" = surface nodes of all frames of all pokes
 Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"]

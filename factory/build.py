@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import re
-import signal
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -15,6 +11,7 @@ import typer
 from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
 from factory._input import shipped_folder
 from tisim import laws
+from tisim.parallel.termination import terminable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -118,12 +115,13 @@ def main(
             from factory._report import Screen, derived_levels, effect_lines, estimate, plan_table
             from factory.plan import make_plan
             from factory.recipe import load_recipe
+            from tisim.parallel.pool import cores
 
             console = make_console()
             wanted = None if levels is None else [name.strip() for name in levels.split(",")]
             plan = make_plan(load_recipe(recipe), model, materials, levels=wanted)
             target = (out or default_target(plan.recipe.name, model, materials)).absolute()
-            count = workers or os.cpu_count() or 1
+            count = workers or cores()
             expected = estimate(plan, target, count)
             check_target(target, overwrite=not resume)
             if dry_run:
@@ -134,7 +132,7 @@ def main(
             for name, text in effect_lines(plan):
                 console.print(f"effect in {name}: {text}")
             warn_of_full_disk(target, 2 * expected.size)
-            with _terminable(), Screen(plan, target, console, expected) as screen:
+            with terminable(), Screen(plan, target, console, expected) as screen:
                 built = build_dataset(
                     plan,
                     target,
@@ -161,20 +159,6 @@ def default_target(recipe: str, model: str, materials: Path | None) -> Path:
         word = re.sub(r"[^A-Za-z0-9._-]+", "-", part).strip("-.")
         name += f"-{word or 'materials'}"
     return Path("datasets") / f"{name}.zarr"
-
-
-@contextlib.contextmanager
-def _terminable() -> Iterator[None]:
-    """Let SIGTERM end the build as Ctrl-C does."""
-
-    def interrupt(_number: int, _frame: object) -> NoReturn:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def _report_stopped(target: Path | None) -> NoReturn:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from factory._course import deepest, draw_course
+from factory._effects import in_one_law
 from factory._input import InputError
 from factory._parts import part_entries
 from factory.materials import (
@@ -23,7 +24,6 @@ from factory.materials import (
     card_names,
     card_path,
     check_law,
-    in_one_law,
     load_card,
     material_of,
 )

@@ -6,27 +6,17 @@ imports its work when it runs.
 
 from __future__ import annotations
 
-import importlib.util
 import os
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from learn import __version__
-from learn._terminal import duration, fail, log_to, make_console, plain_errors, print_table, terminable
+from learn._options import Dataset, Plugins, Runs, Threads, Version, load_plugins, set_threads
+from learn._terminal import fail, log_to, make_console, plain_errors, print_table, terminable
+from learn._training_screen import TrainingScreen
 from learn.errors import InputError
-
-if TYPE_CHECKING:
-    from learn.progress import Progress as State
-    from learn.training import Recipe, Trainer
-
-_LINE_SECONDS = 20.0  # between lines where the output is no terminal
 
 app = typer.Typer(
     name="learn",
@@ -38,58 +28,9 @@ app = typer.Typer(
 )
 
 
-# -- what the commands share ---------------------------------------------------------------------------------
-
-
-def load_plugins(files: list[Path]) -> None:
-    """Import Python files that register metrics or models. InputError where one fails."""
-    for number, file in enumerate(files):
-        spec = importlib.util.spec_from_file_location(f"learn_plugin_{number}", file)
-        if not file.is_file() or spec is None or spec.loader is None:
-            raise InputError(f"--plugin {file}: expected a Python file")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[spec.name] = module
-        try:
-            spec.loader.exec_module(module)
-        except InputError:
-            raise
-        except Exception as error:  # whatever the file does
-            raise InputError(
-                f"--plugin {file}: {type(error).__name__}: {' '.join(str(error).split())}"
-            ) from error
-
-
-def _show_version(value: bool) -> None:
-    if value:
-        typer.echo(f"tisim {__version__}")
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
-]
-Plugins = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--plugin", metavar="FILE", help="Python file that registers a metric or a model; repeatable."
-    ),
-]
-Dataset = Annotated[str | None, typer.Option(help="The store, if it moved since the training.")]
-Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")]
-Runs = Annotated[
-    list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")
-]
-
-
 @app.callback()
 def _main(_version: Version = False) -> None:
     pass
-
-
-def _set_threads(threads: int | None) -> None:
-    import torch
-
-    torch.set_num_threads(threads or os.cpu_count() or 1)
 
 
 # -- train ---------------------------------------------------------------------------------------------------
@@ -146,7 +87,7 @@ def train(
         from learn.training.recipe import check_recipe
 
         load_plugins(plugin or [])
-        _set_threads(threads)
+        set_threads(threads)
         torch.use_deterministic_algorithms(True, warn_only=True)
         changes = {"model": model, "fold": fold, "split": split, "seed": seed, "epochs": epochs}
         given = {key: value for key, value in changes.items() if value is not None}
@@ -154,7 +95,7 @@ def train(
         store = open_store(dataset)
         folder = out or Path("runs") / f"{chosen.name}-{chosen.model}-{store.law}-{chosen.fold}-{chosen.seed}"
         group = make_process_group(device)
-        screen = _TrainingScreen(console, folder, chosen, quiet=not group.is_main)
+        screen = TrainingScreen(console, folder, chosen, quiet=not group.is_main)
         try:
             with terminable(), screen.bar:
                 trainer = Trainer(
@@ -177,63 +118,6 @@ def train(
         finally:
             group.close()
         screen.end()
-
-
-class _TrainingScreen:
-    """A bar on a terminal, or a line now and then."""
-
-    def __init__(self, console: Console, folder: Path, recipe: Recipe, *, quiet: bool) -> None:
-        self._console, self._folder, self._recipe, self._quiet = console, folder, recipe, quiet
-        self.bar = Progress(
-            TextColumn("{task.fields[epoch]}"),
-            BarColumn(),
-            TextColumn("{task.fields[text]}"),
-            TimeElapsedColumn(),
-            TextColumn("{task.fields[left]}"),
-            console=console,
-            disable=quiet or not console.is_terminal,
-        )
-        self._task = self.bar.add_task("train", total=recipe.epochs, epoch="", text="", left="")
-        self._text = ""
-        self._began = self._line = time.monotonic()
-        self._first = 0
-
-    def begin(self, trainer: Trainer) -> None:
-        self._began, self._first = time.monotonic(), trainer.epoch
-        if not self._quiet:
-            parts = ", ".join(f"{len(v)} {k}" for k, v in trainer.split.groups.items())
-            size = sum(p.numel() for p in trainer.model.parameters())
-            self._console.print(
-                f"{self._recipe.model}, {size} parameters; {len(trainer.split.train)} frames to train on; "
-                f"groups: {parts}"
-            )
-
-    def update(self, state: State) -> None:
-        if self._quiet:
-            return
-        now = time.monotonic()
-        fresh, total = state.done - self._first, int(state.total)
-        left = (
-            f"about {duration((total - state.done) * (now - self._began) / fresh)} left" if fresh > 0 else ""
-        )
-        if state.values is not None:
-            line = state.values
-            self._text = (
-                f"loss {line['train_loss']:.4f}, validation {line['validation_mean_mm']:.4f} mm mean, "
-                f"force {line['validation_force_relative']:.1%}"
-            )
-        epoch = f"epoch {min(int(state.done) + 1, total)} of {total}"
-        self.bar.update(self._task, completed=state.done, epoch=epoch, text=self._text, left=left)
-        last = state.done >= total
-        if not self._console.is_terminal and state.values and (now - self._line > _LINE_SECONDS or last):
-            self._line = now
-            self._console.print(f"{state.done:.0f} of {total} epochs: {self._text}, {left}")
-
-    def end(self) -> None:
-        if not self._quiet:
-            self._console.print(
-                f"{self._folder}: best.pt, last.pt, log.jsonl; next: python -m learn.evaluate {self._folder}"
-            )
 
 
 # -- evaluate ------------------------------------------------------------------------------------------------
@@ -290,7 +174,7 @@ def evaluate(
         from learn.training import load_run
 
         load_plugins(plugin or [])
-        _set_threads(threads)
+        set_threads(threads)
         log_to(console)
         loaded = [load_run(folder) for folder in runs]
         store = open_store(dataset or loaded[0].location)

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from learn._yaml import first_fault, read_yaml
-from learn.data.store import RIGID, Store
+from learn.data._format import RIGID
+from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import Pokes, Scene, make_scene
 from learn.validity import shape_kind

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import first_fault
-from learn.data.store import RIGID, Store
+from learn.data._format import RIGID
+from learn.data.store import Store
 from learn.errors import InputError
 
 Floats = NDArray[np.float64]

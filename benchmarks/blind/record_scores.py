@@ -36,7 +36,8 @@ UNITS = {
     "adhesion": ("pull_mN", 1e3),
     "inclusion-debonded": ("loose_part", 1.0),
 }
-ALARMS = {"clean": "at most 5 %", "trap": "0"}  # kinds of which nothing can be said, and how often it may be
+# kinds of cases in which there is nothing to name, and how often a name may be given
+ALARMS = {"clean": "at most 5 %", "trap": "0"}
 Pair = tuple[dict[str, Any], dict[str, Any]]
 Row = tuple[str, str, str]
 
@@ -87,9 +88,9 @@ def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
         if alarms:
             yield f"something named or unexplained: {kind}", goal, part(alarms)
     out = [v["verdict"] for t, v in pairs if t["kind"] == "outside" and sigma(t) >= 10.0]
-    unsure = [said in ("unexplained", "ambiguous") for said in out]
+    unsure = [verdict in ("unexplained", "ambiguous") for verdict in out]
     yield "outside the library, 10 sigmas: unexplained or ambiguous", "90 %", part(unsure)
-    alone = [said == "found" for said in out]
+    alone = [verdict == "found" for verdict in out]
     yield "outside the library, 10 sigmas: one name", "at most 5 %", part(alone)
     for kind in SEVERAL:
         some = [p for p in pairs if p[0]["kind"] == kind]
@@ -144,14 +145,14 @@ def confusion(pairs: Sequence[Pair]) -> str:
     for t, v in pairs:
         truth = f"{t['kind']} at once" if t["kind"] in SEVERAL else "+".join(true_names(t)) or "(clean)"
         if v["verdict"] in ("none", "unexplained"):
-            said = v["verdict"]
+            answer = v["verdict"]
         else:
-            said = "right" if named(v) == true_names(t) else "+".join(named(v))
-            said += " (ambiguous)" if v["verdict"] == "ambiguous" else ""
-        lines.setdefault(truth, Counter())[said] += 1
+            answer = "right" if named(v) == true_names(t) else "+".join(named(v))
+            answer += " (ambiguous)" if v["verdict"] == "ambiguous" else ""
+        lines.setdefault(truth, Counter())[answer] += 1
     width = max(len(n) for n in lines)
     return "\n".join(
-        f"{truth:{width}}  " + ", ".join(f"{said} {n}" for said, n in counts.most_common())
+        f"{truth:{width}}  " + ", ".join(f"{answer} {n}" for answer, n in counts.most_common())
         for truth, counts in sorted(lines.items())
     )
 
@@ -179,26 +180,26 @@ def diagnosed(
             folder = Path(place) / "experiment"
             write(case, folder)
             began = time.process_time()
-            said = verdict_on(folder)
+            diagnosis = verdict_on(folder)
             seconds = time.process_time() - began
         truth = case.truth()
-        pairs.append((truth, said))
+        pairs.append((truth, diagnosis))
         if show_each:
-            _print_case(n, truth, said, seconds)
+            _print_case(n, truth, diagnosis, seconds)
     return pairs
 
 
-def _print_case(n: int, truth: dict[str, Any], said: dict[str, Any], seconds: float) -> None:
+def _print_case(n: int, truth: dict[str, Any], diagnosis: dict[str, Any], seconds: float) -> None:
     sizes = ", ".join(f"{e['sigma']:.1f} {e['scope']}" for e in truth["effects"])
-    cost = f", {said['simulated']} pokes simulated" if "simulated" in said else ""
+    cost = f", {diagnosis['simulated']} pokes simulated" if "simulated" in diagnosis else ""
     print(
-        f"{n:3d} {truth['kind']} {'+'.join(true_names(truth)) or '-'} [{sizes}]: {said['verdict']}"
-        f" {'+'.join(c['label'] for c in said['causes'])} {said['alternatives'][1:]}"
+        f"{n:3d} {truth['kind']} {'+'.join(true_names(truth)) or '-'} [{sizes}]: {diagnosis['verdict']}"
+        f" {'+'.join(c['label'] for c in diagnosis['causes'])} {diagnosis['alternatives'][1:]}"
         f" {seconds:.1f} core-s{cost}",
         flush=True,
     )
-    if named(said) != true_names(truth):
-        print(f"      lack of fit {said['lack_of_fit']}, tried {said['tried'][:4]}", flush=True)
+    if named(diagnosis) != true_names(truth):
+        print(f"      lack of fit {diagnosis['lack_of_fit']}, tried {diagnosis['tried'][:4]}", flush=True)
 
 
 def parser(about: str | None) -> argparse.ArgumentParser:

@@ -112,12 +112,14 @@ class VerdictFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.said: dict[str, Verdict] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        self.answers: dict[str, Verdict] = (
+            json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        )
 
-    def add(self, key: str, said: Verdict) -> None:
-        self.said[key] = said
+    def add(self, key: str, answer: Verdict) -> None:
+        self.answers[key] = answer
         part = self.path.with_suffix(".part")
-        part.write_text(json.dumps(self.said), encoding="utf-8")
+        part.write_text(json.dumps(self.answers), encoding="utf-8")
         part.replace(self.path)
 
 

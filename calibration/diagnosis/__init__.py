@@ -3,7 +3,7 @@
 >>> from pathlib import Path
 >>> from calibration.diagnosis import diagnose, model_of
 >>> from calibration.experiment import read
->>> model = model_of(read(Path("measured/bench/creeps")))  # doctest: +SKIP
+>>> model = model_of(read(Path("datasets/measured/bench/creeps")))  # doctest: +SKIP
 >>> diagnose(model).sentence()  # doctest: +SKIP
 'Found: the material creeps: it sinks further with time (creep).'
 """

@@ -2,62 +2,33 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
 from pydantic import BaseModel, ValidationError
 
 from calibration.errors import InputError
+from tisim.io import bounded_yaml
+from tisim.io.bounded_yaml import Limits, Problem, YamlError, as_tuples
 
 M = TypeVar("M", bound=BaseModel)
 
 _NAMED = 8  # further problems that a sentence names
 
-
 _LARGEST_FILE = 20_000_000  # bytes
-_MOST_VALUES = 1_000_000  # aliases written out: a file of a few lines can stand for billions
-_DEEPEST = 50
-_LONGEST_NUMBER = 400  # digits
-
-
-class _Loader(yaml.SafeLoader):
-    """Safe YAML that refuses a key written twice, takes 1e3 for a number and leaves dates as text."""
-
-    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        if len(node.value) > _LONGEST_NUMBER + 10:
-            raise yaml.constructor.ConstructorError(
-                None, None, "expected a number of usual size", node.start_mark
-            )
-        return int(super().construct_yaml_int(node))
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        seen = set()
-        for key_node, _ in node.value:
-            if not isinstance(key_node, yaml.ScalarNode):
-                continue
-            if key_node.value in seen:
-                raise yaml.constructor.ConstructorError(
-                    None,
-                    None,
-                    f"key {key_node.value} stands there twice, expected it once",
-                    key_node.start_mark,
-                )
-            seen.add(key_node.value)
-        return super().construct_mapping(node, deep)
-
-
-# YAML 1.1 reads 1e3 as text, which no one means
-_Loader.yaml_implicit_resolvers = {
-    key: [(tag, pattern) for tag, pattern in value if tag != "tag:yaml.org,2002:timestamp"]
-    for key, value in _Loader.yaml_implicit_resolvers.items()
+_LIMITS = Limits(depth=50, values=1_000_000)
+_PLAIN = f"expected plain YAML values, nested {_LIMITS.depth} deep at most and without aliases of themselves"
+_EXPECTED: dict[Problem, str] = {  # of "tag", which names the tag: the loader's own sentence
+    "syntax": "expected valid YAML",
+    "text": "expected UTF-8 text",
+    "key": "expected a plain key, found a list or a map in its place",
+    "depth": _PLAIN,
+    "cycle": _PLAIN,
+    "values": f"expected at most {_LIMITS.values:,} values, its aliases stand for more",
+    "number": "expected a number of usual size",
+    "value": _PLAIN,
 }
-_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+.0123456789")
-)
 
 
 def load(text: bytes, path: Path) -> Any:
@@ -73,51 +44,13 @@ def load(text: bytes, path: Path) -> Any:
             f"{path}: expected at most {_LARGEST_FILE / 1e6:.0f} MB, got {len(text) / 1e6:.0f} MB"
         )
     try:
-        loader = _Loader(text.decode("utf-8"))
-        try:
-            node = loader.get_single_node()
-            if node is None:
-                return None
-            if _written_out(node, {}, 0) > _MOST_VALUES:
-                raise InputError(
-                    f"{path}: expected at most {_MOST_VALUES:,} values, its aliases stand for more"
-                )
-            return loader.construct_document(node)
-        finally:
-            loader.dispose()
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: expected UTF-8 text") from None
-    except yaml.constructor.ConstructorError as error:
-        problem = str(error.problem)
-        if "unhashable key" in problem:
-            problem = "expected a plain key, found a list or a map in its place"
-        raise InputError(f"{path}: {_line(error)}{problem}") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"{path}: {_line(error)}expected valid YAML") from None
-    except (RecursionError, ValueError, TypeError, AttributeError):
-        # nested without end; an alias within itself; a tag (!!timestamp) whose value is none
-        raise InputError(
-            f"{path}: expected plain YAML values, nested {_DEEPEST} deep at most and without aliases of"
-            " themselves"
-        ) from None
-
-
-def _written_out(node: yaml.Node, sizes: dict[int, int], depth: int) -> int:
-    """Number of values with every alias written out; RecursionError for an alias within itself."""
-    if depth > _DEEPEST:
-        raise RecursionError
-    if id(node) in sizes:
-        if sizes[id(node)] < 0:
-            raise RecursionError
-        return sizes[id(node)]
-    sizes[id(node)] = -1
-    total = 1
-    if isinstance(node, yaml.MappingNode):
-        total += sum(_written_out(n, sizes, depth + 1) for pair in node.value for n in pair)
-    elif isinstance(node, yaml.SequenceNode):
-        total += sum(_written_out(n, sizes, depth + 1) for n in node.value)
-    sizes[id(node)] = total
-    return total
+        return bounded_yaml.load(text, _LIMITS)
+    except YamlError as error:
+        line = "" if error.line is None else f"line {error.line}: "
+        expected = _EXPECTED.get(error.problem, error.text)
+        if error.problem == "twice":
+            expected = f"key {error.key} stands there twice, expected it once"
+        raise InputError(f"{path}: {line}{expected}") from None
 
 
 def parse(text: bytes, path: Path, model: type[M]) -> M:
@@ -137,27 +70,13 @@ def parse(text: bytes, path: Path, model: type[M]) -> M:
     InputError
         One sentence that names the file, the key and what was expected.
     """
-    data = _tuples(load(text, path))
+    data = as_tuples(load(text, path))
     if not isinstance(data, dict):
         raise InputError(f"{path}: expected keys and values at the top level")
     try:
         return model.model_validate(data)
     except ValidationError as error:
         raise InputError(f"{path}: {' '.join(_sentence(error, data).split())}") from None
-
-
-def _line(error: yaml.YAMLError) -> str:
-    mark = getattr(error, "problem_mark", None)
-    return f"line {mark.line + 1}: " if mark is not None else ""
-
-
-def _tuples(data: object) -> object:
-    """YAML lists as tuples, the form that the frozen models hold."""
-    if isinstance(data, dict):
-        return {key: _tuples(value) for key, value in data.items()}
-    if isinstance(data, list):
-        return tuple(_tuples(value) for value in data)
-    return data
 
 
 def key_path(parts: Sequence[str | int], data: object) -> str:

@@ -50,6 +50,15 @@ class Linearised(Protocol):
         ...
 
 
+@runtime_checkable
+class Suggesting(Protocol):
+    """An objective that may know where a fit has to begin."""
+
+    def suggested_start(self) -> Array | None:
+        """Coordinates u (n,), or None where a scan over moduli finds a start."""
+        ...
+
+
 class MaterialObjective(Protocol):
     """Measurements that depend on the material alone, whatever coordinates it comes from; it may have
     `linearise(material) -> bool` too."""

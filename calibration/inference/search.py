@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import OptionError
-from calibration.inference.problem import Problem
+from calibration.inference.problem import Problem, Suggesting
 
 Array = NDArray[np.float64]
 
@@ -24,8 +24,16 @@ LOWEST, HIGHEST = 1e3, 1e7  # of the coarse scan [Pa]
 def guess(problem: Problem) -> Array | None:
     """Start u (n,) by two scans over the shear modulus, 9 values each; None where none has an answer.
 
-    It is good to a few per cent: nuisances are taken roughly.
+    It is good to a few per cent: nuisances are taken roughly. An objective that answers only near its best
+    (a vibration, whose phase is compared) says itself where to begin.
     """
+    for objective in problem.objectives:
+        try:
+            begin = objective.suggested_start() if isinstance(objective, Suggesting) else None
+        except ValueError:
+            return None
+        if begin is not None:
+            return begin
     p = problem.parametrisation
     shears = np.geomspace(LOWEST, HIGHEST, 9)
     best: Array | None = None

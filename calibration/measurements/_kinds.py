@@ -171,6 +171,7 @@ register(
         takes=("workers", "simulator"),
         old_name="beams",
         compares=_traced,
+        over_time=_follower("outlines"),
     )
 )
 register(
@@ -216,5 +217,6 @@ register(
         takes=("workers",),
         old_name="bars",
         compares=_marked,
+        over_time=_follower("release"),
     )
 )

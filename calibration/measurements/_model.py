@@ -106,6 +106,11 @@ class MeasurementModel(ABC):
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Labels of all rows, for each set of folds, in order of preference."""
 
+    def suggested_start(self) -> Array | None:
+        """Coordinates (n,) near which a fit has to begin, where a scan over moduli would not find it; None
+        where one does. ValueError where there are none."""
+        return None
+
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         """Take nuisances and discretisation errors at a state; linearisations from before are void. rough :
         what is dear may be left out."""

@@ -84,6 +84,16 @@ class ModelObjective(Generic[Model]):
             return False
         return True
 
+    def suggested_start(self) -> Array | None:
+        """The law's coordinates (n,) near which a fit has to begin, if the model names any; extras are then
+        taken from there. ValueError where the model has no answer anywhere."""
+        found = self.model.suggested_start()
+        if found is None:
+            return None
+        first = self.model.baseline.first_extra
+        self.extras = found[first:]
+        return found[:first]
+
     def residuals(self, U: Array) -> Array:
         """(batch, size): whitened residuals, the priors of extras last; NaN where a point has no answer."""
         rows = self._own(self.model.residuals([self.state(u) for u in U]))

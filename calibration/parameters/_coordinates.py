@@ -48,6 +48,8 @@ class Coordinate:
         Empty where the bound is one of the search only.
     held : bool
         Kept at its prior's centre (`Parametrisation.holding`).
+    unheld_sd : float, optional
+        Standard deviation of the prior that a held coordinate had.
     start_per_shear : float, optional
         In place of `start`: value where a search begins, over the guessed shear modulus.
     """
@@ -63,6 +65,7 @@ class Coordinate:
     limit_low: str = ""
     limit_high: str = ""
     held: bool = False
+    unheld_sd: float | None = None
     start_per_shear: float | None = None
 
     def inside(self, value: float) -> float:
@@ -170,10 +173,28 @@ class Parametrisation:
         """The same, with one coordinate held at its prior's centre (to within 1 %): where the data cannot
         see it, a law that misfits would use it to repair its curve."""
         held = tuple(
-            replace(c, prior=(c.prior[0], 0.01), spread=0.01, held=True) if c.name == name and c.prior else c
+            replace(c, prior=(c.prior[0], 0.01), spread=0.01, held=True, unheld_sd=c.prior[1])
+            if c.name == name and c.prior and not c.held
+            else c
             for c in self.coordinates
         )
         return replace(self, coordinates=held)
+
+    def believed(self) -> Parametrisation:
+        """The same with the priors that held coordinates had: what is known of them, for error bars."""
+        found = tuple(
+            replace(c, prior=(c.prior[0], c.unheld_sd)) if c.held and c.prior and c.unheld_sd else c
+            for c in self.coordinates
+        )
+        return replace(self, coordinates=found)
+
+    def in_steps(self, factor: float) -> Parametrisation:
+        """The same, moduli searched and differentiated in steps so many times as long: a vibration that is
+        compared in its phase answers only near its best."""
+        found = tuple(
+            replace(c, spread=factor * c.spread) if c.start is None else c for c in self.coordinates
+        )
+        return replace(self, coordinates=found)
 
     def prior(self) -> tuple[Array, Array]:
         """Centre and sd of the normal prior on u, each (n,); sd is inf where there is none."""

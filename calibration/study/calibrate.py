@@ -206,8 +206,8 @@ def best_so_far(data: Measurements, generations: Sequence[Generation]) -> Calibr
 
 
 def _searched(data: Measurements) -> Parametrisation:
-    """The law as it is searched: without photographs nothing sees K/G, and it is held."""
-    return data.law if data.outlines is not None else data.law.holding(BULK)
+    """The law as it is searched: K/G is held, unless photographs, which alone see it, are to find it."""
+    return data.law if data.free_bulk_ratio and data.outlines is not None else data.law.holding(BULK)
 
 
 def _descended(problem: Problem, start: Array) -> Array:
@@ -235,7 +235,8 @@ def _polished(
     status: Status = "converged" if end.converged else "not converged"
     message = "" if end.converged else f"polish: {end.message}"
     fitted = _point(problem, data, end.u, status=status, message=message, residuals=end.residuals)
-    fitted = replace(_certain(problem, fitted, end, free), unsettled=_unsettled(problem, end))
+    seen = data.outlines is not None
+    fitted = replace(_certain(problem, fitted, end, bulk_seen=seen), unsettled=_unsettled(problem, end))
     if options.leave_one_out and data.outlines is not None:
         checks, note = held_out(problem, data.outlines, end.u)
         fitted = replace(fitted, held_out=checks, held_out_note=note)
@@ -331,16 +332,17 @@ def _note(data: Measurements, shear_modulus: float) -> str:
     return "; ".join(n for n in notes if n)
 
 
-def _certain(problem: Problem, fitted: Calibration, end: Polished, free: Parametrisation) -> Calibration:
-    """With error bars; free: the law's coordinates before one was held for this end."""
-    known = identify(problem.parametrisation, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
-    if free is problem.parametrisation:
-        estimates = profile(problem, end, known)
-        if free.parts:
-            estimates = _widest(estimates, known.estimates)
-    else:
-        known = with_prior_sd(known, free, end.u, BULK)
-        estimates = known.estimates
+def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen: bool) -> Calibration:
+    """With error bars; bulk_seen: whether the other constants depend on a K/G that is held, and have their
+    part of its uncertainty."""
+    p = problem.parametrisation
+    known = identify(p, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
+    estimates = profile(problem, end, known)
+    if p.parts:
+        estimates = _widest(estimates, known.estimates)
+    if bulk_seen and any(c.held for c in p.coordinates if c.name == BULK):
+        known = with_prior_sd(known, p.believed(), end.u, BULK)
+        estimates = _widest(estimates, known.estimates)
     return replace(
         fitted,
         estimates=estimates,
@@ -353,7 +355,7 @@ def _widest(profiled: Sequence[Estimate], linear: Sequence[Estimate]) -> tuple[E
     """The farther end of both intervals: in valleys that curve, or run along a bound, the profile's few
     Newton steps stop short of the least chi-square, and its ends come too early."""
     return tuple(
-        replace(a, low=min(a.low, b.low), high=max(a.high, b.high))
+        replace(b, low=min(a.low, b.low), high=max(a.high, b.high))
         for a, b in zip(profiled, linear, strict=True)
     )
 

@@ -17,10 +17,13 @@ from calibration.measurements.outlines.dice import DiceObjective
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.setup import Setup
 from calibration.measurements.outlines.simulators import OURS, Simulator
-from calibration.measurements.release import MarkerObjective
+from calibration.measurements.release import MarkerObjective, not_swinging
+from calibration.measurements.release.model import ReleaseModel
 from calibration.parameters import Parametrisation
 
 ObjectiveName = Literal["likelihood", "dice"]
+
+VIBRATION_STEPS = 0.1  # of a search over moduli: 3 % of one put a vibration out of phase
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,7 +44,7 @@ class OnSetup(Experiment):
 class Measurements:
     """Objectives of one material in the coordinates of one law; outlines is the one among them that
     photographs feed, pokes the one that rods feed, if any. ignored: trials, and parts of records, that the
-    fit does not use."""
+    fit does not use. free_bulk_ratio: K/G is to be found, by photographs."""
 
     material: str
     law: Parametrisation
@@ -50,6 +53,7 @@ class Measurements:
     outlines: ModelObjective[OutlineModel] | None
     ignored: tuple[str, ...]
     pokes: ModelObjective[IndentationModel] | None = None
+    free_bulk_ratio: bool = False
 
 
 def measurements(
@@ -60,8 +64,12 @@ def measurements(
     workers: int | None = None,
     simulator: Simulator = OURS,
     objective: ObjectiveName = "likelihood",
+    free_bulk_ratio: bool = False,
 ) -> Measurements:
-    """All that the static fit of a material can use. simulator: of beams.
+    """All that a fit of a material can use. simulator: of beams.
+
+    K/G is held at its prior's centre, as a diagnosis holds it: photographs alone see it, so little that a
+    rig's small fault moves it. free_bulk_ratio : it is found beside the other constants, with its prior.
 
     InputError where nothing is left, or where the experiment's setup (`OnSetup`) cannot be applied.
     """
@@ -83,7 +91,8 @@ def measurements(
         )
     objectives: list[Objective] = []
     outlines = None
-    if not beams:  # nothing else sees K/G
+    free_bulk_ratio = free_bulk_ratio and bool(beams)  # nothing else sees K/G
+    if not free_bulk_ratio:
         law = law.holding("bulk_ratio")
     if beams:
         model = OutlineModel(
@@ -113,7 +122,18 @@ def measurements(
         raise InputError(
             f"trial {marked[0].id}: markers: a known rig corrects outlines, not markers: fit them apart"
         )
-    objectives += [OfMaterial(law, settled_markers(t, belief, workers=workers)) for t in marked]
+    still = {t.id: why for t in marked if (why := not_swinging(t, experiment))}
+    swinging = [t for t in marked if t.id not in still]
+    left_out: list[str] = []
+    if swinging:
+        law = law.in_steps(VIBRATION_STEPS)
+        own = replace(experiment, trials=tuple(swinging))
+        released = ReleaseModel(own, baseline=Baseline.of_law(swinging, law), workers=workers)
+        left_out += released.left_out()
+        objectives.append(ModelObjective(released, name=f"markers of {', '.join(t.id for t in swinging)}"))
+    for t in marked:
+        if t.id in still:  # at rest alone: the solid, for want of a vibration to correct a reduced beam by
+            objectives.append(OfMaterial(law, settled_markers(t, belief, workers=workers)))
     if not objectives:
         raise InputError(
             f"{experiment.folder / 'experiment.yaml'}: material {material}: expected at least one traced"
@@ -122,9 +142,9 @@ def measurements(
     used = {t.id for t in mine if t in beams or t in rods or t in marked or t in coupons}
     ignored = tuple(f"{t.id}: {_why(t)}" for t in mine if t.id not in used)
     parts = [
-        f"{t.id}: the motion of its markers (calibration.measurements.release fits it, with damping)"
-        for t in marked
+        f"{i}: the motion of its markers, only where they come to rest ({why})" for i, why in still.items()
     ]
+    parts += left_out
     parts += [] if pokes is None else pokes.model.left_out
     return Measurements(
         material=material,
@@ -134,6 +154,7 @@ def measurements(
         outlines=outlines,
         ignored=(*ignored, *parts),
         pokes=pokes,
+        free_bulk_ratio=free_bulk_ratio,
     )
 
 

@@ -32,7 +32,7 @@ from tisim import laws
 log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 3
+FORMAT = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +57,8 @@ class Task:
         What is known of rig and camera.
     parts : tuple of str
         What the material has beside the law (`calibration.study.parts`).
+    free_bulk_ratio : bool
+        K/G is found by photographs, and not held.
     """
 
     experiment: Path
@@ -69,6 +71,7 @@ class Task:
     objective: ObjectiveName = "likelihood"
     setup: Setup | None = None
     parts: tuple[str, ...] = ()
+    free_bulk_ratio: bool = False
 
     @property
     def label(self) -> str:
@@ -88,7 +91,14 @@ class Task:
         law = parts.with_parts(
             parametrisation(self.law, terms=self.terms), self.parts, experiment, self.material
         )
-        return measurements(experiment, self.material, law, workers=workers, objective=self.objective)
+        return measurements(
+            experiment,
+            self.material,
+            law,
+            workers=workers,
+            objective=self.objective,
+            free_bulk_ratio=self.free_bulk_ratio,
+        )
 
     def store(self) -> FitStore:
         header: dict[str, Any] = {
@@ -107,6 +117,8 @@ class Task:
         }
         if self.parts:
             header["parts"] = list(self.parts)
+        if self.free_bulk_ratio:
+            header["free_bulk_ratio"] = True
         return FitStore(self.folder, self.name, header)
 
 
@@ -121,6 +133,7 @@ def tasks_for(
     objective: ObjectiveName = "likelihood",
     setup: Setup | None = None,
     specs: Sequence[str] = (),
+    free_bulk_ratio: bool = False,
 ) -> list[Task]:
     """Every law for every material, law by law, in the order given; specs : of parts beside each law."""
     return [
@@ -135,6 +148,7 @@ def tasks_for(
             objective=objective,
             setup=setup,
             parts=tuple(specs),
+            free_bulk_ratio=free_bulk_ratio,
         )
         for law in law_names
         for material in materials

@@ -8,82 +8,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import zarr
 from numpy.typing import NDArray
 
 from learn.data._files import Source, displacement_reader, group_here, reading
+from learn.data._format import (
+    ARRAYS,
+    FORMAT,
+    GRID,
+    LEVELS,
+    RIGID,
+    TIMED,
+    check_arrays,
+    check_attributes,
+    check_rows,
+)
+from learn.data.moduli import moduli
 from learn.errors import InputError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-FORMAT = 1  # of the store; its root attribute `format`
-GRID = 32
-LEVELS = 128
-RIGID = 255  # profile value of the rigid inclusion; silicones are lower
-
-Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Needed:
-    """One array. row: shape of one row (None: not checked); kinds: numpy's letters for its type."""
-
-    rows: Rows
-    kinds: str = "f"
-    row: tuple[int, ...] | None = ()
-    units: str | None = None
-    big: bool = False
-
-
-ATTRIBUTES = ("uuid", "fingerprint", "model", "pokes", "shapes", "softness", "parameter_names", "identity")
-
-# fmt: off
-ARRAYS: dict[str, Needed] = {
-    "grid_rest": Needed(rows="fixed", row=(GRID, 3), units="m"),
-    "level_depth": Needed(rows="fixed", units="m"),
-    "profile": Needed(rows="geometry", kinds="u", row=(GRID, GRID, LEVELS), units="1"),
-    "done": Needed(rows="poke", kinds="b"),
-    "status": Needed(rows="poke", kinds="u"),
-    "poke_shape": Needed(rows="poke", kinds="i"),
-    "poke_softness": Needed(rows="poke", kinds="i"),
-    "poke_geometry": Needed(rows="poke", kinds="i"),
-    "law": Needed(rows="poke", kinds="u"),
-    "parameter": Needed(rows="poke", row=None),
-    "direction": Needed(rows="poke", row=(3,), units="1"),
-    "path_start": Needed(rows="poke", row=(3,), units="m"),
-    "frame_start": Needed(rows="poke", kinds="i"),
-    "frame_count": Needed(rows="poke", kinds="i"),
-    "frame_poke": Needed(rows="frame", kinds="i"),
-    "depth": Needed(rows="frame", units="m"),
-    "rod_force": Needed(rows="frame", row=(3,), units="N"),
-    "grid_displacement": Needed(rows="frame", row=(GRID, GRID, 3), units="m", big=True),
-    # only where errors off the grid are asked for
-    "node_start": Needed(rows="poke", kinds="i"),
-    "node_count": Needed(rows="poke", kinds="i"),
-    "triangle_start": Needed(rows="poke", kinds="i"),
-    "triangle_count": Needed(rows="poke", kinds="i"),
-    "value_start": Needed(rows="poke", kinds="i"),
-    "surface_rest": Needed(rows="node", row=(3,), units="m", big=True),
-    "surface_triangle": Needed(rows="triangle", kinds="i", row=(3,), big=True),
-    "surface_displacement": Needed(rows="value", row=(3,), units="m", big=True),
-}
-# of datasets whose recipe gives the rod a course over time; the others have none of them
-TIMED: dict[str, Needed] = {
-    "time": Needed(rows="frame", units="s"),
-    "phase": Needed(rows="frame", kinds="u"),
-    "rod_speed": Needed(rows="frame", units="m s-1"),
-    "dissipated_energy": Needed(rows="frame", units="J"),
-    "course_time": Needed(rows="poke", row=None, units="s"),
-    "course_depth": Needed(rows="poke", row=None, units="m"),
-}
-# fmt: on
 _PRESSES = 1e-3  # of shear modulus x rod radius x depth: a force below that is none
 
 
@@ -275,9 +225,9 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
             f"{location}: expected a dataset of format {FORMAT}, its attribute format is "
             f"{attributes.get('format')}"
         )
-    _check_attributes(source.location, attributes)
+    check_attributes(source.location, attributes)
     arrays = {**ARRAYS, **TIMED} if "time" in group else ARRAYS
-    _check_arrays(source.location, group, attributes, arrays)
+    check_arrays(source.location, group, attributes, arrays)
     if verify:
         source.check_manifest(list(arrays))
     table: dict[str, NDArray[Any]] = {}
@@ -289,7 +239,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
             table[name] = np.asarray(array[...])
         if needed.kinds == "f" and not np.isfinite(table[name]).all():
             raise InputError(f"{location}: {name} has a value that is not finite")
-    _check_rows(source.location, table, attributes)
+    check_rows(source.location, table, attributes)
     done = table["done"].astype(bool)
     radius, edge = _rod(source.location, attributes)
     points = table["grid_rest"].reshape(-1, 3).astype(np.float64)
@@ -306,7 +256,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
         shape=table["poke_shape"].astype(np.int64),
         softness=table["poke_softness"].astype(np.int64),
         geometry=table["poke_geometry"].astype(np.int64),
-        modulus=_moduli(
+        modulus=moduli(
             source.location, attributes, table["parameter"], table["poke_softness"].astype(np.int64), done
         ),
         direction=table["direction"].astype(np.float64),
@@ -335,93 +285,6 @@ def rigid_masks(profile: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], Ints]:
     row = bits.view(np.dtype((np.void, bits.shape[1])))[:, 0]
     _, first, index = np.unique(row, return_index=True, return_inverse=True)
     return rigid[first], np.asarray(index, dtype=np.int64)
-
-
-def _check_attributes(location: str, attributes: dict[str, Any]) -> None:
-    for name in ATTRIBUTES:
-        if name not in attributes:
-            raise InputError(f"{location}: attribute {name} is missing")
-    for name in ("uuid", "model"):
-        if not isinstance(attributes[name], str) or not attributes[name]:
-            raise InputError(f"{location}: attribute {name}: expected a name, got {attributes[name]!r}"[:300])
-    for name in ("shapes", "softness", "parameter_names"):
-        value = attributes[name]
-        if not isinstance(value, list) or not value or not all(isinstance(item, str) for item in value):
-            raise InputError(f"{location}: attribute {name}: expected a list of names, got {value!r}"[:300])
-    if type(attributes["pokes"]) is not int:
-        raise InputError(
-            f"{location}: attribute pokes: expected a whole number, got {attributes['pokes']!r}"[:300]
-        )
-
-
-def _check_arrays(
-    location: str, group: zarr.Group, attributes: dict[str, Any], arrays: Mapping[str, Needed]
-) -> None:
-    rows: dict[str, tuple[str, int]] = {}
-    for name, needed in arrays.items():
-        with reading(f"{location}: {name}"):
-            if name not in group:
-                raise InputError(f"{location}: array {name} is missing")
-            array: Any = group[name]
-        if not isinstance(array, zarr.Array) or (array.ndim == 0 and needed.rows != "fixed"):
-            raise InputError(f"{location}: {name}: expected an array with rows")
-        _check_array(f"{location}: {name}", array, needed)
-        if needed.rows == "fixed":
-            continue
-        first, count = rows.setdefault(needed.rows, (name, array.shape[0]))
-        if array.shape[0] != count:
-            raise InputError(f"{location}: {name} has {array.shape[0]} rows, {first} has {count}")
-    if rows["poke"][1] != attributes["pokes"]:
-        raise InputError(
-            f"{location}: {rows['poke'][1]} rows of pokes, attribute pokes is {attributes['pokes']}"
-        )
-
-
-def _check_array(where: str, array: Any, needed: Needed) -> None:
-    if array.dtype.kind not in needed.kinds:
-        raise InputError(f"{where}: its type {array.dtype} is not as expected")
-    if needed.row is not None and tuple(array.shape[1:]) != needed.row:
-        raise InputError(f"{where}: rows of shape {tuple(array.shape[1:])}, expected {needed.row}")
-    if needed.units is not None and array.attrs.get("units") != needed.units:
-        raise InputError(f"{where}: units {array.attrs.get('units')}, expected {needed.units}")
-
-
-def _check_rows(location: str, table: dict[str, NDArray[Any]], attributes: dict[str, Any]) -> None:
-    count = table["frame_count"]
-    if not np.array_equal(table["frame_start"], np.cumsum(count) - count):
-        raise InputError(f"{location}: frame_start does not add up frame_count")
-    if not np.array_equal(table["frame_poke"], np.repeat(np.arange(len(count)), count)):
-        raise InputError(f"{location}: frame_poke does not match frame_count")
-    if len(table["profile"]) and not 0 <= table["poke_geometry"].min() <= table["poke_geometry"].max() < len(
-        table["profile"]
-    ):
-        raise InputError(f"{location}: poke_geometry points outside profile")
-    for name, names in (("poke_shape", "shapes"), ("poke_softness", "softness")):
-        rows = table[name]
-        if len(rows) and not 0 <= rows.min() <= rows.max() < len(attributes[names]):
-            raise InputError(f"{location}: {name} points outside attribute {names}")
-    if "time" in table:
-        _check_clock(location, table)
-    elif len(table["depth"]) and not table["depth"].min() > 0:
-        raise InputError(f"{location}: depth has a value that is not positive")
-    size = np.linalg.norm(table["direction"][table["done"].astype(bool)], axis=1)
-    if not np.allclose(size, 1, atol=1e-6):
-        raise InputError(f"{location}: direction is not of unit length")
-
-
-def _check_clock(location: str, table: dict[str, NDArray[Any]]) -> None:
-    if len(table["depth"]) and not table["depth"].min() >= 0:
-        raise InputError(f"{location}: depth has a value below 0")
-    poke, time = table["frame_poke"], table["time"]
-    first = np.diff(poke, prepend=-1) != 0
-    if not (np.where(first, time, np.diff(time, prepend=0.0)) > 0).all():
-        raise InputError(f"{location}: time does not rise from 0 in each poke")
-    corners, depths = table["course_time"], table["course_depth"]
-    if corners.ndim != 2 or corners.shape != depths.shape or not corners.shape[1]:
-        raise InputError(f"{location}: course_time and course_depth are not of one shape")
-    done = table["done"].astype(bool)
-    if not (corners[done, 0] > 0).all() or not (depths[done, 0] > 0).all():
-        raise InputError(f"{location}: course_time, course_depth: a course does not begin with a way down")
 
 
 def _clock(location: str, group: zarr.Group, table: dict[str, NDArray[Any]]) -> Clock | None:
@@ -459,76 +322,3 @@ def _rod(location: str, attributes: dict[str, Any]) -> tuple[float, float]:
     if not 0 <= edge <= radius:
         raise InputError(f"{location}: attribute identity.recipe.rod.{key}: expected 0 to the rod's radius")
     return radius * 1e-3, edge * 1e-3
-
-
-def _moduli(
-    location: str,
-    attributes: dict[str, Any],
-    parameter: NDArray[Any],
-    softness: Ints,
-    done: NDArray[np.bool_],
-) -> Floats:
-    """Shear modulus at small strain of each poke [Pa].
-
-    From the attribute `shear_modulus` (Pa, one a softness level) where the store has it, so that any law can
-    be read; else from the law's parameters.
-    """
-    found = np.full(len(done), np.nan)  # of a poke that was not simulated
-    given = attributes.get("shear_modulus")
-    if given is not None:
-        levels = attributes["softness"]
-        if not (
-            isinstance(given, list)
-            and len(given) == len(levels)
-            and all(type(value) in (int, float) and 0 < value < 1e12 for value in given)
-        ):
-            raise InputError(
-                f"{location}: attribute shear_modulus: expected a positive number [Pa] for each of "
-                f"{', '.join(levels)}"
-            )
-        found[done] = np.array(given, dtype=float)[softness[done]]
-        return found
-    names = attributes["parameter_names"]
-    rows = parameter.reshape(len(done), -1)
-    if rows.shape[1] != len(names):
-        raise InputError(
-            f"{location}: attribute parameter_names has {len(names)} names, array parameter has "
-            f"{rows.shape[1]} columns"
-        )
-    for poke in np.flatnonzero(done):
-        found[poke] = shear_modulus(attributes["model"], dict(zip(names, rows[poke], strict=True)))
-    return found
-
-
-# weights of I1^i in the five-term series (Arruda and Boyce, J. Mech. Phys. Solids 41, 1993)
-_ARRUDA_BOYCE = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
-
-
-def shear_modulus(law: str, parameters: Mapping[str, float]) -> float:
-    """The law's shear modulus at small strain [Pa].
-
-    parameters: by name as in the store's attribute `parameter_names` (mu_1, mu_2, ... where a parameter
-    has terms; moduli in Pa). InputError for an unknown law, a missing parameter or a modulus that is not
-    positive.
-    """
-    try:
-        if law in ("neo-hookean", "stable-neo-hookean", "st-venant-kirchhoff", "yeoh", "eight-chain"):
-            value = parameters["mu"]
-        elif law == "mooney-rivlin":
-            value = 2 * (parameters["c10"] + parameters["c01"])
-        elif law == "ogden":
-            terms = sorted(name[3:] for name in parameters if name.startswith("mu_"))
-            value = sum(parameters[f"mu_{i}"] * parameters[f"alpha_{i}"] for i in terms) / 2
-        elif law == "arruda-boyce":
-            square = parameters["locking"] ** 2
-            series = sum(2 * (i + 1) * c * (3 / square) ** i for i, c in enumerate(_ARRUDA_BOYCE))
-            value = parameters["mu"] * series
-        else:
-            raise InputError(
-                f"law {law}: its parameters are not known here, expected the attribute shear_modulus"
-            )
-    except KeyError as error:
-        raise InputError(f"law {law}: expected a parameter {error.args[0]}") from None
-    if not value > 0:
-        raise InputError(f"law {law}: expected a positive shear modulus, got {value:g} Pa")
-    return float(value)

@@ -29,7 +29,9 @@ def truth(*effects: str, sigma: float = 12.0, category: str = "single", scope: s
     return {"category": category, "per_beam": True, "hidden": hidden, "sigma": sizes}
 
 
-def said(verdict: str, *names: tuple[str, ...], scope: str = "all", **others: Any) -> dict[str, Any]:
+def made_diagnosis(
+    verdict: str, *names: tuple[str, ...], scope: str = "all", **others: Any
+) -> dict[str, Any]:
     """names: the sets that are named, the chosen one first."""
     causes = [{"effect": e, "scope": scope, "parameters": {}} for e in (names[0] if names else ())]
     return {"verdict": verdict, "causes": causes, "alternatives": [list(n) for n in names]} | others
@@ -63,19 +65,19 @@ def test_fall_of_rms_and_of_what_it_has_beyond_noise() -> None:
 def test_gain_counts_what_fell_what_was_not_named_and_what_no_fold_keeps() -> None:
     creep = ("creep",)
     verdicts = {
-        "fell": said("found", creep, gain=gain(0.20, 0.09)),
-        "beyond": said("found", creep, gain=gain(0.10, 0.085)),  # 15 % of rms, 52 % of the excess
-        "stayed": said("found", creep, gain=gain(0.20, 0.19)),
-        "no fold": said("found", creep, gain=gain(None, None, None)),
-        "unnamed": said("unexplained", gain=None),
-        "not measured": said("found", creep, gain=None),
+        "fell": made_diagnosis("found", creep, gain=gain(0.20, 0.09)),
+        "beyond": made_diagnosis("found", creep, gain=gain(0.10, 0.085)),  # 15 % of rms, 52 % of the excess
+        "stayed": made_diagnosis("found", creep, gain=gain(0.20, 0.19)),
+        "no fold": made_diagnosis("found", creep, gain=gain(None, None, None)),
+        "unnamed": made_diagnosis("unexplained", gain=None),
+        "not measured": made_diagnosis("found", creep, gain=None),
     }
     cases = {k: Scored(truth("creep"), v) for k, v in verdicts.items()}
-    cases["small"] = Scored(truth("creep", sigma=9.0), said("found", creep, gain=gain(0.2, 0.2)))
+    cases["small"] = Scored(truth("creep", sigma=9.0), made_diagnosis("found", creep, gain=gain(0.2, 0.2)))
     true_cause = {
-        "fell": said("found", creep, gain=gain(0.20, 0.089)),
-        "stayed": said("found", creep, gain=gain(0.20, 0.10)),
-        "unnamed": said("found", creep, gain=gain(0.20, 0.10)),
+        "fell": made_diagnosis("found", creep, gain=gain(0.20, 0.089)),
+        "stayed": made_diagnosis("found", creep, gain=gain(0.20, 0.10)),
+        "unnamed": made_diagnosis("found", creep, gain=gain(0.20, 0.10)),
     }
     rows = gain_goals(cases, true_cause)
     assert count(rows, "no fold") == (1, 6)
@@ -87,7 +89,7 @@ def test_gain_counts_what_fell_what_was_not_named_and_what_no_fold_keeps() -> No
 
 
 def test_gain_without_any_measured_is_not_scored() -> None:
-    rows = gain_goals({"a": Scored(truth("creep"), said("none", gain=None))}, {})
+    rows = gain_goals({"a": Scored(truth("creep"), made_diagnosis("none", gain=None))}, {})
     assert {r[3] for r in rows if "falls" in r[0]} == {0}
 
 
@@ -97,12 +99,12 @@ def test_scope_is_compared_as_the_beams_that_an_effect_acts_on() -> None:
     assert beams_in("all", "clamp-gap", per_beam=False) == {2, 5, 8}
     with pytest.raises(ValueError, match="scope elsewhere"):
         beams_in("elsewhere", "creep", per_beam=False)
-    right = Scored(truth("creep", scope="S1"), said("found", ("creep",), scope="S1"))
-    whole = Scored(truth("creep", scope="S1"), said("found", ("creep",), scope="all"))
-    other = Scored(truth("creep", scope="S1"), said("found", ("creep",), scope="S0"))
-    wrong = Scored(truth("creep", scope="S1"), said("found", ("skin",), scope="S1"))
+    right = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("creep",), scope="S1"))
+    whole = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("creep",), scope="all"))
+    other = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("creep",), scope="S0"))
+    wrong = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("skin",), scope="S1"))
     # a bridge does not slip out: all beams of a material are its cantilevers
-    slipped = Scored(truth("free-length", scope="S0"), said("found", ("free-length",), scope="S0"))
+    slipped = Scored(truth("free-length", scope="S0"), made_diagnosis("found", ("free-length",), scope="S0"))
     assert [t == s for _, t, s in scopes(slipped)] == [True]
     rows = scope_goals([right, whole, other, wrong, slipped])
     assert count(rows, "in the right beams") == (2, 4)
@@ -122,26 +124,30 @@ def test_each_experiment_of_the_diagnosis_is_understood() -> None:
 
 
 def test_advice_settles_where_the_truth_is_found_alone() -> None:
-    both = said("ambiguous", ("taper",), ("skin",))
+    both = made_diagnosis("ambiguous", ("taper",), ("skin",))
     case = Scored(truth("taper"), both)
 
     def after(new: dict[str, Any] | None, entered: list[str] | None = None) -> dict[str, Any]:
-        return {"advice": "callipers", "entered": entered or [], "said": new}
+        return {"advice": "callipers", "entered": entered or [], "diagnosis": new}
 
-    assert settled(case, after(said("found", ("taper",))))
-    assert not settled(case, after(said("found", ("skin",))))
-    assert not settled(case, after(said("ambiguous", ("taper",), ("skin",))))
-    assert not settled(case, after(said("none")))
+    assert settled(case, after(made_diagnosis("found", ("taper",))))
+    assert not settled(case, after(made_diagnosis("found", ("skin",))))
+    assert not settled(case, after(made_diagnosis("ambiguous", ("taper",), ("skin",))))
+    assert not settled(case, after(made_diagnosis("none")))
     assert not settled(case, after(None))
     # its value is in the experiment: nothing is left to be found
-    assert settled(case, after(said("none"), ["taper"]))
-    assert not settled(case, after(said("found", ("skin",)), ["taper"]))
+    assert settled(case, after(made_diagnosis("none"), ["taper"]))
+    assert not settled(case, after(made_diagnosis("found", ("skin",)), ["taper"]))
     string = Scored(truth("string", category="outside"), both)
-    assert settled(string, after(said("unexplained")))
-    assert not settled(string, after(said("found", ("taper",))))
+    assert settled(string, after(made_diagnosis("unexplained")))
+    assert not settled(string, after(made_diagnosis("found", ("taper",))))
     clean = Scored(truth(category="clean"), both)
-    assert settled(clean, after(said("none")))
-    answers = {"a": after(said("found", ("taper",))), "b": after(said("none")), "elsewhere": after(None)}
+    assert settled(clean, after(made_diagnosis("none")))
+    answers = {
+        "a": after(made_diagnosis("found", ("taper",))),
+        "b": after(made_diagnosis("none")),
+        "elsewhere": after(None),
+    }
     rows = advice_goals({"a": case, "b": case}, answers)
     assert count(rows, "advised experiment made") == (1, 2)
 
@@ -157,14 +163,14 @@ def test_readings_refute_the_sets_that_they_disagree_with() -> None:
 
 
 def test_without_the_truth_only_listed_alternatives_are_excused() -> None:
-    full = Scored(truth("taper"), said("ambiguous", ("taper",), ("skin", "radius")))
+    full = Scored(truth("taper"), made_diagnosis("ambiguous", ("taper",), ("skin", "radius")))
     cases = dict.fromkeys("abcde", full)
     without = {
-        "a": said("unexplained"),
-        "b": said("found", ("radius", "skin")),
-        "c": said("found", ("creep",)),
-        "d": said("none"),
-        "e": said("ambiguous", ("creep",), ("radius", "skin")),
+        "a": made_diagnosis("unexplained"),
+        "b": made_diagnosis("found", ("radius", "skin")),
+        "c": made_diagnosis("found", ("creep",)),
+        "d": made_diagnosis("none"),
+        "e": made_diagnosis("ambiguous", ("creep",), ("radius", "skin")),
     }
     rows = control_goals(cases, without, {})
     assert count(rows, "unexplained or a listed alternative") == (2, 5)
@@ -172,8 +178,8 @@ def test_without_the_truth_only_listed_alternatives_are_excused() -> None:
 
 
 def test_shuffled_materials_must_lose_the_name() -> None:
-    cases = dict.fromkeys("ab", Scored(truth("taper"), said("found", ("taper",))))
-    mixed = {"a": said("found", ("taper",)), "b": said("unexplained")}
+    cases = dict.fromkeys("ab", Scored(truth("taper"), made_diagnosis("found", ("taper",))))
+    mixed = {"a": made_diagnosis("found", ("taper",)), "b": made_diagnosis("unexplained")}
     assert count(control_goals(cases, {}, mixed), "old name") == (1, 2)
 
 

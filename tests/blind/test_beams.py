@@ -77,7 +77,7 @@ def test_a_hidden_effect_is_named(name: str, beams: int, tmp_path: Path) -> None
     """In the named set, first of it, and by its size within 3 of its standard deviations; an equivalent
     explanation may stand beside it."""
     case = diagnosed(name, beams, tmp_path)
-    assert case.in_the_set, (case.said["verdict"], case.said["alternatives"])
+    assert case.in_the_set, (case.diagnosis["verdict"], case.diagnosis["alternatives"])
     assert case.named == (name,)
     for true, found, sd in case.amplitudes():
         assert abs(found - true) < 3 * sd

@@ -38,8 +38,10 @@ def test_no_truth_is_written(tmp_path: Path) -> None:
     assert any(np.abs(force(t, case.hidden) - force(t, ())).max() > 0 for t in case.trials)
 
 
+@pytest.mark.slow
 def test_a_hidden_cause_is_in_the_named_set(tmp_path: Path) -> None:
-    """The cheapest geometry; the whole search, in simulated pokes."""
+    """The cheapest geometry; the whole search, in simulated pokes. It is the example of datasets/measured,
+    which tests/packaging diagnoses in every run, as the tutorial does."""
     case = make_poke(12, "one", "depth-offset", target=9.0)
     assert true_names(case.truth()) in named_set(diagnosed(case, tmp_path))
 

@@ -23,14 +23,14 @@ def pair(kind: str, true: str, verdict: str, *names: str, sigma: float = 12.0, *
     """names: single causes, the chosen one first."""
     effects = [{"effect": true, "amplitude": 1e-3, "scope": "all", "sigma": sigma}] if true else []
     estimate = {"offset_percent": {"value": 0.14, "sd": 0.01}}
-    said = {
+    diagnosis = {
         "verdict": verdict,
         "causes": [{"effect": n, "parameters": estimate} for n in names[:1]],
         "alternatives": [[n] for n in names],
         "extended": {"shear_modulus_Pa": {"M0": 1030.0}},
         "gain": GAIN,
     }
-    return {"kind": kind, "effects": effects, "shear_modulus_Pa": {"M0": 1000.0}}, said | others
+    return {"kind": kind, "effects": effects, "shear_modulus_Pa": {"M0": 1000.0}}, diagnosis | others
 
 
 PAIRS = [

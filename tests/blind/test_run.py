@@ -18,7 +18,7 @@ from benchmarks.blind.under_test import Diagnoser, NotDiagnosedError, catalogue
 TRUTH = load_truth(SURVEY)["cases"]
 LARGE = next(k for k, c in TRUTH.items() if c["category"] == "single" and c["sigma"]["total"] >= 10)
 EFFECT = TRUTH[LARGE]["hidden"][0]["effect"]
-ALL = ["--told", "--advice", "--control", "without-truth", "--control", "shuffled"]
+ALL = ["--given-cause", "--advice", "--control", "without-truth", "--control", "shuffled"]
 
 
 class MadeUp:

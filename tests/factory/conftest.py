@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
+from typer.testing import CliRunner, Result
 
 from factory import _build
-from factory._build import build_dataset
+from factory._build import BuildProgress, build_dataset
 from factory._execution import run_poke
 from factory._record import Outcome
+from factory._staging import building_folder
 from factory._store import LEDGER
 from factory.plan import Plan, PlannedPoke, make_plan
 from factory.recipe import Recipe, load_recipe
@@ -107,16 +111,68 @@ def standin_build(serial: None) -> Builder:
     return run
 
 
+def _four_pokes(folder: Path) -> Plan:
+    (folder / "tiny.yaml").write_text(TINY)
+    return make_plan(load_recipe(str(folder / "tiny.yaml")), "ogden")
+
+
+def build_here(plan: Plan, target: Path, **options: Any) -> None:
+    """A build with the stand-in in this process, for fixtures that last longer than a test."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_build, "run_local", _run_here)
+        build_dataset(plan, target, simulator="tests.factory.standin:simulate", **options)
+
+
 @pytest.fixture(scope="session")
 def finished_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The store of `plan`, built once: whoever changes it takes a copy."""
     folder = tmp_path_factory.mktemp("finished")
-    (folder / "tiny.yaml").write_text(TINY)
-    four_pokes = make_plan(load_recipe(str(folder / "tiny.yaml")), "ogden")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_build, "run_local", _run_here)
-        build_dataset(four_pokes, folder / "store.zarr", simulator="tests.factory.standin:simulate")
+    build_here(_four_pokes(folder), folder / "store.zarr")
     return folder / "store.zarr"
+
+
+@pytest.fixture(scope="session")
+def quick_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of `quick`, built once; nobody changes it."""
+    folder = tmp_path_factory.mktemp("quick")
+    build_here(make_plan(load_recipe("quick"), "ogden"), folder / "store.zarr")
+    return folder / "store.zarr"
+
+
+@pytest.fixture
+def store(finished_store: Path, tmp_path: Path) -> Path:
+    """A copy of the finished store."""
+    return Path(shutil.copytree(finished_store, tmp_path / "reference.zarr"))
+
+
+@pytest.fixture(scope="session")
+def _stopped_build(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The building folder of `plan`, stopped after three of its four pokes."""
+
+    def stop(state: BuildProgress) -> None:
+        if state.done == 3:
+            raise KeyboardInterrupt
+
+    folder = tmp_path_factory.mktemp("stopped")
+    with pytest.raises(KeyboardInterrupt):
+        build_here(_four_pokes(folder), folder / "stopped.zarr", on_progress=stop)
+    return building_folder(folder / "stopped.zarr")
+
+
+@pytest.fixture
+def stopped(_stopped_build: Path, tmp_path: Path) -> Path:
+    """Target of a build that was stopped after three of its four pokes."""
+    target = tmp_path / "stopped.zarr"
+    shutil.copytree(_stopped_build, building_folder(target))
+    return target
+
+
+def run_app(app: Any, *arguments: object) -> Result:
+    """A command in this process, which must not end in a traceback."""
+    result = CliRunner().invoke(app, [str(a) for a in arguments], env={"COLUMNS": "300"})
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result
 
 
 def digest(store: Path) -> dict[str, str]:

@@ -12,20 +12,22 @@ import yaml
 
 import factory
 from factory._input import InputError
-from tests.factory.conftest import ROOT, environment
+from factory.build import app as build_app
+from factory.verify import app as verify_app
+from tests.factory.conftest import ROOT, environment, run_app
 
 RECIPE = """
 name: own
-description: two indentations of a block with a spheroid
+description: one indentation of a block with a spheroid
 seed: 3
 block_mm: [60, 60, 20]
 rod: {radius_mm: 2.5, length_mm: 40}
 friction: 0.6
-protocol: {shared_sites: 1, own_sites: 1, margin_mm: 15, max_angle_deg: 0, depth_mm: 1, frame_spacing_mm: 1}
+protocol: {shared_sites: 1, own_sites: 0, margin_mm: 15, max_angle_deg: 0, depth_mm: 1, frame_spacing_mm: 1}
 softness: [S1]
 border_mm: 5
 cover_mm: 6
-refinement: 0.7
+refinement: 0.6
 shapes:
   - {kind: spheroid, id: flat, radius_mm: 8, half_height_mm: 5, sunk_mm: 1}
 """
@@ -83,13 +85,13 @@ def test_the_profile_has_the_shape_in_it(store: Path) -> None:
 def test_it_is_read_back_and_verified_with_the_plugin(store: Path) -> None:
     done = command("verify", store, "--plugin", "tests.factory.plugin")
     assert done.returncode == 0, done.stdout + done.stderr
-    done = command("inspect", store, "--poke", "1", "--plugin", "tests.factory.plugin")
+    done = command("inspect", store, "--poke", "0", "--plugin", "tests.factory.plugin")
     assert "spheroid, 8, 5 mm" in done.stdout
 
 
 def test_without_the_plugin_the_shape_is_named(store: Path) -> None:
-    done = command("verify", store)
-    assert done.returncode == 1
+    done = run_app(verify_app, store)
+    assert done.exit_code == 1
     assert "inclusion of geometry 0: inclusion: expected one of box, sphere, cylinder" in done.stdout
     assert "got 'spheroid'" in done.stdout
     (store.parent / "unknown.yaml").write_text(RECIPE)
@@ -97,8 +99,8 @@ def test_without_the_plugin_the_shape_is_named(store: Path) -> None:
         InputError, match=r"key shapes\.0: expected as kind one of 'cube', .*, got 'spheroid'"
     ):
         factory.load_recipe(store.parent / "unknown.yaml")
-    done = command("build", "--model", "my-law", "--recipe", "quick", "--dry-run")
-    assert done.returncode == 2
+    done = run_app(build_app, "--model", "my-law", "--recipe", "quick", "--dry-run")
+    assert done.exit_code == 2
     assert done.stderr.startswith("error: --model my-law: expected one of st-venant-kirchhoff")
 
 
@@ -113,8 +115,8 @@ def test_the_shapes_lengths_are_the_recipes_keys(tmp_path: Path) -> None:
 
 
 def test_a_plugin_that_cannot_be_imported_is_named() -> None:
-    done = command("build", "--model", "ogden", "--plugin", "nowhere_at_all", "--dry-run")
-    assert done.returncode == 2
+    done = run_app(build_app, "--model", "ogden", "--plugin", "nowhere_at_all", "--dry-run")
+    assert done.exit_code == 2
     assert (
         done.stderr
         == "error: --plugin nowhere_at_all: ModuleNotFoundError: No module named 'nowhere_at_all'\n"

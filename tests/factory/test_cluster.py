@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from factory import _execution
+from factory import _cluster
 from factory._build import BuildProgress, build_dataset
 from factory._input import InputError
 from factory._staging import Staging
@@ -26,7 +26,7 @@ SIMULATOR = "tests.factory.standin:simulate"
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_execution, "NOTICE_SECONDS", 0.3)
+    monkeypatch.setattr(_cluster, "NOTICE_SECONDS", 0.3)
 
 
 @pytest.fixture

@@ -203,9 +203,9 @@ def test_the_dry_run_says_what_becomes_of_each_effect(tmp_path: Path, tiny_file:
     write_card(cards, "S1", STIFFENING, CURVED)
     code, text = command(tiny_file, cards, "neo-hookean", "--dry-run")
     assert code == 0, text
-    assert "creep (per_decade 0.05 +- 0.1; not told from taper): taken over as the modulus at 1 s" in text
+    assert "creep (per_decade 0.05 +- 0.1; equivalent to taper): taken over as the modulus at 1 s" in text
     assert (
-        "strain-stiffening (c2_over_c1 0.5 +- 0.1; not told from taper): taken over as the law yeoh" in text
+        "strain-stiffening (c2_over_c1 0.5 +- 0.1; equivalent to taper): taken over as the law yeoh" in text
     )
     assert "not taken over: belongs to the beam's form" in text
 

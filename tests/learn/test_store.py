@@ -12,7 +12,8 @@ import zarr
 
 from learn.data import MemoryDataset, open_store, split_pokes, statistics
 from learn.data._files import displacement_reader
-from learn.data.store import rigid_masks, shear_modulus
+from learn.data.moduli import shear_modulus
+from learn.data.store import rigid_masks
 from learn.errors import InputError
 from tests.learn.small_store import MODULI, write_manifest, write_store
 

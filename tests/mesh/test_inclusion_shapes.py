@@ -14,6 +14,7 @@ from poke_cases import gauss_jacobians
 
 import tisim
 from tisim import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion, inclusions
+from tisim.inclusions import _registry
 from tisim.mesh import poke_mesh
 
 SHAPES = [
@@ -112,7 +113,7 @@ def outside(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("outside")
     (folder / "my_shapes.py").write_text(OUTSIDE)
     sys.path.insert(0, str(folder))
-    before = dict(inclusions._SHAPES), dict(inclusions._RECIPES), dict(inclusions._RECIPE_OF)
+    before = dict(_registry._SHAPES), dict(_registry._RECIPES), dict(_registry._RECIPE_OF)
     try:
         import my_shapes
 
@@ -121,7 +122,7 @@ def outside(tmp_path_factory: pytest.TempPathFactory):
         sys.path.remove(str(folder))
         del sys.modules["my_shapes"]
         for known, then in zip(
-            (inclusions._SHAPES, inclusions._RECIPES, inclusions._RECIPE_OF), before, strict=True
+            (_registry._SHAPES, _registry._RECIPES, _registry._RECIPE_OF), before, strict=True
         ):
             known.clear()
             known.update(then)

@@ -1,28 +1,47 @@
 """Every command block of README and tutorial runs, in order, in a copy of what a clone holds.
 
-Installation blocks are run by `.ci/run`, which then passes on the dataset of the README's first command, by
-TISIM_QUICK_STORE. `python -m pytest -m slow tests/packaging` runs whole pages with the slow blocks (an hour).
+Commands run in this process, as `python -m` runs them in one of their own: a start costs seconds. A block
+that two pages state word for word runs once. Installation blocks are run by `.ci/run`, which then passes on
+the dataset of the README's first command, by TISIM_QUICK_STORE; without it a stand-in is made.
+`python -m pytest -m slow tests/packaging` runs whole pages with the slow blocks (an hour), each command in a
+process of its own.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
+import logging
 import os
+import re
+import runpy
+import shlex
 import shutil
 import subprocess
 import sys
+import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
+import yaml
 
+from factory import load_recipe, make_plan
+from factory._build import build_dataset
 from tests.packaging.blocks import ROOT, Block, blocks
 
 PAGES = ("README.md", "docs/tutorial.md")
 STORE = Path("datasets", "quick-ogden.zarr")
-QUICK = [b for page in PAGES for b in blocks(page) if not b.installs and not b.slow]
+_BLOCKS = [b for page in PAGES for b in blocks(page) if not (b.installs or b.slow)]
+QUICK = [b for i, b in enumerate(_BLOCKS) if b.text not in {before.text for before in _BLOCKS[:i]}]
+_MODULE = re.compile(r"python -m ([\w.]+) ([^|&;<>$`]+?)( \|\| echo .*)?")
 
 
-def clone(folder: Path) -> None:
-    """The folders that commands name, without what was built in them."""
+def clone(folder: Path, *, simulated: bool = False) -> None:
+    """The folders that commands name, and the dataset that the README's first command builds; simulated: with
+    its real simulations where there is none, which takes minutes."""
     for name in ("datasets", "docs", "studies"):
         shutil.copytree(
             ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.zarr", "*.building", "*.png")
@@ -30,8 +49,11 @@ def clone(folder: Path) -> None:
     built = os.environ.get("TISIM_QUICK_STORE")
     if built:
         shutil.copytree(built, folder / STORE)
-    else:  # as the README's first command builds it
+    elif simulated:
         run([sys.executable, "-m", "factory.build", "--model", "ogden", "--recipe", "quick"], folder)
+    else:
+        plan = make_plan(load_recipe("quick"), "ogden")
+        build_dataset(plan, folder / STORE, workers=1, simulator="tests.factory.standin:simulate")
 
 
 def run(command: list[str], folder: Path) -> None:
@@ -43,6 +65,41 @@ def run(command: list[str], folder: Path) -> None:
     assert ended.returncode == 0, f"{' '.join(command)}\n{ended.stdout[-3000:]}\n{ended.stderr[-3000:]}"
 
 
+def run_here(block: Block, folder: Path) -> None:
+    """As `run`, but Python blocks and lines of `python -m` in this process."""
+    if block.language == "python":
+        code, shown = _in_process(folder, [block.name], partial(exec, block.text, {"__name__": "__main__"}))
+        assert code == 0, f"{block.text}\n{shown[-5000:]}"
+        return
+    for line in block.text.splitlines():
+        command = _MODULE.fullmatch(line)
+        if command is None:
+            run(["sh", "-e", "-c", line], folder)
+            continue
+        module, words, may_fail = command.groups()
+        call = partial(runpy.run_module, module, run_name="__main__", alter_sys=True)
+        code, shown = _in_process(folder, [module, *shlex.split(words)], call)
+        assert code == 0 or (may_fail and code in (1, 2)), f"{line}\n{shown[-5000:]}"
+
+
+def _in_process(folder: Path, arguments: list[str], call: Callable[[], object]) -> tuple[int, str]:
+    """Exit code and what was printed."""
+    shown = io.StringIO()
+    handlers = logging.getLogger().handlers[:]
+    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
+        warnings.simplefilter("default")
+        patch.chdir(folder)
+        patch.setattr(sys, "argv", arguments)
+        with contextlib.redirect_stdout(shown), contextlib.redirect_stderr(shown):
+            try:
+                call()
+                code = 0
+            except SystemExit as end:
+                code = end.code if isinstance(end.code, int) else int(end.code is not None)
+    logging.getLogger().handlers[:] = handlers
+    return code, shown.getvalue()
+
+
 @pytest.fixture(scope="module")
 def scratch(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("clone")
@@ -52,14 +109,27 @@ def scratch(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("block", QUICK, ids=[b.name for b in QUICK])
 def test_block_runs(block: Block, scratch: Path) -> None:
-    """In the order of the page; a block may use what the ones before it wrote."""
-    run(block.command(sys.executable), scratch)
+    """In the order of the pages; a block may use what the ones before it wrote."""
+    run_here(block, scratch)
+
+
+@pytest.mark.parametrize(
+    ("example", "diagnosis"),
+    [("coupons", "first"), ("compression", "second"), ("indentation", "third")],
+)
+def test_the_tutorial_finds_what_was_put_in(example: str, diagnosis: str, scratch: Path) -> None:
+    """After its blocks have run: the cause of truth.yaml is named, alone or among equivalent explanations."""
+    found = json.loads((scratch / f"{diagnosis}-diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
+    truth = yaml.safe_load((scratch / "datasets" / "measured" / example / "truth.yaml").read_text())
+    causes = sorted({effect["effect"] for effect in truth["effects"]})
+    named = [sorted({cause["effect"] for cause in found["causes"]}), *map(sorted, found["alternatives"])]
+    assert causes in named, (found["verdict"], named)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_whole_page_runs(page: str, tmp_path: Path) -> None:
-    clone(tmp_path)
+    clone(tmp_path, simulated=True)
     for block in blocks(page):
         if not block.installs:
             run(block.command(sys.executable), tmp_path)

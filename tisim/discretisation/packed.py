@@ -12,14 +12,14 @@ from tisim.discretisation.history import History
 from tisim.scene import Material
 
 if TYPE_CHECKING:
-    from tisim.kernels.response import Features
+    from tisim.kernels.isochoric import Features
 
 Array = NDArray[np.float64]
 
 
 def features_of(material: Material) -> Features:
     """What the kernels of a material compile in."""
-    from tisim.kernels.response import Features  # imports Taichi
+    from tisim.kernels.isochoric import Features  # imports Taichi
 
     soft, fibres = material.softening, material.fibres
     return Features(

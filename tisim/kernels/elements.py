@@ -3,7 +3,7 @@
 All run serially and take plain NumPy arrays: x (n, 3) positions; conn (m, a) element nodes;
 grad (m, q, a, 3) shape function gradients in the rest shape [1/m]; weight (m, q) rest volumes [m3];
 prm packed law parameters, then those of the material's other parts; kp pointwise and kb mean volumetric
-stiffness [Pa]; state (m, q, k) what these parts need by point (`tisim.kernels.response.Features`).
+stiffness [Pa]; state (m, q, k) what these parts need by point (`tisim.kernels.isochoric.Features`).
 The energy of an element is  sum_q w_q (W + kp/2 theta^2) + kb/2 V mean(theta)^2: with kb = 0 the plain
 displacement element, else one with a constant pressure kb mean(theta), condensed ("P2/P0", "Q1/P0").
 """
@@ -14,7 +14,9 @@ displacement element, else one with a constant pressure kb mean(theta), condense
 from functools import cache
 
 from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
-from tisim.kernels.response import NONE, Features, cofactor, determinant, make_load_point, make_response
+from tisim.kernels.isochoric import NONE, Features, make_load_point
+from tisim.kernels.response import make_response
+from tisim.kernels.tensors import cofactor, determinant
 from tisim.laws import Law
 
 _f1 = ti.types.ndarray(dtype=f64, ndim=1)

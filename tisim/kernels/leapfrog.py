@@ -7,7 +7,7 @@ from functools import cache
 
 from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
 from tisim.kernels.elements import _f1, _f2, _f4, _i2, force_functions
-from tisim.kernels.response import NONE, Features
+from tisim.kernels.isochoric import NONE, Features
 from tisim.laws import Law
 
 # entries of `state`, zeros at first and kept from launch to launch

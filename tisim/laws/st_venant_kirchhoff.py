@@ -13,10 +13,9 @@ SOFA: `StVenantKirchhoff`, ParameterSet "mu lambda", the same energy.
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import ti
-from tisim.laws._law import Law, Moduli, scalar
+from tisim.laws._lame import law_of_lame
+from tisim.laws._law import scalar
 
 
 @ti.func
@@ -38,17 +37,10 @@ def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for a
     )
 
 
-LAW = Law(
+LAW = law_of_lame(
     name="st-venant-kirchhoff",
     title="St Venant-Kirchhoff",
-    parameters={"mu": ("Pa", "scalar"), "lam": ("Pa", "scalar")},
-    family="invariant",
     theta="trace",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "mu")]),
     kappa=lambda p: scalar(p, "lam"),
-    moduli=lambda p: Moduli(
-        shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0
-    ),
-    from_moduli=lambda shear, bulk: {"mu": shear, "lam": bulk - 2.0 * shear / 3.0},
 )

@@ -53,8 +53,8 @@ def control_goals(
     cases: Mapping[str, Scored], without: Mapping[str, Verdict], mixed: Mapping[str, Verdict]
 ) -> list[Goal]:
     """without: verdicts with the true effect out of the catalogue; mixed: with the materials shuffled."""
-    first = {k: Scored(cases[k].truth, said) for k, said in without.items() if k in cases}
-    second = {k: Scored(cases[k].truth, said) for k, said in mixed.items() if k in cases}
+    first = {k: Scored(cases[k].truth, diagnosis) for k, diagnosis in without.items() if k in cases}
+    second = {k: Scored(cases[k].truth, diagnosis) for k, diagnosis in mixed.items() if k in cases}
     unnamed = sum(c.verdict == "unexplained" for c in first.values())
     held = sum(excused(cases[k], c) for k, c in first.items())
     alone = sum(c.verdict == "found" and not excused(cases[k], c) for k, c in first.items())
@@ -68,24 +68,24 @@ def control_goals(
 
 
 def excused(full: Scored, now: Scored) -> bool:
-    """Whether what is said without the truth was equivalent to it already, or is `unexplained`."""
+    """Whether the diagnosis without the truth was equivalent to it already, or is `unexplained`."""
     if now.verdict == "unexplained":
         return True
-    listed = {tuple(sorted(names)) for names in full.said["alternatives"]}
+    listed = {tuple(sorted(names)) for names in full.diagnosis["alternatives"]}
     return bool(now.named) and now.named in listed
 
 
 def control_table(
     cases: Mapping[str, Scored], without: Mapping[str, Verdict], mixed: Mapping[str, Verdict]
 ) -> str:
-    """How often what was said, by control and true cause."""
+    """How often which diagnosis, by control and true cause."""
     lines = []
     for what, verdicts in (("truth not in the library", without), ("materials shuffled", mixed)):
         rows: dict[str, Counter[str]] = {}
-        for key, said in verdicts.items():
+        for key, diagnosis in verdicts.items():
             if key not in cases:
                 continue
-            now = Scored(cases[key].truth, said)
+            now = Scored(cases[key].truth, diagnosis)
             name = "+".join(now.named) + ("*" if now.verdict == "ambiguous" else "") or now.verdict
             rows.setdefault("+".join(cases[key].effects), Counter())[name] += 1
         lines += [f"{what}:"] if rows else []
@@ -114,10 +114,10 @@ SENTENCES = {
 NOTHING = "no experiment of the catalogue"
 
 
-def advised(said: Verdict) -> str | None:
+def advised(diagnosis: Verdict) -> str | None:
     """The experiment that is advised first; None where the diagnosis knows of none. ValueError where the lab
     does not understand it."""
-    text = said.get("next_experiment") or ""
+    text = diagnosis.get("next_experiment") or ""
     if text.startswith(NOTHING):
         return None
     (name,) = [n for n, begins in SENTENCES.items() if text.startswith(begins)] or [""]
@@ -131,32 +131,32 @@ def asked(case: Scored) -> bool:
     return case.verdict == "ambiguous"
 
 
-def follow(case: Case, said: Verdict, folder: Path, finder: Diagnoser) -> dict[str, Any]:
+def follow(case: Case, diagnosis: Verdict, folder: Path, finder: Diagnoser) -> dict[str, Any]:
     """Make the advised experiment of `case`, whose experiment is in `folder`, and diagnose all again.
 
     {"advice": its name or None, "entered": effects whose readings are in the experiment now, "without": what
-    was taken out of the catalogue, "not_made": trials, "said": the new diagnosis, None without advice}
+    was taken out of the catalogue, "not_made": trials, "diagnosis": the new one, None without advice}
     """
-    name = advised(said)
-    answer: dict[str, Any] = {"advice": name, "entered": [], "without": [], "not_made": [], "said": None}
+    name = advised(diagnosis)
+    answer: dict[str, Any] = {"advice": name, "entered": [], "without": [], "not_made": [], "diagnosis": None}
     if name in GAUGES:
-        alternatives = [tuple(names) for names in said["alternatives"]]
+        alternatives = [tuple(names) for names in diagnosis["alternatives"]]
         entered, out = measure(case, name, alternatives, folder)
         answer |= {"entered": list(entered), "without": sorted({*entered, *out})}
-        answer["said"] = finder(folder, without=answer["without"])
+        answer["diagnosis"] = finder(folder, without=answer["without"])
     elif name in POSES:
         answer["not_made"] = photograph_again(case, name, folder)
         new = {new_id(t.id, name) for t in case.trials}
-        answer["said"] = finder(folder, pose=pose_of(name, new))
+        answer["diagnosis"] = finder(folder, pose=pose_of(name, new))
     return answer
 
 
 def settled(case: Scored, answer: Mapping[str, Any]) -> bool:
     """Whether the new verdict is the truth: the hidden effects alone, but for those whose measured values are
     in the experiment now; `none` where nothing is left to be named, `unexplained` outside the library."""
-    if answer["said"] is None:
+    if answer["diagnosis"] is None:
         return False
-    now = Scored(case.truth, answer["said"])
+    now = Scored(case.truth, answer["diagnosis"])
     if case.truth["category"] == "outside":
         return now.verdict == "unexplained"
     hidden = () if case.truth["category"] in ("clean", "density") else case.effects
@@ -175,8 +175,8 @@ def advice_goals(cases: Mapping[str, Scored], answers: Mapping[str, Mapping[str,
         ("clean, or density alone: none then", ("clean", "density")),
     ):
         rows.append(_part(f"  {what}", "-", [s for s in some if s[0].truth["category"] in categories]))
-    two = [(c, t) for c, t in some if c.truth["category"] == "two" and t["said"]]
-    one_of = sum(_one_of_two(Scored(c.truth, t["said"])) for c, t in two)
+    two = [(c, t) for c, t in some if c.truth["category"] == "two" and t["diagnosis"]]
+    one_of = sum(_one_of_two(Scored(c.truth, t["diagnosis"])) for c, t in two)
     rows.append(("  two effects: one of them found alone", "-", one_of, len(two)))
     here = [s for s in some if s[0].in_the_set]
     rows.append(_part("  where the truth was in the named set", "90 %", here))
@@ -192,11 +192,11 @@ def advice_table(cases: Mapping[str, Scored], answers: Mapping[str, Mapping[str,
         case, name = cases[key], t["advice"] or "nothing"
         made[name] += 1
         right[name] += settled(case, t)
-        now = Scored(case.truth, t["said"]) if t["said"] else None
-        said = f"{now.verdict} {'+'.join(now.named)}" if now else "-"
+        now = Scored(case.truth, t["diagnosis"]) if t["diagnosis"] else None
+        new = f"{now.verdict} {'+'.join(now.named)}" if now else "-"
         true = "+".join(case.effects) or case.truth["category"]
-        alternatives = ", ".join("+".join(names) for names in case.said["alternatives"])
-        lines.append(f"{key} {true}: {alternatives}; {name}: {said}{', settled' if settled(case, t) else ''}")
+        alternatives = ", ".join("+".join(names) for names in case.diagnosis["alternatives"])
+        lines.append(f"{key} {true}: {alternatives}; {name}: {new}{', settled' if settled(case, t) else ''}")
         if t["not_made"]:
             lines.append(f"    not made: {'; '.join(t['not_made'])}")
     lines += [f"{name:20} settled {right[name]} of {count}" for name, count in made.most_common()]

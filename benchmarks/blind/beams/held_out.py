@@ -61,13 +61,13 @@ def _excess(rms: float, noise: float) -> float:
     return float(np.sqrt(max(rms**2 - noise**2, 0.0)))
 
 
-def measured(said: Verdict) -> bool:
-    return bool(said.get("gain"))
+def measured(diagnosis: Verdict) -> bool:
+    return bool(diagnosis.get("gain"))
 
 
-def fall(said: Verdict, true_cause: Verdict | None) -> Fall | None:
+def fall(diagnosis: Verdict, true_cause: Verdict | None) -> Fall | None:
     """None where nothing was measured, or no fold keeps the effect estimable."""
-    gain = said.get("gain") or {}
+    gain = diagnosis.get("gain") or {}
     if gain.get("rms_mm_before") is None:
         return None
     known = ((true_cause or {}).get("gain") or {}).get("rms_mm_after")
@@ -84,14 +84,14 @@ def gain_goals(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -
     """Of single effects of 10 sigmas and above. Where nothing was named nothing falls: these count, in a run
     that measures gains, as missed; those without a usable fold do not."""
     some = {key: c for key, c in cases.items() if large(c)}
-    falls = {key: fall(c.said, true_cause.get(key)) for key, c in some.items()}
+    falls = {key: fall(c.diagnosis, true_cause.get(key)) for key, c in some.items()}
     there = [f for f in falls.values() if f is not None]
-    running = any(measured(c.said) for c in cases.values())
+    running = any(measured(c.diagnosis) for c in cases.values())
     nothing = [key for key, c in some.items() if not c.named] if running else []
     # a fit that is given the cause shows what could have been reached where nothing was named
     reachable = sum(fall(true_cause[key], None) is not None for key in nothing if key in true_cause)
     compared = [f for f in there if f.true_cause is not None]
-    no_fold = sum(measured(c.said) and falls[key] is None for key, c in some.items())
+    no_fold = sum(measured(c.diagnosis) and falls[key] is None for key, c in some.items())
     count = len(there) + len(nothing)
     head = ">= 10 sigma, held out: "
     return [
@@ -134,7 +134,7 @@ def gain_table(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -
     for key, case in cases.items():
         if not large(case):
             continue
-        f = fall(case.said, true_cause.get(key))
+        f = fall(case.diagnosis, true_cause.get(key))
         head = f"{key} {case.effects[0]} [{case.sigma:.1f}]"
         if f is None:
             lines.append(f"{head:42} {_why(case)}")
@@ -154,7 +154,7 @@ def gain_table(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -
 def _why(case: Scored) -> str:
     if not case.named:
         return f"nothing named ({case.verdict})"
-    return case.said["gain"]["note"] or "no fold" if measured(case.said) else "gain not measured"
+    return case.diagnosis["gain"]["note"] or "no fold" if measured(case.diagnosis) else "gain not measured"
 
 
 def _median(values: Sequence[float]) -> str:

@@ -1,7 +1,7 @@
 """How large the diagnosis under test sees a hidden effect where the photographs have no noise.
 
     python -m benchmarks.blind.beams.noise_free --only 1,4,8,40      # some 10 core-s a case
-    python -m benchmarks.blind.beams.noise_free --rivals --only 82   # fits the alternatives too, 60 core-s
+    python -m benchmarks.blind.beams.noise_free --alternatives --only 82   # fits them too, 60 core-s
 
 Contour and registration noise are left out of the photographs, but not out of the expectations of the
 diagnosis: the output is the effect itself and the difference of the two solvers, in standard deviations of
@@ -25,18 +25,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--cases", type=Path, default=CASES)
     parser.add_argument("--only", required=True, help="indices of cases, by commas")
-    parser.add_argument("--rivals", action="store_true", help="fit the nearest alternatives too")
+    parser.add_argument("--alternatives", action="store_true", help="fit the nearest alternatives too")
     given = parser.parse_args()
     truth = load_truth(given.cases)["cases"]
     for index in map(int, given.only.split(",")):
         with tempfile.TemporaryDirectory() as place:
             folder = Path(place) / "experiment"
             write_experiment(*load_case(given.cases, index), folder, noise=False)
-            _show(index, truth[f"{index:03d}"], folder, rivals=given.rivals)
+            _show(index, truth[f"{index:03d}"], folder, alternatives=given.alternatives)
 
 
-def _show(index: int, truth: dict[str, Any], folder: Path, *, rivals: bool) -> None:
-    if rivals:
+def _show(index: int, truth: dict[str, Any], folder: Path, *, alternatives: bool) -> None:
+    if alternatives:
         effect = truth["hidden"][0]["effect"]
         print(
             f"{index:03d} {effect} {summary(noise_free_fits('beams', folder, effect), effect)[0]}", flush=True

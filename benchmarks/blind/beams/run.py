@@ -1,8 +1,8 @@
 """Diagnose the blind beam experiments, and score the verdicts.
 
     python -m benchmarks.blind.beams.run --out FOLDER              # the whole set, each by the command line
-    python -m benchmarks.blind.beams.run --out FOLDER --in-process --jobs 2 --workers 1 --told --advice \\
-        --control without-truth --control shuffled                 # with all that is scored besides
+    python -m benchmarks.blind.beams.run --out FOLDER --in-process --jobs 2 --workers 1 --given-cause \\
+        --advice --control without-truth --control shuffled        # with all that is scored besides
     python -m benchmarks.blind.beams.run --out FOLDER --score      # only score the verdicts in FOLDER
 
 Each diagnosis is given the experiment in a temporary folder, never the truth. A run that was stopped goes on
@@ -41,13 +41,13 @@ from benchmarks.blind.beams.store import CASES, load_case, load_truth
 from benchmarks.blind.under_test import Diagnoser, NotDiagnosedError, Verdict, VerdictFile, catalogue
 
 CONTROLS = ("without-truth", "shuffled")
-KINDS = ("verdicts", "told", "advised", *CONTROLS)
-Answer = tuple[str, Verdict | None, str, float]  # case, what was said, why nothing was, seconds
+KINDS = ("verdicts", "given-cause", "advised", *CONTROLS)
+Answer = tuple[str, Verdict | None, str, float]  # case, its diagnosis, why there is none, seconds
 
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """Stored cases, what is true of them, how they are diagnosed, and what was said, by kind of question."""
+    """Stored cases, what is true of them, how they are diagnosed, and the answers by kind of question."""
 
     cases: Path
     truth: dict[str, Any]
@@ -57,19 +57,19 @@ class Run:
     jobs: int = 1  # cases at once
 
     def scored(self, wanted: Iterable[str]) -> dict[str, Scored]:
-        said = self.kept["verdicts"].said
-        return {k: Scored(self.truth[k], said[k]) for k in wanted if k in said}
+        known = self.kept["verdicts"].answers
+        return {k: Scored(self.truth[k], known[k]) for k in wanted if k in known}
 
     def ask(self, key: str, kind: str, folder: Path) -> Verdict:
         """The answer to one kind of question about a case; folder: where its experiment is to be written."""
         case, edges = load_case(self.cases, int(key))
         write_experiment(case, edges, folder)
         effects = tuple(h.effect for h in case.hidden)
-        if kind == "told":
+        if kind == "given-cause":
             others = [name for name in catalogue() if name not in effects]
             return self.finder(folder, without=others, gain=True)
         if kind == "advised":
-            return follow(case, self.kept["verdicts"].said[key], folder, self.finder)
+            return follow(case, self.kept["verdicts"].answers[key], folder, self.finder)
         if kind == "without-truth":
             return self.finder(folder, without=effects)
         if kind == "shuffled":
@@ -78,14 +78,14 @@ class Run:
         return self.finder(folder, gain=Scored(self.truth[key], {}).sigma >= self.gain_from)
 
     def answer(self, kind: str, key: str) -> Answer:
-        """What is said of a case, or why nothing is."""
+        """Diagnosis of a case, or why there is none."""
         began = time.monotonic()
         with tempfile.TemporaryDirectory() as place:
             try:
-                said, problem = self.ask(key, kind, Path(place) / "experiment"), ""
+                diagnosis, problem = self.ask(key, kind, Path(place) / "experiment"), ""
             except (NotDiagnosedError, ValueError) as error:
-                said, problem = None, str(error)
-        return key, said, problem, time.monotonic() - began
+                diagnosis, problem = None, str(error)
+        return key, diagnosis, problem, time.monotonic() - began
 
     def answers(self, kind: str, keys: Sequence[str]) -> Iterator[Answer]:
         """As they come; several cases at once each in a process of its own."""
@@ -100,32 +100,32 @@ class Run:
     def fill(self, kind: str, keys: Iterable[str]) -> list[str]:
         """Ask what has not been asked yet; returns the cases without an answer."""
         failed = []
-        for key, said, problem, seconds in self.answers(
-            kind, [k for k in keys if k not in self.kept[kind].said]
+        for key, diagnosis, problem, seconds in self.answers(
+            kind, [k for k in keys if k not in self.kept[kind].answers]
         ):
-            if said is None:
+            if diagnosis is None:
                 failed.append(f"{key} ({kind})")
                 print(f"{key} {kind}: not diagnosed: {problem}", flush=True)
             else:
-                self.kept[kind].add(key, said)
-                self.print_answer(key, kind, said, seconds)
+                self.kept[kind].add(key, diagnosis)
+                self.print_answer(key, kind, diagnosis, seconds)
         return sorted(failed)
 
-    def print_answer(self, key: str, kind: str, said: Verdict, seconds: float) -> None:
-        shown = said.get("said") if kind == "advised" else said
+    def print_answer(self, key: str, kind: str, diagnosis: Verdict, seconds: float) -> None:
+        shown = diagnosis.get("diagnosis") if kind == "advised" else diagnosis
         case = Scored(self.truth[key], shown or {"verdict": "-", "causes": [], "alternatives": []})
         true = "+".join(case.effects) or self.truth[key]["category"]
-        how = {"verdicts": "", "advised": f" after {said.get('advice')}"}.get(kind, f" {kind}")
+        how = {"verdicts": "", "advised": f" after {diagnosis.get('advice')}"}.get(kind, f" {kind}")
         print(
             f"{key} {true} [{case.sigma:.1f}]{how}: {case.verdict} {'+'.join(case.named)}"
-            f" {case.said['alternatives'][1:]} {seconds:.0f} s",
+            f" {case.diagnosis['alternatives'][1:]} {seconds:.0f} s",
             flush=True,
         )
 
     def show(self, wanted: Iterable[str]) -> None:
         """Confusion matrix, tables and goals of what has been diagnosed."""
         cases = self.scored(wanted)
-        true_cause, advised, without, mixed = (self.kept[kind].said for kind in KINDS[1:])
+        true_cause, advised, without, mixed = (self.kept[kind].answers for kind in KINDS[1:])
         for table in (
             confusion(list(cases.values())),
             by_size(list(cases.values())),
@@ -149,8 +149,8 @@ class Run:
 def asked_for(given: argparse.Namespace) -> list[tuple[str, Callable[[Scored], bool]]]:
     """Kinds of questions beyond the verdict, and of which cases each is asked, once that has its verdict."""
     found: list[tuple[str, Callable[[Scored], bool]]] = []
-    if given.told:
-        found.append(("told", large))
+    if given.given_cause:
+        found.append(("given-cause", large))
     if given.advice:
         found.append(("advised", asked))
     choices = {"without-truth": without_truth, "shuffled": shuffled}
@@ -171,8 +171,8 @@ def parsed(arguments: list[str] | None) -> argparse.Namespace:
         "--gain-from", type=float, default=0.0, help="held-out gain only of effects of so many sigmas"
     )
     parser.add_argument(
-        "--told", action="store_true", help="effects of 10 sigmas and above once more, with no other in the"
-        "\ncatalogue: what their held-out error is compared with"
+        "--given-cause", action="store_true", help="effects of 10 sigmas and above once more, no other in"
+        "\nthe catalogue: what their held-out error is compared with"
     )  # fmt: skip
     parser.add_argument("--advice", action="store_true", help="make what is advised in ambiguous cases")
     parser.add_argument(

@@ -20,10 +20,10 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Scored:
-    """A case: what was true (an entry of truth.json) and what was said (a diagnosis.json)."""
+    """A case: what was true (an entry of truth.json) and its diagnosis (a diagnosis.json)."""
 
     truth: Truth
-    said: dict[str, Any]
+    diagnosis: dict[str, Any]
 
     @property
     def effects(self) -> Names:
@@ -37,29 +37,29 @@ class Scored:
 
     @property
     def verdict(self) -> str:
-        return str(self.said["verdict"])
+        return str(self.diagnosis["verdict"])
 
     @property
     def named(self) -> Names:
         """The effects that come first, () where none is named."""
         if self.verdict not in ("found", "ambiguous"):
             return ()
-        return tuple(sorted(c["effect"] for c in self.said["causes"]))
+        return tuple(sorted(c["effect"] for c in self.diagnosis["causes"]))
 
     @property
     def in_the_set(self) -> bool:
         if not self.named:
             return False
-        return self.effects in {self.named, *(tuple(sorted(a)) for a in self.said["alternatives"])}
+        return self.effects in {self.named, *(tuple(sorted(a)) for a in self.diagnosis["alternatives"])}
 
     def amplitudes(self) -> list[tuple[float, float, float]]:
-        """(true, said, its standard deviation) of each effect, where the right ones come first."""
+        """(true, found, its standard deviation) of each effect, where the right ones come first."""
         if not self.effects or self.named != self.effects:
             return []
         found = []
         for hidden in self.truth["hidden"]:
             name = PARAMETER[hidden["effect"]][0] if hidden["effect"] in PARAMETER else None
-            cause = next(c for c in self.said["causes"] if c["effect"] == hidden["effect"])
+            cause = next(c for c in self.diagnosis["causes"] if c["effect"] == hidden["effect"])
             if name in cause["parameters"]:
                 estimate = cause["parameters"][name]
                 found.append((hidden["parameters"][name], estimate["value"], estimate["sd"]))
@@ -68,7 +68,7 @@ class Scored:
     def moduli(self) -> list[float]:
         """Relative errors of the extended model's moduli, at the density that the lab states: only their
         quotient shows in a beam."""
-        moduli = (self.said.get("extended") or {}).get("shear_modulus_Pa", {})
+        moduli = (self.diagnosis.get("extended") or {}).get("shear_modulus_Pa", {})
         errors = []
         names = trial_names(per_beam=self.truth["per_beam"])
         for key, value in moduli.items():
@@ -99,7 +99,7 @@ def goals(cases: list[Scored]) -> list[Goal]:
         _part("one effect, >= 7 sigma: ranked first", "98 %", seven, lambda c: c.named == c.effects),
         _part("one effect, >= 5 sigma: in the named set", "97 %", five, lambda c: c.in_the_set),
         _part(
-            "one effect, >= 5 sigma, where a name is said: in the named set",
+            "one effect, >= 5 sigma, where a cause is named: in the named set",
             "97 %",
             [c for c in five if c.named],
             lambda c: c.in_the_set,
@@ -125,27 +125,27 @@ def goals(cases: list[Scored]) -> list[Goal]:
             lambda c: c.verdict == "found",
         ),
     ]
-    away = [abs(said - true) / sd if sd > 0 else np.inf for c in cases for true, said, sd in c.amplitudes()]
+    away = [abs(found - true) / sd if sd > 0 else np.inf for c in cases for true, found, sd in c.amplitudes()]
     found.append(("amplitude within 3 standard deviations", "97 %", sum(a <= 3 for a in away), len(away)))
     found.append(("amplitude within its 95 % interval", "90 %", sum(a <= 1.96 for a in away), len(away)))
     right = [c for c in [*one, *two] if c.effects == c.named]
     errors = [e for c in right for e in c.moduli()]
     found.append(("shear moduli within 2 %", "100 %", sum(abs(e) <= 0.02 for e in errors), len(errors)))
-    seconds = [c.said["seconds"] for c in cases]
+    seconds = [c.diagnosis["seconds"] for c in cases]
     found.append(("diagnosed within 5 minutes", "100 %", sum(s <= 300 for s in seconds), len(seconds)))
     found.append(("diagnosed within 1 minute", "-", sum(s <= 60 for s in seconds), len(seconds)))
     return found
 
 
 def confusion(cases: list[Scored]) -> str:
-    """Rows: what is true; how often; named alone; named first among several; what was said instead."""
+    """Rows: what is true; how often; named alone; named first among several; what was named instead."""
     order = ["clean", "density", *EFFECTS, *OUTSIDE, "two"]
     rows: dict[str, list[Scored]] = {}
     for case in cases:
         category = case.truth["category"]
         key = case.effects[0] if category in ("single", "outside") else category
         rows.setdefault(key, []).append(case)
-    lines = [f"{'truth':30} {'cases':>5} {'alone':>5} {'first':>5}  said instead (* among alternatives)"]
+    lines = [f"{'truth':30} {'cases':>5} {'alone':>5} {'first':>5}  named instead (* among alternatives)"]
     for key in sorted(rows, key=order.index):
         alone = sum(c.verdict == "found" and c.named == c.effects for c in rows[key])
         first = sum(c.verdict == "ambiguous" and c.named == c.effects for c in rows[key])
@@ -154,8 +154,8 @@ def confusion(cases: list[Scored]) -> str:
             for c in rows[key]
             if not c.named or c.named != c.effects
         )
-        said = ", ".join(f"{name} {count}" for name, count in other.most_common())
-        lines.append(f"{key:30} {len(rows[key]):5} {alone:5} {first:5}  {said}")
+        instead = ", ".join(f"{name} {count}" for name, count in other.most_common())
+        lines.append(f"{key:30} {len(rows[key]):5} {alone:5} {first:5}  {instead}")
     return "\n".join(lines)
 
 
@@ -182,8 +182,10 @@ def _unique_and_wrong(case: Scored) -> bool:
 
 
 def _weighing(case: Scored) -> bool:
-    texts = [case.said.get("next_experiment") or ""]
-    texts += [str(e.get("instead", "")) for e in case.said.get("not_visible", []) if e["effect"] == "density"]
+    texts = [case.diagnosis.get("next_experiment") or ""]
+    texts += [
+        str(e.get("instead", "")) for e in case.diagnosis.get("not_visible", []) if e["effect"] == "density"
+    ]
     return any("weigh" in text.lower() for text in texts)
 
 
@@ -213,12 +215,12 @@ def scopes(case: Scored) -> list[tuple[str, frozenset[int], frozenset[int]]]:
         return []
     found = []
     for hidden in case.truth["hidden"]:
-        (cause,) = (c for c in case.said["causes"] if c["effect"] == hidden["effect"])
+        (cause,) = (c for c in case.diagnosis["causes"] if c["effect"] == hidden["effect"])
         kinds = ACTS_ON.get(hidden["effect"], (0, 1, 2))
         true = frozenset(k for k in hidden["trials"] if k % 3 in kinds)
-        said = beams_in(cause["scope"], hidden["effect"], per_beam=case.truth["per_beam"])
+        named = beams_in(cause["scope"], hidden["effect"], per_beam=case.truth["per_beam"])
         carrier = KINDS.get(hidden["scope"], "one beam" if len(hidden["trials"]) == 1 else "one material")
-        found.append((carrier, true, said))
+        found.append((carrier, true, named))
     return found
 
 
@@ -229,10 +231,10 @@ def scope_goals(cases: Sequence[Scored]) -> list[Goal]:
     for carrier in ("all beams", "one material", "one beam"):
         some = [s for s in found if s[0] == carrier]
         rows.append((f"  of those in {carrier}", "-", _right(some), len(some)))
-    touched = sum(bool(true & said) for _, true, said in found)
+    touched = sum(bool(true & named) for _, true, named in found)
     rows.append(("named rightly: in some of the right beams", "-", touched, len(found)))
     return rows
 
 
 def _right(found: Sequence[tuple[str, frozenset[int], frozenset[int]]]) -> int:
-    return sum(true == said for _, true, said in found)
+    return sum(true == named for _, true, named in found)

@@ -30,11 +30,11 @@ def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | 
     experiment is made of the same specimens, and old and new trials are diagnosed together. None: what is
     advised is a direct measurement, which no coupon file can hold."""
     found: list[tuple[str, str, bool | None]] = []
-    for (truth, said), case in zip(pairs, cases, strict=True):
-        if case.kind != "one" or said["verdict"] != "ambiguous":
+    for (truth, diagnosis), case in zip(pairs, cases, strict=True):
+        if case.kind != "one" or diagnosis["verdict"] != "ambiguous":
             continue
         cause = "+".join(true_names(truth))
-        name = str(said["next"])
+        name = str(diagnosis["next"])
         new: dict[str, Protocol] = {}
         for p in case.protocols:
             if (made := p.again(name)) is not None:
@@ -54,20 +54,20 @@ def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | 
 
 
 def without_truth(pairs: list[Pair], cases: list[Case]) -> list[Pair]:
-    """(truth with what was said of it, verdict without the true effect in the catalogue), cases of one."""
+    """(truth with its diagnosis, verdict without the true effect in the catalogue), cases of one."""
     found: list[Pair] = []
-    for (truth, said), case in zip(pairs, cases, strict=True):
+    for (truth, diagnosis), case in zip(pairs, cases, strict=True):
         if case.kind == "one":
             with tempfile.TemporaryDirectory() as place:
                 write(case, Path(place) / "experiment")
                 then = diagnose_coupons(Path(place) / "experiment", without=true_names(truth))
-            found.append(({**truth, "said": said}, then))
+            found.append(({**truth, "diagnosis": diagnosis}, then))
     return found
 
 
 def show_without(pairs: list[Pair]) -> None:
     """How often a cause that is not in the catalogue is unexplained, or named as one of its equivalents."""
-    right = [v["verdict"] == "unexplained" or named(v) in named_set(t["said"]) for t, v in pairs]
+    right = [v["verdict"] == "unexplained" or named(v) in named_set(t["diagnosis"]) for t, v in pairs]
     alone = [v["verdict"] == "found" and not ok for (_, v), ok in zip(pairs, right, strict=True)]
     print(
         f"{'truth not in the library: unexplained or a listed alternative':60} goal {'all':12} {part(right)}"

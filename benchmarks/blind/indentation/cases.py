@@ -192,7 +192,7 @@ def _hidden(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], targ
         ending = str(rng.choice(TABLED[name]))
         holders = [t for t in trials if f"{t.base}{ending}" in table()]
         if len(holders) < len(trials):
-            # several trials of this geometry, in each material: said to be one block
+            # several trials of this geometry, in each material: stated to be one block
             where = holders[0].base
     elif name == "inclusion-debonded":
         where = "core"

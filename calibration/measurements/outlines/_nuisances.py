@@ -17,7 +17,7 @@ from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._noise import registration_columns
 from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients, feet_of
 from calibration.measurements.outlines._scenes import Scenes
-from calibration.measurements.outlines._solutions import SolutionCache, simulated
+from calibration.measurements.outlines._solutions import SolutionCache, at_time, simulated
 from tisim import Beam, Result, simulate
 
 Array = NDArray[np.float64]
@@ -66,7 +66,7 @@ def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], st
         there = {i: next(moved) for i in touched}
         change = np.zeros(len(base))
         for p in solutions.photographs:
-            r = there.get(p.beam)
+            r = at_time(there.get(p.beam), p.time)
             if r is not None:
                 images = scenes.images(p.beam, state, time=p.time)
                 change[p.rows] = coefficients(p, r, images) - base[p.rows]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -17,7 +17,7 @@ from calibration.measurements.outlines._effect import OutlineEffect, Situation
 from calibration.measurements.outlines._photographs import Image
 from calibration.measurements.outlines.fidelity import Fidelity, beam_scene
 from calibration.measurements.outlines.setup import Setup
-from tisim import Beam, Material, material_from_moduli
+from tisim import Beam, Course, Material, material_from_moduli
 
 Array = NDArray[np.float64]
 Form = tuple[str, float | None]  # an effect and its position
@@ -56,7 +56,7 @@ class Scenes:
         return {kind: a for kind, a in found.items() if a != 0.0}
 
     def beam(self, trial: int, state: State, *, time: float, fidelity: Fidelity) -> Beam:
-        """A trial's beam, `time` [s] after its release."""
+        """A trial's beam, `time` [s] after its release; of a viscous material one that hangs from then on."""
         t = self.trials[trial]
         beam = self.plain(t, state.u, fidelity)
         inside = self.inside(trial, state)
@@ -65,7 +65,8 @@ class Scenes:
         for name, position in sorted(inside, key=lambda k: (k[0] != "strain-stiffening", order.index(k[0]))):
             situation = Situation(trial=t, time=time, position=position)
             beam = self.effects[name].bend(beam, inside[(name, position)], situation)
-        return beam if self.pose is None else self.pose(beam, t)
+        beam = beam if self.pose is None else self.pose(beam, t)
+        return beam if beam.material.viscosity is None else hanging(beam, (time,))
 
     def images(self, trial: int, state: State, *, time: float) -> list[Image]:
         """What the camera does to the picture of a trial."""
@@ -79,18 +80,28 @@ class Scenes:
         return found
 
     def key(self, trial: int, state: State, *, time: float) -> tuple[object, ...]:
-        """What a photograph's scene depends on: equal keys, equal scenes."""
+        """What a photograph's scene depends on: equal keys, equal scenes, but for the times at which a
+        viscous beam is photographed."""
         bending = {k: a for k, a in self.inside(trial, state).items() if self.effects[k[0]].bends}
         timed = any(self.effects[name].timed for name, _ in bending)
         material = self.material(self.trials[trial], state.u)
         values = tuple(sorted(material.parameters.items(), key=str))
-        return (trial, material.law, values, tuple(sorted(bending.items(), key=str)), time if timed else None)
+        inside = tuple(sorted(bending.items(), key=str))
+        return (trial, material.law, values, material.viscosity, inside, time if timed else None)
 
     def plain(self, trial: BeamTrial, u: Array, fidelity: Fidelity) -> Beam:
         """The beam of a trial without effects, ideal but for what is known of the rig."""
+        return self._ideal(trial, self.material(trial, u), fidelity)
+
+    def elastic(self, trial: int, material: Material, fidelity: Fidelity) -> Beam:
+        """The beam of a trial, by its index, without effects, of a material that does not creep."""
+        beam = self._ideal(self.trials[trial], material, fidelity)
+        return beam if self.pose is None else self.pose(beam, self.trials[trial])
+
+    def _ideal(self, trial: BeamTrial, material: Material, fidelity: Fidelity) -> Beam:
         density = self.experiment.materials[trial.material].density
         assert density is not None, "checked when the model is made"
-        beam = beam_scene(trial, self.material(trial, u), density=density, fidelity=fidelity)
+        beam = beam_scene(trial, material, density=density, fidelity=fidelity)
         return beam if self.setup is None else self.setup.bend(beam, trial)
 
     def material(self, trial: BeamTrial, u: Array) -> Material:
@@ -100,6 +111,11 @@ class Scenes:
             return self.baseline.material(specimen, u)
         shear = self.baseline.shear_modulus(specimen, u)
         return material_from_moduli(LAW, shear_modulus=shear, bulk_modulus=self.baseline.bulk_ratio * shear)
+
+
+def hanging(beam: Beam, times: Sequence[float]) -> Beam:
+    """A beam that hangs from time 0 on, without inertia, with a frame at each of these times [s], rising."""
+    return replace(beam, course=Course(frames=tuple(times)).jump(1.0).hold(times[-1]))
 
 
 def _shown(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from calibration.measurements._state import State
 from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients
-from calibration.measurements.outlines._scenes import Scenes
+from calibration.measurements.outlines._scenes import Scenes, hanging
 from calibration.measurements.outlines.fidelity import Fidelity
 from calibration.measurements.outlines.simulators import Simulator
 from tisim import Beam, Result, simulate
@@ -84,6 +84,7 @@ class SolutionCache:
         beams: list[Beam] = []
         known: dict[tuple[object, ...], int] = {}
         rows: list[list[int]] = [[] for _ in wanted]
+        times: list[set[float]] = []
         for p in self.photographs:  # photograph by photograph, so that neighbours in the batch share a mesh
             for row, state in zip(rows, wanted, strict=True):
                 key = self.scenes.key(p.beam, state, time=p.time)
@@ -91,10 +92,16 @@ class SolutionCache:
                     known[key] = len(beams)
                     beam = self.scenes.beam(p.beam, state, time=p.time, fidelity=self.simulator.fidelity)
                     beams.append(beam if instead is None else self._corrected(beam, instead))
+                    times.append(set())
                 row.append(known[key])
+                times[known[key]].add(p.time)
         run = self.simulator.run if instead is None else simulate
-        results = simulated(beams, run, self.workers)
-        return [[results[k] for k in row] for row in rows]
+        results = simulated(
+            [_photographed(b, t) for b, t in zip(beams, times, strict=True)], run, self.workers
+        )
+        return [
+            [at_time(results[k], p.time) for k, p in zip(row, self.photographs, strict=True)] for row in rows
+        ]
 
     def answer(self, state: State) -> Sequence[Result]:
         """One result a photograph, without those faults of the simulator that the state names. ValueError
@@ -118,12 +125,18 @@ class SolutionCache:
         longest = sorted(range(len(trials)), key=lambda i: -trials[i].free_length)
         found: dict[int, Result | None] = {}
         for some in [[i] for i in longest] if one_by_one else [list(range(len(trials)))]:
-            beams = [self.scenes.beam(i, state, time=1.0, fidelity=reference) for i in some]
+            beams = [
+                _photographed(
+                    self.scenes.beam(i, state, time=1.0, fidelity=reference),
+                    {p.time for p in self.photographs if p.beam == i} or {1.0},
+                )
+                for i in some
+            ]
             found.update(zip(some, simulated(beams, simulate, self.workers), strict=True))
             failed = [trials[i].id for i, r in found.items() if r is None]
             if failed:
                 return [], f"no equilibrium of {', '.join(failed)} on the finer mesh that corrects"
-        return [r for p in self.photographs if (r := found[p.beam]) is not None], ""
+        return [r for p in self.photographs if (r := at_time(found[p.beam], p.time)) is not None], ""
 
     def _faults(self, state: State) -> dict[str, float]:
         """Parts of the simulator's faults that are taken away."""
@@ -140,6 +153,19 @@ class SolutionCache:
         instead = self.scenes.effects[name].instead
         assert instead is not None
         return instead(beam)
+
+
+def at_time(result: Result | None, time: float) -> Result | None:
+    """A beam that hangs as it is at a time [s] of one of its frames; one at rest as it is at all times."""
+    if result is None or result.time is None:
+        return result
+    k = int(np.argmin(np.abs(result.time - time)))
+    return replace(result, positions=result.positions[k][None])
+
+
+def _photographed(beam: Beam, times: set[float]) -> Beam:
+    """A beam with frames at the times of its photographs [s], where it changes with time at all."""
+    return beam if beam.course is None else hanging(beam, sorted(times))
 
 
 def complete(results: Sequence[Result | None]) -> TypeGuard[Sequence[Result]]:

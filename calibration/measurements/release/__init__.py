@@ -1,12 +1,14 @@
 """Cantilever releases: markers of a beam in free vibration and at static equilibrium."""
 
-from calibration.measurements.release._record import hung_mass
+from calibration.measurements.release._nuisances import HELD
+from calibration.measurements.release._record import hung_mass, not_swinging
 from calibration.measurements.release.fit import MotionFit, fit_motion
 from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
 from calibration.measurements.release.objective import Damping, Fidelity, MarkerObjective, Match, Nuisances
 from calibration.measurements.release.ringdown import RingDown, ringdown
 
 __all__ = [
+    "HELD",
     "Damping",
     "Fidelity",
     "MarkerObjective",
@@ -19,5 +21,6 @@ __all__ = [
     "hung_mass",
     "marker_displacements",
     "marker_motion",
+    "not_swinging",
     "ringdown",
 ]

@@ -14,7 +14,7 @@ from calibration.measurements.release._record import Record
 from calibration.measurements.release._vibration import beam_markers, free_vibration
 from calibration.measurements.release.kinematics import marker_displacements
 from calibration.measurements.release.ringdown import ringdown
-from tisim import Beam, Result, Solver, material_from_moduli, simulate
+from tisim import Beam, Material, Result, Solver, simulate
 
 Array = NDArray[np.float64]
 
@@ -43,16 +43,11 @@ class Correction:
     drop: float
 
 
-def beam_of(record: Record, shear: float, *, fine: bool) -> Beam:
+def beam_of(record: Record, material: Material, *, fine: bool) -> Beam:
     """The trial's beam for FEM."""
     t = record.trial
     return Beam(
-        material=material_from_moduli(
-            "neo-hookean",
-            shear_modulus=shear,
-            bulk_modulus=BULK_RATIO * shear,
-            density=record.parameters.density,
-        ),
+        material=material,
         length=t.free_length,
         section=t.section,
         supports=t.supports,
@@ -68,6 +63,7 @@ def beam_of(record: Record, shear: float, *, fine: bool) -> Beam:
 
 def corrections(
     records: Sequence[Record],
+    materials: Sequence[Material],
     shears: Sequence[float],
     relaxation_times: Sequence[float],
     *,
@@ -75,8 +71,8 @@ def corrections(
 ) -> tuple[list[Correction], list[str]]:
     """One correction a record, and what went wrong; the usual one where FEM or its match has no answer.
 
-    Beams of one form, markers and load are simulated once. shears [Pa] and relaxation_times [s] are of each
-    record.
+    Beams of one form, markers and load are simulated once. materials (without memory), their shear moduli
+    shears [Pa] and relaxation_times [s] are of each record.
     """
     kinds: dict[object, list[int]] = {}
     for k, r in enumerate(records):
@@ -86,7 +82,7 @@ def corrections(
     beams = []
     for members in kinds.values():
         k = members[0]
-        still = [beam_of(records[k], shears[k], fine=fine) for fine in (False, True)]
+        still = [beam_of(records[k], materials[k], fine=fine) for fine in (False, True)]
         beams += [*still, replace(still[0], solver=_released(records[k], relaxation_times[k]))]
     results = simulate(beams, workers=workers)
     found, wrong = [uncorrected(r) for r in records], []
@@ -130,7 +126,10 @@ def _matched(
     for result in (coarse, fine, moving):
         if not result.ok:
             raise ValueError(f"{result.status}: {result.message}")
-    parameters = replace(record.parameters, shear_modulus=shear, relaxation_time=relaxation_time)
+    # FEM's load is spread over the face: what the arm of a load adds is the reduced beam's own affair
+    parameters = replace(
+        record.parameters, shear_modulus=shear, relaxation_time=relaxation_time, load_height=0.0
+    )
     rough = _with_root(record, parameters, _plane(coarse, positions)[:, -1])
     tips = _plane(moving, positions)[record.outer, :, 1].mean(axis=0)
     q = free_vibration(rough).coordinates(moving.load)

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, Extra
-from calibration.measurements.release._beam import BeamParameters
+from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._fem import Correction
 from calibration.measurements.release._record import LAST, Record
 from calibration.measurements.release._vibration import beam_markers, clamp_markers, free_vibration
 from calibration.measurements.release.experiments import unchanged
+from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -30,6 +31,8 @@ LOAD, LOAD_SD = 0.02, 0.003
 # Periods by which a vibration may get out of phase until its end; further out, a search does not find back.
 OUT_OF_PHASE = 0.4
 REMEMBERED = 400
+DRAG_SD = 3.0  # by what hangs on a beam, of the damping in proportion to mass [1/s]
+ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,30 +44,36 @@ class Own:
     release_time : [s].
     start : fraction of the way to equilibrium from which the beam was released.
     with_clamp : fraction by which markers next to the clamp move with it.
+    drag : damping in proportion to mass by what hangs on the beam [1/s].
     """
 
     release_time: float
     start: float
     with_clamp: float
+    drag: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s; of each trial its
-    release time (in 10 ms after the first guess) and start (in tenths of the way to equilibrium); the reduced
-    beam's error at each load but the first (in 2 % of the modulus); of each specimen with markers next to the
-    clamp the fraction by which these move with the clamp.
+    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s, unless its law has a
+    spectrum (`tisim.Prony`), which damps as well; of each trial its release time (in 10 ms after the first
+    guess) and start (in tenths of the way to equilibrium); the reduced beam's error at each load but the
+    first (in 2 % of the modulus); where the law has a spectrum, of each trial with a hung mass the damping by
+    how it hangs, which is no property of the material; of each specimen with markers next to the clamp the
+    fraction by which these move with the clamp.
 
     Attributes
     ----------
     baseline : with these extras.
     trials, loads : names.
+    dragged : trials with a damping by what hangs.
     near : specimens with markers next to the clamp.
     """
 
     baseline: Baseline
     trials: tuple[str, ...]
     loads: tuple[str, ...]
+    dragged: tuple[str, ...]
     near: tuple[str, ...]
 
     @classmethod
@@ -72,11 +81,13 @@ class Coordinates:
         """Coordinates of these records, besides those of a plain baseline."""
         trials = tuple(r.name for r in records)
         loads = tuple(dict.fromkeys(r.load for r in records))
+        dragged = tuple(r.name for r in records if r.loaded and viscous(plain))
         near = tuple(dict.fromkeys(r.specimen for r in records if (r.near_clamp & ~r.behind_face).any()))
         extras = [
             *(
                 Extra(name=f"{m} relaxation time", sd=RELAXATION_SD, centre=float(np.log(RELAXATION_TIME)))
                 for m in plain.materials
+                if not viscous(plain)
             ),
             *(
                 Extra(name=f"{t} {quantity}", sd=sd)
@@ -84,18 +95,28 @@ class Coordinates:
                 for quantity, sd in (("release", RELEASE_SD / RELEASE), ("start", START_SD / START))
             ),
             *(Extra(name=f"error with {load}", sd=LOAD_SD / LOAD) for load in loads[1:]),
+            *(Extra(name=f"{t} drag", sd=DRAG_SD) for t in dragged),
             *(Extra(name=f"{s} fraction with the clamp", sd=WITH_CLAMP_SD, centre=WITH_CLAMP) for s in near),
         ]
-        return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, near=near)
+        return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, dragged=dragged, near=near)
 
     def shear_modulus(self, record: Record, u: Array) -> float:
-        """Shear modulus of a record's beam [Pa], with the error of its load."""
+        """Shear modulus of a record's beam [Pa], with the error of its load: the long-time one where its
+        material has a spectrum."""
         error = LOAD * float(u[self.of_load(record.load)]) if record.load != self.loads[0] else 0.0
-        return float(np.exp(u[self.baseline.specimens.index(record.specimen)] + error))
+        return self.baseline.shear_modulus(record.specimen, u) * float(np.exp(error))
 
     def relaxation_time(self, record: Record, u: Array) -> float:
-        """Relaxation time of a record's material [s]."""
-        return float(np.exp(u[self.of_material(record.material)]))
+        """Relaxation time of a record's material [s]; 0 where it has a spectrum."""
+        return 0.0 if viscous(self.baseline) else float(np.exp(u[self.of_material(record.material)]))
+
+    def spectrum(self, record: Record, u: Array) -> Spectrum:
+        """Relaxation of a record's material, over its long-time modulus."""
+        if not viscous(self.baseline):
+            return ELASTIC
+        found = self.baseline.material(record.specimen, u).viscosity
+        assert found is not None
+        return found.spectrum()
 
     def own(self, record: Record, u: Array) -> Own:
         """When and from where a record's beam was released, and how far its markers move with the clamp."""
@@ -107,6 +128,7 @@ class Coordinates:
             release_time=record.release_time + RELEASE * float(u[first]),
             start=START * float(u[first + 1]),
             with_clamp=fraction,
+            drag=float(u[self._of_drag(record)]) if record.name in self.dragged else 0.0,
         )
 
     def constrained(
@@ -126,42 +148,72 @@ class Coordinates:
             mine = compared & (row_record == k)
             if mine.any():
                 found |= self.baseline.informed_by(r, whole_material=False)
-                found[self.of_material(r.material)] = True
+                found[self.of_material(r.material)] |= not viscous(self.baseline)
                 if r.load != self.loads[0]:
                     found[self.of_load(r.load)] = True
             if (mine & vibrating).any():
                 first = self.of_trial(r)
                 found[first : first + 2] = True
+                if r.name in self.dragged:
+                    found[self._of_drag(r)] = True
         return found
 
     def depended_on(self, record: Record) -> Rows:
         """Coordinates (n,) that the simulation of a record depends on."""
         found = self.baseline.informed_by(record, whole_material=False)
-        found[self.of_material(record.material)] = True
+        found[self.of_material(record.material)] |= not viscous(self.baseline)
         first = self.of_trial(record)
         found[first : first + 2] = True
         if record.load != self.loads[0]:
             found[self.of_load(record.load)] = True
+        if record.name in self.dragged:
+            found[self._of_drag(record)] = True
         if record.specimen in self.near:
             found[self._of_near(record.specimen)] = True
         return found
 
     def of_material(self, material: str) -> int:
-        """Index of a material's relaxation time."""
+        """Index of a material's relaxation time, where it has no spectrum."""
         return self.baseline.first_extra + self.baseline.materials.index(material)
 
     def of_trial(self, record: Record) -> int:
         """Index of the first of a trial's own coordinates."""
-        begin = self.baseline.first_extra + len(self.baseline.materials)
+        begin = self.baseline.first_extra
+        if not viscous(self.baseline):
+            begin += len(self.baseline.materials)
         return begin + 2 * self.trials.index(record.name)
 
     def of_load(self, load: str) -> int:
         """Index of the error at a load that is not the first."""
-        return len(self.baseline.names) - len(self.near) - len(self.loads) + self.loads.index(load)
+        end = len(self.baseline.names) - len(self.near) - len(self.dragged)
+        return end - len(self.loads) + self.loads.index(load)
+
+    def _of_drag(self, record: Record) -> int:
+        """Index of the damping by what hangs on a trial's beam."""
+        end = len(self.baseline.names) - len(self.near)
+        return end - len(self.dragged) + self.dragged.index(record.name)
 
     def _of_near(self, specimen: str) -> int:
         """Index of the fraction by which a specimen's markers move with the clamp."""
         return len(self.baseline.names) - len(self.near) + self.near.index(specimen)
+
+
+def viscous(baseline: Baseline) -> bool:
+    """Whether a baseline is of a law with a relaxation spectrum."""
+    return any(p.field == "viscosity" for p in baseline.law.parts)
+
+
+def at_frequency(
+    long_time: float, spectrum: Spectrum, reference_time: float
+) -> tuple[float, tuple[Pair, ...]]:
+    """Storage modulus of a material at the angular frequency 1 / `reference_time`, and the branches that are
+    parts of it (`BeamParameters.branches`), from its long-time modulus [Pa] and spectrum."""
+    ratio = np.asarray(spectrum.times) / reference_time
+    strengths = np.asarray(spectrum.strengths)
+    storage = float(spectrum.equilibrium + np.sum(strengths * ratio**2 / (1.0 + ratio**2)))
+    parts = [float(g) for g in strengths / storage]
+    branches = tuple((g, float(t)) for g, t in zip(parts, spectrum.times, strict=True) if g != 0.0)
+    return long_time * storage, branches
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -186,13 +238,18 @@ class ForwardMap:
     def baseline_parameters(self, k: int, u: Array) -> BeamParameters:
         """Parameters of a record's beam without effects."""
         r = self.records[k]
+        shear, branches = at_frequency(
+            self.coordinates.shear_modulus(r, u), self.coordinates.spectrum(r, u), self.reference_time
+        )
         return replace(
             r.parameters,
-            shear_modulus=self.coordinates.shear_modulus(r, u),
+            shear_modulus=shear,
+            branches=branches,
             relaxation_time=self.coordinates.relaxation_time(r, u),
             stiff_root=self.corrections[k].stiff_root,
             reference_time=self.reference_time,
             extra_inertia=self.corrections[k].extra_inertia,
+            mass_damping=self.own(k, u).drag,
         )
 
     def own(self, k: int, u: Array) -> Own:
@@ -250,9 +307,12 @@ def start_of(forward: ForwardMap) -> Array:
         logs = [np.log(_modulus(r, forward.corrections[0].stiff_root)) for r in mine]
         moduli[name] = float(np.exp(np.mean(logs)))
     u = baseline.start(moduli)
-    for name in baseline.materials:
+    if viscous(baseline):  # the modulus that the vibration shows is not the long-time one
+        ratio = at_frequency(1.0, coordinates.spectrum(records[0], u), forward.reference_time)[0]
+        u = baseline.start({name: shear / ratio for name, shear in moduli.items()})
+    for name in baseline.materials if not viscous(baseline) else ():
         mine = [r for r in records if r.material == name]
-        u[coordinates.of_material(name)] = np.mean([np.log(r.damping_ratio * r.period / np.pi) for r in mine])
+        u[coordinates.of_material(name)] = np.mean([np.log(r.relaxation_time) for r in mine])
     for k, r in enumerate(records):
         parameters, own = forward.baseline_parameters(k, u), forward.own(k, u)
         there = np.isfinite(r.deviations())

@@ -102,6 +102,11 @@ class Record:
         return self.trial.specimen or self.trial.material
 
     @property
+    def relaxation_time(self) -> float:
+        """Of the stiffness-proportional damping that has this damping ratio [s]."""
+        return self.damping_ratio * self.period / np.pi
+
+    @property
     def loaded(self) -> bool:
         return self.parameters.tip_mass > 0.0
 
@@ -255,6 +260,16 @@ def records_of(experiment: Experiment) -> list[Record]:
     return [_record(t, experiment) for t in trials]
 
 
+def not_swinging(trial: BeamTrial, experiment: Experiment) -> str:
+    """Why a trial with markers has no free vibration to compare, in the words of `records_of`; "" where it
+    has one."""
+    try:
+        _record(trial, experiment)
+    except InputError as problem:
+        return str(problem)
+    return ""
+
+
 def _record(trial: BeamTrial, experiment: Experiment) -> Record:
     where = f"experiment.yaml: trials.{trial.id}"
     if trial.supports != "clamped-free":
@@ -269,6 +284,7 @@ def _record(trial: BeamTrial, experiment: Experiment) -> Record:
         gravity=(trial.gravity[0], trial.gravity[2]),
         tip_force=(trial.tip_force[0], trial.tip_force[2]),
         tip_mass=hung_mass(trial),
+        load_height=trial.tip_force_height,
     )
     outer = [m for m in trial.markers if m.position[0] > 0.5 * trial.free_length]
     if not outer:

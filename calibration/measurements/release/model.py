@@ -19,16 +19,18 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.measurements._baseline import Baseline
+from calibration.measurements._joint import joint_fit
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._state import State
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
-from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of
+from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of, viscous
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
 from calibration.measurements.release._record import FIRST, LAST, Record, records_of
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
+from tisim import Material
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -90,6 +92,8 @@ class ReleaseModel(MeasurementModel):
             records, baseline or Baseline.per_specimen(records, bulk_ratio=BULK_RATIO)
         )
         self.baseline = self.coordinates.baseline
+        if viscous(self.baseline):
+            self.noise = self.noise.subset(~self._dragged())
         self.reference_time = float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)
         self.forward = ForwardMap(
             records=records,
@@ -113,6 +117,13 @@ class ReleaseModel(MeasurementModel):
         return self.forward.corrections
 
     # -- forward map --
+
+    def suggested_start(self) -> Array:
+        u = self.start()
+        for _ in range(2):  # what FEM adds, and nuisances, are taken where the first fit ends
+            self.update_nuisances(State(u=u))
+            u = joint_fit(self, u)
+        return u
 
     def start(self) -> Array:
         """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
@@ -158,27 +169,53 @@ class ReleaseModel(MeasurementModel):
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         """Take the nuisances and the corrections by FEM at a state; rough : without running FEM."""
         every = range(len(self.records))
-        moduli = np.array([state.u[self.baseline.specimens.index(r.specimen)] for r in self.records])
-        far = self._corrected_at is None or np.abs(moduli - self._corrected_at).max() > MOVED
+        beams = [self.parameters(k, state) for k in every]
+        at = np.concatenate([np.log([b.shear_modulus for b in beams]), self._shape(state)])
+        far = self._corrected_at is None or np.abs(at - self._corrected_at).max() > MOVED
         if self.fem and not rough and far:
-            beams = [self.parameters(k, state) for k in every]
             found, self.not_corrected = corrections(
                 self.records,
+                [self._elastic(r, b.shear_modulus, state) for r, b in zip(self.records, beams, strict=True)],
                 [b.shear_modulus for b in beams],
-                [b.relaxation_time for b in beams],
+                # a spectrum damps as a relaxation time that gives the measured damping ratio
+                [b.relaxation_time or r.relaxation_time for r, b in zip(self.records, beams, strict=True)],
                 workers=self.workers,
             )
             self.forward = replace(self.forward, corrections=found)
-            self._corrected_at = moduli
+            self._corrected_at = at
         own = [self.forward.own(k, state.u) for k in every]
-        columns = nuisance_columns(
+        columns, names = nuisance_columns(
             self.records,
             [self.parameters(k, state) for k in every],
             [o.release_time for o in own],
             self.corrections,
             lambda k, parameters: self.forward.rows(k, parameters, own[k]),
+            over_time=viscous(self.baseline),
         )
-        self.noise = self.noise.with_nuisances(columns)
+        self.noise = self.noise.with_nuisances(columns, names)
+
+    def _shape(self, state: State) -> Array:
+        """Coordinates of the baseline's laws other than moduli and K/G, which change what FEM adds."""
+        b = self.baseline
+        kept = [k for k, c in enumerate(b.law.coordinates) if c.start is not None and c.name != "bulk_ratio"]
+        kept = [
+            k
+            for k in kept
+            if b.law.coordinates[k].name not in {c.name for p in b.law.parts for c in p.coordinates}
+        ]
+        found = [b.law_coordinates(m, state.u)[kept] for m in b.materials]
+        return np.concatenate(found)
+
+    def _elastic(self, record: Record, shear: float, state: State) -> Material:
+        """A record's material without memory, of a shear modulus [Pa]."""
+        b = self.baseline
+        own = b.law_coordinates(record.material, state.u)
+        moduli = np.array([c.start is None for c in b.law.coordinates])
+        own = np.where(moduli, own + np.log(shear / b.law.moduli(own).shear_modulus), own)
+        density = record.parameters.density
+        if not b.whole:
+            return replace(b.law.material(b.scaled(own, shear)), density=density, viscosity=None)
+        return replace(b.law.material(own, density=density), viscosity=None)
 
     def noise_rms(self) -> float:
         return float(np.sqrt(np.mean(self.noise.sd[self.noise.used] ** 2)))
@@ -197,6 +234,20 @@ class ReleaseModel(MeasurementModel):
                 "approach to equilibrium" if x else "free vibration" for x in late
             ],
         }
+
+    def left_out(self) -> list[str]:
+        """Parts of records that are not compared, a sentence each."""
+        names = [r.name for r in self.records if r.loaded and viscous(self.baseline)]
+        return [
+            f"{n}: the free vibration with its hung mass, which is damped by how it hangs too" for n in names
+        ]
+
+    def _dragged(self) -> Rows:
+        """Rows of a free vibration with a hung mass, shape (rows,): a spectrum must not explain what a string
+        or a hook rubs off (`studies/release/over_time.md`: a damping ratio that grows as the motion dies)."""
+        loaded = np.array([self.records[k].loaded for k in self.row_record])
+        time = np.concatenate([r.labels()[2] for r in self.records])
+        return loaded & np.isfinite(time) & ~self._after_vibration()
 
     def _after_vibration(self) -> Rows:
         """Rows after the free vibration, shape (rows,)."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import numpy as np
+from made_experiment import experiment as experiment
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from benchmarks.blind.compression.cases import TABLE as BONDED
 from calibration.diagnosis.catalogue import effects_of
-from calibration.experiment import CouponTrial, Experiment, MaterialBelief
+from calibration.experiment import CouponTrial, Experiment
 from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.compression.model import CompressionModel
 
@@ -69,17 +69,6 @@ def pressed(
         stress=clean + sd * rng.standard_normal(x.size),
         stress_sd=sd,
         time=np.cumsum([0.0, *np.abs(np.diff(x))]) / 0.005,
-    )
-
-
-def experiment(*trials: CouponTrial) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path("made"),
-        notes="",
-        materials={t.material: MaterialBelief(name=t.material) for t in trials},
-        trials=trials,
-        digest="0" * 64,
     )
 
 

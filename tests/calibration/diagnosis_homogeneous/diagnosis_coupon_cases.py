@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import numpy as np
+from made_experiment import experiment as experiment
 from numpy.typing import NDArray
 
 from calibration.diagnosis.catalogue import effects_of
-from calibration.experiment import CouponMode, CouponTrial, Experiment, MaterialBelief
+from calibration.experiment import CouponMode, CouponTrial, Experiment
 from calibration.measurements.homogeneous.model import HomogeneousModel
 
 Array = NDArray[np.float64]
@@ -48,17 +48,6 @@ def trial(
         stress_sd=sd,
         stretch_sd=stretch_sd,
         time=time,
-    )
-
-
-def experiment(*trials: CouponTrial) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path("made"),
-        notes="",
-        materials={t.material: MaterialBelief(name=t.material) for t in trials},
-        trials=trials,
-        digest="0" * 64,
     )
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
+from made_experiment import experiment as experiment
 from numpy.typing import NDArray
 
-from calibration.experiment.model import CouponMode, CouponTrial, Experiment, MaterialBelief
+from calibration.experiment.model import CouponMode, CouponTrial
 
 Array = NDArray[np.float64]
 MODES: tuple[CouponMode, ...] = ("uniaxial", "equibiaxial", "planar", "simple-shear")
@@ -77,15 +77,4 @@ def coupon(
         stress=stress,
         stress_sd=stress_sd,
         stretch_sd=stretch_sd,
-    )
-
-
-def experiment(*trials: CouponTrial) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path("made"),
-        notes="",
-        materials={t.material: MaterialBelief(name=t.material) for t in trials},
-        trials=trials,
-        digest="0" * 64,
     )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from made_experiment import experiment as experiment
 from numpy.typing import NDArray
 
 import tisim
-from calibration.experiment.model import Experiment, MaterialBelief, PokeRecord, PokeTrial, Trial
+from calibration.experiment.model import PokeRecord, PokeTrial
 
 Array = NDArray[np.float64]
 SHEAR = 30e3
@@ -31,17 +31,6 @@ def trial(depth: Array, force: Array, *, time: Array | None = None, **changes: A
     time = 0.1 * np.arange(len(depth)) if time is None else time
     record = PokeRecord(time=time, depth=np.asarray(depth), force=np.asarray(force))
     return PokeTrial(record=record, **(given | changes))  # type: ignore[arg-type]
-
-
-def experiment(*trials: Trial) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path("made"),
-        notes="",
-        materials={t.material: MaterialBelief(name=t.material) for t in trials},
-        trials=trials,
-        digest="0" * 64,
-    )
 
 
 def hertz(depth: Array, radius: float, material: tisim.Material) -> Array:

@@ -1,0 +1,201 @@
+"""Pokes on a dask cluster."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import math
+import os
+import queue
+import time
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from factory._execution import ERROR_LENGTH, THREAD_VARIABLES, run_poke, sendable
+from factory._input import InputError, one_line
+from factory._record import Outcome
+from factory.plan import PlannedPoke
+
+log = logging.getLogger(__name__)
+
+CLUSTER_TIMEOUT = 300.0  # s without a scheduler or without a worker, after which a build gives up
+NOTICE_SECONDS = 10.0  # after which it says what it waits for
+_ANSWER_SECONDS = 20.0  # for the scheduler to hand over a finished result, or to count its workers
+
+
+def run_cluster(
+    pokes: Sequence[PlannedPoke],
+    *,
+    address: str,
+    workers: int,
+    simulator: str,
+    timeout: float = CLUSTER_TIMEOUT,
+) -> Generator[Outcome]:
+    """Simulate pokes on a dask cluster; the arrays travel back, so that only this process writes files.
+
+    dask runs a poke again where its worker was lost, three times at most.
+
+    Parameters
+    ----------
+    pokes : sequence of PlannedPoke
+    address : str
+        Address of a scheduler, or "local" for a cluster of `workers` processes on this machine.
+    timeout : float
+        Time [s] without a scheduler or without a worker after which InputError is raised.
+
+    Yields
+    ------
+    Outcome
+        In the order in which they come.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise InputError("--cluster needs dask: pip install 'tisim[cluster]'") from None
+    extensions = sendable(pokes)
+    cluster: Any = None
+    client: Any = None
+    # before the workers start: numpy and MKL read these once
+    os.environ.update(THREAD_VARIABLES)
+    try:
+        if address == "local":
+            cluster = distributed.LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+            )
+        client = _connected(address, cluster, timeout)
+        finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        run = os.urandom(4).hex()  # a scheduler may still remember the keys of an earlier build
+        pending: dict[Any, tuple[int, Any]] = {}  # with the futures: dask forgets what nobody holds
+        for poke in pokes:
+            future = client.submit(run_poke, poke, simulator, extensions, key=f"poke-{poke.index}-{run}")
+            pending[future.key] = (poke.index, future)
+            future.add_done_callback(finished.put)
+        yield from _collected(client, pending, finished, address, timeout)
+    except OSError as error:
+        raise _lost(address, one_line(error)) from None
+    finally:
+        if client is not None:
+            with contextlib.suppress(Exception):  # a dead scheduler cannot say goodbye
+                client.close(timeout=5)
+        if cluster is not None:
+            cluster.close()
+
+
+def _connected(address: str, cluster: Any, timeout: float) -> Any:
+    """A client of the scheduler, once it answers and has a worker."""
+    import distributed
+
+    if cluster is not None:
+        return distributed.Client(cluster)
+    silent = _Wait(f"--cluster {address}: no dask scheduler answers there", timeout)
+    idle = _Wait(f"--cluster {address}: the scheduler has no workers", timeout)
+    while True:
+        try:
+            if _workers(address, min(2.0, max(0.1, silent.left()))):
+                return distributed.Client(address)
+        except ValueError as error:
+            raise InputError(
+                f"--cluster {address}: is no address of a scheduler ({one_line(error)})"
+            ) from None
+        except (OSError, RuntimeError) as error:
+            silent.check(one_line(error))
+            idle.restart()
+        else:
+            idle.check()
+            silent.restart()
+        time.sleep(min(0.3, silent.left()))
+
+
+def _collected(
+    client: Any,
+    pending: dict[Any, tuple[int, Any]],
+    finished: queue.SimpleQueue[Any],
+    address: str,
+    timeout: float,
+) -> Generator[Outcome]:
+    """Outcomes as their futures finish; InputError where the scheduler is gone, or all workers are."""
+    waiting: _Wait | None = None
+    while pending:
+        try:
+            future = finished.get(timeout=1.0)
+        except queue.Empty:
+            if client.status != "running":
+                raise _lost(address, "the scheduler is gone") from None
+            if _has_workers(client):
+                waiting = None
+            elif waiting is None:
+                waiting = _Wait(f"--cluster {address}: the scheduler has lost all of its workers", timeout)
+            else:
+                waiting.check()
+            continue
+        waiting = None
+        if future.status == "cancelled":
+            raise _lost(address, "the scheduler is gone, or has cancelled the pokes")
+        index, _ = pending.pop(future.key)
+        lost = future.exception(timeout=_ANSWER_SECONDS)
+        if lost is None:
+            yield future.result(timeout=_ANSWER_SECONDS)
+        else:
+            text = f"{type(lost).__name__}: {one_line(lost, ERROR_LENGTH)}"
+            yield Outcome(index=index, payload=None, error=text[:ERROR_LENGTH])
+        future.release()  # the cluster need not keep what we have
+
+
+def _has_workers(client: Any) -> bool:
+    try:
+        return _workers(client.scheduler.address, _ANSWER_SECONDS) > 0
+    except OSError:
+        return False
+
+
+def _workers(address: str, timeout: float) -> int:
+    """How many workers the scheduler has; OSError where it does not answer in time.
+
+    A client would wait without end for a port that takes the connection and says nothing.
+    """
+    import distributed
+
+    async def ask() -> int:
+        async with distributed.rpc(address, timeout=timeout) as scheduler:
+            return len(await scheduler.ncores())
+
+    return asyncio.run(asyncio.wait_for(ask(), timeout))
+
+
+def _lost(address: str, reason: str) -> InputError:
+    return InputError(
+        f"--cluster {address}: the connection was lost ({reason}); every finished poke is kept, and the same"
+        " command goes on from there"
+    )
+
+
+class _Wait:
+    """Waiting for something: says so once after some seconds, gives up after `timeout`."""
+
+    def __init__(self, state: str, timeout: float) -> None:
+        self._state, self._timeout, self._began, self._noted = state, timeout, time.monotonic(), False
+
+    def left(self) -> float:
+        """Seconds until it gives up."""
+        return max(0.0, self._began + self._timeout - time.monotonic())
+
+    def restart(self) -> None:
+        """Count from now on: what it waits for was there."""
+        self._began, self._noted = time.monotonic(), False
+
+    def check(self, reason: str = "") -> None:
+        """Log what is waited for, once it is time; InputError when the time is over."""
+        why = f" ({reason})" if reason else ""
+        if self.left() <= 0.0:
+            raise InputError(
+                f"{self._state}{why} for {self._timeout:g} s (--cluster-timeout); every finished poke is"
+                " kept, and the same command goes on from there"
+            )
+        if not self._noted and time.monotonic() - self._began >= NOTICE_SECONDS:
+            self._noted = True
+            log.warning("%s%s: waiting %s more.", self._state, why, _seconds(self.left()))
+
+
+def _seconds(value: float) -> str:
+    return "without end" if math.isinf(value) else f"up to {value:.0f} s"

@@ -1,0 +1,61 @@
+"""Options that several of learn's commands share."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from learn import __version__
+from learn.errors import InputError
+
+
+def load_plugins(files: list[Path]) -> None:
+    """Import Python files that register metrics or models. InputError where one fails."""
+    for number, file in enumerate(files):
+        spec = importlib.util.spec_from_file_location(f"learn_plugin_{number}", file)
+        if not file.is_file() or spec is None or spec.loader is None:
+            raise InputError(f"--plugin {file}: expected a Python file")
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = module
+        try:
+            spec.loader.exec_module(module)
+        except InputError:
+            raise
+        except Exception as error:  # whatever the file does
+            raise InputError(
+                f"--plugin {file}: {type(error).__name__}: {' '.join(str(error).split())}"
+            ) from error
+
+
+def _show_version(value: bool) -> None:
+    if value:
+        typer.echo(f"tisim {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+]
+Plugins = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--plugin", metavar="FILE", help="Python file that registers a metric or a model; repeatable."
+    ),
+]
+Dataset = Annotated[str | None, typer.Option(help="The store, if it moved since the training.")]
+Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")]
+Runs = Annotated[
+    list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")
+]
+
+
+def set_threads(threads: int | None) -> None:
+    """Of torch; all cores where None."""
+    import torch
+
+    torch.set_num_threads(threads or os.cpu_count() or 1)

@@ -1,0 +1,167 @@
+"""What has a clock before anything is built: recipes with a course, cards with parts beside the law."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import factory
+from factory._input import InputError
+from factory._parts import part_entry
+from tests.factory.conftest import TINY
+from tests.factory.timed_cases import FIBRES, SOFTENING, TIMED, VISCOUS, card, recipe
+
+
+def test_a_card_s_parts_are_those_of_the_material_under_any_law(tmp_path: Path) -> None:
+    cards = card(tmp_path, "\n".join((VISCOUS, SOFTENING, FIBRES)))
+    for law in ("ogden", "eight-chain"):
+        material = factory.material_of(factory.load_card("S1", cards), law)
+        assert material.law == law
+        assert material.viscosity is not None
+        assert material.viscosity.spectrum().instantaneous == pytest.approx(1.3)
+        assert (material.softening.r, material.softening.m) == (2, 500)  # type: ignore[union-attr]
+        assert material.fibres.k1 == 5000  # type: ignore[union-attr]
+
+
+def test_a_part_is_written_as_it_is_read(tmp_path: Path) -> None:
+    cards = card(tmp_path, "\n".join((VISCOUS, SOFTENING, FIBRES)))
+    found = factory.load_card("S1", cards)
+    assert part_entry(found.viscosity) == {  # type: ignore[arg-type]
+        "kind": "prony",
+        "fractions": [0.2, 0.1],
+        "times_s": [1.0, 30.0],
+        "modulus": "long-time",
+    }
+    lines = [f"{n}: {part_entry(getattr(found, n))}" for n in ("viscosity", "softening", "fibres")]
+    again = factory.load_card("S1", card(tmp_path, "\n".join(lines)))
+    assert part_entry(again.viscosity) == part_entry(found.viscosity)  # type: ignore[arg-type]
+    assert part_entry(again.softening) == part_entry(found.softening)  # type: ignore[arg-type]
+    assert part_entry(again.fibres) == part_entry(found.fibres)  # type: ignore[arg-type]
+
+
+def test_an_effect_that_changes_the_law_keeps_the_parts(tmp_path: Path) -> None:
+    effect = """
+effects:
+  - effect: strain-stiffening
+    belongs_to: specimen
+    applies_to: material
+    scope: all
+    base_law: neo-hookean
+    parameters: {c2_over_c1: {value: 0.3, sd: 0.1}}
+    experiment_sha256: "%s"
+""" % ("0" * 64)
+    found = factory.material_of(factory.load_card("S1", card(tmp_path, VISCOUS + effect)))
+    assert (found.law, found.viscosity is not None) == ("yeoh", True)
+    plan = factory.make_plan(
+        recipe(tmp_path, TIMED.replace("[S0, S1]", "[S1, V]")),
+        "neo-hookean",
+        card(tmp_path, VISCOUS, "V"),
+    )
+    assert [m.law for m in plan.materials] == ["yeoh", "yeoh"]
+    assert all(m.viscosity is not None for m in plan.materials)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (VISCOUS.replace("30", "-30"), "viscosity.times_s: expected one or more relaxation times above 0 s"),
+        (
+            VISCOUS.replace("30", "1"),
+            "viscosity.times_s: expected relaxation times of which no two are alike",
+        ),
+        (
+            VISCOUS.replace("0.2", "0.95").replace("long-time", "instantaneous"),
+            "viscosity.fractions: expected parts of the instantaneous modulus that sum to less than 1",
+        ),
+        (VISCOUS.replace("prony", "pronny"), "viscosity.kind: expected one of prony, got 'pronny'"),
+        (VISCOUS.replace("times_s", "time_s"), "viscosity.times: this key is missing; key viscosity.time_s"),
+        (VISCOUS.replace("times_s", "times_ms"), "viscosity.times_ms: unknown key"),
+        (VISCOUS.replace("modulus", "times: [1, 2], modulus"), "times: states the same as times_s"),
+        ("viscosity: 3", "viscosity: expected the key kind and the parameters of that kind, got 3"),
+        (SOFTENING.replace("r: 2", "r: 0.5"), "softening.r: expected a number of 1 or more, got 0.5"),
+        (SOFTENING.replace("500", "0"), "softening.m_J_per_m3: expected an energy above 0 J/m3, got 0"),
+        (
+            SOFTENING.replace("500", "many"),
+            "softening.m_J_per_m3: expected an energy above 0 J/m3, got 'many'",
+        ),
+        (FIBRES.replace("1, 0, 0", "0, 0, 0"), "fibres.direction: expected a direction other than (0, 0, 0)"),
+        (FIBRES.replace("fibres", "softening"), "softening.kind: expected one of ogden-roxburgh"),
+    ],
+)
+def test_bad_parts_of_a_card_in_one_sentence(text: str, sentence: str, tmp_path: Path) -> None:
+    cards = card(tmp_path, text)
+    with pytest.raises(InputError) as caught:
+        factory.load_card("S1", cards)
+    assert str(caught.value).startswith(f"{cards / 'S1.yaml'}: key ")
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+# recipes
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("to_mm: 30, speed_mm_per_s: [1, 20]", "to_mm: 30, speed_mm_per_s: -1", "course.0.speed_mm_per_s"),
+        ("[1, 20]", "[20, 1]", "course.0.speed_mm_per_s: expected speeds that rise, got 20, 1"),
+        ("{hold_s: 8,", "{hold_s: 0,", "course.1.hold_s"),
+        ("{hold_s: 8,", "{hold: 8,", "course.1.hold: unknown key"),
+        ("- {to_mm: 30, speed_mm_per_s: [1, 20]}\n", "- {hold_s: 2}\n", "course.0: expected a ramp"),
+        ("{to_mm: 20, ", "{to_mm: 10, ", "course.3.to_mm: expected another depth than 10"),
+        ("depth_mm: 30", "depth_mm: 25", "depth_mm: expected the course's largest depth of 30, got 25"),
+        ("- {hold_s: 8, frames: 3}", "- 8", "course.1: expected the keys to_mm and speed_mm_per_s"),
+    ],
+)
+def test_bad_courses_in_one_sentence(old: str, new: str, sentence: str, tmp_path: Path) -> None:
+    assert old in TIMED
+    with pytest.raises(InputError) as caught:
+        recipe(tmp_path, TIMED.replace(old, new))
+    assert sentence in str(caught.value)
+    assert "protocol" in str(caught.value)
+
+
+def test_speeds_are_drawn_for_each_poke_and_common_to_the_levels(tmp_path: Path) -> None:
+    plan = factory.make_plan(recipe(tmp_path), "ogden")
+    speeds = [poke.scene.course.values[0] / poke.scene.course.times[0] for poke in plan.pokes]  # type: ignore[union-attr]
+    assert all(1e-3 <= speed <= 20e-3 for speed in speeds)
+    assert speeds[0] == speeds[2]  # the shared contact point
+    assert len(set(speeds)) == 3
+    again = factory.make_plan(recipe(tmp_path), "ogden")
+    assert again.identity == plan.identity
+    assert [p.scene.course for p in again.pokes] == [p.scene.course for p in plan.pokes]
+
+
+def test_contact_points_are_those_of_the_recipe_without_a_course(tmp_path: Path) -> None:
+    timed, plain = (
+        factory.make_plan(recipe(tmp_path), "ogden"),
+        factory.make_plan(recipe(tmp_path, TINY), "ogden"),
+    )
+    for one, two in zip(timed.pokes, plain.pokes, strict=True):
+        assert (one.scene.site, one.scene.direction) == (two.scene.site, two.scene.direction)
+
+
+def test_a_viscous_card_needs_a_course(tmp_path: Path) -> None:
+    cards = card(tmp_path, VISCOUS)
+    with pytest.raises(
+        InputError, match=r"expected key protocol\.course, .* since .*S1\.yaml has key viscosity"
+    ):
+        factory.make_plan(recipe(tmp_path, TINY), "ogden", cards, levels=["S1"])
+    assert (
+        factory.make_plan(recipe(tmp_path), "ogden", cards, levels=["S1"]).materials[0].viscosity is not None
+    )
+
+
+def test_without_time_the_identity_is_what_it_was() -> None:
+    """Names and sums of datasets from before depend on these keys alone."""
+    plan = factory.make_plan(factory.load_recipe("quick"), "ogden")
+    assert set(plan.identity["recipe"]["protocol"]) == {
+        "shared_sites",
+        "own_sites",
+        "margin_mm",
+        "max_angle_deg",
+        "depth_mm",
+        "frame_spacing_mm",
+    }
+    assert set(plan.identity["materials"]["S0"]) == {"law", "parameters", "density", "stiffness"}
