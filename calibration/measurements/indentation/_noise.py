@@ -38,7 +38,7 @@ NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance 
 # and the powers of how far it went back that it has. What a viscous material has stored at a large strain
 # acts on as that strain goes, and a force made of the elastic one knows no strains
 # (studies/indentation/over-time.md).
-RETRACTION, RETRACTED = 0.03, (1, 2, 3)
+RETRACTION, RETRACTED = 0.06, (1, 2, 3)
 
 GRID = 120  # depths at which wandering is evaluated
 TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
