@@ -50,10 +50,10 @@ def compared(rod: tisim.Rod, depth: float) -> tuple[Array, Array, Array]:
     course = course.ramp(to=0.1 * depth, duration=ramp)
     scene = tisim.Poke(material=MATERIAL, depth=depth, block=BLOCK, rod=rod, frame_spacing=depth / 20.0)
     (elastic,) = tisim.simulate([scene], workers=1)
-    viscous = replace(MATERIAL, viscosity=PRONY)
-    (simulated,) = tisim.simulate(
-        [replace(scene, material=viscous, course=course, mesh=elastic.mesh)], workers=1
+    timed = tisim.Poke(
+        material=replace(MATERIAL, viscosity=PRONY), course=course, block=BLOCK, rod=rod, mesh=elastic.mesh
     )
+    (simulated,) = tisim.simulate([timed], workers=1)
     for result in (elastic, simulated):
         if result.status != "converged":
             raise SystemExit(f"{rod.tip}: {result.message}")

@@ -36,9 +36,9 @@ SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wande
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
 # Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,
 # and the powers of how far it went back that it has. What a viscous material has stored at a large strain
-# acts on as that strain goes, and a force made of the elastic one knows no strains
-# (studies/indentation/over-time.md).
-RETRACTION, RETRACTED = 0.06, (1, 2, 3)
+# acts on as that strain goes, and a force made of the elastic one knows no strains: an error of a tenth of
+# this, whose powers partly cancel (studies/indentation/over-time.md).
+RETRACTION, RETRACTED = 0.3, (1, 2, 3)
 
 GRID = 120  # depths at which wandering is evaluated
 TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
