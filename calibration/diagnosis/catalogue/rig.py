@@ -121,6 +121,15 @@ PLATEN_TILT = Effect(
     remedy="seat the platen on a ball, or measure the gap with feelers before the test",
 )
 
+GAUGE_LENGTH = Effect(
+    name="gauge-length",
+    parameter="strain_percent",
+    per_unit=100.0,
+    belongs_to="rig",
+    sentence="the strain is not that of the specimen's middle: its ends stretch less, or slip in the grips",
+    remedy="measure the strain by two marks on the middle of the specimen",
+)
+
 MACHINE_COMPLIANCE = Effect(
     name="machine-compliance",
     parameter="strain_per_MPa",

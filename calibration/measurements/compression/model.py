@@ -122,6 +122,9 @@ class CompressionModel(HomogeneousModel):
             found.append(_SHARES @ p if p.ndim == 2 else p)
         return found
 
+    def repeated(self) -> tuple[str, ...]:
+        return self.repeatability.repeats
+
     def remarks(self) -> list[str]:
         c = self.bonded.cylinder
         size = f"{2e3 * c.radius:g} x {1e3 * c.height:g} mm"
