@@ -50,7 +50,7 @@ def test_comes_to_rest_where_the_static_method_does(method, tolerance, element):
     np.testing.assert_allclose(result.support_force[-1], static.support_force[-1], atol=1e-5)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["implicit", pytest.param("explicit", marks=pytest.mark.slow)])
 def test_stiffness_damping_alone_comes_to_the_same_rest(method):
     static = solve_beam(SHORT)
     solver = Solver(method=method, stiffness_damping=4e-3, until_rest=True, duration=0.5, tolerance=1e-3)
@@ -204,13 +204,13 @@ def test_a_diverged_run_shows_in_the_result(monkeypatch):
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(("mass", "stiffness"), [(40.0, 0.0), (0.0, 1.0), (20.0, 0.5)])
+@pytest.mark.parametrize(("mass", "stiffness"), [(40.0, 0.0), (10.0, 0.75)])
 def test_a_mode_decays_at_half_of_the_rayleigh_rate(method, mass, stiffness):
     body = body_of(SHORT, loaded=False)
     mode = first_mode(body, lumped=method == "explicit")
     stiffness *= 40.0 / mode.w**2
     rate = 0.5 * (mass + stiffness * mode.w**2)
-    left = swing(method, body, mode, periods=2.0, steps=800, mass=mass, stiffness=stiffness)
+    left = swing(method, body, mode, periods=2.0, steps=400, mass=mass, stiffness=stiffness)
     duration = 2.0 * 2.0 * np.pi / np.sqrt(mode.w**2 - rate**2)
     assert -np.log(left) / duration == pytest.approx(rate, rel=0.01)
     assert rate == pytest.approx(20.0, rel=1e-9)
