@@ -31,6 +31,7 @@ from calibration.measurements._layers import Curve, Layers, deviations, layers_o
 from calibration.measurements._noise import Noise
 from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import Linearisation, State
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -163,6 +164,12 @@ class MeasurementModel(ABC):
         """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
         no answer."""
         raise NotImplementedError(f"{self.kind}: has one law, not {law} of {terms}")
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        """The law, with its parameters, that an effect has put in the place of the baseline's; None where
+        none has."""
+        del material, state
+        return None
 
     def brings(self, candidate: Candidate) -> int:
         """Coordinates that matter only beside a candidate: they count as parameters of its own."""

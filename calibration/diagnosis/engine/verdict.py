@@ -22,6 +22,7 @@ from calibration.diagnosis.engine.shares import Interval
 from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import STATED, NoiseKnown
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 
@@ -83,6 +84,8 @@ class Subject:
         coordinates, shape (n,).
     ranges : between what each named candidate was measured, by the quantity's name in files.
     materials : that each named candidate concerns.
+    other_laws : of each material in which an effect replaces the baseline's law, that law and its parameters
+        at the fitted modulus.
     handed_on : the part of each material that each named candidate is, where it is one.
     """
 
@@ -93,6 +96,7 @@ class Subject:
     modulus_weights: Mapping[str, Array] = field(default_factory=dict)
     ranges: Mapping[Candidate, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
     materials: Mapping[Candidate, frozenset[str]] = field(default_factory=dict)
+    other_laws: Mapping[str, tuple[str, Parameters]] = field(default_factory=dict)
     handed_on: Mapping[Candidate, Mapping[str, HandedOn]] = field(default_factory=dict)
 
     @classmethod
@@ -112,6 +116,7 @@ class Subject:
                 )
                 for c in fit.candidates
             },
+            other_laws={m: own for m in base.materials if (own := model.law_in(m, fit.state)) is not None},
             handed_on={c: model.hands_on(c, fit.state) for c in fit.candidates},
         )
 

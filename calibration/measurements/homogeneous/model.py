@@ -38,7 +38,7 @@ from calibration.measurements.homogeneous._record import Record, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
-from calibration.parameters import parametrisation
+from calibration.parameters import Parameters, parametrisation
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,6 @@ Array = NDArray[np.float64]
 # holds K/G (`Parametrisation.holding`) has these curves too, whatever its prior says.
 BULK_RATIO = 3000.0
 REMEMBERED = 8192  # stresses of a record
-ALIKE = 0.15  # of range and rate: of two repeats of one test
 # The simplest first, by the number of their constants; terms of a series law. St Venant-Kirchhoff and the
 # stable neo-Hookean law are no rubber's, and the latter has the neo-Hookean curve at this K/G.
 LAWS = (
@@ -58,6 +57,7 @@ LAWS = (
     ("ogden", 2),
     ("ogden", 3),
 )
+ALIKE = 0.15  # of range and rate: of two repeats of one test
 BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
 
 
@@ -138,8 +138,10 @@ class HomogeneousModel(MeasurementModel):
             effect = replace(effect, bounds=(max(low, least), min(high, most)))
         if self.richer is None or not effect.richer:
             return effect
-        label = self.richer.law.label
-        return replace(effect, variants=lambda _: (1.0,), variant_label=lambda _: label)
+        label, plain = self.richer.law.label, self.baseline.law.label
+        sentence = f"{effect.effect.sentence}: {plain} does not describe its stress, {label} does"
+        said = replace(effect.effect, sentence=sentence)
+        return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
 
     def with_law(self, law: str, terms: int) -> Self:
         """The same measurements with another law as baseline and no effects, to compare laws.
@@ -147,6 +149,16 @@ class HomogeneousModel(MeasurementModel):
         ValueError where the law has no answer.
         """
         return type(self)(self.experiment, law=law, terms=terms)
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        mine = [k for k, r in enumerate(self.records) if r.material == material]
+        acting = self._effects_in(state, mine[0]) if mine else []
+        own = self._richer_constants(self.records[mine[0]], state, acting) if mine else np.zeros(0)
+        if self.richer is None or not own.size:
+            return None
+        of_law = replace(self.baseline, law=self.richer.law, extras=())
+        shear = self.baseline.shear_moduli(state.u)[material]
+        return self.richer.law.law, self.richer.law.parameters(of_law.scaled(own, shear))
 
     def brings(self, candidate: Candidate) -> int:
         if self.richer is None or not self.effects[candidate.effect].richer:
