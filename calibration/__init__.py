@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from calibration.api import diagnose, fit, predict, read_experiment, reconstruct
+    from calibration.diagnosis.file import read_diagnosis
     from calibration.errors import InputError
     from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 
@@ -32,6 +33,7 @@ __all__ = [
     "diagnose",
     "fit",
     "predict",
+    "read_diagnosis",
     "read_experiment",
     "reconstruct",
 ]
@@ -46,6 +48,7 @@ _HOME = {
     "diagnose": "calibration.api",
     "fit": "calibration.api",
     "predict": "calibration.api",
+    "read_diagnosis": "calibration.diagnosis.file",
     "read_experiment": "calibration.api",
     "reconstruct": "calibration.api",
 }

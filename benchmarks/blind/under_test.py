@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calibration.diagnosis import Finding, MeasurementModel
+    from calibration.diagnosis import Diagnosis, Finding, MeasurementModel
 
 Verdict = dict[str, Any]  # the content of diagnosis.json, or the part of it that is scored
 
@@ -151,7 +151,7 @@ def diagnose_coupons(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     data = calibration.read_experiment(folder)
     result = calibration.diagnose(data, domain="homogeneous", without=without, gain=False)
     model, finding = result.model, result.diagnosis.finding
-    found = _scored(model, finding)
+    found = _scored(model, result.diagnosis)
     found["next"] = None
     if finding.verdict == "ambiguous":
         one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.equivalent]
@@ -180,17 +180,18 @@ def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The search, and what is scored of it."""
-    from calibration.diagnosis import search
+    """The diagnosis without its refinement, and what is scored of it."""
+    from calibration.diagnosis import diagnose
 
-    finding = search(model)
-    return finding, _scored(model, finding)
+    made = diagnose(model, gain=False)
+    return made.finding, _scored(model, made)
 
 
-def _scored(model: MeasurementModel, finding: Finding) -> Verdict:
+def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
     """The part of diagnosis.json that is scored; rms in the model's own unit."""
     from calibration.diagnosis.engine.held_out import held_out_improvement
 
+    finding, content = made.finding, made.to_json()
     chosen = finding.chosen
     causes: list[dict[str, Any]] = []
     found: Verdict = {
@@ -205,6 +206,8 @@ def _scored(model: MeasurementModel, finding: Finding) -> Verdict:
             "worst": finding.lack_of_fit.worst,
         },
         "baseline": {"shear_modulus_Pa": model.shear_moduli(finding.baseline.state.u)},
+        "share": content["share"],
+        "nearest": content["nearest"],
         "tried": [(e.fit.label, e.fit.chi2, e.lack_of_fit.p_value) for e in finding.explanations],
     }
     if chosen is None:

@@ -65,14 +65,17 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     handed = handed_on(name, diagnosis)
     stated = shear * prod(h.modulus_ratio for h in handed.values())
     relative_sd = modulus.relative_sd * sqrt(max(numbers.reduced_chi2, 1.0))
+    if diagnosis.model_error is not None:
+        relative_sd = max(relative_sd, diagnosis.model_error.shear_modulus_relative_sd.get(name, 0.0))
+    own, parameters = _law(name, stated / shear, bulk_ratio * shear, stated, diagnosis)
     fit = Calibration(
         material=name,
-        law=law,
-        label=law,
+        law=own,
+        label=own,
         status="converged",  # or the provenance says how it ended
         message="",
         density=experiment.materials[name].density,
-        parameters=laws.get(law).from_moduli(stated, bulk_ratio * shear),
+        parameters=parameters,
         shear_modulus=stated,
         shear_modulus_sd=relative_sd * stated,
         bulk_modulus=bulk_ratio * shear,
@@ -82,7 +85,8 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
-        " root of the reduced chi-square where that is above 1. The bulk"
+        " root of the reduced chi-square where that is above 1, and at least the modulus' spread over"
+        " resampled measurements where the data are explained in part or not at all. The bulk"
         f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
     )
     content["model_error"] = model_error(diagnosis.fit, modulus.direction)
@@ -106,6 +110,25 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
         if _of_specimen(c, diagnosis) and name in diagnosis.subject.materials.get(c, frozenset())
     ]
     return {**content, "effects": effects} if effects else content
+
+
+def _law(
+    name: str, ratio: float, bulk: float, shear: float, diagnosis: Diagnosis
+) -> tuple[str, dict[str, float | tuple[float, ...]]]:
+    """The law of a material with its parameters: the baseline's at these moduli [Pa], or the one that an
+    effect has put in its place, its moduli times `ratio`."""
+    if name not in diagnosis.subject.other_laws:
+        law = diagnosis.subject.law
+        return law, laws.get(law).from_moduli(shear, bulk)
+    law, parameters = diagnosis.subject.other_laws[name]
+    units = {n: unit for n, (unit, _) in laws.get(law).parameters.items()}
+
+    def times(n: str, value: float | tuple[float, ...]) -> float | tuple[float, ...]:
+        if units[n] != "Pa":
+            return value
+        return tuple(ratio * v for v in value) if isinstance(value, tuple) else ratio * value
+
+    return law, {n: times(n, value) for n, value in parameters.items()}
 
 
 def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from calibration.parameters import parametrisation
 AUTO = "auto"
 PREFERRED = "leave-one-fifth-out"  # folds; others where the model has none of these
 WORTH = 0.1  # part of the simpler law's held-out misfit that further constants have to take away
+SURE = 2.0  # standard deviations of a chi-square of so many points, that is noise
 EXPLAINED = ("none", "found", "ambiguous")  # verdicts after which no other law is asked
 
 Law = tuple[str, int]  # name, terms
@@ -75,10 +76,11 @@ class LawChoice:
 
     @property
     def best(self) -> LawScore:
-        """The simplest law of which no richer one takes away WORTH of the held-out misfit."""
-        chosen = self.scores[0]
+        """The simplest law of which no richer one takes away WORTH of the held-out misfit, and more of it
+        than noise would."""
+        chosen, noise = self.scores[0], SURE * np.sqrt(2.0 * self.points)
         for s in sorted(self.scores[1:], key=lambda s: s.constants):
-            if s.held_out < (1.0 - WORTH) * chosen.held_out:
+            if s.held_out < chosen.held_out - max(WORTH * chosen.held_out, noise):
                 chosen = s
         return chosen
 
@@ -135,7 +137,7 @@ def diagnose_with_law(
     if explained and _causes(found) < 2:
         return found, model
     choice = None
-    if law == AUTO and model.laws and not explained:
+    if law == AUTO and model.laws:
         choice = choose_law(model, on_progress=on_progress)
     if choice is not None and choice.best is not choice.simplest:
         options["richer"] = choice.best.law, choice.best.terms
@@ -143,16 +145,46 @@ def diagnose_with_law(
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
         again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-        fewer = again.finding.verdict in EXPLAINED and _causes(again) < _causes(found)
-        if not explained or fewer:
+        better = _simpler(again, found, rules or Rules()) if explained else _says(again) >= _says(found)
+        if better:
             model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)
-    return replace(found, notes=(*found.notes, *notes)), model
+    return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model
+
+
+def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
+    """A cause that these records cannot tell from what is in no catalogue explains in part at most."""
+    if found.chosen is None or found.finding.verdict not in EXPLAINED:
+        return found
+    for c in found.chosen.candidates:
+        effect = model.effects[c.effect]
+        hit = [r for r, here in zip(model.records, model.reached(c), strict=True) if here]
+        if not effect.conclusive(hit, model.records):
+            said = f"{c.label} may stand in for anything that is smooth along these records: {effect.remedy}"
+            finding = replace(
+                found.finding, verdict="partly explained", dominant=found.finding.explanations[0]
+            )
+            return replace(found, finding=finding, notes=(*found.notes, said))
+    return found
 
 
 def _causes(found: Diagnosis) -> int:
     """How many are named together."""
     return 0 if found.chosen is None else len(found.chosen.candidates)
+
+
+def _says(found: Diagnosis) -> int:
+    """How much a verdict says: nothing that explains, something in part, all."""
+    verdict = found.finding.verdict
+    return 2 if verdict in EXPLAINED else 0 if verdict == "unexplained" else 1
+
+
+def _simpler(again: Diagnosis, found: Diagnosis, rules: Rules) -> bool:
+    """Whether fewer causes explain the data about as well; constants that they bring count in the score."""
+    if again.chosen is None or found.chosen is None or again.finding.verdict not in EXPLAINED:
+        return False
+    fewer = _causes(again) < _causes(found)
+    return fewer and again.chosen.score <= found.chosen.score + rules.score_tolerance
 
 
 def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: None) -> LawChoice:
@@ -173,7 +205,7 @@ def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: Non
             name = PREFERRED if PREFERRED in folds else next(iter(folds))
             held_out, squares, points = 0.0, 0.0, 0
             for _, fold in folds[name]:
-                trained = fit(own.subset(fold, others=True), whole.state, max_steps=20).state
+                trained = fit(own.subset(fold, others=True), whole.state, max_steps=8).state
                 left = own.subset(fold, others=False)
                 z = left.residuals([trained])[0][: left.points]
                 held_out += float(z @ z)

@@ -135,6 +135,8 @@ class EffectModel:
         a candidate that no protocol shows has no column.
     variants : forms of the effect (a time constant, a direction), from the records that it applies to.
     variant_label : a variant in words.
+    conclusive : whether the records that a candidate reaches, among all, can tell it from anything else that
+        is smooth along them; where they cannot, it is named as part of an explanation only.
     switch : it is there or not: where it is named its amplitude is the upper bound.
     further : it is looked for only where no other cause explains the data: it is rarer than they are, or so
         free in its form that it would stand in for them.
@@ -155,6 +157,7 @@ class EffectModel:
     identifiable: Callable[[Sequence[Any], Sequence[Any]], bool] = always
     variants: Callable[[Sequence[Any]], tuple[float | None, ...]] = one_variant
     variant_label: Callable[[float], str] = lambda variant: f"{variant:g}"
+    conclusive: Callable[[Sequence[Any], Sequence[Any]], bool] = always
     switch: bool = False
     further: bool = False
     action: str = ""

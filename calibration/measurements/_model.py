@@ -9,7 +9,7 @@ scores come from here. `calibration.diagnosis.engine` searches these models for 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol, Self
@@ -27,9 +27,11 @@ from calibration.measurements._effect import (
     reaches,
 )
 from calibration.measurements._folds import folds_of
+from calibration.measurements._layers import Curve, Layers, deviations, layers_of
 from calibration.measurements._noise import Noise
 from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import Linearisation, State
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -96,6 +98,7 @@ class MeasurementModel(ABC):
     laws : that may be its baseline's, the simplest first, with terms of a series law; none where the kind
         knows one only.
     no_answer : what a ValueError says of a state without an answer.
+    noise_scale : the noise from point to point over what `noise` has (`NoiseKnown.scale`).
     records : in the order of the rows, as far as rows belong to one record each.
     row_record : index of the record of each row, shape (rows,).
     effects : by name. candidates : of all effects. visible : whether the records identify a candidate at all.
@@ -113,6 +116,7 @@ class MeasurementModel(ABC):
     separates: ClassVar[Literal["all", "most"]] = "all"
     laws: ClassVar[Sequence[tuple[str, int]]] = ()
     no_answer: ClassVar[str] = "the simulation has no answer at this state"
+    noise_scale: float = 1.0
 
     records: Sequence[Any]
     row_record: NDArray[np.intp]
@@ -160,6 +164,12 @@ class MeasurementModel(ABC):
         """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
         no answer."""
         raise NotImplementedError(f"{self.kind}: has one law, not {law} of {terms}")
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        """The law, with its parameters, that an effect has put in the place of the baseline's; None where
+        none has."""
+        del material, state
+        return None
 
     def brings(self, candidate: Candidate) -> int:
         """Coordinates that matter only beside a candidate: they count as parameters of its own."""
@@ -212,13 +222,53 @@ class MeasurementModel(ABC):
         """Names of the tests whose repeats show how one differs from the next; () where none do."""
         return ()
 
+    def repeat_of(self, k: int) -> Hashable | None:
+        """What a record, by its index, has in common with its repeats, beside material and specimen (mode,
+        range, rate, ...); None where no record of this kind counts as a repeat of another."""
+        del k
+        return None
+
     def noise_known(self) -> NoiseKnown:
-        """What is known of the noise, as it is used."""
+        """What is known of the noise, as it is used: what repeats show counts from here on."""
         stated = all(self.states_noise(k) for k in range(len(self.records)))
-        repeats = self.repeated()
+        repeats, layers = self.repeated(), Layers()
+        points = tuple(self.point_noise())
+        if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
+            curves = self._curves()
+            layers = layers_of(curves)
+            if layers.repeat is not None:
+                repeats = layers.repeats
+                rows = [self.row_record == k for k in range(len(self.records))]
+                columns = []
+                for own, bends in zip(rows, deviations(curves, layers.repeat), strict=True):
+                    for bend in bends:
+                        columns.append(np.zeros(len(own)))
+                        columns[-1][own] = bend
+                self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
         return NoiseKnown(
-            known=stated or bool(repeats), points=tuple(self.point_noise()), repeats=repeats, unit=self.unit
+            known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
         )
+
+    def _curves(self) -> list[Curve]:
+        """The misfit where a fit begins, of each record that is driven; none where it is not known."""
+        scale = self.full_scale()
+        along = [self.along(k) for k in range(len(self.records))]
+        if scale is None or any(a is None for a in along):
+            return []
+        misfit = self._misfit([State(u=self.start())])[0]
+        return [
+            Curve(
+                name=str(r.name),
+                material=r.material,
+                specimen=r.specimen,
+                test=self.repeat_of(k),
+                x=a[1],
+                misfit=misfit[self.row_record == k],
+                scale=float(scale[k]),
+            )
+            for k, (r, a) in enumerate(zip(self.records, along, strict=True))
+            if a is not None
+        ]
 
     def with_noise_of_data(self) -> NoiseKnown:
         """Take the noise of each record as the data show it, where that is not what the lab states; what is
@@ -227,11 +277,15 @@ class MeasurementModel(ABC):
         factors = {p.record: p.factor for p in known.points if p.contradicts}
         by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
         self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
-        return replace(known, source="data")
+        # a median of third differences tells a third of what as many independent points would
+        dof = float(np.median([p.points for p in known.points])) / 3.0 if factors else known.dof
+        return replace(known, source="data", dof=dof)
 
     def full_scale(self) -> Array | None:
-        """Largest measured value of each record [SI], shape (records,); None where records have none."""
-        return None
+        """Largest measured value of each record [SI], shape (records,); None where what is compared has no
+        scale (distances between simulated and measured)."""
+        found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
+        return found if (found > 0.0).all() else None
 
     def along(self, k: int) -> tuple[str, Array] | None:
         """What drives a record, by its index: its name for people, and its value at each of the record's
@@ -458,7 +512,7 @@ class MeasurementModel(ABC):
 
     def noise_rms(self) -> float:
         """What `distance_rms` would be of the noise alone [SI]."""
-        return float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
+        return self.noise_scale * float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
 
     def _measured_points(self) -> int:
         """Measured points behind the rows that are used."""

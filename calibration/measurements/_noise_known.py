@@ -7,12 +7,14 @@ from point to point, and nothing of an error that all of its points share.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, field
+from math import inf, sqrt
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from calibration.measurements._layers import Layers
 
 Array = NDArray[np.float64]
 
@@ -65,6 +67,7 @@ class NoiseKnown:
     dof : degrees of freedom of its estimate; inf where it is taken as known.
     points : what each record shows.
     repeats : names of the tests that show how one differs from the next.
+    layers : what they show, where the kind of measurement does not model it.
     unit : of rms residuals in files, and how many of them one SI unit is.
     """
 
@@ -73,7 +76,19 @@ class NoiseKnown:
     dof: float = inf
     points: tuple[PointNoise, ...] = ()
     repeats: tuple[str, ...] = ()
+    layers: Layers = field(default_factory=Layers)
     unit: tuple[str, float] = ("", 1.0)
+
+    @property
+    def scale(self) -> float:
+        """What the noise from point to point is at most, over what was assumed: below 1 where an error that
+        nobody stated was taken for larger than the scatter (areas and load cells have errors that all points
+        of a record share)."""
+        unstated = [p for p in self.points if not p.stated]
+        if not unstated or len(unstated) < len(self.points):
+            return 1.0
+        total = sum(p.points * min(p.factor, 1.0) ** 2 for p in unstated)
+        return sqrt(total / sum(p.points for p in unstated))
 
     def sentences(self) -> list[str]:
         """For people: what is not known, what contradicts what."""
@@ -94,6 +109,7 @@ class NoiseKnown:
                 f"the data scatter by {text} than the lab states in {len(off)} of {len(self.points)} records:"
                 f" {shown:.2g} {name} from point to point, stated {stated:.2g} {name} ({used})"
             )
+        found += self.layers.sentences()
         if not self.known:
             found.append(
                 "the noise is not known: the lab does not state it, and no test was repeated often enough to"
@@ -107,6 +123,7 @@ class NoiseKnown:
             "source": self.source,
             "known": self.known,
             "repeats": list(self.repeats),
+            "layers": self.layers.to_json(),
             "records": [
                 {
                     "record": p.record,

@@ -49,7 +49,7 @@ LAW_FORM = Effect(
     parameter="in_its_place",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the law has the wrong form for this material: another one describes how it stiffens",
+    sentence="the law has the wrong form for this material",
     remedy="use the law that is named; a mode of loading that its fit has not seen confirms its form",
     with_material=True,
 )

@@ -85,6 +85,15 @@ LOAD_HEIGHT = Effect(
     remedy="measure where on the end face the mass hangs",
 )
 
+LOOSE_LOAD = Effect(
+    name="loose-load",
+    parameter="part_of_inertia",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the hung mass is tied loosely: it does not move with the beam as one body",
+    remedy="clamp or glue the mass to the end face, and repeat",
+)
+
 AIR_DRAG = Effect(
     name="air-drag",
     parameter="rate_per_s",
@@ -109,6 +118,15 @@ PLATEN_BONDING = Effect(
     per_unit=1.0,
     belongs_to="rig",
     sentence="the platens hold the ends of the compressed cylinder by friction or adhesion",
+    remedy="lubricate the platens and repeat, or press cylinders of two heights",
+)
+
+PLATEN_SLIP = Effect(
+    name="platen-slip",
+    parameter="coefficient",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the ends of the compressed cylinder rub at the platens, and slip in part (Coulomb friction)",
     remedy="lubricate the platens and repeat, or press cylinders of two heights",
 )
 

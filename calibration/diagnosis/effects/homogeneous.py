@@ -21,7 +21,7 @@ from calibration.diagnosis.effects._material_parts import (
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
-from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
+from calibration.measurements.homogeneous.kinematics import first_excess, slab_factor, stress_of
 
 Array = NDArray[np.float64]
 
@@ -274,10 +274,7 @@ PRESSED = 0.97  # stretch below which platens press
 
 def _factor_platen_friction(s: Array, amplitude: float, record: Record) -> Array:
     del record
-    x = 3.0 * amplitude * np.maximum(s, 1e-3) ** -1.5
-    small = np.abs(x) < 1e-2
-    large = np.where(small, 1.0, x)
-    whole = np.where(small, 1.0 + x / 3.0 + x**2 / 12.0, 2.0 * (np.expm1(large) - large) / large**2)
+    whole = slab_factor(3.0 * amplitude * np.maximum(s, 1e-3) ** -1.5)
     return np.where(s < 1.0, whole, 1.0)
 
 
@@ -386,6 +383,16 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
 # that predicts best what its fit has not seen (`calibration.diagnosis.laws`).
 
 
+def _several_modes(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Each material in two modes of loading, of which pulling and pressing are two."""
+    del everything
+    for material in {r.material for r in reached}:
+        mine = [r for r in reached if r.material == material]
+        if len({(r.mode, bool(r.stretch.min() < PRESSED)) for r in mine}) < 2:
+            return False
+    return True
+
+
 LAW_FORM = HomogeneousEffect(
     effect=catalogue.LAW_FORM,
     step=1e-3,
@@ -393,6 +400,7 @@ LAW_FORM = HomogeneousEffect(
     physical_limits=(1.0,),
     start_fraction=1.0,
     prior_scale=1.0,
+    conclusive=_several_modes,
     switch=True,
     richer=True,
     further=True,

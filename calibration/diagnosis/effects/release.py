@@ -333,6 +333,28 @@ LOAD_HEIGHT = ReleaseEffect(
 )
 
 
+# -- loose-load --
+# The hung mass is tied loosely: its weight acts, but this part of its inertia does not move with the beam
+# (on a string it swings behind).
+
+
+def _alter_loose_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, tip_mass=(1.0 - amplitude) * s.tip_mass)
+
+
+LOOSE_LOAD = ReleaseEffect(
+    effect=catalogue.LOOSE_LOAD,
+    step=1e-04,
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),
+    prior_scale=0.2,
+    alter=_alter_loose_load,
+    applies_to=hung,
+    further=True,
+    scopes=("load", "trial"),
+)
+
+
 # -- image-scale --
 # The cameras show displacements too large (positive) or too small.
 
@@ -405,6 +427,7 @@ EFFECTS: dict[str, ReleaseEffect] = {
         SECTION_SCALE,
         ADDED_MASS,
         LOAD_HEIGHT,
+        LOOSE_LOAD,
         IMAGE_SCALE,
         CAMERA_ROLL,
         CLOCK_RATE,

@@ -40,6 +40,7 @@ class HeldOut:
     note : why nothing was held out.
     parts : the prediction of each fold.
     amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
+    acts : whether an effect, as large as it was fitted, shows in each fold at all.
     within : whether folds part single records: what all of a record shares is then in the training too.
     """
 
@@ -53,6 +54,7 @@ class HeldOut:
     note: str = ""
     parts: tuple[Prediction, ...] = ()
     amplitudes: tuple[tuple[float, ...], ...] = ()
+    acts: tuple[bool, ...] = ()
     within: bool = False
 
     @property
@@ -62,8 +64,15 @@ class HeldOut:
 
     @property
     def helps_everywhere(self) -> bool:
-        """Whether the extension predicts every fold better than the baseline does."""
-        return bool(self.parts) and all(p.helps for p in self.parts)
+        """Whether the extension predicts every fold in which it acts better than the baseline does."""
+        return bool(self.parts) and not self.worse
+
+    @property
+    def worse(self) -> tuple[str, ...]:
+        """Folds in which it acts, and that it predicts no better. An effect that shows in no fold alone (a
+        law that brings constants of its own) acts in all."""
+        acts = self.acts if any(self.acts) else (True,) * len(self.parts)
+        return tuple(p.name for p, own in zip(self.parts, acts, strict=True) if own and not p.helps)
 
 
 def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:
@@ -103,6 +112,7 @@ def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) ->
         note=choice.note,
         parts=tuple(parts),
         amplitudes=tuple(amplitudes),
+        acts=tuple(bool(_visible(model, fold, chosen).any()) for _, fold in folds),
         within=_within(model, [fold for _, fold in folds]),
     )
 
@@ -154,7 +164,9 @@ def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
     if worst.min() >= FALLBACK:
         return _Choice(name=name, folds=folds, kept=float(worst.min()))
     for name, folds, kept in sets:
-        some = [k for k in range(len(folds)) if kept[k] >= KEPT and _shows(model, folds[k][1], chosen)]
+        some = [
+            k for k in range(len(folds)) if kept[k] >= KEPT and _visible(model, folds[k][1], chosen).all()
+        ]
         if len(some) > 1:
             left = ", ".join(folds[k][0] for k in range(len(folds)) if k not in some)
             return _Choice(
@@ -179,11 +191,10 @@ def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], chosen: Fi
     )
 
 
-def _shows(model: MeasurementModel, fold: Rows, chosen: Fit) -> bool:
-    """Whether each amplitude, as it was fitted, would show in a fold alone."""
-    rows = model.rows(fold)
+def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
+    """Whether each amplitude, as it was fitted, would show in a fold alone, shape (c,)."""
     values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
-    return bool((values**2 * _information(chosen, rows) >= VISIBLE**2).all())
+    return np.asarray(values**2 * _information(chosen, model.rows(fold)) >= VISIBLE**2)
 
 
 def _information(chosen: Fit, rows: Rows) -> Array:

@@ -55,6 +55,7 @@ def model_error_of(
         weights = model.baseline.modulus_weights(material, fit.state.u)
         formal = float(np.sqrt(max(weights @ covariance @ weights, 0.0)))
         seen = moves @ weights
-        spread = 0.0 if len(seen) < 2 else 0.5 * float(np.ptp(np.quantile(seen, (0.159, 0.841))))
+        low, high = np.quantile(seen, (0.159, 0.841)) if len(seen) > 1 else (0.0, 0.0)
+        spread = 0.5 * float(high - low)
         sds[material] = max(spread, formal * float(np.sqrt(max(reduced_chi2, 1.0))))
     return ModelError(rms=left.rms, of_full_scale=left.of_full_scale, shear_modulus_relative_sd=sds)

@@ -27,6 +27,8 @@ from calibration.diagnosis.engine.rules import Progress, Rules
 from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
 from calibration.measurements._model import MeasurementModel
 
+EACH = 2  # sets of as many causes that are tried
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Assessed:
@@ -36,7 +38,7 @@ class Assessed:
     ----------
     share : of the explainable misfit.
     at_least : share that it takes in `Rules.sure` of the replicates.
-    rivals : other sets of names that take as much.
+    rivals : other sets of names that take as much, with their shares.
     held_out : None where it was not measured.
     against : why it is not named, a clause each; nothing where it may be.
     confidence : part of the replicates in which no other set of as many causes takes more.
@@ -45,7 +47,7 @@ class Assessed:
     explanation: Explanation
     share: Interval
     at_least: float
-    rivals: tuple[Names, ...] = ()
+    rivals: tuple[tuple[Names, Interval], ...] = ()
     held_out: HeldOut | None = None
     against: tuple[str, ...] = field(default=())
     confidence: float = 0.0
@@ -83,21 +85,22 @@ def assess(
 def _dominant(
     found: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules
 ) -> list[tuple[Explanation, Misfit]]:
-    """In the order in which they are tried: the best of each number of causes, from the smallest set that one
-    cause more adds little to; then the larger ones, and the smaller ones."""
-    best: dict[int, tuple[Explanation, Misfit]] = {}
-    for e, m in found:
-        size = len(e.names)
-        if size not in best or m.value < best[size][1].value:
-            best[size] = (e, m)
+    """In the order in which they are tried: the best of the smallest number of causes that one cause more
+    adds little to; then those of one cause more each, and of fewer. Of each number the best `EACH` sets of
+    names."""
+    best: dict[int, list[tuple[Explanation, Misfit]]] = {}
+    for e, m in sorted(found, key=lambda pair: pair[1].value):
+        own = best.setdefault(len(e.names), [])
+        if len(own) < EACH and e.names not in [other.names for other, _ in own]:
+            own.append((e, m))
     sizes = sorted(best)
     chosen = sizes[0]
     for size in sizes[1:]:
-        gained = shares.share(best[size][1]).value - shares.share(best[chosen][1]).value
+        gained = shares.share(best[size][0][1]).value - shares.share(best[chosen][0][1]).value
         if gained >= rules.further_share * (size - chosen):
             chosen = size
     larger = [k for k in sizes if k > chosen]
-    return [best[k] for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen))]
+    return [pair for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen)) for pair in best[k]]
 
 
 def _judge(
@@ -119,10 +122,12 @@ def _judge(
     if not inside_bounds(model, explanation):
         against.append("an amplitude is at the end of what makes sense")
     if share.value < rules.least_share:
-        against.append(f"it takes less than {rules.least_share:.0%} of what noise leaves to explain")
+        against.append(
+            f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
+        )
     elif at_least < rules.least_share:
         against.append(
-            f"over {shares.groups.over} its share is not sure to be {rules.least_share:.0%} or more"
+            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.least_share:.0f} % or more"
         )
     part = relative_rms(model, baseline)
     if not noise_known and part is not None and part < rules.smooth_error:
@@ -144,7 +149,7 @@ def _judge(
         share=share,
         at_least=at_least,
         confidence=float(first),
-        rivals=_rivals(explanation, drawn, sound, shares, rules),
+        rivals=_rivals(explanation, share, drawn, sound, shares, rules),
         held_out=held_out,
         against=tuple(against),
     )
@@ -155,9 +160,14 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
         return [held_out.note]
     found = []
     if not held_out.helps_everywhere:
-        worse = [p.name for p in held_out.parts if not p.helps]
-        named = worse[0] if len(worse) == 1 else f"{len(worse)} of {len(held_out.parts)} parts"
-        found.append(f"{named} of the measurements, held out, is predicted no better than without it")
+        worse = held_out.worse
+        if len(worse) == 1:
+            found.append(f"{worse[0]}, held out, is predicted no better than without it")
+        else:
+            found.append(
+                f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
+                " it"
+            )
     if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
         found.append("held-out measurements are predicted no better with it")
     for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
@@ -168,20 +178,22 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
     if held_out.within and rules.least_share <= at_least < rules.least_share_within:
         found.append(
             f"measurements could be held out from within the tests only, where its share must be sure to be"
-            f" {rules.least_share_within:.0%}"
+            f" {100.0 * rules.least_share_within:.0f} %"
         )
     return found
 
 
 def _rivals(
     explanation: Explanation,
+    share: Interval,
     drawn: np.ndarray,
     sound: Sequence[tuple[Explanation, Misfit]],
     shares: Shares,
     rules: Rules,
-) -> tuple[Names, ...]:
-    """Other sets of as many names, or fewer, that take as much in some of the replicates; best first."""
-    found: list[tuple[float, Names]] = []
+) -> tuple[tuple[Names, Interval], ...]:
+    """Other sets of as many names, or fewer, that take as much, altogether or in some of the replicates; best
+    first."""
+    found: dict[Names, Misfit] = {}
     for e, m in sound:
         if e.names == explanation.names or len(e.names) > len(explanation.names):
             continue
@@ -189,7 +201,9 @@ def _rivals(
             continue
         if set(e.names) < set(explanation.names):
             continue
-        as_much = float(np.mean(shares.drawn(m) >= drawn))
-        if as_much > rules.as_good and e.names not in [n for _, n in found]:
-            found.append((m.value, e.names))
-    return tuple(n for _, n in sorted(found))
+        as_much = float(np.mean(shares.drawn(m) >= drawn)) > rules.as_good
+        as_much |= shares.share(m).value > share.value - rules.alike
+        if as_much and (e.names not in found or m.value < found[e.names].value):
+            found[e.names] = m
+    ordered = sorted(found.items(), key=lambda pair: pair[1].value)
+    return tuple((names, shares.share(misfit)) for names, misfit in ordered)

@@ -66,7 +66,8 @@ def groups_of(model: MeasurementModel) -> Groups:
         there = list(dict.fromkeys(tests[k] for k in np.unique(record)))
         number = np.array([there.index(x) if x in there else -1 for x in tests])
         return Groups(over="tests", of_row=np.concatenate([number[record], prior]), names=tuple(there))
-    of_row, names = np.zeros(len(record), dtype=np.intp), []
+    of_row = np.zeros(len(record), dtype=np.intp)
+    names: list[str] = []
     for k in np.unique(record):
         for n, part in enumerate(np.array_split(np.flatnonzero(record == k), PARTS)):
             if part.size:

@@ -29,7 +29,8 @@ class Rules:
     least_share_within : the same where measurements can only be held out from within a test: what all of one
         test shares, a smooth error that nobody stated among it, is then in the training as well.
     further_share : that one cause more must take.
-    as_good : part of the replicates in which another explanation may take more before it is named as well.
+    as_good, alike : part of the replicates in which another explanation may take more before it is named as
+        well; share by which it must take less.
     same_amplitude : fraction of an amplitude, or `same_sds` of its standard deviations, by which it may
         change from fold to fold.
     tries : explanations whose held-out skill is measured, before none is named.
@@ -53,8 +54,9 @@ class Rules:
     least_share_within: float = 0.75
     further_share: float = 0.1
     as_good: float = 0.05
+    alike: float = 0.02
     same_amplitude: float = 0.5
     same_sds: float = 3.0
-    tries: int = 3
+    tries: int = 5
     smooth_error: float = 0.01
     negligible: float = 0.01

@@ -52,6 +52,7 @@ def diagnose(
     begun = time.monotonic()
     rules = rules or Rules()
     known = model.with_noise_of_data() if noise == "data" else model.noise_known()
+    model.noise_scale = known.scale
     finding = search(model, rules=rules, on_progress=on_progress)
     baseline = finding.baseline
     before = _numbers(model, baseline, finding.lack_of_fit.p_value)
@@ -71,6 +72,9 @@ def diagnose(
         if gain:
             on_progress("predicting held-out measurements")
             held_out = held_out_improvement(model, baseline, refined.fit)
+            if not held_out.held_out and nearest is not None and nearest.held_out is not None:
+                # as it was found: where nuisances are taken anew, a fold may have no answer
+                held_out = nearest.held_out
         shares = _shares(model, baseline, rules, known)
         causes = shares.of_causes(model, baseline, refined, null)
     else:
@@ -78,7 +82,7 @@ def diagnose(
         if finding.verdict == "unexplained":
             shares = _shares(model, baseline, rules, known)
     fit_now = baseline if refined is None else refined.fit
-    left = remainder_of(model, fit_now) if shares is not None else None
+    left = remainder_of(model, fit_now, negligible=rules.negligible) if shares is not None else None
     named_whole = finding.verdict in ("none", "found", "ambiguous")
     if left is not None and not named_whole:
         next_experiment = "; ".join(x for x in (next_experiment, about_remainder(left)) if x)
@@ -98,6 +102,7 @@ def diagnose(
         shares=causes,
         resampled=shares.groups.over if shares else "",
         nearest=nearest if refined is None else None,
+        rivals=dict(nearest.rivals) if nearest is not None and refined is not None else {},
         remainder=left,
         model_error=model_error_of(model, fit_now, left, shares, reduced(fit_now))
         if shares is not None and left is not None and not named_whole
@@ -107,7 +112,14 @@ def diagnose(
 
 
 def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKnown) -> Shares:
-    return Shares(model, baseline, draws=rules.draws, seed=rules.seed, noise_dof=noise.dof)
+    return Shares(
+        model,
+        baseline,
+        draws=rules.draws,
+        seed=rules.seed,
+        noise_dof=noise.dof,
+        noise_scale=noise.scale,
+    )
 
 
 def _in_degrees(
@@ -130,7 +142,7 @@ def _in_degrees(
         finding,
         verdict="partly explained",
         dominant=nearest.explanation,
-        equivalent=(nearest.explanation.names, *nearest.rivals),
+        equivalent=(nearest.explanation.names, *(names for names, _ in nearest.rivals)),
         confidence=nearest.confidence,
     )
     return named, nearest

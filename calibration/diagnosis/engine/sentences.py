@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from calibration.diagnosis.engine.explanation import Explanation, Names
+    from calibration.diagnosis.engine.explanation import Explanation
     from calibration.diagnosis.engine.held_out import HeldOut
     from calibration.diagnosis.engine.remainder import Remainder
     from calibration.diagnosis.engine.shares import Interval
@@ -28,30 +28,54 @@ def sentence(diagnosis: Diagnosis) -> str:
         return f"Found: {named} ({short})."
     if finding.verdict == "partly explained":
         return _partly(diagnosis, chosen)
-    others = "; or ".join(" + ".join(names) for names in finding.equivalent[1:])
+    sets = finding.equivalent
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if common:
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
+        takes = _takes(diagnosis, common)
+        return (
+            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and"
+            f" these data cannot say which: {rest}."
+        )
+    others = "; or ".join(" + ".join(names) for names in sets[1:])
     return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
+
+
+def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
+    """The share of one cause, in the middle of a sentence."""
+    own = [s for c, s in diagnosis.shares.items() if c.effect in names]
+    return f", {percent(own[0])} of what noise leaves to explain" if len(own) == 1 else ""
 
 
 def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
     sets = diagnosis.finding.equivalent
-    short = " + ".join(chosen.names)
     share = "" if diagnosis.share is None else percent(diagnosis.share)
-    text = (
-        f"Partly explained: {_named(diagnosis, chosen)} ({short}), which takes {share} of what noise leaves"
-        " to explain"
-    )
-    skill = _skill(diagnosis.held_out)
-    text += f"{skill}." if skill else "."
-    if len(sets) > 1:
-        common = [n for n in chosen.names if all(n in s for s in sets)]
-        others = "; or ".join(" + ".join(s) for s in sets[1:])
-        text += (
-            f" {_and(common)} is in every explanation that does as well; the others are {others}."
-            if common
-            else f" These data cannot tell it from {others}."
+    takes = f"which takes {share} of what noise leaves to explain{_skill(diagnosis.held_out)}."
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if len(sets) == 1:
+        text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
+    elif common:
+        # what all explanations share comes first: it is what these data do tell
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = [" + ".join(n for n in s if n not in common) for s in sets]
+        text = (
+            f"Partly explained: {first} ({' + '.join(common)}), together with {_or(rest)}, which these data"
+            f" cannot tell apart; with {rest[0]} it takes {takes.removeprefix('which takes ')}"
+        )
+    else:
+        others = _or([" + ".join(s) for s in sets[1:]])
+        text = (
+            f"Partly explained, by one of several causes that these data cannot tell apart: most likely"
+            f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
     left = diagnosis.remainder
     return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+
+
+def _or(names: Sequence[str]) -> str:
+    known = [n for n in dict.fromkeys(names) if n]
+    return known[0] if len(known) == 1 else f"{', '.join(known[:-1])} or {known[-1]}"
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
@@ -72,7 +96,7 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
     """How much is left, where it lives, and whether it repeats."""
     if left.rms == 0.0:
         return "What remains is no more than noise."
-    size = f"{unit[1] * left.rms:.2g} {unit[0]}"
+    size = f"{unit[1] * left.rms:.3g} {unit[0]}"
     if left.of_full_scale is not None:
         size += f" rms, {100.0 * left.of_full_scale:.2g} % of full scale"
     parts = []
@@ -88,7 +112,8 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
         "nowhere": "differs from test to test",
         "not known": "cannot be said to repeat, since no test was done twice",
     }[left.repeats]
-    return f"What remains, {size}{where}, {again}."
+    small = " That is too little to matter in practice." if left.negligible else ""
+    return f"What remains, {size}{where}, {again}.{small}"
 
 
 def percent(share: Interval) -> str:
@@ -116,10 +141,6 @@ def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:
         for c in chosen.candidates
     ]
     return " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
-
-
-def _and(names: Sequence[str] | Names) -> str:
-    return " and ".join(names)
 
 
 def _few(names: Sequence[str]) -> str:

@@ -53,11 +53,20 @@ class Shares:
     ----------
     baseline : its fit.
     noise_dof : nu of the noise estimate; inf where the noise is known.
+    noise_scale : the noise over what residuals were whitened by.
     """
 
     def __init__(
-        self, model: MeasurementModel, baseline: Fit, *, draws: int, seed: int, noise_dof: float = inf
+        self,
+        model: MeasurementModel,
+        baseline: Fit,
+        *,
+        draws: int,
+        seed: int,
+        noise_dof: float = inf,
+        noise_scale: float = 1.0,
     ) -> None:
+        self._variance = noise_scale**2
         self.groups: Groups = groups_of(model)
         self._drawn = self.groups.draws(draws, seed)
         self._known = 1.0 if noise_dof == inf else max(noise_dof - 2.0, 0.0) / noise_dof
@@ -68,8 +77,8 @@ class Shares:
         once = again.replicates(np.ones((1, self.groups.count)))
         drawn = again.replicates(self._drawn)
         return Misfit(
-            value=float(self._known * fit.chi2 - once.expected[0]),
-            drawn=np.asarray(self._known * drawn.chi2 - drawn.expected),
+            value=float(self._known * fit.chi2 - self._variance * once.expected[0]),
+            drawn=np.asarray(self._known * drawn.chi2 - self._variance * drawn.expected),
         )
 
     def moves(self, fit: Fit) -> Array:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.explanation import Explanation, Names
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut
 from calibration.diagnosis.engine.model_error import ModelError
@@ -22,6 +22,7 @@ from calibration.diagnosis.engine.shares import Interval
 from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import STATED, NoiseKnown
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 
@@ -83,6 +84,8 @@ class Subject:
         coordinates, shape (n,).
     ranges : between what each named candidate was measured, by the quantity's name in files.
     materials : that each named candidate concerns.
+    other_laws : of each material in which an effect replaces the baseline's law, that law and its parameters
+        at the fitted modulus.
     handed_on : the part of each material that each named candidate is, where it is one.
     """
 
@@ -93,6 +96,7 @@ class Subject:
     modulus_weights: Mapping[str, Array] = field(default_factory=dict)
     ranges: Mapping[Candidate, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
     materials: Mapping[Candidate, frozenset[str]] = field(default_factory=dict)
+    other_laws: Mapping[str, tuple[str, Parameters]] = field(default_factory=dict)
     handed_on: Mapping[Candidate, Mapping[str, HandedOn]] = field(default_factory=dict)
 
     @classmethod
@@ -112,6 +116,7 @@ class Subject:
                 )
                 for c in fit.candidates
             },
+            other_laws={m: own for m in base.materials if (own := model.law_in(m, fit.state)) is not None},
             handed_on={c: model.hands_on(c, fit.state) for c in fit.candidates},
         )
 
@@ -126,6 +131,7 @@ class Diagnosis:
     share : of the explainable misfit, that it takes. shares : of each of its causes (they add up to it).
     resampled : over what their intervals are.
     nearest : where the data are unexplained, what comes nearest.
+    rivals : where they are explained in part, other sets of effects that take as much, with their shares.
     remainder : what is left; None where the baseline leaves only noise.
     model_error : the remainder as an error of the model, where more than noise is left.
     noise : what is known of it.
@@ -146,6 +152,7 @@ class Diagnosis:
     shares: Mapping[Candidate, Interval] = field(default_factory=dict)
     resampled: str = ""
     nearest: Assessed | None = None
+    rivals: Mapping[Names, Interval] = field(default_factory=dict)
     remainder: Remainder | None = None
     model_error: ModelError | None = None
     noise: NoiseKnown = STATED
@@ -256,6 +263,7 @@ def _remainder(left: Remainder, unit: tuple[str, float]) -> dict[str, Any]:
     return {
         f"rms_{unit[0]}": unit[1] * left.rms,
         "of_full_scale": left.of_full_scale,
+        "negligible": left.negligible,
         "repeats": left.repeats,
         "cosines": left.cosines,
         "records": list(left.records),

@@ -20,7 +20,7 @@ from calibration.measurements.homogeneous._course import (
     largest_before,
     window_of,
 )
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, slope, unstated_sd
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -214,7 +214,7 @@ def _loads_again(turn: Array) -> bool:
 def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array) -> Array:
     """Of the means in bins [Pa]. An error estimated from the scatter stays at least what areas and gauges are
     known to, however many points are averaged."""
-    own = _own_sd(trial, b, trial.stretch[b.points], count)
+    own = _own_sd(trial, b, trial.stretch[b.points], stress, count)
     if trial.stretch_sd == 0.0:
         return own
     return np.asarray(np.hypot(own, slope(stretch, stress) * trial.stretch_sd / np.sqrt(count)))
@@ -230,7 +230,7 @@ def _sd_over_time(
 ) -> Array:
     """As `_sd`, with the scatter about a smooth curve over time; in a hold the slope is the last ramp's."""
     assert trial.time is not None
-    own = _own_sd(trial, b, trial.time[b.points], count)
+    own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count)
     if trial.stretch_sd == 0.0:
         return own
     rows = b.points.start + first
@@ -242,12 +242,13 @@ def _sd_over_time(
     return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(count)))
 
 
-def _own_sd(trial: CouponTrial, b: Stroke, over: Array, count: Array) -> Array:
+def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
     """Of the stress alone; over : what its scatter is taken about a smooth curve of."""
     if trial.stress_sd is None:
-        one = relative_sd(over, trial.stress[b.points])
-        relative = np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE)
-        return np.asarray(relative * float(scatter_scale(trial.stress).max(initial=0.0)))
+        return np.maximum(
+            unstated_sd(over, trial.stress[b.points], stress, count),
+            SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
+        )
     return np.asarray(trial.stress_sd / np.sqrt(count))
 
 

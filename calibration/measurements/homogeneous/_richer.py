@@ -151,7 +151,8 @@ class _Curves:
         directions = np.array([DRIVEN.get(r.mode, (0.0, 0.0, 0.0)) for r in records])
         stretches = np.exp(np.log(np.where(sheared, 1.0, s))[:, None] * np.repeat(directions, sizes, axis=0))
         F = np.zeros((s.size, 3, 3))
-        F[:, range(3), range(3)] = stretches
+        axis = np.arange(3)
+        F[:, axis, axis] = stretches
         F[sheared, 0, 2] = s[sheared] - 1.0
         specimens = np.repeat([r.specimen for r in records], sizes)
         return cls(

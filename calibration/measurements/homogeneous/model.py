@@ -38,7 +38,7 @@ from calibration.measurements.homogeneous._record import Record, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
-from calibration.parameters import parametrisation
+from calibration.parameters import Parameters, parametrisation
 
 Array = NDArray[np.float64]
 
@@ -57,6 +57,7 @@ LAWS = (
     ("ogden", 2),
     ("ogden", 3),
 )
+ALIKE = 0.15  # of range and rate: of two repeats of one test
 BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
 
 
@@ -137,8 +138,10 @@ class HomogeneousModel(MeasurementModel):
             effect = replace(effect, bounds=(max(low, least), min(high, most)))
         if self.richer is None or not effect.richer:
             return effect
-        label = self.richer.law.label
-        return replace(effect, variants=lambda _: (1.0,), variant_label=lambda _: label)
+        label, plain = self.richer.law.label, self.baseline.law.label
+        sentence = f"{effect.effect.sentence}: {plain} does not describe its stress, {label} does"
+        said = replace(effect.effect, sentence=sentence)
+        return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
 
     def with_law(self, law: str, terms: int) -> Self:
         """The same measurements with another law as baseline and no effects, to compare laws.
@@ -146,6 +149,16 @@ class HomogeneousModel(MeasurementModel):
         ValueError where the law has no answer.
         """
         return type(self)(self.experiment, law=law, terms=terms)
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        mine = [k for k, r in enumerate(self.records) if r.material == material]
+        acting = self._effects_in(state, mine[0]) if mine else []
+        own = self._richer_constants(self.records[mine[0]], state, acting) if mine else np.zeros(0)
+        if self.richer is None or not own.size:
+            return None
+        of_law = replace(self.baseline, law=self.richer.law, extras=())
+        shear = self.baseline.shear_moduli(state.u)[material]
+        return self.richer.law.law, self.richer.law.parameters(of_law.scaled(own, shear))
 
     def brings(self, candidate: Candidate) -> int:
         if self.richer is None or not self.effects[candidate.effect].richer:
@@ -358,8 +371,8 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the stress; its median is"
-                f" {100 * typical:.2g} % of the largest stress"
+                " scatter about a smooth curve, at least 0.5 % of the largest stress; its median is"
+                f" {100 * typical:.2g} %"
             )
         loops = [r for r in records if r.unloads and not r.reloaded]
         if loops:
@@ -375,8 +388,14 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
-    def full_scale(self) -> Array | None:
-        return np.array([float(np.abs(r.stress).max()) for r in self.records])
+    def repeat_of(self, k: int) -> Hashable | None:
+        """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
+        own = _protocol(self.records[k])
+        for j, other in enumerate(self.records):
+            there = _protocol(other)
+            if there[:2] == own[:2] and np.allclose(there[2:], own[2:], rtol=ALIKE):
+                return j
+        raise AssertionError("a record is a repeat of itself")
 
     def along(self, k: int) -> tuple[str, Array] | None:
         r = self.records[k]
@@ -390,7 +409,7 @@ class HomogeneousModel(MeasurementModel):
         if len(stated) < len(self.records):
             parts.append(
                 "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " stress"
+                " largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
@@ -411,6 +430,13 @@ class HomogeneousModel(MeasurementModel):
         from calibration.measurements.homogeneous.pictures import pictures
 
         return pictures(self, diagnosis)
+
+
+def _protocol(r: Record) -> tuple[str, int, float, float]:
+    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    rates = r.rate[np.isfinite(r.rate)]
+    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
+    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0
 
 
 def _clock(r: Record) -> Array:

@@ -18,7 +18,9 @@ from release_records import Truth, write_bars
 from typer.testing import CliRunner
 
 from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.engine.fitting import fit as fit_causes
 from calibration.diagnosis.engine.run import diagnose
+from calibration.diagnosis.engine.search import fit_baseline
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment import Experiment, read
 from calibration.fit import app as fit
@@ -157,3 +159,13 @@ def test_a_rig_of_bars_is_a_record_and_corrects_no_photograph(tmp_path: Path) ->
     text = " ".join((ended.stdout + ended.stderr).split())
     assert f"{path}: key corrects: expected outlines, got nothing: this was not found on photographed" in text
     assert not out.exists()
+
+
+def test_a_mass_that_is_tied_loosely_is_measured() -> None:
+    model = bar_model(made(Truth(loose=0.1)), workers=1, fem=False, further=True)
+    baseline = fit_baseline(model)
+    loose = next(c for c in model.candidates if c.effect == "loose-load")
+    found = fit_causes(model, baseline.state, (loose,))
+    value, sd = found.amplitude(loose)
+    assert value == pytest.approx(0.1, abs=max(4.0 * sd, 0.01))
+    assert found.chi2 < baseline.chi2 - 30.0
