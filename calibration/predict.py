@@ -30,7 +30,7 @@ The cards of a diagnosis against another experiment: report.html, prediction.png
 
 Fit to some trials of one experiment, predict the others (by id, material=, specimen=, length= or mode=):
 
-  python -m calibration.predict datasets/measured/coupons --calibrate mode=uniaxial --predict mode=planar
+  python -m calibration.predict datasets/measured/bench/creeps --calibrate "S0-c*" --predict "S0-b*"
 
 Exit codes: 0 predicted, 2 bad input, 130 stopped.
 """
