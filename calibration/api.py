@@ -99,7 +99,7 @@ def fit(
     terms : int
         Terms of a series law (Ogden).
     time : str, optional
-        Relaxation beside each law, from homogeneous tests with a column time_s: "prony:1" to "prony:3" for so
+        Relaxation beside each law, from tests with a column time_s: "prony:1" to "prony:3" for so
         many terms with free times, "prony" where the data choose their number, "prony:spectrum" for two
         stated times a decade.
     damage : str, optional
@@ -346,6 +346,7 @@ def predict(
     baseline: str | Path | None = None,
     domain: str | None = None,
     law: str = "auto",
+    extend: Sequence[str] = (),
     specimen_scatter: float | None = None,
     seed: int = 0,
     workers: int | None = None,
@@ -368,6 +369,8 @@ def predict(
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
     law : str
         Of the baseline beside which a fit looks for causes, as in `diagnose`.
+    extend : sequence of str
+        Effects of the extension beside `calibrate`, each in all trials, in place of a search for causes.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
         specimen: 0.15 where left out.
@@ -394,6 +397,8 @@ def predict(
         raise OptionError("calibrate", calibrate, "expected either cards, or the trials to fit")
     if calibrate is not None and predict is None:
         raise OptionError("predict", None, "expected the trials to predict, beside --calibrate")
+    if cards is not None and extend:
+        raise OptionError("extend", ", ".join(extend), "expected without cards, which state their effects")
     if calibrate is not None and baseline is not None:
         raise OptionError("baseline", baseline, "expected with cards only, a fit has its own")
     if specimen_scatter is not None and not 0.0 <= specimen_scatter < 2.0:
@@ -409,7 +414,17 @@ def predict(
 
     if calibrate is not None and predict is not None:
         fitted, wanted = split(data, calibrate, predict)
-        found = from_trials(data, fitted, wanted, domain=domain, law=law, seed=seed, workers=workers, say=say)
+        found = from_trials(
+            data,
+            fitted,
+            wanted,
+            domain=domain,
+            law=law,
+            extend=tuple(extend),
+            seed=seed,
+            workers=workers,
+            say=say,
+        )
         return PredictionResult(found)
     assert cards is not None
     some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))

@@ -71,14 +71,16 @@ def main(
     time: Annotated[
         str | None,
         typer.Option(
-            help="Relaxation beside the law, from homogeneous tests with a column time_s: prony (the data"
-            " choose the number of terms), prony:1 to prony:3, or prony:spectrum (two stated times a decade)."
-            " Moduli are then long-time ones."
+            help="Relaxation beside the law, from tests over time (a column time_s, photographs at several"
+            " times, released bars): prony (the data choose the number of terms), prony:1 to prony:3, or"
+            " prony:spectrum (two stated times a decade). Moduli are then long-time ones."
         ),
     ] = None,
     damage: Annotated[
         str | None,
-        typer.Option(help="Softening beside the law, from homogeneous tests that unload: mullins."),
+        typer.Option(
+            help="Softening beside the law, from homogeneous or compression tests that unload: mullins."
+        ),
     ] = None,
     fibres: Annotated[
         bool,

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from calibration.cli import Seed, Version, Workers, command, plain_ends
+from calibration.cli import Seed, Version, Workers, command, names_in, plain_ends
 from calibration.errors import InputError
 
 if TYPE_CHECKING:
@@ -68,6 +68,9 @@ def main(
     law: Annotated[
         str, typer.Option(help="Of the baseline of --calibrate: auto, or a name with terms (ogden:2).")
     ] = "auto",
+    extend: Annotated[
+        str, typer.Option(help="Effects of the extension of --calibrate, by commas. Default: searched for.")
+    ] = "",
     specimen_scatter: Annotated[
         float | None,
         typer.Option(
@@ -104,6 +107,7 @@ def main(
             baseline=baseline,
             domain=domain,
             law=law,
+            extend=names_in(extend),
             specimen_scatter=specimen_scatter,
             seed=seed,
             workers=workers,

@@ -16,8 +16,8 @@ import psutil
 import pytest
 
 HERE = Path(__file__).parent
-# the same examples in every run: a rare one found by chance fails the commit that brought it, not a later
-# one. New ones: HYPOTHESIS_PROFILE=explore python -m pytest ...
+# the same random examples in every run: what fails is the commit, not the draw. New ones:
+# HYPOTHESIS_PROFILE=explore python -m pytest ...
 hypothesis.settings.register_profile("fixed", derandomize=True, deadline=None)
 hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
@@ -36,8 +36,6 @@ LONG = (
     "calibration/photo/test_trace_photo.py",
     "calibration/indentation/test_poke_objective.py",
 )
-# the processes of pytest-xdist use the cores: what a test starts without saying on how many, uses one
-os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
 
 
 def pytest_configure(config: pytest.Config) -> None:

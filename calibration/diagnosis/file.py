@@ -124,6 +124,7 @@ class RemainderNumbers(_Measured):
 
     rms: float
     of_full_scale: float | None = None
+    negligible: bool = False
     repeats: Literal["everywhere", "within a material", "within a specimen", "nowhere", "not known"]
     cosines: dict[str, float]
     records: tuple[str, ...]

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from calibration.experiment._fields import (
     CircleSection,
+    Component,
     CsvFile,
     Doubt,
     Length,
@@ -146,6 +147,7 @@ class BeamEntry(Strict):
     supports: Supports
     gravity_m_s2: Numbers3
     tip_force_N: Numbers3 = (0.0, 0.0, 0.0)
+    tip_force_height_mm: Component = 0.0
     captures: Annotated[tuple[CaptureEntry, ...], Field(min_length=1)] | None = None
     markers: CsvFile | None = None
     marker_positions_mm: Annotated[dict[Name, Position], Field(min_length=1)] | None = None
@@ -158,6 +160,16 @@ class BeamEntry(Strict):
             raise say("gravity_m_s2", f"expected a length of at most {_STRONGEST:g} m/s2")
         if any(self.tip_force_N) and self.supports == "clamped-clamped":
             raise say("tip_force_N", "expected none between two clamps, where no face is free")
+        if self.tip_force_height_mm:
+            if not any(self.tip_force_N):
+                raise say("tip_force_N", "missing, expected it beside tip_force_height_mm")
+            if self.markers is None:
+                raise say(
+                    "tip_force_height_mm", "expected with markers only: outlines are of a force all over"
+                )
+            half = 0.5 * self.section.height_mm
+            if abs(self.tip_force_height_mm) > half:
+                raise say("tip_force_height_mm", f"expected a height on the end face, -{half:g} to {half:g}")
         if self.captures is None and self.markers is None:
             raise say("captures", "missing, expected captures or markers")
         for key in ("marker_positions_mm", "marker_sd_mm"):
@@ -192,6 +204,7 @@ def read_beam(entry: BeamEntry, files: Files, where: str) -> BeamTrial:
         supports=entry.supports,
         gravity=entry.gravity_m_s2,
         tip_force=entry.tip_force_N,
+        tip_force_height=entry.tip_force_height_mm * _MM,
         captures=tuple(
             _capture(c, entry, files, f"{where}.captures[#{k}]")
             for k, c in enumerate(entry.captures or (), 1)

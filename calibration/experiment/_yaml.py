@@ -47,10 +47,10 @@ def load(text: bytes, path: Path) -> Any:
         return bounded_yaml.load(text, _LIMITS)
     except YamlError as error:
         line = "" if error.line is None else f"line {error.line}: "
-        text = _EXPECTED.get(error.problem, error.text)
+        expected = _EXPECTED.get(error.problem, error.text)
         if error.problem == "twice":
-            text = f"key {error.key} stands there twice, expected it once"
-        raise InputError(f"{path}: {line}{text}") from None
+            expected = f"key {error.key} stands there twice, expected it once"
+        raise InputError(f"{path}: {line}{expected}") from None
 
 
 def parse(text: bytes, path: Path, model: type[M]) -> M:

@@ -142,6 +142,8 @@ class BeamTrial:
     id, material : str
     section, free_length, grip_length, supports, gravity, tip_force
         As in `tisim.Beam`, SI.
+    tip_force_height : float
+        Height over the axis at which the tip force acts on the end face, which turns [m].
     specimen : str, optional
         Trials of one specimen share its faults.
     section_sd : tuple of float
@@ -162,6 +164,7 @@ class BeamTrial:
     supports: Supports
     gravity: Vector
     tip_force: Vector = (0.0, 0.0, 0.0)
+    tip_force_height: float = 0.0
     specimen: str | None = None
     section_sd: tuple[float, ...] = (0.0,)
     free_length_sd: float = 0.0

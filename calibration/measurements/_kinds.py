@@ -171,6 +171,7 @@ register(
         takes=("workers", "simulator"),
         old_name="beams",
         compares=_traced,
+        over_time=_follower("outlines"),
     )
 )
 register(
@@ -181,6 +182,7 @@ register(
         takes=("workers",),
         old_name="pokes",
         compares=_pushed,
+        over_time=_follower("indentation"),
     )
 )
 register(
@@ -203,6 +205,7 @@ register(
         claims=_all_compressed,
         old_name="presses",
         compares=lambda e: _coupons(e) if _all_compressed(e) else [],
+        over_time=_follower("compression"),
     )
 )
 register(
@@ -215,5 +218,6 @@ register(
         takes=("workers",),
         old_name="bars",
         compares=_marked,
+        over_time=_follower("release"),
     )
 )

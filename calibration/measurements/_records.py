@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LONG = 2.0  # a hold takes so many times as long as 10 of its tolerances of motion beside it
+
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
@@ -48,6 +50,27 @@ def strokes(driven: Array, tolerance: float) -> list[Stroke]:
         Stroke(points=slice(a, b), direction=d)
         for (a, b), d in zip(pairwise(ends), directions or [0.0], strict=True)
     ]
+
+
+def holds(time: Array, driven: Array, tolerance: float) -> list[slice]:
+    """Rows of each hold: a driven quantity stays within a tolerance of where it is for longer than motion
+    beside it would take."""
+    found: list[slice] = []
+    i = 0
+    while i < driven.size - 1:
+        away = np.abs(driven[i:] - driven[i]) > tolerance
+        end = i + int(np.argmax(away)) if away.any() else driven.size
+        far = 10.0 * tolerance
+        later = np.flatnonzero(np.abs(driven[end:] - driven[i]) > far)
+        earlier = np.flatnonzero(np.abs(driven[:i] - driven[i]) > far)
+        beside = [time[end + later[0]] - time[end - 1]] if later.size else []
+        beside += [time[i] - time[earlier[-1]]] if earlier.size else []
+        if beside and end - i > 1 and time[end - 1] - time[i] >= LONG * min(beside):
+            found.append(slice(i, end))
+            i = end
+        else:
+            i += 1
+    return found
 
 
 def bins(points: slice, most: int) -> tuple[NDArray[np.intp], Array]:

@@ -152,6 +152,13 @@ class Parametrisation:
             parts=(*self.parts, *parts),
         )
 
+    def without_parts(self) -> Parametrisation:
+        """The law alone; its coordinates are the first ones of these."""
+        if not self.parts:
+            return self
+        beside = {c.name for p in self.parts for c in p.coordinates}
+        return replace(self, parts=(), coordinates=tuple(c for c in self.coordinates if c.name not in beside))
+
     def remarks(self, u: ArrayLike) -> list[str]:
         """What a reader must know of the parts at u, and what the tests cannot show, a sentence each."""
         values, moduli = self.values(u), self.moduli(u)

@@ -104,6 +104,43 @@ class PartKind:
     alternatives: tuple[str, ...] = ()
 
 
+def one_form(
+    name: str,
+    *,
+    option: Option,
+    field: str,
+    coordinates: tuple[Coordinate, ...],
+    assemble: Callable[[Values], Part],
+    describe: Callable[[Values, ProtocolWindow], list[str]],
+) -> PartKind:
+    """A part that takes no argument, with the same coordinates whatever the tests show.
+
+    Parameters
+    ----------
+    name, option
+        As in `PartKind`; the name is the spec, the label and the usage.
+    field, coordinates, assemble
+        As in `PartCoordinates`.
+    describe : callable
+        Values, and what the tests show -> sentences for a reader.
+    """
+
+    def make(argument: str, window: ProtocolWindow) -> PartCoordinates:
+        if argument:
+            raise ValueError(f"expected {name}")
+        return PartCoordinates(
+            spec=name,
+            label=name,
+            field=field,
+            window=window,
+            coordinates=coordinates,
+            assemble=assemble,
+            describe=lambda values, _: describe(values, window),
+        )
+
+    return PartKind(name=name, option=option, usage=name, make=make)
+
+
 _KINDS: dict[str, PartKind] = {}
 
 

@@ -9,64 +9,60 @@ from __future__ import annotations
 import math
 
 from calibration.parameters._coordinates import Coordinate
-from calibration.parameters._parts import PartCoordinates, PartKind, ProtocolWindow, Values, register_part
-from tisim import HolzapfelGasserOgden, laws
+from calibration.parameters._parts import ProtocolWindow, Values, one_form, register_part
+from tisim import HolzapfelGasserOgden
 
 ALONG = 5.0  # an angle so near to an axis is not known to better [deg]
 
+K1 = Coordinate(
+    name="fibres_k1",
+    unit="Pa",
+    log=True,
+    low=0.1,
+    high=1e9,
+    spread=0.4,
+    start=1e4,
+    start_per_shear=0.5,
+    limit_low="no fibres",
+)
+K2 = Coordinate(
+    name="fibres_k2",
+    unit="-",
+    log=True,
+    low=1e-3,
+    high=100.0,
+    spread=0.5,
+    start=0.5,
+    prior=(0.0, 2.0),
+    limit_low="fibres that do not stiffen",
+)
+ANGLE = Coordinate(name="fibres_angle_deg", unit="deg", log=False, low=0.0, high=90.0, spread=5.0, start=45.0)
 
-def fibres(argument: str, window: ProtocolWindow) -> PartCoordinates:
-    """fibres, which takes no argument."""
-    if argument:
-        raise ValueError("expected fibres")
-    k1 = Coordinate(
-        name="fibres_k1",
-        unit="Pa",
-        log=True,
-        low=0.1,
-        high=1e9,
-        spread=0.4,
-        start=1e4,
-        start_per_shear=0.5,
-        limit_low="no fibres",
+
+def assemble(v: Values) -> HolzapfelGasserOgden:
+    """The fibres at these values."""
+    a = math.radians(v["fibres_angle_deg"])
+    return HolzapfelGasserOgden(
+        direction=(math.cos(a), math.sin(a), 0.0), k1=v["fibres_k1"], k2=v["fibres_k2"]
     )
-    k2 = Coordinate(
-        name="fibres_k2",
-        unit="-",
-        log=True,
-        low=1e-3,
-        high=100.0,
-        spread=0.5,
-        start=0.5,
-        prior=(0.0, 2.0),
-        limit_low="fibres that do not stiffen",
-    )
-    angle = Coordinate(
-        name="fibres_angle_deg", unit="deg", log=False, low=0.0, high=90.0, spread=5.0, start=45.0
-    )
 
-    def assemble(v: Values) -> HolzapfelGasserOgden:
-        a = math.radians(v["fibres_angle_deg"])
-        return HolzapfelGasserOgden(
-            direction=(math.cos(a), math.sin(a), 0.0), k1=v["fibres_k1"], k2=v["fibres_k2"]
-        )
 
-    def describe(values: Values, moduli: laws.Moduli) -> list[str]:
-        del moduli
-        said = ["the law's moduli are those without the fibres"]
-        if not ALONG < values["fibres_angle_deg"] < 90.0 - ALONG:
-            said.append("the fibres lie along an axis of the tests, near which their angle is hard to see")
-        return said
+def describe(values: Values, window: ProtocolWindow) -> list[str]:
+    """What a reader must know of the fibres."""
+    del window
+    said = ["the law's moduli are those without the fibres"]
+    if not ALONG < values["fibres_angle_deg"] < 90.0 - ALONG:
+        said.append("the fibres lie along an axis of the tests, near which their angle is hard to see")
+    return said
 
-    return PartCoordinates(
-        spec="fibres",
-        label="fibres",
+
+register_part(
+    one_form(
+        "fibres",
+        option="fibres",
         field="fibres",
-        window=window,
-        coordinates=(k1, k2, angle),
+        coordinates=(K1, K2, ANGLE),
         assemble=assemble,
         describe=describe,
     )
-
-
-register_part(PartKind(name="fibres", option="fibres", usage="fibres", make=fibres))
+)

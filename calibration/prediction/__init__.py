@@ -6,6 +6,7 @@ measurement (`calibration.measurements`); a baseline stands beside what extends 
 
 from __future__ import annotations
 
-from calibration.prediction.run import Prediction, from_cards, from_trials
+from calibration.prediction.run import Prediction, from_cards
+from calibration.prediction.trials import from_trials
 
 __all__ = ["Prediction", "from_cards", "from_trials"]

@@ -1,8 +1,7 @@
-"""A prediction from cards, or from a fit to some trials of an experiment."""
+"""A prediction, and how cards make one."""
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,12 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis._card_numbers import model_error
-from calibration.diagnosis.engine.fitting import Fit, fit
 from calibration.errors import InputError
-from calibration.experiment.model import Experiment, Trial
+from calibration.experiment.model import Experiment
 from calibration.measurements._baseline import SCATTER, Baseline
-from calibration.measurements._kinds import Kind, compared, kind_of
+from calibration.measurements._kinds import Kind, compared
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.prediction._cards import (
@@ -28,14 +25,7 @@ from calibration.prediction._cards import (
     extended_model,
     read_cards,
 )
-from calibration.prediction._interval import (
-    WIDTH,
-    Calibrated,
-    Record,
-    all_moduli,
-    of_unseen,
-    predict_records,
-)
+from calibration.prediction._interval import WIDTH, Calibrated, Record, predict_records
 
 Array = NDArray[np.float64]
 Say = Callable[[str], None]
@@ -127,9 +117,6 @@ def _named(model: str, label: str) -> str:
 
 def _rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2)))
-
-
-# -- from cards --
 
 
 def from_cards(
@@ -264,154 +251,3 @@ def _check_parts(kind: Kind, own: Experiment, card: CardModel) -> None:
         if follows is None or option not in follows.options:
             why = "which do not follow it yet" if follows is None else follows.why_not
             raise InputError(f"trial {own.trials[0].id}: {part.field}: expected no {kind.name}, {why}")
-
-
-# -- from some trials of the same experiment --
-
-
-def from_trials(
-    experiment: Experiment,
-    fitted: Sequence[Trial],
-    wanted: Sequence[Trial],
-    *,
-    domain: str | None = None,
-    law: str = "auto",
-    seed: int = 0,
-    workers: int | None = None,
-    say: Say = lambda _: None,
-) -> Prediction:
-    """Trials of an experiment, predicted from a diagnosis of others: its baseline, and the causes that it
-    names. Trials of another kind of measurement are predicted from the cards that it would write.
-
-    Parameters
-    ----------
-    fitted, wanted : its trials to fit, and those to predict.
-    domain : the kind of measurement of the fit, where it is not plain.
-    law : of the diagnosis' baseline, as `calibration.diagnose` takes it.
-
-    Raises
-    ------
-    InputError : trials cannot be fitted or predicted.
-    """
-    begun = time.monotonic()
-    ours = replace(experiment, trials=tuple(fitted))
-    theirs = replace(experiment, trials=tuple(wanted))
-    kind = kind_of(ours, domain)
-    source = f"a fit to {', '.join(t.id for t in fitted)}"
-    for t in wanted:
-        if t.material not in {f.material for f in fitted}:
-            raise InputError(f"trial {t.id}: material {t.material}: expected one of the trials to fit")
-    if _same_kind(kind, theirs):
-        found = _within(kind, experiment, fitted, wanted, law=law, seed=seed, workers=workers, say=say)
-        return replace(found, source=source, seconds=time.monotonic() - begun)
-    from calibration.api import diagnose
-    from calibration.diagnosis.card import write_cards
-
-    result = diagnose(
-        ours,
-        domain=kind.name,
-        law=law,
-        gain=False,
-        seed=seed,
-        workers=workers,
-        on_progress=lambda p: say(str(p)),
-    )
-    with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
-        write_cards(Path(folder), result.diagnosis, ours)
-        found = from_cards(Path(folder), theirs, workers=workers, source=source, say=say)
-    notes = (result.sentence, *found.notes)
-    return replace(found, notes=notes, seconds=time.monotonic() - begun)
-
-
-def _same_kind(kind: Kind, wanted: Experiment) -> bool:
-    try:
-        return kind_of(wanted, kind.name) is kind
-    except InputError:
-        return False
-
-
-def _within(
-    kind: Kind,
-    experiment: Experiment,
-    fitted: Sequence[Trial],
-    wanted: Sequence[Trial],
-    *,
-    law: str,
-    seed: int,
-    workers: int | None,
-    say: Say,
-) -> Prediction:
-    """The diagnosis' model once more, of all these trials, of which a part is fitted: coordinates and effects
-    are the same."""
-    from calibration.diagnosis import Rules, model_of
-    from calibration.diagnosis.laws import diagnose_with_law
-
-    asked: dict[int, dict[str, Any]] = {}
-
-    def make(**options: Any) -> MeasurementModel:
-        own = replace(experiment, trials=tuple(fitted))
-        made = model_of(own, kind=kind.name, workers=workers, **options)
-        asked[id(made)] = options
-        return made
-
-    ids = {t.id for t in wanted}
-    some = ids | {t.id for t in fitted}
-    together = replace(experiment, trials=tuple(t for t in experiment.trials if t.id in some))
-    notes = []
-    try:
-        found, diagnosed = diagnose_with_law(
-            make, law=law, rules=Rules(seed=seed), gain=False, on_progress=say
-        )
-        model = model_of(together, kind=kind.name, workers=workers, **asked[id(diagnosed)])
-        fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
-        train = model.subset(fold, others=True)
-        named = [(BASELINE, found.finding.baseline)]
-        if found.chosen is not None:
-            named.append((EXTENDED, found.chosen.fit))
-        say("predicting")
-        made: dict[str, tuple[MeasurementModel, Calibrated]] = {}
-        for name, old in named:
-            known = dict(zip(diagnosed.names, old.state.u, strict=True))
-            u = np.array([known.get(n, x) for n, x in zip(model.names, model.start(), strict=True)])
-            start = replace(old.state, u=u)
-            train.update_nuisances(start)
-            again: Fit = fit(train, start, old.candidates)
-            if not again.converged:
-                notes.append(f"the fit of the {name} did not converge: {again.message}")
-            made[name] = (model.subset(fold, others=False), _from_fit(model, fold, again, name))
-        records = predict_records(model.subset(fold, others=False), made)
-    except ValueError as error:
-        raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error
-    materials = model.baseline.materials
-    return Prediction(
-        experiment=replace(experiment, trials=tuple(wanted)),
-        source="",
-        labels={name: known.label for name, (_, known) in made.items()},
-        model_errors={n: dict.fromkeys(materials, known.model_error) for n, (_, known) in made.items()},
-        shear_moduli={n: model.shear_moduli(known.state.u) for n, (_, known) in made.items()},
-        records=records,
-        notes=(found.sentence(), *notes),
-    )
-
-
-def _from_fit(
-    model: MeasurementModel,
-    fold: NDArray[np.bool_],
-    found: Fit,
-    name: str,
-) -> Calibrated:
-    """What a fit to all rows but a fold's knows. Where it leaves more than noise, its covariance is wider by
-    the reduced chi-square; what specimens of a material may differ by is not."""
-    jacobian = found.jacobian
-    whole = found.covariance()
-    specimens = of_unseen(model, fold, jacobian)
-    used = int(np.count_nonzero(np.linalg.norm(jacobian, axis=0)))
-    reduced = found.chi2 / max(len(found.z) - used, 1)
-    return Calibrated(
-        label=name if not found.candidates else found.label,
-        state=found.state,
-        candidates=found.candidates,
-        parameters=(whole - specimens) * max(reduced, 1.0),
-        specimens=specimens,
-        model_error=model_error(found, all_moduli(model, found.state.u)),
-    )

@@ -16,6 +16,9 @@ from calibration.study.calibration import Calibration
 NOTHING = "–"
 
 
+HELD_WIDE = 1.2  # ends of an interval: further apart, it is the prior's and not that of a hold to 1 %
+
+
 def significant(value: float, digits: int = 3) -> str:
     """Plain decimal notation, so many significant digits."""
     if not isfinite(value):
@@ -164,10 +167,13 @@ def unidentified(result: Calibration) -> list[str]:
     found = []
     for e in result.estimates:
         if e.seen == "held":
-            found.append(
-                f"{result.label}: {spoken(e.name)} was held at {significant(e.value)}: its interval is the"
-                " hold's, not measured."
-            )
+            why = ": its interval is the hold's, not measured"
+            if e.high > HELD_WIDE * e.low:
+                why = (
+                    f", not measured; what is known of it beforehand, {significant(e.low)} to"
+                    f" {significant(e.high)}, is in the other constants' intervals"
+                )
+            found.append(f"{result.label}: {spoken(e.name)} was held at {significant(e.value)}{why}.")
         elif e.name not in alone and e.seen in ("not identified", "at a bound"):
             why = "its bound decides" if e.seen == "at a bound" else "its prior or its bounds decide"
             found.append(f"{result.label}: the data do not determine {spoken(e.name)}: {why}.")

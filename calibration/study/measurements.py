@@ -124,10 +124,12 @@ def measurements(
         )
     still = {t.id: why for t in marked if (why := not_swinging(t, experiment))}
     swinging = [t for t in marked if t.id not in still]
+    left_out: list[str] = []
     if swinging:
         law = law.in_steps(VIBRATION_STEPS)
         own = replace(experiment, trials=tuple(swinging))
         released = ReleaseModel(own, baseline=Baseline.of_law(swinging, law), workers=workers)
+        left_out += released.left_out()
         objectives.append(ModelObjective(released, name=f"markers of {', '.join(t.id for t in swinging)}"))
     for t in marked:
         if t.id in still:  # at rest alone: the solid, for want of a vibration to correct a reduced beam by
@@ -142,6 +144,7 @@ def measurements(
     parts = [
         f"{i}: the motion of its markers, only where they come to rest ({why})" for i, why in still.items()
     ]
+    parts += left_out
     parts += [] if pokes is None else pokes.model.left_out
     return Measurements(
         material=material,

@@ -131,6 +131,14 @@ def finished_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "store.zarr"
 
 
+@pytest.fixture(scope="session")
+def quick_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of `quick`, built once; nobody changes it."""
+    folder = tmp_path_factory.mktemp("quick")
+    build_here(make_plan(load_recipe("quick"), "ogden"), folder / "store.zarr")
+    return folder / "store.zarr"
+
+
 @pytest.fixture
 def store(finished_store: Path, tmp_path: Path) -> Path:
     """A copy of the finished store."""

@@ -18,16 +18,16 @@ from tests.factory.conftest import ROOT, environment, run_app
 
 RECIPE = """
 name: own
-description: two indentations of a block with a spheroid
+description: one indentation of a block with a spheroid
 seed: 3
 block_mm: [60, 60, 20]
 rod: {radius_mm: 2.5, length_mm: 40}
 friction: 0.6
-protocol: {shared_sites: 1, own_sites: 1, margin_mm: 15, max_angle_deg: 0, depth_mm: 1, frame_spacing_mm: 1}
+protocol: {shared_sites: 1, own_sites: 0, margin_mm: 15, max_angle_deg: 0, depth_mm: 1, frame_spacing_mm: 1}
 softness: [S1]
 border_mm: 5
 cover_mm: 6
-refinement: 0.7
+refinement: 0.6
 shapes:
   - {kind: spheroid, id: flat, radius_mm: 8, half_height_mm: 5, sunk_mm: 1}
 """
@@ -85,7 +85,7 @@ def test_the_profile_has_the_shape_in_it(store: Path) -> None:
 def test_it_is_read_back_and_verified_with_the_plugin(store: Path) -> None:
     done = command("verify", store, "--plugin", "tests.factory.plugin")
     assert done.returncode == 0, done.stdout + done.stderr
-    done = command("inspect", store, "--poke", "1", "--plugin", "tests.factory.plugin")
+    done = command("inspect", store, "--poke", "0", "--plugin", "tests.factory.plugin")
     assert "spheroid, 8, 5 mm" in done.stdout
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import zarr
 
-from factory import _build
+from factory import _build, verify_dataset
 from factory._build import Built, build_dataset
 from factory._input import InputError
 from factory._store import MANIFEST, write_manifest
@@ -228,25 +228,25 @@ def test_a_damaged_manifest_is_named(content: str, words: str, store: Path) -> N
     assert f"checksums: {MANIFEST}: {words}" in verified.output
 
 
-@pytest.mark.parametrize(
-    "name", ["../secret", "/etc/passwd", "depth/../../secret", "a//b", "./depth/zarr.json", ""]
-)
-def test_a_manifest_may_not_name_files_outside(name: str, store: Path) -> None:
+def test_a_manifest_may_not_name_files_outside(store: Path) -> None:
     (store.parent / "secret").write_text("secret")
+    names = ["../secret", "/etc/passwd", "depth/../../secret", "a//b", "./depth/zarr.json", ""]
     content = json.loads((store / MANIFEST).read_text())
-    content["sha256"][name] = "0" * 64
+    content["sha256"].update(dict.fromkeys(names, "0" * 64))
     (store / MANIFEST).write_text(json.dumps(content))
-    verified = run_app(verify_app, store)
-    assert verified.exit_code == 1
-    assert f"names {name!r}, which is not inside of the dataset" in verified.output
+    faults = " ".join(verify_dataset(store).faults["checksums"])
+    for name in names:
+        assert f"names {name!r}, which is not inside of the dataset" in faults
 
 
-@pytest.mark.parametrize("target", ["/", "/etc/hostname", "nowhere", "../reference.zarr"])
-def test_links_are_refused_and_not_followed(target: str, store: Path) -> None:
-    (store / "depth" / "link").symlink_to(target)
+def test_links_are_refused_and_not_followed(store: Path) -> None:
+    targets = ["/", "/etc/hostname", "nowhere", "../reference.zarr"]
+    for k, target in enumerate(targets):
+        (store / "depth" / f"link-{k}").symlink_to(target)
     verified = run_app(verify_app, store)
     assert verified.exit_code == 1
-    assert "files: depth/link: is a symbolic link, which no dataset contains" in verified.output
+    for k in range(len(targets)):
+        assert f"depth/link-{k}: is a symbolic link, which no dataset contains" in verified.output
     assert run_app(inspect_app, store).exit_code == 0
 
 

@@ -150,10 +150,9 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def test_real_kills_with_two_workers(
-    quick: Plan, standin_build: Builder, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
+    quick_store: Path, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
 ) -> None:
-    reference, target = tmp_path / "reference.zarr", tmp_path / "target.zarr"
-    standin_build(quick, reference)
+    target = tmp_path / "target.zarr"
     log = tmp_path / "log"
     arguments = ("--model", "ogden", "--recipe", "quick", "--out", str(target), "--workers", "2")
     variables = {"STANDIN_SECONDS": "0.15", "STANDIN_LOG": str(log)}
@@ -174,7 +173,7 @@ def test_real_kills_with_two_workers(
     process = command(*arguments, **variables)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
-    assert digest(target) == digest(reference)
+    assert digest(target) == digest(quick_store)
     data = open_dataset(target)
     assert data.table["done"].all()
     np.testing.assert_array_equal(np.unique(data.table["frame_poke"]), np.arange(12))
@@ -261,10 +260,11 @@ def test_disk_full_while_a_poke_is_written(
     assert digest(target) == digest(reference)
 
 
-def test_disk_full_while_the_store_is_written(quick: Plan, standin_build: Builder, tmp_path: Path) -> None:
+def test_disk_full_while_the_store_is_written(
+    quick_store: Path, quick: Plan, standin_build: Builder, tmp_path: Path
+) -> None:
     """A real limit on the size of files, which the parts stay below and the store's shards do not."""
-    target, reference = tmp_path / "a.zarr", tmp_path / "reference.zarr"
-    standin_build(quick, reference)
+    target = tmp_path / "a.zarr"
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, before[1]))
     try:
@@ -275,14 +275,17 @@ def test_disk_full_while_the_store_is_written(quick: Plan, standin_build: Builde
     assert len(Staging(target).finished()) == 12
     assert not target.exists()
     assert standin_build(quick, target).simulated == 0
-    assert digest(target) == digest(reference)
+    assert digest(target) == digest(quick_store)
 
 
 def test_ctrl_c_ends_cleanly_and_goes_on(
-    quick: Plan, standin_build: Builder, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
+    quick_store: Path,
+    quick: Plan,
+    standin_build: Builder,
+    command: Callable[..., subprocess.Popen[str]],
+    tmp_path: Path,
 ) -> None:
-    target, reference = tmp_path / "a.zarr", tmp_path / "reference.zarr"
-    standin_build(quick, reference)
+    target = tmp_path / "a.zarr"
     arguments = ("--model", "ogden", "--recipe", "quick", "--out", str(target), "--workers", "2")
     process = command(*arguments, STANDIN_SECONDS="0.2")
     while not Staging(target).finished():
@@ -299,7 +302,7 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
         assert time.monotonic() < deadline, left
         time.sleep(0.05)
     assert standin_build(quick, target).simulated == 12 - kept
-    assert digest(target) == digest(reference)
+    assert digest(target) == digest(quick_store)
 
 
 _FIRST_WORKER = """
@@ -345,11 +348,10 @@ def _alive_in_group(group: int) -> list[str]:
 
 
 def test_cluster_with_a_worker_killed(
-    quick: Plan, standin_build: Builder, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
+    quick_store: Path, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
 ) -> None:
     """A real LocalCluster in two processes."""
-    target, reference = tmp_path / "a.zarr", tmp_path / "reference.zarr"
-    standin_build(quick, reference)
+    target = tmp_path / "a.zarr"
     trigger = tmp_path / "kill"
     trigger.touch()
     process = command(
@@ -361,4 +363,4 @@ def test_cluster_with_a_worker_killed(
     _, errors = process.communicate(timeout=90)
     assert process.returncode == 0, errors
     assert not trigger.exists()
-    assert digest(target) == digest(reference)
+    assert digest(target) == digest(quick_store)

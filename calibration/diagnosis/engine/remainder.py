@@ -37,6 +37,7 @@ class Remainder:
     cosines : mean cosine between records, by level; levels without two records are left out.
     records : names of the records that hold most of it, where these are few.
     place : where along the records it lives ("" where that is not known): the quantity, and between what.
+    negligible : whether it is below what matters in practice (`Rules.negligible`).
     """
 
     rms: float
@@ -45,10 +46,12 @@ class Remainder:
     cosines: dict[str, float]
     records: tuple[str, ...]
     place: str
+    negligible: bool = False
 
 
-def remainder_of(model: MeasurementModel, fit: Fit) -> Remainder:
-    """What a fit leaves. ValueError where its state has no answer."""
+def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Remainder:
+    """What a fit leaves; negligible : part of full scale that does not matter in practice. ValueError where
+    its state has no answer."""
     left = [np.asarray(x) for x in model.registered(fit.state)]
     rms = beyond(model.distance_rms(fit.state), model.noise_rms())
     scale = model.full_scale()
@@ -56,9 +59,11 @@ def remainder_of(model: MeasurementModel, fit: Fit) -> Remainder:
     squares = np.array([float(np.nansum(x**2)) for x in left])
     if scale is not None:
         squares = squares / scale**2
+    part = relative_rms(model, fit)
     return Remainder(
         rms=rms,
-        of_full_scale=None if scale is None else relative_rms(model, fit),
+        of_full_scale=part,
+        negligible=part is not None and part < negligible,
         repeats=_repeats(cosines, model),
         cosines=cosines,
         records=_holders(model.records, squares),
@@ -67,8 +72,8 @@ def remainder_of(model: MeasurementModel, fit: Fit) -> Remainder:
 
 
 def about_remainder(left: Remainder) -> str:
-    """What to measure next of what is left, "" where nothing is."""
-    if left.rms == 0.0:
+    """What to measure next of what is left, "" where nothing is that matters."""
+    if left.rms == 0.0 or left.negligible:
         return ""
     return {
         "everywhere": "what is left is alike in all of them: test in another mode, at another rate or on"

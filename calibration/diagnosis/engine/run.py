@@ -72,6 +72,9 @@ def diagnose(
         if gain:
             on_progress("predicting held-out measurements")
             held_out = held_out_improvement(model, baseline, refined.fit)
+            if not held_out.held_out and nearest is not None and nearest.held_out is not None:
+                # as it was found: where nuisances are taken anew, a fold may have no answer
+                held_out = nearest.held_out
         shares = _shares(model, baseline, rules, known)
         causes = shares.of_causes(model, baseline, refined, null)
     else:
@@ -79,7 +82,7 @@ def diagnose(
         if finding.verdict == "unexplained":
             shares = _shares(model, baseline, rules, known)
     fit_now = baseline if refined is None else refined.fit
-    left = remainder_of(model, fit_now) if shares is not None else None
+    left = remainder_of(model, fit_now, negligible=rules.negligible) if shares is not None else None
     named_whole = finding.verdict in ("none", "found", "ambiguous")
     if left is not None and not named_whole:
         next_experiment = "; ".join(x for x in (next_experiment, about_remainder(left)) if x)

@@ -112,7 +112,8 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
         "nowhere": "differs from test to test",
         "not known": "cannot be said to repeat, since no test was done twice",
     }[left.repeats]
-    return f"What remains, {size}{where}, {again}."
+    small = " That is too little to matter in practice." if left.negligible else ""
+    return f"What remains, {size}{where}, {again}.{small}"
 
 
 def percent(share: Interval) -> str:

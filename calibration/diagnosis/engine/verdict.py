@@ -263,6 +263,7 @@ def _remainder(left: Remainder, unit: tuple[str, float]) -> dict[str, Any]:
     return {
         f"rms_{unit[0]}": unit[1] * left.rms,
         "of_full_scale": left.of_full_scale,
+        "negligible": left.negligible,
         "repeats": left.repeats,
         "cosines": left.cosines,
         "records": list(left.records),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,3 +29,11 @@ def is_compressed(record: Record) -> bool:
 def compared(record: Record, last: float) -> Record:
     """The part of a record of compression up to a strain; others as they are."""
     return record.only(1.0 - record.stretch <= last) if is_compressed(record) else record
+
+
+def pushed(record: Record) -> Record:
+    """A record of compression whose course is that of platens, which push and do not pull; others as they
+    are."""
+    if record.course is None or not is_compressed(record):
+        return record
+    return replace(record, course=replace(record.course, pushes=True))

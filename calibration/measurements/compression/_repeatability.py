@@ -22,6 +22,7 @@ TERMS = ("zero of the strain", "scale", *(f"bend {k}" for k in range(1, BEND + 1
 GRID = 60
 STEEP = 0.02  # probability that noise makes a line over the number of the test so steep
 LEAST = 0.001  # of a bend: that some repeats agree better than this may be luck
+ALIKE = 1.3  # ratio of the times of two loadings at one speed, at most
 _SURE = 0.995  # few repeats tell their own scatter badly: as much wider as Student's t is here
 _NORMAL = 1.4826  # standard deviations in a median absolute deviation
 
@@ -88,12 +89,23 @@ def _without_order(terms: Array, order: Array) -> tuple[Array, Array]:
 
 def _repeats(records: Sequence[Record], last: float) -> list[list[Record]]:
     """Tests of one material in one state: first loadings, and loadings of specimens that a test before has
-    loaded already, since a first loading softens the material."""
-    found: dict[tuple[str, bool], list[Record]] = {}
-    for r in records:
+    loaded already, since a first loading softens the material. In a fit over time, those of one speed."""
+    found: dict[tuple[str, bool], list[list[Record]]] = {}
+    for r in sorted(records, key=_duration):
         if is_compressed(r) and _reach(r) > 0.9 * last:
-            found.setdefault((r.material, r.remembers), []).append(r)
-    return [g for g in found.values() if len(g) >= REPEATS]
+            groups = found.setdefault((r.material, r.remembers), [])
+            if not groups or _duration(r) > ALIKE * _duration(groups[-1][0]):
+                groups.append([])
+            groups[-1].append(r)
+    return [g for groups in found.values() for g in groups if len(g) >= REPEATS]
+
+
+def _duration(record: Record) -> float:
+    """Of the first loading [s]; 1 where time does not count."""
+    time = record.time[record.branch == record.branch[0]]
+    if record.course is None or not np.isfinite(time).all():
+        return 1.0
+    return max(float(np.ptp(time)), np.finfo(float).tiny)
 
 
 def _reach(record: Record) -> float:

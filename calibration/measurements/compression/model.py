@@ -2,7 +2,8 @@
 
 The baseline is a neo-Hookean cylinder between free platens, which stays homogeneous. Bonded platens are
 interpolated between finite element solutions (`_bonded.py`); effects of the material, the rig and the record
-act as in homogeneous tests.
+act as in homogeneous tests. In a fit over time the cylinder follows the course of each record, and recovers
+freely where its platens have left it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from calibration.measurements._state import State
 from calibration.measurements.compression._bonded import USUAL, BondedRatio
 from calibration.measurements.compression._coordinates import Coordinates
 from calibration.measurements.compression._effect import CompressionEffect
-from calibration.measurements.compression._record import LAST, compared, is_compressed
+from calibration.measurements.compression._record import LAST, compared, is_compressed, pushed
 from calibration.measurements.compression._repeatability import FIRST, TERMS, repeatability_of
 from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
@@ -76,7 +77,7 @@ class CompressionModel(HomogeneousModel):
         self.last = last
         self.bonded = BondedRatio(cylinder=cylinder or USUAL)
         self.whole_range = tuple(self.records)
-        self._measured_in([compared(r, last) for r in self.records])
+        self._measured_in([pushed(compared(r, last)) for r in self.records])
         self.repeatability = repeatability_of(self.records, last)
         self.coordinates = Coordinates.of(self.records, self.baseline, self.repeatability)
         self.baseline = self._base.baseline = self.coordinates.baseline
@@ -109,8 +110,9 @@ class CompressionModel(HomogeneousModel):
         for x, s in zip(loadings, stretches, strict=True):
             gap = _amount(x, "tilts")
             met = s + gap * _PLACES[:, None] if gap else s
-            # a column that the platen has not met yet carries nothing
-            level.append(np.minimum(met, 1.0) if is_compressed(x.record) else met)
+            # a column that the platen has not met yet carries nothing; one that remembers may be met later
+            remembers = x.record.course is not None
+            level.append(np.minimum(met, 1.0) if is_compressed(x.record) and not remembers else met)
         found = []
         free = super()._at_own_stretches(loadings, level)
         for x, s, p in zip(loadings, level, free, strict=True):

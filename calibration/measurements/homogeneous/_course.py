@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import CouponMode, CouponTrial
-from calibration.measurements._records import Stroke, bins
+from calibration.measurements._records import Stroke, bins, holds
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -24,7 +24,6 @@ Rows = NDArray[np.intp]
 STEP = 0.01  # of stretch at most in one straight line: the stress is taken to be linear in time along it
 STILL = 0.01  # fraction of the record's range within which a hold stays
 NOISE = 6.0  # standard deviations of the stretch that are no motion
-LONG = 2.0  # a hold takes so many times as long as 10 of these tolerances of motion beside it
 NEAR = 25  # rows to either side that the stretch of a hold is averaged over
 BEGINNING = 4  # rows by which the speed of a first ramp is known
 DIFFERENT = 1.1  # ratio of largest strains (I1 - 3) that count as two
@@ -43,6 +42,7 @@ class Course:
     first, count : first row of each point and how many it is the mean of, shape (k,).
     kept : of the k points, those that the record still has.
     before : stretch furthest from rest in earlier tests of the specimen; 1 without.
+    pushes : what drives it are platens, which push and do not pull.
     """
 
     time: Array
@@ -53,6 +53,7 @@ class Course:
     count: Array
     kept: Rows
     before: float
+    pushes: bool = False
 
     def means(self, values: Array) -> Array:
         """Means of values (f,) over the rows of each point that is kept."""
@@ -119,28 +120,13 @@ def holds_of(trial: CouponTrial) -> list[slice]:
     """Rows of each hold: the stretch stays where it is for longer than motion beside it would take."""
     if trial.time is None:
         return []
-    x, t = trial.stretch, trial.time
-    tolerance = max(STILL * float(np.ptp(x)), NOISE * trial.stretch_sd)
-    found, i = [], 0
-    while i < x.size - 1:
-        away = np.abs(x[i:] - x[i]) > tolerance
-        end = i + int(np.argmax(away)) if away.any() else x.size
-        far = 10.0 * tolerance
-        later = np.flatnonzero(np.abs(x[end:] - x[i]) > far)
-        earlier = np.flatnonzero(np.abs(x[:i] - x[i]) > far)
-        beside = [t[end + later[0]] - t[end - 1]] if later.size else []
-        beside += [t[i] - t[earlier[-1]]] if earlier.size else []
-        if beside and end - i > 1 and t[end - 1] - t[i] >= LONG * min(beside):
-            found.append(slice(i, end))
-            i = end
-        else:
-            i += 1
-    return found
+    tolerance = max(STILL * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
+    return holds(trial.time, trial.stretch, tolerance)
 
 
 def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]]) -> ProtocolWindow:
     """What tests show of a material's parts; branches : of each trial."""
-    ramps, holds, lengths, peaks = [], [], [], []
+    ramps, waits, lengths, peaks = [], [], [], []
     for trial, strokes in zip(trials, branches, strict=True):
         excess = first_excess(trial.mode, trial.stretch)
         for a, b in pairwise(strokes):
@@ -150,7 +136,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
             continue
         lengths.append(float(trial.time[-1] - trial.time[0]))
         rests = holds_of(trial)
-        holds += [float(trial.time[h.stop - 1] - trial.time[h.start]) for h in rests]
+        waits += [float(trial.time[h.stop - 1] - trial.time[h.start]) for h in rests]
         corners = {0, trial.stretch.size - 1, *(s.points.start for s in strokes[1:])}
         corners |= {i for h in rests for i in (h.start, h.stop - 1)}
         still = {(h.start, h.stop - 1) for h in rests}
@@ -159,7 +145,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
     different = 0
     for k, peak in enumerate(sorted(peaks)):
         different += k == 0 or peak > DIFFERENT * sorted(peaks)[k - 1]
-    last = max(holds or lengths, default=0.0)
+    last = max(waits or lengths, default=0.0)
     first = min([r for r in ramps if r > 0.0], default=last)
     return ProtocolWindow(first=min(first, last), last=last, peaks=different)
 

@@ -106,17 +106,18 @@ class BaseStress:
 
 
 def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> list[Array]:
-    """Nominal stress of each record at these stretches, shape of each [Pa]: where the material has parts,
-    along the record's own course, at constant volume; NaN where there is none."""
+    """Nominal stress of each record at these stretches, shape of each, (k,) or (m, k) [Pa]: where the
+    material has parts, along the record's own course, at constant volume; NaN where there is none."""
     if not material.has_parts:
         return nominal_stresses(material, [(r.mode, s) for r, s in curves])
     tests = []
     for r, s in curves:
         if r.course is None:
             raise ValueError(f"record {r.name}: expected its course, for a material that remembers")
-        tests.append((r.mode, r.course, r.course.moved(s - r.stretch)))
-    found = stresses_along(material, tests)
-    return [course.means(p) for (_, course, _), p in zip(tests, found, strict=True)]
+        tests += [(r.mode, r.course, r.course.moved(own - r.stretch)) for own in np.atleast_2d(s)]
+    stresses = stresses_along(material, tests)
+    means = iter([course.means(p) for (_, course, _), p in zip(tests, stresses, strict=True)])
+    return [np.reshape([next(means) for _ in np.atleast_2d(s)], s.shape) for _, s in curves]
 
 
 def with_effects(loading: Loading, stretch: Array, stress: Array) -> Array:

@@ -7,7 +7,7 @@ the indenter (a friction of 0.6: to 0.01 % in an independent simulation that unl
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache, CurveRequest
 from calibration.measurements.indentation._effect import IndentationEffect
+from calibration.measurements.indentation._memory_force import loads, stiffnesses, thresholds
 from calibration.measurements.indentation._record import Record
+from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 # Amplitudes of the effects in a record [SI], by name, position (None here) and variant.
@@ -36,17 +38,39 @@ class ForwardMap:
         """The curve of a record without effects."""
         return self.curves.fetch([CurveRequest(geometry=record.geometry, depth=record.deepest)])[0]
 
-    def along(self, record: Record, curve: Curve, shear_modulus: float, acting: Acting) -> Array:
-        """Force along the indenter [N], shape (k,); curve : of the record's material without effects."""
-        depth = record.depth.copy()
+    def along(
+        self,
+        record: Record,
+        curve: Curve,
+        shear_modulus: float,
+        acting: Acting,
+        spectrum: Spectrum | None = None,
+    ) -> Array:
+        """Force along the indenter [N], shape (k,).
+
+        Parameters
+        ----------
+        curve : of the record's material without effects.
+        spectrum : by which that relaxes; the shear modulus is the one that it is stated by.
+        """
+        shift = np.zeros(record.points)
         for (name, _, _), a in acting.items():
-            shift = self.effects[name].shift
-            if shift is not None:
-                depth = depth + shift(a, record)
-        unit = curve.at(depth)
-        for (name, _, variant), a in acting.items():
-            if self.effects[name].scene is not None:
-                unit = unit + self._change(record, name, variant, a, depth, across=False)
+            move = self.effects[name].shift
+            if move is not None:
+                shift = shift + move(a, record)
+
+        def elastic(depth: Array, loading: NDArray[np.bool_]) -> Array:
+            unit = curve.at(depth)
+            for (name, _, variant), a in acting.items():
+                if self.effects[name].scene is not None:
+                    change = self._change(record, name, variant, a, depth, loading=loading, across=False)
+                    unit = unit + change
+            return unit
+
+        if spectrum is None:
+            unit = elastic(record.depth + shift, record.direction > 0)
+        else:
+            unit = remembered(record, spectrum, elastic, shift)
         force = shear_modulus * np.maximum(unit, 0.0)
         for (name, _, variant), a in sorted(acting.items(), key=lambda item: self.effects[item[0][0]].stage):
             apply = self.effects[name].force
@@ -54,14 +78,28 @@ class ForwardMap:
                 force = apply(force, a, record, variant)
         return np.asarray(force)
 
-    def across(self, record: Record, curve: Curve, shear_modulus: float, acting: Acting) -> Array:
+    def across(
+        self,
+        record: Record,
+        curve: Curve,
+        shear_modulus: float,
+        acting: Acting,
+        spectrum: Spectrum | None = None,
+    ) -> Array:
         """Force across the indenter [N], shape (k, 2): with effects of the scene only, since faults of the
-        load cell are modelled along the indenter."""
-        unit = curve.sides(record.depth)
-        for (name, _, variant), a in acting.items():
-            if self.effects[name].scene is not None:
-                unit = unit + self._change(record, name, variant, a, record.depth, across=True)
-        return shear_modulus * unit
+        load cell are modelled along the indenter. Parameters as in `along`."""
+
+        def elastic(depth: Array, loading: NDArray[np.bool_]) -> Array:
+            unit = curve.sides(depth)
+            for (name, _, variant), a in acting.items():
+                if self.effects[name].scene is not None:
+                    change = self._change(record, name, variant, a, depth, loading=loading, across=True)
+                    unit = unit + change
+            return unit
+
+        if spectrum is None:
+            return shear_modulus * elastic(record.depth, record.direction > 0)
+        return shear_modulus * remembered(record, spectrum, elastic, np.zeros(record.points))
 
     def prepare(self, needed: Sequence[tuple[Record, Acting]]) -> None:
         """Simulate together what these records need with these effects."""
@@ -78,9 +116,18 @@ class ForwardMap:
             self.curves.fetch(requests)
 
     def _change(
-        self, record: Record, name: str, variant: float | None, a: float, depth: Array, *, across: bool
+        self,
+        record: Record,
+        name: str,
+        variant: float | None,
+        a: float,
+        depth: Array,
+        *,
+        loading: NDArray[np.bool_],
+        across: bool,
     ) -> Array:
-        """Change of the force over the shear modulus by an effect of the scene [m2], shape (k,) or (k, 2)."""
+        """Change of the force over the shear modulus by an effect of the scene at depths (k,), in loading or
+        not [m2], shape (k,) or (k, 2)."""
         base = self.base(record)
         found = np.zeros((depth.size, 2) if across else depth.size)
         effect = self.effects[name]
@@ -90,8 +137,10 @@ class ForwardMap:
                 if across:
                     change = curve.sides(depth) - base.sides(depth)
                 else:
-                    retracted = curve.retracting(depth, record.cycle_peak)
-                    change = np.where(record.direction > 0, curve.at(depth), retracted) - base.at(depth)
+                    force = curve.at(depth)
+                    if not loading.all():
+                        force = np.where(loading, force, curve.retracting(depth, record.cycle_peak))
+                    change = force - base.at(depth)
                 found = found + weight * change
         return found
 
@@ -108,6 +157,51 @@ class ForwardMap:
             finer=effect.finer,
             retracts=retracts,
         )
+
+
+def remembered(
+    record: Record,
+    spectrum: Spectrum,
+    elastic: Callable[[Array, NDArray[np.bool_]], Array],
+    shift: Array,
+) -> Array:
+    """Force over the shear modulus [m2] of a material that relaxes, along a record's course; shape (k,) or
+    (k, 2).
+
+    Parameters
+    ----------
+    elastic : the same of one that does not, at depths (m,), in loading or not.
+    shift : of the depths of its points [m], shape (k,).
+
+    Raises
+    ------
+    ValueError : the record was made without its course.
+    """
+    if record.course is None:
+        raise ValueError(f"record {record.name}: expected its course, for a material that remembers")
+    depth = record.course.moved(shift)
+    met = thresholds(max(float(depth.max()), 1e-6))
+    springs = stiffnesses(met, elastic(met, np.ones(met.size, dtype=bool)))
+    found = loads(spectrum, record.course.time, depth, met[:-1]) @ springs
+    return np.asarray(found[record.course.at])
+
+
+def at_depths(record: Record, shear_modulus: float, elastic: Callable[[Array], Array]) -> Array:
+    """Forces [N] at a record's depths, from elastic ones over the modulus against depth."""
+    return shear_modulus * elastic(record.depth)
+
+
+def along_course(
+    record: Record,
+    shear_modulus: float,
+    spectrum: Spectrum,
+    elastic: Callable[[Array], Array],
+    *,
+    shift: float = 0.0,
+) -> Array:
+    """The same of a material that relaxes, all depths moved by a shift [m]."""
+    moved = np.full(record.points, shift)
+    return shear_modulus * remembered(record, spectrum, lambda depth, _: elastic(depth), moved)
 
 
 def reached(curves: CurveCache, records: Sequence[Record]) -> tuple[list[Record], tuple[str, ...]]:

@@ -72,13 +72,15 @@ class LawCurves:
 
     Parameters
     ----------
-    law : in search coordinates; where it holds K/G, materials have that of a diagnosis.
+    law : in search coordinates; where it holds K/G, materials have that of a diagnosis. Parts beside it are
+        left out, and their coordinates, which follow its own, do not count.
     records : whose geometries and depths are simulated.
     curves : simulates, and remembers.
     """
 
     def __init__(self, law: Parametrisation, records: Sequence[Record], curves: CurveCache) -> None:
-        self.law = law
+        self.law = law.without_parts()
+        law = self.law
         self._records = tuple(records)
         self._cache = curves
         self._moduli = np.array([c.start is None for c in law.coordinates])
@@ -102,6 +104,7 @@ class LawCurves:
         ------
         ValueError : there is no equilibrium, or the law has no such material. Curves stay as they were.
         """
+        own = own[: len(self.law.coordinates)]
         shape = self._shape(own)
         if self._taken is not None and self._near(self._taken, shape):
             return

@@ -9,7 +9,8 @@ deviation of its own. All fall with the square of the cell size.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +23,8 @@ from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation._scene import Geometry
 
 Array = NDArray[np.float64]
+# Elastic forces over the modulus at depths (k,), as (k,) or (k, m), -> forces at a record's points [N].
+Follow = Callable[[Callable[[Array], Array]], Array]
 
 # Relative sd at refinement 1: common to all indentations, and of each point by itself (contact points that
 # come and go, the curve between its frames).
@@ -31,6 +34,11 @@ TOGETHER, SCATTER = 0.025, 0.002
 WANDERING = ((0.008, 0.04), (0.006, 0.5))
 SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wandering grow
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
+# Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,
+# and the powers of how far it went back that it has. What a viscous material has stored at a large strain
+# acts on as that strain goes, and a force made of the elastic one knows no strains
+# (studies/indentation/over-time.md).
+RETRACTION, RETRACTED = 0.03, (1, 2, 3)
 
 GRID = 120  # depths at which wandering is evaluated
 TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
@@ -75,7 +83,12 @@ def _shallow(depth: Array, radius: float) -> Array:
 
 
 def noise_of(
-    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+    records: Sequence[Record],
+    curves: Sequence[Curve],
+    forces: Sequence[Array],
+    slopes: Sequence[Array],
+    follow: Sequence[Follow],
+    relaxing: Sequence[float],
 ) -> Noise:
     """Noise of all forces along the indenter, then of all across it.
 
@@ -83,12 +96,15 @@ def noise_of(
     ----------
     curves : of the records, without effects.
     forces, slopes : simulated force [N] and its slope [N/m] at the records' depths.
+    follow : elastic forces against depth -> forces at the records' points: at their depths, or along their
+        courses where the material remembers.
+    relaxing : fraction of the instantaneous modulus that each record's material loses in time.
     """
     along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
     across = [
         np.repeat(side_sd(r, f), 2) for r, f in zip(records, forces, strict=True) if r.across is not None
     ]
-    columns, names = nuisances(records, curves, forces, slopes)
+    columns, names = nuisances(records, curves, forces, slopes, follow, relaxing)
     sd = np.concatenate([*along, *across])
     none = np.zeros((len(sd) - len(columns), columns.shape[1]))  # nuisances are along the indenter
     return Noise.independent(sd).with_nuisances(np.vstack([columns, none]), names)
@@ -115,13 +131,19 @@ def side_sd(record: Record, force: Array) -> Array:
 
 
 def nuisances(
-    records: Sequence[Record], curves: Sequence[Curve], forces: Sequence[Array], slopes: Sequence[Array]
+    records: Sequence[Record],
+    curves: Sequence[Curve],
+    forces: Sequence[Array],
+    slopes: Sequence[Array],
+    follow: Sequence[Follow],
+    relaxing: Sequence[float],
 ) -> tuple[Array, list[str]]:
     """One standard deviation of each nuisance in simulated less measured [N], shape (points, n), and names.
 
     In this order: the mesh error common to all indentations; of each geometry its wandering; of each record
-    its first touch (positive where it is deeper than recorded), and the noise that smoothing leaves in the
-    depth of its phases.
+    its first touch (positive where it is deeper than recorded), the noise that smoothing leaves in the depth
+    of its phases, and where its material relaxes the error of its force in retraction. Parameters as in
+    `noise_of`.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     rows = [np.arange(int(a), int(b)) for a, b in pairwise(starts)]
@@ -141,10 +163,12 @@ def nuisances(
         # records of one geometry have one curve, apart from its continuation by a deeper one
         curve = max((curves[k] for k in mine), key=lambda c: c.finer)
         where = np.concatenate([rows[k] for k in mine])
-        depth = np.maximum(np.concatenate([records[k].depth for k in mine]), 0.0)
         label = ", ".join(records[k].name for k in mine)
-        for m, mode in enumerate(_modes(depth, geometry, curve).T, 1):
-            add(f"mesh {m} of {label}", where, mode * whole[where])
+        deepest = max(float(records[k].depth.max()) for k in mine)
+        modes = _modes(max(deepest, 0.0), curve, geometry)
+        wandering = np.concatenate([follow[k](partial(_wandered, modes, curves[k])) for k in mine])
+        for m, column in enumerate(wandering.T, 1):
+            add(f"mesh {m} of {label}", where, column)
     for r, own, slope in zip(records, rows, slopes, strict=True):
         if r.depth_sd > 0.0:
             add(f"touch of {r.name}", own, -r.depth_sd * slope)
@@ -155,6 +179,13 @@ def nuisances(
             left = r.depth_sd * remaining_noise(r.time[phase], int(r.count[phase].sum()), degree)
             for m, part in enumerate(left.T, 1):
                 add(f"depth {m} of {r.labels[n]} of {r.name}", own[phase], part * slope[phase])
+    for r, own, force, part in zip(records, rows, forces, relaxing, strict=True):
+        deepest = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
+        turned = np.logical_or.accumulate(r.direction < 0.0)
+        back = np.where(turned, np.clip(1.0 - r.depth / deepest, 0.0, 1.0), 0.0)
+        for power in RETRACTED if part > 0.0 and back.any() else ():
+            size = RETRACTION * part * float(np.abs(force).max())
+            add(f"retraction {power} of {r.name}", own, size * back**power)
     return np.column_stack(found), names
 
 
@@ -163,8 +194,13 @@ def _refinement(depth: Array, curve: Curve, geometry: Geometry) -> Array:
     return np.where(depth <= curve.finer, FINE, COARSE) * geometry.refinement
 
 
-def _modes(depth: Array, geometry: Geometry, curve: Curve) -> Array:
-    """Wandering modes at depths (k,), interpolated on a grid of depths, since records are long."""
-    grid = np.linspace(0.0, float(np.sqrt(depth.max())), GRID)[1:] ** 2
-    modes = wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
-    return np.column_stack([np.interp(depth, grid, mode) for mode in modes.T])
+def _modes(deepest: float, curve: Curve, geometry: Geometry) -> tuple[Array, Array]:
+    """A grid of depths (g,), and wandering modes there (g, m): on a grid, since records are long."""
+    grid = np.linspace(0.0, float(np.sqrt(deepest)), GRID)[1:] ** 2
+    return grid, wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
+
+
+def _wandered(modes: tuple[Array, Array], curve: Curve, depth: Array) -> Array:
+    """What modes on a grid change the elastic force over the modulus by at depths (k,), shape (k, m)."""
+    own = np.maximum(depth, 0.0)
+    return np.column_stack([np.interp(own, modes[0], mode) for mode in modes[1].T]) * curve.at(depth)[:, None]

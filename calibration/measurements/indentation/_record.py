@@ -13,6 +13,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
 from calibration.measurements._records import bins
 from calibration.measurements.homogeneous import unstated_sd
+from calibration.measurements.indentation._course import Course, bins_over_time, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
     Geometry,
@@ -71,6 +72,7 @@ class Record:
     unloaded : 1 after the first unloading there, 0 before.
     estimated : the lab states no error of the force.
     ranges : see `calibration.measurements.Record`; of the depth as the lab recorded it.
+    course : for materials that remember; None where it was made for others.
     """
 
     name: str
@@ -96,6 +98,7 @@ class Record:
     unloaded: Array
     estimated: bool
     ranges: Mapping[str, tuple[float, float]]
+    course: Course | None = None
 
     @property
     def points(self) -> int:
@@ -135,20 +138,25 @@ class Record:
         """Some of its points. The force of a material that relaxes depends on all earlier ones."""
         arrays = {name: getattr(self, name)[kept] for name in _ARRAYS}
         across = None if self.across is None else self.across[kept]
-        return replace(self, across=across, **arrays)
+        course = None if self.course is None else self.course.only(kept)
+        return replace(self, across=across, course=course, **arrays)
 
 
 def records_of(
-    trials: Sequence[PokeTrial], geometry: Callable[[PokeTrial], Geometry] = geometry_of
+    trials: Sequence[PokeTrial],
+    geometry: Callable[[PokeTrial], Geometry] = geometry_of,
+    *,
+    courses: bool = False,
 ) -> list[Record]:
     """One record a trial. Indentations of one named specimen at one contact point are taken in the order of
-    the file: a later one remembers how deep the earlier ones went."""
+    the file: a later one remembers how deep the earlier ones went. courses : for a material that relaxes:
+    holds count by their time, and each record begins at rest."""
     found: list[Record] = []
     seen: dict[object, float] = {}
     for t in trials:
         own_geometry = geometry(t)
         own = (t.specimen, own_geometry.site) if t.specimen else t.id
-        record = _record(t, own_geometry, seen.get(own, 0.0))
+        record = _record(t, own_geometry, seen.get(own, 0.0), courses=courses)
         found.append(record)
         seen[own] = max(seen.get(own, 0.0), float(record.peak.max()))
     return found
@@ -237,9 +245,9 @@ def check_pushed(records: Sequence[Record]) -> None:
             raise InputError(f"trial {r.name}: record: expected a force above 0 (pushing) at its deepest")
 
 
-def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
+def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: bool) -> Record:
     raw = trial.record
-    phases = phases_of(trial)
+    phases = with_holds(trial, phases_of(trial)) if courses else phases_of(trial)
     depth, degrees = smooth_depth(raw.time, raw.depth, phases, trial.depth_sd)
     depth = depth - approach(trial)
     peak = np.maximum.accumulate(np.maximum(depth, before))
@@ -259,7 +267,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
     across = None if raw.force_vector is None else raw.force_vector @ geometry.across.T
     columns: dict[str, list[Array]] = {name: [] for name in (*_ARRAYS, "across")}
     for n, p in enumerate(phases):
-        first, count = bins(p.points, MOST)
+        first, count = bins_over_time(raw.time, p, MOST) if courses else bins(p.points, MOST)
 
         def mean(
             x: Array, points: slice = p.points, first: NDArray[np.intp] = first, count: Array = count
@@ -297,5 +305,6 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float) -> Record:
         degrees=degrees,
         estimated=trial.force_sd is None,
         ranges={"depth_mm": (1e3 * float(raw.depth.min()), 1e3 * float(raw.depth.max()))},
+        course=course_of(raw.time, depth, phases, whole["time"], whole["depth"]) if courses else None,
         **whole,
     )

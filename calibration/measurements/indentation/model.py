@@ -29,12 +29,20 @@ from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
 from calibration.measurements.indentation._effect import IndentationEffect
-from calibration.measurements.indentation._forward import ForwardMap, difference_step, reached
+from calibration.measurements.indentation._forward import (
+    ForwardMap,
+    along_course,
+    at_depths,
+    difference_step,
+    reached,
+)
 from calibration.measurements.indentation._law_curves import LawCurves
+from calibration.measurements.indentation._memory_force import spectrum_of
 from calibration.measurements.indentation._noise import TOUCH, noise_of
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
 from calibration.measurements.indentation._scene import BULK_RATIO, FRICTION, geometry_of
 from calibration.measurements.indentation.experiments import EXPERIMENTS, IndentationTest
+from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 
@@ -45,7 +53,8 @@ BEND = 4  # highest degree of a discrepancy basis
 class IndentationModel(MeasurementModel):
     """Baseline: neo-Hookean, nearly incompressible, one shear modulus a specimen; trials that name no
     specimen share one a material. Each geometry is simulated once, and once for each change of it that a
-    search needs. A baseline of a law has that law's curves (`LawCurves`), simulated by `update_nuisances`.
+    search needs. A baseline of a law has that law's curves (`LawCurves`), simulated by `update_nuisances`; of
+    a law with viscosity forces are followed along each record's course (`_memory_force`).
 
     Parameters
     ----------
@@ -102,6 +111,7 @@ class IndentationModel(MeasurementModel):
         )
         self._part = partial(part_of, max_depth=max_depth, first_loading=first_loading)
         self._fits_law = baseline is not None and baseline.whole
+        self._remembers = baseline is not None and bool(baseline.law.parts)
         self._measured_in(trials)
         self.baseline = baseline or Baseline.per_specimen(self.records, bulk_ratio=BULK_RATIO)
         self._of_law = {
@@ -113,7 +123,7 @@ class IndentationModel(MeasurementModel):
     def _measured_in(self, trials: Sequence[PokeTrial]) -> None:
         """Take the records of these trials. Rows: one a point along the indenter, of all records; then two a
         point across it, of the records that have them."""
-        compared, not_compared = self._part(records_of(trials, self._geometry))
+        compared, not_compared = self._part(records_of(trials, self._geometry, courses=self._remembers))
         self.records, self.left_out = compared, not_compared
         if self._fits_law:  # simulated where nuisances are taken
             check_pushed(compared)
@@ -173,12 +183,21 @@ class IndentationModel(MeasurementModel):
     def _along(self, state: State, record: Record) -> Array:
         shear_modulus = self.baseline.shear_modulus(record.specimen, state.u)
         curve = self._curve(record, state.u)
-        return self.forward.along(record, curve, shear_modulus, self.acting(state, record))
+        acting = self.acting(state, record)
+        return self.forward.along(record, curve, shear_modulus, acting, self._spectrum(record, state.u))
 
     def _across(self, state: State, record: Record) -> Array:
         shear_modulus = self.baseline.shear_modulus(record.specimen, state.u)
         curve = self._curve(record, state.u)
-        return self.forward.across(record, curve, shear_modulus, self.acting(state, record))
+        acting = self.acting(state, record)
+        return self.forward.across(record, curve, shear_modulus, acting, self._spectrum(record, state.u))
+
+    def _spectrum(self, record: Record, u: Array) -> Spectrum | None:
+        """By which a record's material relaxes; None for one that does not. ValueError where its parts refuse
+        these coordinates."""
+        if not self._remembers:
+            return None
+        return spectrum_of(self.baseline.law, self.baseline.law_coordinates(record.material, u))
 
     def _curve(self, record: Record, u: Array) -> Curve:
         """Force over shear modulus of a record's geometry and material, without effects."""
@@ -189,12 +208,15 @@ class IndentationModel(MeasurementModel):
 
     def _misfit(self, states: Sequence[State]) -> Array:
         self._prepare(states)
-        found = np.empty((len(states), len(self.row_record)))
+        found = np.full((len(states), len(self.row_record)), np.nan)
         for row, state in zip(found, states, strict=True):
-            along = [self._along(state, r) - r.force for r in self.records]
-            across = [
-                (self._across(state, r) - r.across).ravel() for r in self.records if r.across is not None
-            ]
+            try:
+                along = [self._along(state, r) - r.force for r in self.records]
+                across = [
+                    (self._across(state, r) - r.across).ravel() for r in self.records if r.across is not None
+                ]
+            except ValueError:  # outside the domain of the law's parts
+                continue
             row[:] = np.concatenate([*along, *across])
         return found
 
@@ -217,15 +239,25 @@ class IndentationModel(MeasurementModel):
         for material, curves_of_law in self._of_law.items():
             curves_of_law.take(self.baseline.law_coordinates(material, state.u))
         curves = [self._curve(r, state.u) for r in self.records]
-        forces, slopes = [], []
+        forces, slopes, follow, relaxing = [], [], [], []
         for r, curve in zip(self.records, curves, strict=True):
             shear_modulus = self.baseline.shear_modulus(r.specimen, state.u)
             if rough and self.baseline.whole:
                 shear_modulus = self._nearest_modulus(r.material, curves)
-            forces.append(shear_modulus * curve.at(r.depth))
-            slopes.append(shear_modulus * curve.slope(r.depth, max(TOUCH * r.depth_sd, 1e-6)))
+            over = max(TOUCH * r.depth_sd, 1e-6)
+            spectrum = self._spectrum(r, state.u)
+            relaxing.append(0.0 if spectrum is None else 1.0 - spectrum.equilibrium / spectrum.instantaneous)
+            if spectrum is None:
+                forces.append(shear_modulus * curve.at(r.depth))
+                slopes.append(shear_modulus * curve.slope(r.depth, over))
+                follow.append(partial(at_depths, r, shear_modulus))
+                continue
+            own = partial(along_course, r, shear_modulus, spectrum)
+            forces.append(own(curve.at))
+            slopes.append((own(curve.at, shift=over) - own(curve.at, shift=-over)) / (2.0 * over))
+            follow.append(own)
         self._elastic = forces
-        noise = noise_of(self.records, curves, forces, slopes)
+        noise = noise_of(self.records, curves, forces, slopes, follow, relaxing)
         simulated = self._simulated()
         for r, inside in zip(self.records, simulated, strict=True):
             if np.count_nonzero(inside) < LEAST:

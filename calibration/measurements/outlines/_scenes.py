@@ -91,9 +91,17 @@ class Scenes:
 
     def plain(self, trial: BeamTrial, u: Array, fidelity: Fidelity) -> Beam:
         """The beam of a trial without effects, ideal but for what is known of the rig."""
+        return self._ideal(trial, self.material(trial, u), fidelity)
+
+    def elastic(self, trial: int, material: Material, fidelity: Fidelity) -> Beam:
+        """The beam of a trial, by its index, without effects, of a material that does not creep."""
+        beam = self._ideal(self.trials[trial], material, fidelity)
+        return beam if self.pose is None else self.pose(beam, self.trials[trial])
+
+    def _ideal(self, trial: BeamTrial, material: Material, fidelity: Fidelity) -> Beam:
         density = self.experiment.materials[trial.material].density
         assert density is not None, "checked when the model is made"
-        beam = beam_scene(trial, self.material(trial, u), density=density, fidelity=fidelity)
+        beam = beam_scene(trial, material, density=density, fidelity=fidelity)
         return beam if self.setup is None else self.setup.bend(beam, trial)
 
     def material(self, trial: BeamTrial, u: Array) -> Material:

@@ -22,6 +22,7 @@ from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
 from calibration.measurements._state import State
+from calibration.measurements.outlines._creep import CreepCurves, settled_by_moduli
 from calibration.measurements.outlines._discrepancies import discrepancies
 from calibration.measurements.outlines._edges import edges
 from calibration.measurements.outlines._effect import OutlineEffect
@@ -128,9 +129,18 @@ class OutlineModel(MeasurementModel):
         self.solutions = SolutionCache(
             scenes=self.scenes, photographs=self.records, simulator=simulator, workers=workers
         )
+        # what a fit of a spectrum evaluates thousands of times; its correction comes with the mesh's
+        self._creep = (
+            CreepCurves(scenes=self.scenes, photographs=self.records, simulator=simulator, workers=workers)
+            if settled_by_moduli(self.baseline)
+            else None
+        )
         self.uncorrected = "" if simulator.reference else f"simulated as they are: {simulator.sentence}"
         self._correction = np.zeros(len(self.row_record))
         self._updated = False
+
+    def suggested_start(self) -> Array | None:
+        return None if self._creep is None else self.start()
 
     def start(self) -> Array:
         """The modulus of each specimen, of a coarse scan, that comes nearest to its outlines. From stiff to
@@ -159,12 +169,15 @@ class OutlineModel(MeasurementModel):
         calm = replace(state, amplitudes=lasting)
         results = self.solutions.answer(calm)
         base = self.solutions.values_of(results, calm)
-        self._correction = np.zeros(len(base))
+        mesh = np.zeros(len(base))
         if self.simulator.reference is not None and not rough:
-            self._correction, self.uncorrected = self._corrected(calm, base, *self.simulator.reference)
+            mesh, self.uncorrected = self._corrected(calm, base, *self.simulator.reference)
+        self._correction = mesh
+        if self._creep is not None:
+            self._correction = mesh + base - self._creep.values(self.records, [calm])[0]
         named = registrations(self.records, results, self.scenes, calm) + corners(self.records)
         for i, t in enumerate(self.trials):
-            named.append((f"mesh of {t.id}", np.where(self.of_trial(i), MESH_LEFT * self._correction, 0.0)))
+            named.append((f"mesh of {t.id}", np.where(self.of_trial(i), MESH_LEFT * mesh, 0.0)))
         named += beliefs(self.solutions, base, results, calm) + doubts(self.solutions, base, calm)
         # what does nothing has no name: it is no nuisance of these photographs
         names = [name if column.any() else "" for name, column in named]
@@ -195,7 +208,11 @@ class OutlineModel(MeasurementModel):
             raise RuntimeError("call update_nuisances of an OutlineModel before use")
         found = np.full((len(states), len(self.row_record)), np.nan)
         rows = np.concatenate([np.arange(p.rows.start, p.rows.stop) for p in solutions.photographs])
-        for row, values in zip(found, solutions.values(states), strict=True):
+        if self._creep is not None and solutions.simulator is self.simulator:
+            whole = self._creep.values(solutions.photographs, states)
+        else:
+            whole = solutions.values(states)
+        for row, values in zip(found, whole, strict=True):
             row[rows] = values + self._correction[rows]
         return found
 

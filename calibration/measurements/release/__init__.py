@@ -1,5 +1,6 @@
 """Cantilever releases: markers of a beam in free vibration and at static equilibrium."""
 
+from calibration.measurements.release._nuisances import HELD
 from calibration.measurements.release._record import hung_mass, not_swinging
 from calibration.measurements.release.fit import MotionFit, fit_motion
 from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
@@ -7,6 +8,7 @@ from calibration.measurements.release.objective import Damping, Fidelity, Marker
 from calibration.measurements.release.ringdown import RingDown, ringdown
 
 __all__ = [
+    "HELD",
     "Damping",
     "Fidelity",
     "MarkerObjective",

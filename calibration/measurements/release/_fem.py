@@ -126,7 +126,10 @@ def _matched(
     for result in (coarse, fine, moving):
         if not result.ok:
             raise ValueError(f"{result.status}: {result.message}")
-    parameters = replace(record.parameters, shear_modulus=shear, relaxation_time=relaxation_time)
+    # FEM's load is spread over the face: what the arm of a load adds is the reduced beam's own affair
+    parameters = replace(
+        record.parameters, shear_modulus=shear, relaxation_time=relaxation_time, load_height=0.0
+    )
     rough = _with_root(record, parameters, _plane(coarse, positions)[:, -1])
     tips = _plane(moving, positions)[record.outer, :, 1].mean(axis=0)
     q = free_vibration(rough).coordinates(moving.load)

@@ -31,6 +31,7 @@ LOAD, LOAD_SD = 0.02, 0.003
 # Periods by which a vibration may get out of phase until its end; further out, a search does not find back.
 OUT_OF_PHASE = 0.4
 REMEMBERED = 400
+DRAG_SD = 3.0  # by what hangs on a beam, of the damping in proportion to mass [1/s]
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
@@ -43,11 +44,13 @@ class Own:
     release_time : [s].
     start : fraction of the way to equilibrium from which the beam was released.
     with_clamp : fraction by which markers next to the clamp move with it.
+    drag : damping in proportion to mass by what hangs on the beam [1/s].
     """
 
     release_time: float
     start: float
     with_clamp: float
+    drag: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -55,19 +58,22 @@ class Coordinates:
     """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s, unless its law has a
     spectrum (`tisim.Prony`), which damps as well; of each trial its release time (in 10 ms after the first
     guess) and start (in tenths of the way to equilibrium); the reduced beam's error at each load but the
-    first (in 2 % of the modulus); of each specimen with markers next to the clamp the fraction by which these
-    move with the clamp.
+    first (in 2 % of the modulus); where the law has a spectrum, of each trial with a hung mass the damping by
+    how it hangs, which is no property of the material; of each specimen with markers next to the clamp the
+    fraction by which these move with the clamp.
 
     Attributes
     ----------
     baseline : with these extras.
     trials, loads : names.
+    dragged : trials with a damping by what hangs.
     near : specimens with markers next to the clamp.
     """
 
     baseline: Baseline
     trials: tuple[str, ...]
     loads: tuple[str, ...]
+    dragged: tuple[str, ...]
     near: tuple[str, ...]
 
     @classmethod
@@ -75,6 +81,7 @@ class Coordinates:
         """Coordinates of these records, besides those of a plain baseline."""
         trials = tuple(r.name for r in records)
         loads = tuple(dict.fromkeys(r.load for r in records))
+        dragged = tuple(r.name for r in records if r.loaded and viscous(plain))
         near = tuple(dict.fromkeys(r.specimen for r in records if (r.near_clamp & ~r.behind_face).any()))
         extras = [
             *(
@@ -88,9 +95,10 @@ class Coordinates:
                 for quantity, sd in (("release", RELEASE_SD / RELEASE), ("start", START_SD / START))
             ),
             *(Extra(name=f"error with {load}", sd=LOAD_SD / LOAD) for load in loads[1:]),
+            *(Extra(name=f"{t} drag", sd=DRAG_SD) for t in dragged),
             *(Extra(name=f"{s} fraction with the clamp", sd=WITH_CLAMP_SD, centre=WITH_CLAMP) for s in near),
         ]
-        return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, near=near)
+        return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, dragged=dragged, near=near)
 
     def shear_modulus(self, record: Record, u: Array) -> float:
         """Shear modulus of a record's beam [Pa], with the error of its load: the long-time one where its
@@ -120,6 +128,7 @@ class Coordinates:
             release_time=record.release_time + RELEASE * float(u[first]),
             start=START * float(u[first + 1]),
             with_clamp=fraction,
+            drag=float(u[self._of_drag(record)]) if record.name in self.dragged else 0.0,
         )
 
     def constrained(
@@ -145,6 +154,8 @@ class Coordinates:
             if (mine & vibrating).any():
                 first = self.of_trial(r)
                 found[first : first + 2] = True
+                if r.name in self.dragged:
+                    found[self._of_drag(r)] = True
         return found
 
     def depended_on(self, record: Record) -> Rows:
@@ -155,6 +166,8 @@ class Coordinates:
         found[first : first + 2] = True
         if record.load != self.loads[0]:
             found[self.of_load(record.load)] = True
+        if record.name in self.dragged:
+            found[self._of_drag(record)] = True
         if record.specimen in self.near:
             found[self._of_near(record.specimen)] = True
         return found
@@ -172,7 +185,13 @@ class Coordinates:
 
     def of_load(self, load: str) -> int:
         """Index of the error at a load that is not the first."""
-        return len(self.baseline.names) - len(self.near) - len(self.loads) + self.loads.index(load)
+        end = len(self.baseline.names) - len(self.near) - len(self.dragged)
+        return end - len(self.loads) + self.loads.index(load)
+
+    def _of_drag(self, record: Record) -> int:
+        """Index of the damping by what hangs on a trial's beam."""
+        end = len(self.baseline.names) - len(self.near)
+        return end - len(self.dragged) + self.dragged.index(record.name)
 
     def _of_near(self, specimen: str) -> int:
         """Index of the fraction by which a specimen's markers move with the clamp."""
@@ -230,6 +249,7 @@ class ForwardMap:
             stiff_root=self.corrections[k].stiff_root,
             reference_time=self.reference_time,
             extra_inertia=self.corrections[k].extra_inertia,
+            mass_damping=self.own(k, u).drag,
         )
 
     def own(self, k: int, u: Array) -> Own:

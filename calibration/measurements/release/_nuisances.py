@@ -24,6 +24,9 @@ CORRECTION = 0.2  # fraction of the markers' correction by FEM
 EQUILIBRIUM = (
     0.003  # fraction of the equilibrium by which the reduced beam may err beside its vibration, a load
 )
+# Drop of the tip by which a beam that is held by hand is not straight, in the shape of its equilibrium [m]: a
+# nuisance of fits over time, where the modulus at rest is another than that of the vibration.
+HELD = 3e-4
 
 
 def nuisance_columns(
@@ -32,8 +35,10 @@ def nuisance_columns(
     release_times: Sequence[float],
     corrections: Sequence[Correction],
     simulated: Callable[[int, BeamParameters], Array],
-) -> Array:
-    """One standard deviation of each nuisance, shape (rows, k) [m].
+    *,
+    over_time: bool = False,
+) -> tuple[Array, list[str]]:
+    """One standard deviation of each nuisance, shape (rows, k) [m], and their names, "" for most.
 
     What changes the frequency is no nuisance: it moves the phase of the last periods by more than is linear.
     A length, a section or a density other than stated is an effect, or goes into the modulus.
@@ -42,6 +47,7 @@ def nuisance_columns(
     ----------
     parameters, release_times, corrections : of each record.
     simulated : rows of a record, by its index, with these parameters.
+    over_time : the materials have a relaxation spectrum.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     shared: dict[object, Array] = {}
@@ -82,7 +88,10 @@ def nuisance_columns(
                 equilibrium[after] = r.equilibrium[i, a] * (not r.near_clamp[i])
         add("correction", k, CORRECTION * correction)
         add(("equilibrium", round(r.parameters.tip_mass, 4)), k, EQUILIBRIUM * equilibrium)
-    return np.column_stack([v for v in shared.values() if v.any()])
+        if over_time:
+            add(f"{r.name}: held below straight", k, HELD / corrections[k].drop * equilibrium)
+    kept = {name: v for name, v in shared.items() if v.any()}
+    return np.column_stack([*kept.values()]), [n if isinstance(n, str) and ":" in n else "" for n in kept]
 
 
 def _rotated(record: Record, parameters: BeamParameters, release_time: float) -> tuple[Array, Array]:

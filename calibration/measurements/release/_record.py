@@ -284,6 +284,7 @@ def _record(trial: BeamTrial, experiment: Experiment) -> Record:
         gravity=(trial.gravity[0], trial.gravity[2]),
         tip_force=(trial.tip_force[0], trial.tip_force[2]),
         tip_mass=hung_mass(trial),
+        load_height=trial.tip_force_height,
     )
     outer = [m for m in trial.markers if m.position[0] > 0.5 * trial.free_length]
     if not outer:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.measurements._baseline import Baseline
+from calibration.measurements._joint import joint_fit
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noise_known import FEWEST, PointNoise, roughness
@@ -26,7 +27,7 @@ from calibration.measurements._state import State
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
-from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of
+from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of, viscous
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
 from calibration.measurements.release._record import FIRST, LAST, Record, records_of, reference_time
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
@@ -92,6 +93,8 @@ class ReleaseModel(MeasurementModel):
             records, baseline or Baseline.per_specimen(records, bulk_ratio=BULK_RATIO)
         )
         self.baseline = self.coordinates.baseline
+        if viscous(self.baseline):
+            self.noise = self.noise.subset(~self._dragged())
         self.reference_time = reference_time(records)
         self.forward = ForwardMap(
             records=records,
@@ -117,7 +120,11 @@ class ReleaseModel(MeasurementModel):
     # -- forward map --
 
     def suggested_start(self) -> Array:
-        return self.start()
+        u = self.start()
+        for _ in range(2):  # what FEM adds, and nuisances, are taken where the first fit ends
+            self.update_nuisances(State(u=u))
+            u = joint_fit(self, u)
+        return u
 
     def start(self) -> Array:
         """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
@@ -178,14 +185,15 @@ class ReleaseModel(MeasurementModel):
             self.forward = replace(self.forward, corrections=found)
             self._corrected_at = at
         own = [self.forward.own(k, state.u) for k in every]
-        columns = nuisance_columns(
+        columns, names = nuisance_columns(
             self.records,
             [self.parameters(k, state) for k in every],
             [o.release_time for o in own],
             self.corrections,
             lambda k, parameters: self.forward.rows(k, parameters, own[k]),
+            over_time=viscous(self.baseline),
         )
-        self.noise = self.noise.with_nuisances(columns)
+        self.noise = self.noise.with_nuisances(columns, names)
 
     def _shape(self, state: State) -> Array:
         """Coordinates of the baseline's laws other than moduli and K/G, which change what FEM adds."""
@@ -227,6 +235,20 @@ class ReleaseModel(MeasurementModel):
                 "approach to equilibrium" if x else "free vibration" for x in late
             ],
         }
+
+    def left_out(self) -> list[str]:
+        """Parts of records that are not compared, a sentence each."""
+        names = [r.name for r in self.records if r.loaded and viscous(self.baseline)]
+        return [
+            f"{n}: the free vibration with its hung mass, which is damped by how it hangs too" for n in names
+        ]
+
+    def _dragged(self) -> Rows:
+        """Rows of a free vibration with a hung mass, shape (rows,): a spectrum must not explain what a string
+        or a hook rubs off (`studies/release/over_time.md`: a damping ratio that grows as the motion dies)."""
+        loaded = np.array([self.records[k].loaded for k in self.row_record])
+        time = np.concatenate([r.labels()[2] for r in self.records])
+        return loaded & np.isfinite(time) & ~self._after_vibration()
 
     def _after_vibration(self) -> Rows:
         """Rows after the free vibration, shape (rows,)."""

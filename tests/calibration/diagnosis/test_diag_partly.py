@@ -17,8 +17,10 @@ from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.resampling import Groups, Resampled, groups_of
 from calibration.diagnosis.engine.run import diagnose
+from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.shares import Shares
 from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.diagnosis.report import write_report
 from calibration.errors import InputError
 from calibration.measurements._effect import Candidate
 from calibration.measurements._layers import Curve, deviations, layers_of
@@ -174,6 +176,20 @@ def test_noise_alone_and_what_is_explained_wholly_stay_as_they_were() -> None:
     assert whole.share is not None
     assert whole.share.value == pytest.approx(1.0, abs=0.3)
     assert whole.model_error is None
+
+
+def test_the_page_has_a_budget_of_the_departure(tmp_path: Path) -> None:
+    model, found = partly()
+    (page,) = [p for p in write_report(found, model, tmp_path, title="made") if p.suffix == ".html"]
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    assert "Explained in part" in text
+    assert text.index("Where the departure comes from") < text.index("How the numbers were made")
+    assert found.share is not None
+    assert percent(found.share) in text
+    assert "not modelled" in text
+    assert "alike in all tests: the form of the model, or the rig" in text
+    assert text.count("<td>0</td>") + text.count("<td>1</td>") + text.count("<td>2</td>") == 3  # the folds
+    assert "What is left" in text
 
 
 # -- noise --

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from poke_records import trial
 
 from calibration.measurements.indentation import TOGETHER
 from calibration.measurements.indentation._curve import COARSE, FINE, Curve, changed, deepened, smoothed
+from calibration.measurements.indentation._forward import at_depths
 from calibration.measurements.indentation._noise import nuisances
 from calibration.measurements.indentation._record import records_of
 
@@ -91,5 +93,6 @@ def test_the_common_mesh_error_is_smaller_where_the_finer_mesh_reaches() -> None
     (record,) = records_of([trial("p", time, 1e-3 * time, time, depth_sd=0.0)])
     force = np.full(record.points, 2.0)
     curve = made(DEEP, 1e-2 * DEEP, side=0.0, finer=3e-3)
-    together = nuisances([record], [curve], [force], [0.0 * force])[0][:, 0]
+    follow = [partial(at_depths, record, 1.0)]
+    together = nuisances([record], [curve], [force], [0.0 * force], follow, [0.0])[0][:, 0]
     assert together == pytest.approx(2.0 * TOGETHER / np.where(record.depth <= 3e-3, FINE, 1.0) ** 2)

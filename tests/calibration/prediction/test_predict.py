@@ -181,9 +181,10 @@ def test_bad_options_are_one_sentence(
 def test_a_kind_that_does_not_follow_a_part_says_so(measured: Path, tmp_path: Path) -> None:
     data = calibration.read_experiment(measured)
     pressed = replace(data.trials[0], stretch=2.0 - data.trials[0].stretch)  # type: ignore[union-attr, call-arg]
-    with pytest.raises(InputError, match="trial slow: viscosity: expected no compression"):
+    fibres = {"kind": "holzapfel-gasser-ogden", "direction": [1, 0, 0], "k1_Pa": 1e3}
+    with pytest.raises(InputError, match="trial slow: fibres: expected no compression"):
         calibration.predict(
             replace(data, trials=(pressed,)),
-            card(tmp_path / "cards"),
+            card(tmp_path / "cards", fibres=fibres),
             workers=1,
         )

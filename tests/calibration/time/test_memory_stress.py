@@ -13,6 +13,8 @@ from benchmarks.blind.timed.material import Fibres, Prony
 from calibration.experiment.model import CouponMode, CouponTrial
 from calibration.measurements.homogeneous import nominal_stress, predicted
 from calibration.measurements.homogeneous._record import Record, records_of
+from calibration.measurements.indentation._memory_force import loads
+from tisim.course import Course
 from tisim.parts import respond
 
 PRONY = tisim.Prony(fractions=SOLID.prony.fractions, times=SOLID.prony.times)
@@ -37,14 +39,21 @@ def test_the_stress_is_the_blind_laboratorys(mode: CouponMode, course: object) -
     assert np.abs(stress(MATERIAL, made) - made.stress).max() < 5e-4 * np.abs(made.stress).max()
 
 
-@pytest.mark.parametrize("mode", ["uniaxial", "equibiaxial", "planar"])
-@pytest.mark.parametrize("parts", [(), ("viscosity",), ("softening",), ("viscosity", "softening")])
+# the laboratory follows a strip that shears slowly
+_OBLIQUE = [
+    pytest.param(mode, parts, marks=[pytest.mark.slow] if mode == "uniaxial" and parts else [])
+    for mode in ("uniaxial", "equibiaxial", "planar")
+    for parts in ((), ("viscosity",), ("softening",), ("viscosity", "softening"))
+]
+
+
+@pytest.mark.parametrize(("mode", "parts"), _OBLIQUE)
 def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     mode: CouponMode, parts: tuple[str, ...]
 ) -> None:
-    """A strip's two lateral stretches differ, and with viscosity or softening they depend on the past."""
-    # a strip shears where its fibres are oblique, which is refused in a fit
-    angle = 0.0 if mode == "uniaxial" else float(np.radians(35.0))
+    """A strip shears, its two lateral stretches differ, and with viscosity or softening both depend on the
+    past."""
+    angle = float(np.radians(35.0))
     solid = replace(
         SOLID,
         prony=SOLID.prony if "viscosity" in parts else Prony(),
@@ -61,6 +70,52 @@ def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     )
     made = record(trial("t", mode, CYCLES, solid=solid))
     assert np.abs(stress(material, made) - made.stress).max() < 1e-3 * np.abs(made.stress).max()
+
+
+def test_a_strip_with_oblique_fibres_is_tisims() -> None:
+    """It shears, relaxes and softens."""
+    direction = (float(np.cos(0.6)), float(np.sin(0.6)), 0.0)
+    material = tisim.Material(
+        law="ogden",
+        parameters=OGDEN,
+        viscosity=PRONY,
+        softening=MULLINS,
+        fibres=tisim.HolzapfelGasserOgden(direction=direction, k1=1.5e4, k2=0.8),
+    )
+    course = Course(start=1.0, growth=0.3).ramp(to=1.5, duration=5.0).hold(20.0).ramp(to=1.05, duration=5.0)
+    simulated = tisim.simulate(tisim.Coupon(material=material, course=course))
+    assert simulated.nominal_stress is not None
+    assert simulated.time is not None
+    time = np.concatenate([[0.0], simulated.time])
+    stretch = np.array([course.value(t) for t in time])
+    made = CouponTrial(
+        id="t", material="M", mode="uniaxial", stretch=stretch, stress=stretch, time=time, stress_sd=1.0
+    )
+    own = stress(material, record(made))[1:]
+    assert np.abs(own - simulated.nominal_stress).max() < 2e-3 * simulated.nominal_stress.max()
+
+
+def test_a_cylinder_that_its_platens_have_left_recovers_freely() -> None:
+    """At small strain: a spring with the material's memory, which is followed by other code."""
+    time = np.concatenate(
+        [np.linspace(0.0, 1.0, 21), np.linspace(1.5, 11.0, 60), np.linspace(11.1, 13.0, 60)]
+    )
+    strain = 1e-3 * np.interp(time, [0.0, 1.0, 5.0, 5.2, 6.0, 8.0, 13.0], [0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0])
+    trial_ = CouponTrial(
+        id="t", material="M", mode="uniaxial", stretch=1.0 - strain, stress=-strain, time=time, stress_sd=1.0
+    )
+    made = record(trial_)
+    assert made.course is not None
+    plain = tisim.Material(law="ogden", parameters=OGDEN, viscosity=PRONY)
+    pushed = replace(made, course=replace(made.course, pushes=True))
+    pulled, own = stress(plain, made), stress(plain, pushed)
+    met = np.zeros(1)
+    load = loads(PRONY.spectrum(), made.course.time, 1.0 - made.course.stretch, met)[:, 0]
+    expected = -3.0 * SOLID.shear_modulus * made.course.means(load)
+    assert pulled.max() > 0.05 * np.abs(own).max()
+    assert own.max() < 1e-4 * np.abs(own).max()
+    assert np.abs(own - expected).max() < 3e-3 * np.abs(expected).max()
+    assert np.abs(own - np.minimum(pulled, 0.0)).max() > 0.01 * np.abs(own).max()
 
 
 def test_simple_shear_is_tisims() -> None:

@@ -1,0 +1,14 @@
+"""Compression over time: cylinders between free platens along the course of each record, with viscosity and
+softening."""
+
+from __future__ import annotations
+
+from calibration.measurements._over_time import OverTime
+from calibration.measurements.homogeneous.over_time import check, window
+
+OVER_TIME = OverTime(
+    options=("time", "damage"),
+    window=window,
+    check=check,
+    why_not="whose cylinders shear between their platens where fibres are oblique",
+)

@@ -1,0 +1,44 @@
+"""Released bars over time: the free vibration, its damping and the slow way to rest, by one spectrum."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from calibration.errors import InputError
+from calibration.experiment.model import BeamTrial, Experiment
+from calibration.measurements._over_time import OverTime
+from calibration.measurements.release._record import not_swinging, records_of
+from calibration.parameters import ProtocolWindow, part_kind
+
+# Times shorter than this part of a vibration's 1 / (angular frequency) damp it as a viscous liquid would:
+# they cannot be told apart.
+FASTEST = 0.1
+
+
+def window(experiment: Experiment) -> ProtocolWindow:
+    """From what damps the fastest vibration to the end of the longest record."""
+    records = records_of(experiment)
+    return ProtocolWindow(
+        first=FASTEST * min(r.period for r in records) / (2.0 * np.pi),
+        last=max(float(r.time[-1]) - r.release_time for r in records),
+        peaks=0,
+    )
+
+
+def check(experiment: Experiment, specs: Sequence[str]) -> None:
+    """InputError for a bar whose markers show no free vibration."""
+    for t in experiment.trials:
+        why = not_swinging(t, experiment) if isinstance(t, BeamTrial) and specs else ""
+        if why:
+            part = part_kind(specs[0])
+            raise InputError(f"{why}, for --{part.option} {specs[0]}")
+
+
+OVER_TIME = OverTime(
+    options=("time",),
+    window=window,
+    check=check,
+    why_not="since the reduced beam of a release has neither",
+)

@@ -1,0 +1,50 @@
+"""A small part of `studies/release/over_time.py`, where the measured Dragon Skin bar is at hand."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.measurements.objective import ModelObjective
+from calibration.parameters import parametrisation
+from calibration.study import measurements, parts
+from studies.release.over_time import MATERIAL, SPECTRUM, compared, experiment_of, swings
+
+ROOT = Path(__file__).resolve().parents[3]
+MEASURED = Path(os.environ.get("TISIM_MEASURED") or ROOT.parent / "shared" / "measured")
+FOLDER = MEASURED / "real" / "clamped-beam-dragonskin10" / "experiment"
+
+pytestmark = pytest.mark.skipif(
+    not FOLDER.is_dir(), reason="no measured bar: set TISIM_MEASURED to the folder that holds real/"
+)
+
+
+def test_one_spectrum_for_a_run_of_each_load() -> None:
+    """By the reduced beam alone. The frequency with 52 g is predicted: its free vibration is left out."""
+    whole = experiment_of(FOLDER)
+    experiment = replace(whole, trials=tuple(t for t in whole.trials if t.id in ("gravity-a", "load52-a")))
+    law = parts.with_parts(parametrisation("neo-hookean"), (SPECTRUM,), experiment, MATERIAL)
+    (objective,) = measurements(experiment, MATERIAL, law, workers=1).objectives
+    assert isinstance(objective, ModelObjective)
+    objective.model.fem = False
+    u = objective.suggested_start()
+    assert u is not None
+    light, loaded = compared(objective.model, objective.state(u))
+    for run in (light, loaded):
+        assert run.predicted.drop - run.held == pytest.approx(run.measured.drop, rel=0.03)
+        assert run.predicted.ring.frequency == pytest.approx(run.measured.ring.frequency, rel=0.03)
+        assert abs(run.held) < 0.8
+    assert light.predicted.ring.damping_ratio == pytest.approx(light.measured.ring.damping_ratio, rel=0.03)
+
+
+def test_what_hangs_rubs() -> None:
+    """With 52 g the damping ratio grows as the motion dies, as dry friction makes it; by itself the bar's
+    does not. No linear material does that."""
+    for name, rows in swings(experiment_of(FOLDER)):
+        ratios = np.array([ratio for _, _, ratio in rows])
+        grown = ratios[3:].mean() / ratios[:2].mean()
+        assert grown > 1.5 if name.startswith("load52") else grown < 1.05, (name, ratios)

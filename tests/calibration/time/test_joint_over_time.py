@@ -1,0 +1,101 @@
+"""A coupon and an indentation in one fit over time. The indentation is a ball on a half-space, in loading and
+holds by the hereditary integral, its elastic curve Hertz's in place of simulations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from test_kinds_over_time import experiment, poke
+from timed_coupons import REST, trial
+
+from benchmarks.blind.timed.material import Prony, Solid
+from calibration.experiment.model import PokeTrial
+from calibration.inference import Problem, guess, identify, polish
+from calibration.measurements.indentation._curve import Curve
+from calibration.measurements.indentation._curve_cache import CurveCache, CurveRequest
+from calibration.parameters import parametrisation
+from calibration.study import parts
+from calibration.study.measurements import measurements
+
+Array = NDArray[np.float64]
+SHEAR = 2e4
+PRONY = Prony(fractions=(0.4, 0.25), times=(1.5, 40.0))
+RADIUS = 4e-3
+TRUTH = {
+    "shear_modulus": SHEAR,
+    "prony_fraction_1": 0.4,
+    "prony_time_1": 1.5,
+    "prony_fraction_2": 0.25,
+    "prony_time_2": 40.0,
+}
+
+
+def hertz(depth: Array) -> Array:
+    """Force over the shear modulus of an incompressible half-space [m2]."""
+    return np.asarray(16.0 / 3.0 * np.sqrt(RADIUS) * np.maximum(depth, 0.0) ** 1.5)
+
+
+def simulated(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
+    del self
+    depth = np.linspace(2e-5, 1.5e-3, 60)
+    made = Curve(
+        depth=depth,
+        along=hertz(depth),
+        across=np.zeros((60, 2)),
+        reached=2e-3,
+        finer=2e-3,
+        round_tip=True,
+        status="converged",
+        core_seconds=0.0,
+    )
+    return [made for _ in requests]
+
+
+def pushed() -> PokeTrial:
+    """To 0.5 mm, a hold, to 1 mm, a longer one."""
+    made = poke(ramp=1.0, hold=1.0)
+    time = np.concatenate([np.arange(0.0, 8.0, 0.1), np.arange(8.0, 130.0, 0.5)])
+    corners = ([0.0, 1.0, 6.0, 7.0, 130.0], [0.0, 0.5e-3, 0.5e-3, 1e-3, 1e-3])
+    fine = np.linspace(0.0, 7.0, 14001)
+    elastic = hertz(np.interp(fine, *corners))
+    middle, change = 0.5 * (fine[1:] + fine[:-1]), np.diff(elastic)
+    force = hertz(np.interp(time, *corners))
+    for fraction, tau in zip(PRONY.fractions, PRONY.times, strict=True):
+        since = time[:, None] - middle
+        force = force + fraction * np.where(since > 0.0, np.exp(-np.maximum(since, 0.0) / tau), 0.0) @ change
+    force = SHEAR * force
+    sd = 0.004 * float(force.max())
+    noise = sd * np.random.default_rng(4).standard_normal(time.size)
+    record = replace(made.record, time=time, depth=np.interp(time, *corners), force=force + noise)
+    return replace(made, record=record, force_sd=sd)
+
+
+def test_both_together_find_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CurveCache, "fetch", simulated)
+    solid = Solid(mu=(SHEAR,), alpha=(2.0,), prony=PRONY)
+    pulled = trial("c", "uniaxial", REST.ramp(1.3, 0.1).hold(20.0), solid=solid, noise=0.005, seed=3)
+    found = {}
+    for name, trials in {"poke": (pushed(),), "both": (pushed(), pulled)}.items():
+        own = experiment(*trials)
+        parts.check(own, ["M"], ("prony:2",))
+        law = parts.with_parts(parametrisation("neo-hookean"), ("prony:2",), own, "M")
+        data = measurements(own, "M", law, workers=1)
+        assert len(data.objectives) == len(trials)
+        problem = Problem(parametrisation=data.law, objectives=data.objectives)
+        start = guess(problem)
+        assert start is not None
+        end = polish(problem, start, max_steps=40)
+        chi2 = float(end.residuals @ end.residuals) / problem.points
+        assert 0.7 < chi2 < 1.3
+        known = identify(data.law, end.u, end.jacobian, reduced_chi2=chi2)
+        found[name] = {e.name: e for e in known.estimates}
+        inside = [found[name][p].low <= truth <= found[name][p].high for p, truth in TRUTH.items()]
+        assert sum(inside) >= len(inside) - 1
+        for p, truth in TRUTH.items():
+            assert found[name][p].value == pytest.approx(truth, rel=0.15), (name, p)
+    width = {n: np.log(e["shear_modulus"].high / e["shear_modulus"].low) for n, e in found.items()}
+    assert width["both"] < 0.6 * width["poke"]  # the mesh error is common to all forces of an indenter
