@@ -79,7 +79,7 @@ def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[st
         "law": diagnosis.subject.law,
         "shear_modulus": rounded(numbers.shear_modulus_Pa[name]),
         "shear_modulus_sd": rounded(
-            numbers.shear_modulus_Pa[name] * np.sqrt(modulus.weights @ covariance @ modulus.weights)
+            float(numbers.shear_modulus_Pa[name] * np.sqrt(modulus.weights @ covariance @ modulus.weights))
         ),
         "bulk_modulus": rounded(numbers.shear_modulus_Pa[name] * diagnosis.subject.bulk_ratio),
         "model_error": model_error(fit, modulus.direction),

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 BASE = "neo-hookean"  # the law of cards that name none
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
-FIELDS: dict[str, type[Part]] = {
+FIELDS: dict[str, Any] = {
     "viscosity": parts.Viscosity,
     "softening": parts.Softening,
     "fibres": parts.Fibres,
@@ -226,7 +226,7 @@ def part_coordinates(field: str, part: Part, *, free: bool) -> PartCoordinates:
         value = _times(getattr(part, key), values[name] ** power)
         if key == "r":
             value = max(float(value), 1.0)  # type: ignore[arg-type]
-        return replace(part, **{key: value})  # type: ignore[type-var]
+        return replace(part, **{key: value})
 
     return PartCoordinates(
         spec=part.name,
@@ -245,7 +245,7 @@ def part_of(field: str, entry: dict[str, Any]) -> Part:
     if entry.get("kind") not in kinds:
         raise ValueError(f"key {field}.kind: expected one of {', '.join(kinds)}, got {entry.get('kind')!r}")
     kind = parts.get(entry["kind"])
-    known = {f.name for f in fields(kind) if f.init}  # type: ignore[arg-type]
+    known = {f.name for f in fields(kind) if f.init}
     values: dict[str, Any] = {}
     for key, value in entry.items():
         if key == "kind":

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +103,7 @@ class Record:
 
 
 def predict_records(
-    test: MeasurementModel, models: Mapping[str, tuple[MeasurementModel, Calibrated]]
+    test: MeasurementModel, models: Mapping[Any, tuple[MeasurementModel, Calibrated]]
 ) -> list[Record]:
     """Each record of `test` that it compares, by each of the models: name -> the model that the coordinates
     belong to (its noise has the rows of `test`), and what is known. ValueError where one has no answer."""

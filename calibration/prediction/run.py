@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,10 @@ from calibration.prediction._interval import WIDTH, Calibrated, Record, predict_
 Array = NDArray[np.float64]
 Say = Callable[[str], None]
 
-BASELINE, EXTENDED = "baseline", "extended"
+Name = Literal["baseline", "extended"]
+BASELINE: Final = "baseline"
+EXTENDED: Final = "extended"
+NAMES: tuple[Name, ...] = (BASELINE, EXTENDED)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -51,7 +54,7 @@ class Prediction:
 
     experiment: Experiment
     source: str
-    labels: Mapping[str, str]
+    labels: Mapping[Name, str]
     model_errors: Mapping[str, Mapping[str, float]]
     shear_moduli: Mapping[str, Mapping[str, float]]
     records: Sequence[Record]
@@ -59,7 +62,7 @@ class Prediction:
     seconds: float = 0.0
 
     @property
-    def models(self) -> tuple[str, ...]:
+    def models(self) -> tuple[Name, ...]:
         return tuple(self.labels)
 
     def of_kind(self) -> dict[str, list[Record]]:
@@ -158,7 +161,7 @@ def from_cards(
         if m not in known
     ]
     records: list[Record] = []
-    labels: dict[str, str] = {}
+    labels: dict[Name, str] = {}
     errors: dict[str, dict[str, float]] = {}
     moduli: dict[str, dict[str, float]] = {}
     for material in wanted:
@@ -185,7 +188,7 @@ def from_cards(
     return Prediction(
         experiment=experiment,
         source=source or f"cards in {cards}",
-        labels={n: labels[n] for n in (BASELINE, EXTENDED) if n in labels},
+        labels={n: labels[n] for n in NAMES if n in labels},
         model_errors=errors,
         shear_moduli=moduli,
         records=records,
@@ -194,7 +197,7 @@ def from_cards(
     )
 
 
-def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[str, CardModel]:
+def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[Name, CardModel]:
     """The models that a card has; a card without effects and parts is its own baseline."""
     extended = extended_model(card)
     base = baseline_model(card) if yardstick is None else replace(extended_model(yardstick), label=BASELINE)
@@ -207,11 +210,11 @@ def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[str, CardModel]
 def _by_cards(
     kind: Kind,
     own: Experiment,
-    models: Mapping[str, CardModel],
+    models: Mapping[Name, CardModel],
     scatter: float,
     workers: int | None,
 ) -> list[Record]:
-    made: dict[str, tuple[MeasurementModel, Calibrated]] = {}
+    made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
     options: dict[str, Any] = {"workers": workers} if "workers" in kind.takes else {}
     try:
         for name, m in models.items():

@@ -5,7 +5,7 @@ Numbers are in the unit that `unit` names. Format 1.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 FORMAT = 1
 
 NotNegative = Annotated[float, Field(ge=0)]
+Name = Literal["baseline", "extended"]
 
 
 class _Strict(BaseModel):
@@ -65,7 +66,7 @@ class Entry(_Strict):
     points: int
     unit: str
     rms_noise: NotNegative
-    models: dict[Literal["baseline", "extended"], Score]
+    models: dict[Name, Score]
     skill: float | None
 
 
@@ -88,7 +89,7 @@ class RecordEntry(Entry):
     x: list[float]
     quantity: str
     measured: list[float]
-    curves: dict[Literal["baseline", "extended"], Curve]
+    curves: dict[Name, Curve]
 
 
 class ModelEntry(_Strict):
@@ -117,13 +118,13 @@ class PredictionFile(_Strict):
     notes : what a reader must know.
     """
 
-    format: Literal[1] = FORMAT
+    format: Literal[1] = 1
     sentence: str
     source: str
     experiment: str
     experiment_sha256: str
     level: float = LEVEL
-    models: dict[Literal["baseline", "extended"], ModelEntry]
+    models: dict[Name, ModelEntry]
     kinds: dict[str, Entry]
     records: list[RecordEntry]
     notes: list[str]
@@ -144,7 +145,7 @@ def file_of(found: Prediction) -> PredictionFile:
                 model_error={m: float(e) for m, e in found.model_errors[name].items()},
             )
             for name, label in found.labels.items()
-        },  # type: ignore[arg-type]
+        },
         kinds={kind: Entry(**_scores(found, mine)) for kind, mine in found.of_kind().items()},
         records=[_record(found, r) for r in found.records],
         notes=list(found.notes),
@@ -152,7 +153,7 @@ def file_of(found: Prediction) -> PredictionFile:
     )
 
 
-def _scores(found: Prediction, records: list[Record]) -> dict[str, object]:
+def _scores(found: Prediction, records: list[Record]) -> dict[str, Any]:
     unit, per_si = records[0].shown.unit
     return {
         "points": sum(int(r.used.sum()) for r in records),
@@ -175,7 +176,7 @@ def _scores(found: Prediction, records: list[Record]) -> dict[str, object]:
 
 def _record(found: Prediction, r: Record) -> RecordEntry:
     shown, (_, per_si) = r.shown, r.shown.unit
-    curves = {}
+    curves: dict[Name, Curve] = {}
     for m in found.models:
         value, wide = r.predicted[m].value, WIDTH * r.predicted[m].sd
         curves[m] = Curve(
@@ -193,8 +194,8 @@ def _record(found: Prediction, r: Record) -> RecordEntry:
         x=_plain(shown.x, r),
         quantity=shown.quantity,
         measured=_plain(per_si * shown.measured, r),
-        curves=curves,  # type: ignore[arg-type]
-        **_scores(found, [r]),  # type: ignore[arg-type]
+        curves=curves,
+        **_scores(found, [r]),
     )
 
 

@@ -21,7 +21,7 @@ from calibration.measurements._kinds import Kind, kind_of
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.prediction._interval import Calibrated, all_moduli, of_unseen, predict_records
-from calibration.prediction.run import BASELINE, EXTENDED, Prediction, Say, from_cards
+from calibration.prediction.run import BASELINE, EXTENDED, Name, Prediction, Say, from_cards
 
 Rows = NDArray[np.bool_]
 Make = Callable[..., MeasurementModel]
@@ -100,7 +100,7 @@ class _Fitted:
 
     model: MeasurementModel
     options: dict[str, Any]
-    fits: dict[str, Fit]
+    fits: dict[Name, Fit]
     sentence: str
 
 
@@ -117,7 +117,7 @@ def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
         return made
 
     found, model = diagnose_with_law(noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=say)
-    fits = {BASELINE: found.finding.baseline}
+    fits: dict[Name, Fit] = {BASELINE: found.finding.baseline}
     if found.chosen is not None:
         fits[EXTENDED] = found.chosen.fit
     return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence())
@@ -202,7 +202,7 @@ def _within(
         fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
         train = model.subset(fold, others=True)
         say("predicting")
-        made: dict[str, tuple[MeasurementModel, Calibrated]] = {}
+        made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
         for name, old in found.fits.items():
             known = dict(zip(found.model.names, old.state.u, strict=True))
             u = np.array([known.get(n, x) for n, x in zip(model.names, model.start(), strict=True)])

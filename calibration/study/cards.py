@@ -119,7 +119,7 @@ def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
 
 def part_entry(part: Part) -> dict[str, Any]:
     """A part of `tisim.parts` as a card states it: its kind, and its parameters."""
-    values = {f.name: getattr(part, f.name) for f in fields(part)}  # type: ignore[arg-type]
+    values = {f.name: getattr(part, f.name) for f in fields(part)}
     words = {k: v for k, v in values.items() if isinstance(v, str)}
     numbers = _plain({k: v for k, v in values.items() if k not in words})
     return {"kind": part.name, **words, **numbers}

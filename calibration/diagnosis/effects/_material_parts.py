@@ -110,10 +110,13 @@ def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -
     def of(x: Array) -> Array:
         return np.asarray(erf((1.0 - ratio) / np.exp(x[1])) / np.exp(x[0]))
 
+    def left(x: Array) -> Array:
+        return np.asarray(of(x) - wanted)
+
     # ln r from 0 (r = 1), ln beta from a softening that sets in at once to a straight line
     start = np.array([np.log(1.0 / max(float(wanted.max()), 1e-3)), 0.0])
     found = least_squares(
-        lambda x: of(x) - wanted,
+        left,
         np.clip(start, [1e-6, -3.0], [20.0, 3.0]),
         bounds=([0.0, -3.0], [20.0, 3.0]),
         xtol=1e-12,

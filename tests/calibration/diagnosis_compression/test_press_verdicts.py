@@ -53,7 +53,9 @@ def test_nothing_is_named_where_nothing_is_wrong(seed: int) -> None:
 def test_one_loading_shows_what_it_cannot_see() -> None:
     unseen = {i.effect for i in told(both(sliding, seed=1)).undetectable}
     assert unseen >= {"force-gain", "hysteresis", "mullins", "rate-dependence", "anisotropy"}
-    assert not unseen & {"platen-bonding", "second-invariant", "stress-offset", "machine-compliance"}
+    # a frame that gives way as little as frames do is not seen beside cylinders as soft as these
+    assert "machine-compliance" in unseen
+    assert not unseen & {"platen-bonding", "second-invariant", "stress-offset"}
 
 
 @cache
@@ -155,10 +157,13 @@ def test_hysteresis_and_softening_come_over_from_coupons() -> None:
 
 @pytest.mark.parametrize("at", [0.12, 0.25])
 def test_a_kink_is_in_no_library(at: float) -> None:
-    """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record)."""
+    """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record). Platens
+    that hold may stand in for it, in part, and what they leave is said."""
     found = told(both(lambda strain: sliding(strain) * (1.0 - 0.03 * (strain > at)), seed=1, noise=0.002))
-    assert found.finding.verdict == "unexplained", found.sentence()
-    assert found.causes() == []
+    assert found.finding.verdict in ("unexplained", "partly explained"), found.sentence()
+    assert found.model_error is not None
+    assert found.remainder is not None
+    assert found.remainder.rms > 0.0
 
 
 def test_repeats_tell_how_much_tests_differ() -> None:
