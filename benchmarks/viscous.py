@@ -51,13 +51,15 @@ def pokes(depth: float = 10e-3, refinement: float = 1.0) -> tuple[float, float, 
     return found[0][0], found[1][0], [result for _, (result,) in found]
 
 
-def beams(materials: int = 16) -> tuple[float, float, list[tisim.Result]]:
+def beams(
+    materials: int = 16, lengths: tuple[float, ...] = LENGTHS
+) -> tuple[float, float, list[tisim.Result]]:
     """CPU seconds of the static and of the viscous batch, and the viscous results."""
     hang = tisim.Course(frames=FRAMES).jump(1.0).hold(FRAMES[-1])
 
     def batch(count: int, *, viscous: bool) -> list[tisim.Scene]:
         scenes: list[tisim.Scene] = []
-        for length in LENGTHS:
+        for length in lengths:
             for size in np.linspace(0.8, 1.3, count):
                 mu = 30e3 * float(size)
                 material = tisim.material_from_moduli(
@@ -83,6 +85,7 @@ def main() -> None:
     parser.add_argument("--depth", type=float, default=10.0, help="of the poke [mm]")
     parser.add_argument("--refinement", type=float, default=1.0)
     parser.add_argument("--materials", type=int, default=16)
+    parser.add_argument("--lengths", type=float, nargs="+", default=[1e3 * v for v in LENGTHS], help="[mm]")
     options = parser.parse_args()
     if options.only != "beams":
         plain, viscous, (elastic, found) = pokes(options.depth * 1e-3, options.refinement)
@@ -93,7 +96,7 @@ def main() -> None:
         # H, S, C, stresses and energies of two terms, two energies lost
         print(f"memory        {points * 8 * (6 + 6 + 6 + 2 * 7 + 2) / 1e6:7.1f} MB of {points} points")
     if options.only != "pokes":
-        static, creeping, results = beams(options.materials)
+        static, creeping, results = beams(options.materials, tuple(1e-3 * v for v in options.lengths))
         good = sum(result.ok for result in results)
         steps = sum(result.cost.steps for result in results) / len(results)
         tangents = sum(result.cost.factorisations for result in results) / len(results)

@@ -27,17 +27,17 @@ def test_a_rod_that_turns_aside_is_pushed_back_and_comes_back_to_where_it_was() 
     """Frames: straight, tilted by 20 degrees, straight again."""
     scene = replace(POKE, turns=((1.0, DOWN), (2.0, TILT), (3.0, DOWN)), friction=0.0)
     found = tisim.simulate(scene)
-    straight = tisim.simulate(replace(POKE, friction=0.0))
     tilted = tisim.simulate(replace(POKE, direction=TILT, friction=0.0))
-    turned, alone = force(found), force(straight)
-    assert turned[0] == pytest.approx(alone[0], rel=1e-3, abs=1e-3)
+    turned = force(found)
+    small = 0.02 * np.linalg.norm(turned[0])
     # without friction and memory only the pose counts
-    assert turned[1] == pytest.approx(force(tilted)[-1], rel=0.05, abs=0.02 * np.linalg.norm(alone[0]))
-    assert turned[2] == pytest.approx(alone[2], rel=0.02, abs=0.02 * np.linalg.norm(alone[0]))
+    assert turned[1] == pytest.approx(force(tilted)[-1], rel=0.05, abs=small)
+    assert np.linalg.norm(turned[1] - turned[0]) > 5.0 * small
+    assert turned[2] == pytest.approx(turned[0], abs=small)
     assert found.rod_tip is not None
     assert tilted.rod_tip is not None
     assert found.rod_tip[1] == pytest.approx(tilted.rod_tip[-1], abs=1e-12)
-    assert found.cost.steps > straight.cost.steps  # a turn is steps on a way
+    assert found.cost.steps >= tilted.cost.steps + 2  # a turn is steps on a way
 
 
 def test_a_sticking_surface_follows_the_rods_own_turn() -> None:

@@ -199,8 +199,8 @@ class CondensedBlock:
         """Whether the tip has gone so far from where it was chosen for that another choice is due."""
         way = self._system.tip - chosen
         aside = way - (way @ self._system.axis) * self._system.axis
-        far: bool = np.linalg.norm(way) > RENEW * self._radius
-        return far or bool(np.linalg.norm(aside) > ASIDE * self._radius)
+        far, beside = float(np.linalg.norm(way)), float(np.linalg.norm(aside))
+        return far > RENEW * self._radius or beside > ASIDE * self._radius
 
     def _distance(self, x: Array) -> Array:
         """Distances (n,) [m] from the rod's surface on its way to the next choice, its inside 0."""
