@@ -23,18 +23,25 @@ hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
 # pytest-xdist hands out whole files: a long one that comes late would leave the other processes idle
 LONG = (
-    "blind/test_beams.py",
-    "blind/test_indentation.py",
-    "factory/test_interruption.py",
-    "calibration/study/test_fit_command.py",
-    "calibration/metrics/test_metrics_distance.py",
     "packaging/test_pages.py",
-    "factory/test_adding.py",
+    "blind/test_beams.py",
+    "calibration/study/test_fit_command.py",
+    "factory/test_interruption.py",
+    "calibration/indentation/test_poke_objective.py",
+    "tisim/test_parts_point.py",
+    "tisim/test_assembly.py",
+    "tisim/test_law_registry.py",
+    "tisim/test_dynamics.py",
+    "calibration/photo/test_trace_photo.py",
+    "calibration/compression/test_press_fit.py",
+    "calibration/metrics/test_metrics_distance.py",
     "learn/test_evaluation.py",
     "learn/test_training.py",
     "learn/test_pokes.py",
-    "calibration/photo/test_trace_photo.py",
-    "calibration/indentation/test_poke_objective.py",
+    "blind/test_coupons.py",
+    "factory/test_damage_store.py",
+    "factory/test_timed.py",
+    "factory/test_adding.py",
 )
 
 

@@ -35,8 +35,9 @@ NOTHING = [
     pytest.param("density", ALL, marks=pytest.mark.slow),
 ]
 HIDDEN = [
-    ("residual-curvature", FEW),
     ("creep", FEW),
+    # tests/packaging diagnoses a bench with residual curvature in every run, as the README does
+    pytest.param("residual-curvature", FEW, marks=pytest.mark.slow),
     *(
         pytest.param(name, ALL, marks=pytest.mark.slow)
         for name in (

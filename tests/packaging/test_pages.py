@@ -126,6 +126,15 @@ def test_the_tutorial_finds_what_was_put_in(example: str, diagnosis: str, scratc
     assert causes in named, (found["verdict"], named)
 
 
+def test_the_readme_finds_what_the_bench_was_made_with(scratch: Path) -> None:
+    """After its blocks have run."""
+    found = json.loads((scratch / "diagnosed" / "diagnosis.json").read_text(encoding="utf-8"))
+    truth = yaml.safe_load((ROOT / "datasets/measured/bench/bent-in-the-mould/truth.yaml").read_text())
+    assert list(truth["effects"]) == ["residual_curvature"]
+    (cause,) = found["causes"]
+    assert (found["verdict"], cause["effect"]) == ("found", "residual-curvature")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_whole_page_runs(page: str, tmp_path: Path) -> None:
