@@ -19,17 +19,21 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calibration.api import diagnose, fit, read_experiment, reconstruct
+    from calibration.api import diagnose, fit, predict, read_experiment, reconstruct
+    from calibration.diagnosis.file import read_diagnosis
     from calibration.errors import InputError
-    from calibration.results import DiagnosisResult, Fits, Reconstruction
+    from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 
 __all__ = [
     "DiagnosisResult",
     "Fits",
     "InputError",
+    "PredictionResult",
     "Reconstruction",
     "diagnose",
     "fit",
+    "predict",
+    "read_diagnosis",
     "read_experiment",
     "reconstruct",
 ]
@@ -39,9 +43,12 @@ _HOME = {
     "DiagnosisResult": "calibration.results",
     "Fits": "calibration.results",
     "InputError": "calibration.errors",
+    "PredictionResult": "calibration.results",
     "Reconstruction": "calibration.results",
     "diagnose": "calibration.api",
     "fit": "calibration.api",
+    "predict": "calibration.api",
+    "read_diagnosis": "calibration.diagnosis.file",
     "read_experiment": "calibration.api",
     "reconstruct": "calibration.api",
 }

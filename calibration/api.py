@@ -1,4 +1,4 @@
-"""The Python interface: `calibration.read_experiment`, `reconstruct`, `fit` and `diagnose`.
+"""The Python interface: `calibration.read_experiment`, `reconstruct`, `fit`, `diagnose` and `predict`.
 
 >>> import calibration
 >>> experiment = calibration.read_experiment(folder)
@@ -23,14 +23,15 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.progress import OnProgress, Progress, to_log
-from calibration.results import DiagnosisResult, Fits, Reconstruction
+from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 from tisim import laws
 from tisim.parallel.pool import cores
 
@@ -39,13 +40,16 @@ if TYPE_CHECKING:
     from calibration.study import Task
 
 
-def read_experiment(folder: str | Path) -> Experiment:
+def read_experiment(folder: str | Path, *, leave_out_rows: bool = False) -> Experiment:
     """Read and check an experiment.
 
     Parameters
     ----------
     folder : path
         Holds experiment.yaml (format 1) and the files that it names.
+    leave_out_rows : bool
+        Go on without rows of homogeneous tests at which the clock runs backwards; `Experiment.notes` says
+        which. An error otherwise.
 
     Returns
     -------
@@ -57,7 +61,7 @@ def read_experiment(folder: str | Path) -> Experiment:
     InputError
         One sentence that names the file, the key or line, and what was expected.
     """
-    return read(Path(folder))
+    return read(Path(folder), leave_out_rows=leave_out_rows)
 
 
 def fit(
@@ -266,7 +270,9 @@ def diagnose(
     domain: str | None = None,
     without: Sequence[str] = (),
     simulator: str = "ours",
+    law: str = "auto",
     gain: bool = True,
+    noise: str = "stated",
     seed: int = 0,
     workers: int | None = None,
     on_progress: OnProgress | None = None,
@@ -282,8 +288,14 @@ def diagnose(
         Effects to leave out of the catalogue.
     simulator : str
         Simulator whose own faults are looked for as well.
+    law : str
+        Of the baseline, where the kind has a choice: "auto" for the simplest one and, where no cause explains
+        the data beside it, the one that predicts best as a cause of its own; or a name, with the terms of a
+        series law ("ogden:2").
     gain : bool
         Measure the improvement on held-out data.
+    noise : str
+        "stated", or "data" where the scatter of the data shall replace a stated noise that it contradicts.
     seed : int
         Of the bootstrap.
     workers : int, optional
@@ -301,21 +313,132 @@ def diagnose(
         An argument or the experiment cannot be used, or the baseline has no equilibrium anywhere.
     """
     from calibration.diagnosis import Rules, model_of
-    from calibration.diagnosis import diagnose as search
+    from calibration.diagnosis.laws import diagnose_with_law
 
+    if seed < 0:
+        raise OptionError("seed", seed, "expected 0 or more")
+    if noise not in ("stated", "data"):
+        raise OptionError("noise", noise, "expected stated or data")
+    processes(workers)
+    data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    report = on_progress or to_log
+    make = partial(model_of, data, kind=domain, without=list(without), simulator=simulator, workers=workers)
+    try:
+        found, model = diagnose_with_law(
+            make,
+            law=law,
+            rules=Rules(seed=seed),
+            gain=gain,
+            noise="data" if noise == "data" else "stated",
+            on_progress=lambda text: report(Progress(message=text)),
+        )
+    except ValueError as error:  # no equilibrium of the baseline anywhere
+        raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error
+    return DiagnosisResult(found, data, model)
+
+
+def predict(
+    experiment: str | Path | Experiment,
+    cards: str | Path | None = None,
+    *,
+    calibrate: str | None = None,
+    predict: str | None = None,
+    baseline: str | Path | None = None,
+    domain: str | None = None,
+    law: str = "auto",
+    extend: Sequence[str] = (),
+    specimen_scatter: float | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    on_progress: OnProgress | None = None,
+) -> PredictionResult:
+    """Measured against predicted, for trials that no model was fitted to.
+
+    Parameters
+    ----------
+    experiment : path or Experiment
+    cards : path, optional
+        Folder of material cards (or one), by which all trials are predicted; in place of `calibrate`.
+    calibrate, predict : str, optional
+        Trials to fit, and trials to predict: ids with * and ?, or material=, specimen=, length= (of a beam in
+        mm) or mode= (of a coupon) with a value, several by commas. Beside `cards`, `predict` alone: the
+        trials that the cards predict.
+    baseline : path, optional
+        Cards that stand beside `cards` in place of the baseline that they state.
+    domain : str, optional
+        Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
+    law : str
+        Of the baseline beside which a fit looks for causes, as in `diagnose`.
+    extend : sequence of str
+        Effects of the extension beside `calibrate`, each in all trials, in place of a search for causes.
+    specimen_scatter : float, optional
+        Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
+        specimen: 0.15 where left out.
+    seed : int
+        Of the diagnosis.
+    workers : int, optional
+        Processes; all cores where left out.
+    on_progress : callable, optional
+        Called with a `calibration.progress.Progress`.
+
+    Returns
+    -------
+    PredictionResult
+
+    Raises
+    ------
+    InputError
+        An argument, a card or the experiment cannot be used.
+    """
+    from calibration.prediction import from_cards, from_trials
+    from calibration.prediction._select import chosen, split
+
+    if (cards is None) == (calibrate is None):
+        raise OptionError("calibrate", calibrate, "expected either cards, or the trials to fit")
+    if calibrate is not None and predict is None:
+        raise OptionError("predict", None, "expected the trials to predict, beside --calibrate")
+    if cards is not None and extend:
+        raise OptionError("extend", ", ".join(extend), "expected without cards, which state their effects")
+    if calibrate is not None and baseline is not None:
+        raise OptionError("baseline", baseline, "expected with cards only, a fit has its own")
+    if specimen_scatter is not None and not 0.0 <= specimen_scatter < 2.0:
+        raise OptionError("specimen_scatter", specimen_scatter, "expected a number from 0 to 2")
     if seed < 0:
         raise OptionError("seed", seed, "expected 0 or more")
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
-    model = model_of(data, kind=domain, without=list(without), simulator=simulator, workers=workers)
-    try:
-        found = search(
-            model, rules=Rules(seed=seed), gain=gain, on_progress=lambda text: report(Progress(message=text))
+
+    def say(text: str) -> None:
+        report(Progress(message=text))
+
+    if calibrate is not None and predict is not None:
+        fitted, wanted = split(data, calibrate, predict)
+        found = from_trials(
+            data,
+            fitted,
+            wanted,
+            domain=domain,
+            law=law,
+            extend=tuple(extend),
+            seed=seed,
+            workers=workers,
+            say=say,
         )
-    except ValueError as error:  # no equilibrium of the baseline anywhere
-        raise InputError(f"{data.folder}: the baseline cannot be calibrated: {error}") from error
-    return DiagnosisResult(found, data, model)
+        return PredictionResult(found)
+    assert cards is not None
+    some = data if predict is None else replace(data, trials=chosen(data, predict, "predict"))
+    return PredictionResult(
+        from_cards(
+            Path(cards),
+            some,
+            baseline=None if baseline is None else Path(baseline),
+            domain=domain,
+            specimen_scatter=specimen_scatter,
+            workers=workers,
+            say=say,
+        )
+    )
 
 
 def reconstruct(

@@ -1,4 +1,4 @@
-"""Shared by the four commands of calibration: options, progress, tables, error sentences, exit codes."""
+"""Shared by the commands of calibration: options, progress, tables, error sentences, exit codes."""
 
 from __future__ import annotations
 
@@ -30,12 +30,21 @@ if TYPE_CHECKING:
 _USUAL = 45
 
 # package: the extra of tisim that brings it
-EXTRAS = {"cv2": "photo", "trimesh": "mesh", "rtree": "mesh", "manifold3d": "mesh", "pytetwild": "mesh"}
+EXTRAS = {
+    "cv2": "photo",
+    "pooch": "fetch",
+    "trimesh": "mesh",
+    "rtree": "mesh",
+    "manifold3d": "mesh",
+    "pytetwild": "mesh",
+}
 
 VERBS = {
     "reconstruct": "photographs to outlines, mid lines and bodies",
     "fit": "material parameters of constitutive laws, with error bars, cards and a report",
     "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",
+    "predict": "measured against predicted for trials that were not used, with intervals and skill",
+    "fetch": "public measurements from their sources, as experiments",
     "table": "the paper's table of calibration results for an experiment",
 }
 

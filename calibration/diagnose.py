@@ -53,7 +53,24 @@ def main(
     simulator: Annotated[
         str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
     ] = "ours",
+    law: Annotated[
+        str,
+        typer.Option(
+            help="Law of the baseline, of homogeneous tests: auto, or a name with the terms of a series law"
+            " (ogden:2)."
+        ),
+    ] = "auto",
     gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
+    leave_out_rows: Annotated[
+        bool,
+        typer.Option(help="Go on without rows of homogeneous tests at which the clock runs backwards."),
+    ] = False,
+    noise: Annotated[
+        str,
+        typer.Option(
+            help="Noise where the data contradict what the lab states: stated, or data (their own scatter)."
+        ),
+    ] = "stated",
     seed: Seed = 0,
     workers: Workers = None,
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
@@ -65,7 +82,7 @@ def main(
         from calibration import api
 
         folder = out or Path("diagnoses") / experiment.resolve().name
-        data = api.read_experiment(experiment)
+        data = api.read_experiment(experiment, leave_out_rows=leave_out_rows)
         _check_folder(folder, overwrite)
         begun = time.monotonic()
 
@@ -79,7 +96,9 @@ def main(
             domain=domain,
             without=names_in(without),
             simulator=simulator,
+            law=law,
             gain=gain,
+            noise=noise,
             seed=seed,
             workers=workers,
             on_progress=show,

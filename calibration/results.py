@@ -16,6 +16,7 @@ from calibration.study.cards import best, usable, write_card
 
 if TYPE_CHECKING:
     from calibration.diagnosis import Diagnosis
+    from calibration.prediction import Prediction
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -188,6 +189,76 @@ class DiagnosisResult:
             + table
             + (f"<p>Next: {escape(following)}.</p>" if following else "")
         )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PredictionResult:
+    """Measured against predicted, for trials that no model was fitted to.
+
+    Attributes
+    ----------
+    prediction : calibration.prediction.Prediction
+        Records, each with its predictions and their standard deviations by source.
+    """
+
+    prediction: Prediction
+
+    @property
+    def sentence(self) -> str:
+        """What came out."""
+        return self.prediction.sentence()
+
+    @property
+    def skill(self) -> dict[str, float | None]:
+        """Of the extension over the baseline, by kind of measurement; None where there is none."""
+        return {k: self.prediction.skill(r) for k, r in self.prediction.of_kind().items()}
+
+    @property
+    def coverage(self) -> dict[str, dict[str, float]]:
+        """Fraction of the points within their 95 % intervals, by kind of measurement and model."""
+        p = self.prediction
+        return {k: {m: p.coverage(r, m) for m in p.models} for k, r in p.of_kind().items()}
+
+    def write(self, folder: str | Path) -> Path:
+        """Write report.html, prediction.png and, last, prediction.json; the path of the page."""
+        from calibration.prediction.page import write_page
+        from calibration.prediction.schema import file_of
+
+        folder = Path(folder)
+        page, *_ = write_page(self.prediction, folder)
+        part = folder / "prediction.json.part"
+        part.write_text(file_of(self.prediction).model_dump_json(indent=1) + "\n", encoding="utf-8")
+        part.replace(folder / "prediction.json")
+        return page
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """One row a record, in the order of `head`."""
+        p = self.prediction
+        rows = []
+        for r in p.records:
+            unit, per_si = r.shown.unit
+            each = [f"{per_si * p.rms([r], m):.3g}" for m in p.models]
+            inside = [f"{p.coverage([r], m):.0%}" for m in p.models]
+            rows.append((r.name, r.kind, unit, f"{per_si * p.noise([r]):.3g}", *each, *inside))
+        return rows
+
+    def head(self) -> tuple[str, ...]:
+        """Headings of `rows`."""
+        models = self.prediction.models
+        return (
+            "record",
+            "kind",
+            "unit",
+            "noise",
+            *(f"rms, {m}" for m in models),
+            *(f"within 95 %, {m}" for m in models),
+        )
+
+    def __repr__(self) -> str:
+        return "\n".join([self.sentence, *("  " + ", ".join(row) for row in self.rows())])
+
+    def _repr_html_(self) -> str:
+        return f"<p><strong>{escape(self.sentence)}</strong></p>" + _html_table(self.head(), self.rows())
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -57,6 +57,8 @@ class CardEffect(Strict):
         Correlation of its first parameter with others of the same fit.
     gain : dict, optional
         Improvement on held-out data.
+    becomes : {"viscosity", "softening", "fibres", "law"}, optional
+        What of the card it is. Where that is a part, the part is taken over, and not the amplitude.
     experiment_sha256 : str
         Digest of the experiment that it was found in.
     """
@@ -71,6 +73,7 @@ class CardEffect(Strict):
     rivals: tuple[Text, ...] = ()
     correlations: dict[str, float] = Field(default_factory=dict)
     gain: dict[str, float | str | None] | None = None
+    becomes: Literal["viscosity", "softening", "fibres", "law"] | None = None
     experiment_sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 
     @field_validator("belongs_to")
@@ -89,6 +92,8 @@ class CardEffect(Strict):
             return "belongs to the beam's form"
         if self.scope not in ("all", material):
             return f"found in {self.scope} alone, not in all of the material"
+        if self.becomes not in (None, "law"):
+            return f"the card's {self.becomes} has it"
         return "" if self.effect in TAKEN else "no law of the static simulator has it"
 
     def describe(self) -> str:

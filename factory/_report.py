@@ -193,7 +193,10 @@ def effect_lines(plan: Plan) -> list[tuple[str, str]]:
     for card in plan.cards:
         for effect in card.effects:
             left = effect.left_out(card.material)
-            word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"
+            if effect.becomes not in (None, "law"):
+                word = f"taken over as the card's {effect.becomes}"
+            else:
+                word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"
             lines.append((card.material, f"{effect.describe()}: {word}"))
     return lines
 

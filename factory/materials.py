@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from factory._effects import BASE, CardEffect, extended
+from factory._effects import BASE, CardEffect, Text, extended
 from factory._input import InputError, Strict, read_mapping, read_yaml, shipped_folder
 from factory._laws import LAWS as LAWS
 from factory._laws import Laws, Modulus
@@ -28,6 +28,16 @@ class Uncertainty(Strict):
     shear_modulus_low: Annotated[float, Field(gt=-1, le=0)] | None
     shear_modulus_high: Annotated[float, Field(ge=0)] | None
     text: str
+
+
+class CardBaseline(Strict):
+    """A material without its effects, as fitted to the same measurements [Pa]; see `Card.model_error`."""
+
+    law: Text
+    shear_modulus: Modulus
+    shear_modulus_sd: Annotated[float, Field(ge=0)]
+    bulk_modulus: Modulus
+    model_error: Annotated[float, Field(ge=0)]
 
 
 class Card(Strict):
@@ -51,6 +61,12 @@ class Card(Strict):
         Code in the stiffness profiles, from 0 (softest) to below 1 (1 is rigid).
     laws : Laws
         Parameters law by law.
+    law : str, optional
+        The law that was fitted, or fitted best; others are filled in from its moduli, or fitted too.
+    model_error : float, optional
+        What the fit leaves beyond noise, as a relative error of the modulus.
+    baseline : CardBaseline, optional
+        The material without the effects.
     effects : tuple of CardEffect
         What a diagnosis found in the specimen beyond the neo-Hookean law (see `material_of`).
     viscosity, softening, fibres : parts of `tisim.parts`, optional
@@ -66,6 +82,9 @@ class Card(Strict):
     density: Modulus
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
+    law: Text | None = None
+    model_error: Annotated[float, Field(ge=0)] | None = None
+    baseline: CardBaseline | None = None
     effects: tuple[CardEffect, ...] = ()
     viscosity: Viscosity = None
     softening: Softening = None

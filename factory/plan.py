@@ -29,6 +29,7 @@ from factory.materials import (
 )
 from factory.recipe import Recipe
 from tisim import Block, Inclusion, Material, Poke, Rod
+from tisim.problems.indentation.kind import leaves
 
 log = logging.getLogger(__name__)
 
@@ -341,13 +342,12 @@ def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) 
 
 def _check_path(recipe: Recipe, index: int, poke: Poke) -> None:
     """Refuse a poke whose indenter, at its full depth, has left the block through a side."""
-    depth = deepest(poke)
-    end = [(s + depth * d) / _MM for s, d in zip(poke.site, poke.direction[:2], strict=True)]
-    if any(abs(place) > side / 2 for place, side in zip(end, recipe.block_mm[:2], strict=True)):
+    end = leaves(poke, poke.direction, deepest(poke))
+    if end is not None:
         protocol = recipe.protocol
         raise InputError(
             f"recipe {recipe.name}: protocol.margin_mm: expected contact points so far inside that no"
             f" indenter leaves the block through a side at up to {protocol.max_angle_deg:g} degrees and"
             f" {protocol.depth_mm:g} mm of depth, got {protocol.margin_mm:g}: that of poke {index} ends at"
-            f" x = {end[0]:.3g}, y = {end[1]:.3g} mm"
+            f" x = {end[0] / _MM:.3g}, y = {end[1] / _MM:.3g} mm"
         )

@@ -1,7 +1,8 @@
 """A run as ONNX files, checked against torch.
 
 invariant-gnn: `encoder.onnx`, once an interior: rigid (n, levels) -> code, vectors, clear. `poke.onnx`: code,
-vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
+vectors, clear, start, direction, depth, modulus -> displacement, force. SI units. A model trained with time
+takes `clock` as well: time since contact [s], the rod's speed and its speed of approach [m/s].
 
 cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It chooses
 neighbours anew in each layer, and its answer jumps where they change: in single precision another runtime's
@@ -28,6 +29,7 @@ import torch
 from torch import Tensor, nn
 
 from learn.data import MemoryDataset, Store, split_of
+from learn.data.loaders import no_clock
 from learn.errors import InputError
 from learn.models import Cegnn, InvariantGnn, Pokes, Scene, pokes_of, scene_of
 from learn.models._encoder import Encoded, Stencil, gathered
@@ -36,6 +38,8 @@ from learn.validity import Domain
 
 TOLERANCE = 1e-5  # of the largest displacement of a poke, and of its force
 _CHECKED = 8  # pokes
+CLOCK = ["time_s", "rod_speed_m_per_s", "approach_speed_m_per_s"]  # in this order
+ROD = ["start", "direction", "depth", "modulus"]  # of invariant-gnn
 INPUTS = ["profile", "start", "direction", "depth"]  # of cegnn
 
 
@@ -48,7 +52,7 @@ class PokePart(nn.Module):
 
     def forward(
         self, code: Tensor, vectors: Tensor, clear: Tensor, start: Tensor, direction: Tensor, depth: Tensor,
-        modulus: Tensor,
+        modulus: Tensor, clock: Tensor | None = None,
     ) -> tuple[Tensor, Tensor]:  # fmt: skip
         scene = replace(self.scene, rigid_index=torch.zeros(1, dtype=torch.int64))
         encoded = Encoded(scene, self.stencils, code, vectors, clear)
@@ -58,6 +62,7 @@ class PokePart(nn.Module):
             direction=direction[None],
             depth=depth[None],
             modulus=modulus[None],
+            clock=no_clock() if clock is None else clock[None],
         )
         found = self.model.decode(encoded, pokes)
         return found.displacement[0], found.force[0]
@@ -84,8 +89,6 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
         _package(name)
     if not isinstance(run.model, Cegnn | InvariantGnn):
         raise InputError(f"{run.folder}: model {run.recipe.model} has no ONNX export")
-    if run.model.takes_clock:
-        raise InputError(f"{run.folder}: the model was trained with time, which has no ONNX export")
     folder.mkdir(parents=True, exist_ok=True)
     if isinstance(run.model, Cegnn):
         files = {"poke": folder / "poke.onnx"}
@@ -105,13 +108,12 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     vector = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
     scalar = torch.tensor(5e-3, dtype=torch.float64)
     start = scene.points.mean(dim=0)
-    _write(
-        PokePart(run.model, one, stencils),
-        (encoded.code, encoded.vectors, encoded.clear, start, vector, scalar, scalar * 2e6),
-        files["poke"],
-        ["code", "vectors", "clear", "start", "direction", "depth", "modulus"],
-        ["displacement", "force"],
-    )
+    names = ["code", "vectors", "clear", *ROD]
+    inputs = [encoded.code, encoded.vectors, encoded.clear, start, vector, scalar, scalar * 2e6]
+    if run.model.takes_clock:
+        names.append("clock")
+        inputs.append(torch.tensor([1.0, 2e-3, 2e-3], dtype=torch.float64))
+    _write(PokePart(run.model, one, stencils), tuple(inputs), files["poke"], names, ["displacement", "force"])
     return files
 
 
@@ -158,7 +160,8 @@ class OnnxBundle:
 
     def poke(self, encoded: dict[str, Any], pokes: Pokes, k: int) -> tuple[Any, Any]:
         """Displacement (n, 3) [m] and force [N] of the k-th poke."""
-        rod = {name: getattr(pokes, name)[k].numpy() for name in ("start", "direction", "depth", "modulus")}
+        known = {node.name for node in self._poke.get_inputs()}
+        rod = {name: getattr(pokes, name)[k].numpy() for name in (*ROD, "clock") if name in known}
         displacement, force = self._poke.run(None, {**encoded, **rod})
         return displacement, force
 
@@ -209,6 +212,8 @@ def write_bundle(
         "domain": None if domain is None else domain.model_dump(mode="json"),
         "points_m": scene.points.tolist(),
     }
+    if run.model.takes_clock:
+        about["clock"] = CLOCK
     (folder / "model.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
     return list(files.values()), wrong, len(some)
 

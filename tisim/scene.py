@@ -239,7 +239,7 @@ class Beam:
     course : Course, optional
         The part of the load, weight and tip force, that acts over time, from 0: quasi-static, without
         inertia. What a viscous material needs unless its motion is asked for; a beam that hangs from time 0
-        on has `Course().jump(1.0).hold(T)`. Beams whose clamps yield have none.
+        on has `Course().jump(1.0).hold(T)`.
     solver : Solver
     """
 
@@ -279,7 +279,12 @@ class Poke:
         surface does not pull at the rod.
     course : Course, optional
         The depth over time [m], from 0, in place of `depth`, `retract_to` and `frame_spacing`; what a viscous
-        material needs. The direction stays.
+        material needs.
+    turns : tuple of (float, (float, float, float))
+        Of a poke with a course: times [s] and directions, as `direction`, that the rod turns to. It turns
+        about the place where its axis meets the rest surface, at a constant rate, from `direction` at time 0
+        to the first, from there to the next, and stays at the last; a direction given twice is a rest.
+        Times are ends of the course's pieces, rising. Empty: the direction stays.
     block : Block
     rod : Rod
     friction : float
@@ -305,6 +310,7 @@ class Poke:
     depth: float = 0.030
     retract_to: float | None = None
     course: Course | None = None
+    turns: tuple[tuple[float, Vector], ...] = ()
     block: Block = field(default_factory=Block)
     rod: Rod = field(default_factory=Rod)
     friction: float = 0.6

@@ -88,8 +88,8 @@ def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
         if alarms:
             yield f"something named or unexplained: {kind}", goal, part(alarms)
     out = [v["verdict"] for t, v in pairs if t["kind"] == "outside" and sigma(t) >= 10.0]
-    unsure = [verdict in ("unexplained", "ambiguous") for verdict in out]
-    yield "outside the library, 10 sigmas: unexplained or ambiguous", "90 %", part(unsure)
+    unsure = [verdict in ("unexplained", "partly explained", "ambiguous") for verdict in out]
+    yield "outside the library, 10 sigmas: unexplained, in part or ambiguous", "90 %", part(unsure)
     alone = [verdict == "found" for verdict in out]
     yield "outside the library, 10 sigmas: one name", "at most 5 %", part(alone)
     for kind in SEVERAL:
@@ -148,7 +148,7 @@ def confusion(pairs: Sequence[Pair]) -> str:
             answer = v["verdict"]
         else:
             answer = "right" if named(v) == true_names(t) else "+".join(named(v))
-            answer += " (ambiguous)" if v["verdict"] == "ambiguous" else ""
+            answer += "" if v["verdict"] == "found" else f" ({v['verdict']})"
         lines.setdefault(truth, Counter())[answer] += 1
     width = max(len(n) for n in lines)
     return "\n".join(

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calibration.diagnosis import Finding, MeasurementModel
+    from calibration.diagnosis import Diagnosis, Finding, MeasurementModel
 
 Verdict = dict[str, Any]  # the content of diagnosis.json, or the part of it that is scored
 
@@ -145,12 +145,13 @@ def pose_of(name: str, trials: set[str]) -> Callable[[Any, Any], Any]:
 
 def diagnose_coupons(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     """As `_searched`; "next": the name of the advised experiment, None where the verdict is not ambiguous."""
-    from calibration.diagnosis import model_of
+    import calibration
     from calibration.diagnosis.engine.advice import advise
-    from calibration.experiment import read
 
-    model = model_of(read(folder), kind="homogeneous", without=without)
-    finding, found = _searched(model)
+    data = calibration.read_experiment(folder)
+    result = calibration.diagnose(data, domain="homogeneous", without=without, gain=False)
+    model, finding = result.model, result.diagnosis.finding
+    found = _scored(model, result.diagnosis)
     found["next"] = None
     if finding.verdict == "ambiguous":
         one_each = [next(e for e in finding.explanations if e.names == names) for names in finding.equivalent]
@@ -172,18 +173,25 @@ def diagnose_indentation(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     """The content of diagnosis.json, without the held-out improvement."""
-    from calibration.diagnosis import diagnose, model_of
-    from calibration.experiment import read
+    import calibration
 
-    return diagnose(model_of(read(folder), kind="compression", without=without), gain=False).to_json()
+    data = calibration.read_experiment(folder)
+    return calibration.diagnose(data, domain="compression", without=without, gain=False).diagnosis.to_json()
 
 
 def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The search, and the part of diagnosis.json that is scored; rms in the model's own unit."""
-    from calibration.diagnosis import search
+    """The diagnosis without its refinement, and what is scored of it."""
+    from calibration.diagnosis import diagnose
+
+    made = diagnose(model, gain=False)
+    return made.finding, _scored(model, made)
+
+
+def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
+    """The part of diagnosis.json that is scored; rms in the model's own unit."""
     from calibration.diagnosis.engine.held_out import held_out_improvement
 
-    finding = search(model)
+    finding, content = made.finding, made.to_json()
     chosen = finding.chosen
     causes: list[dict[str, Any]] = []
     found: Verdict = {
@@ -198,10 +206,12 @@ def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
             "worst": finding.lack_of_fit.worst,
         },
         "baseline": {"shear_modulus_Pa": model.shear_moduli(finding.baseline.state.u)},
+        "share": content["share"],
+        "nearest": content["nearest"],
         "tried": [(e.fit.label, e.fit.chi2, e.lack_of_fit.p_value) for e in finding.explanations],
     }
     if chosen is None:
-        return finding, found
+        return found
     for c in chosen.candidates:
         effect = model.effects[c.effect]
         value, sd = chosen.fit.amplitude(c)
@@ -223,7 +233,7 @@ def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
         "rms_noise": held_out.rms_noise,
         "log_likelihood": held_out.log_likelihood,
     }
-    return finding, found
+    return found
 
 
 def noise_free_fits(kind: str, folder: Path, truth: str) -> dict[str, float]:

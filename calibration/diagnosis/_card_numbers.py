@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._effect import Candidate
 
@@ -21,6 +23,11 @@ class Modulus:
     value: float
     relative_sd: float
     weights: Array
+
+    @property
+    def direction(self) -> Array:
+        """The change of u (n,) by which its logarithm rises by 1."""
+        return np.asarray(self.weights / (self.weights @ self.weights))
 
 
 def moduli(diagnosis: Diagnosis) -> dict[str, Modulus]:
@@ -63,6 +70,35 @@ def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str
     return found
 
 
+def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[str, Any]:
+    """What a material is without the effects: a prediction's yardstick."""
+    numbers, fit = diagnosis.baseline, diagnosis.finding.baseline
+    n = len(fit.state.u)
+    covariance = fit.covariance()[:n, :n] * max(numbers.reduced_chi2, 1.0)
+    return {
+        "law": diagnosis.subject.law,
+        "shear_modulus": rounded(numbers.shear_modulus_Pa[name]),
+        "shear_modulus_sd": rounded(
+            float(numbers.shear_modulus_Pa[name] * np.sqrt(modulus.weights @ covariance @ modulus.weights))
+        ),
+        "bulk_modulus": rounded(numbers.shear_modulus_Pa[name] * diagnosis.subject.bulk_ratio),
+        "model_error": model_error(fit, modulus.direction),
+    }
+
+
+def model_error(fit: Fit, direction: Array) -> float:
+    """What a fit leaves beyond noise, over what a change of the moduli would do: the relative error of the
+    moduli that has the same whitened squares.
+
+    direction : change of u (n,) by which the logarithms of the moduli rise by 1.
+    """
+    used = np.linalg.norm(fit.jacobian, axis=0) > 0.0
+    excess = fit.chi2 - (len(fit.z) - np.count_nonzero(used))
+    change = fit.linear.by_u @ direction
+    size = float(change @ change)
+    return rounded(float(np.sqrt(max(excess, 0.0) / size))) if size > 0.0 else 0.0
+
+
 def valid_range(candidate: Candidate, diagnosis: Diagnosis) -> dict[str, list[float]]:
     """Between what the effect was measured, by the quantity's name in files."""
     ranges = diagnosis.subject.ranges.get(candidate, {})
@@ -74,7 +110,8 @@ def gain(diagnosis: Diagnosis) -> dict[str, float | str | None] | None:
     found = diagnosis.to_json()["gain"]
     if found is None:
         return None
-    return {k: v if v is None or isinstance(v, str) else rounded(v) for k, v in found.items()}
+    single = {k: v for k, v in found.items() if k != "folds"}
+    return {k: v if v is None or isinstance(v, str) else rounded(v) for k, v in single.items()}
 
 
 def rounded(x: float) -> float:

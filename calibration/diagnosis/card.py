@@ -6,6 +6,8 @@ rig, camera or simulator are at fault. It says itself whether `calibration.fit` 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from math import prod, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -13,20 +15,23 @@ import numpy as np
 
 from calibration.diagnosis._card_numbers import (
     Modulus,
+    baseline_entry,
     correlations,
     file_covariance,
     gain,
+    model_error,
     moduli,
     rounded,
     valid_range,
 )
+from calibration.diagnosis._handed_on import becomes, handed_on, law_of
 from calibration.diagnosis._rig_file import FORMAT, USES, corrects
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
-from calibration.measurements._effect import Candidate
+from calibration.measurements._effect import Candidate, HandedOn
 from calibration.study import Calibration
-from calibration.study.cards import card, save
+from calibration.study.cards import card, part_entry, save
 from tisim import laws
 
 RIG = "rig.yaml"
@@ -57,28 +62,44 @@ def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> l
 def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
     shear, law, bulk_ratio = modulus.value, diagnosis.subject.law, diagnosis.subject.bulk_ratio
     numbers = diagnosis.extended or diagnosis.baseline
+    handed = handed_on(name, diagnosis)
+    stated = shear * prod(h.modulus_ratio for h in handed.values())
+    relative_sd = modulus.relative_sd * sqrt(max(numbers.reduced_chi2, 1.0))
+    if diagnosis.model_error is not None:
+        relative_sd = max(relative_sd, diagnosis.model_error.shear_modulus_relative_sd.get(name, 0.0))
+    own, parameters = _law(name, stated / shear, bulk_ratio * shear, stated, diagnosis)
     fit = Calibration(
         material=name,
-        law=law,
-        label=law,
+        law=own,
+        label=own,
         status="converged",  # or the provenance says how it ended
         message="",
         density=experiment.materials[name].density,
-        parameters=laws.get(law).from_moduli(shear, bulk_ratio * shear),
-        shear_modulus=shear,
-        shear_modulus_sd=modulus.relative_sd * shear,
+        parameters=parameters,
+        shear_modulus=stated,
+        shear_modulus_sd=relative_sd * stated,
         bulk_modulus=bulk_ratio * shear,
         reduced_chi2=numbers.reduced_chi2,
     )
     content = card([fit], experiment)
-    content["provenance"] = _provenance(name, modulus, diagnosis, experiment)
+    content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
     content["uncertainty"]["text"] = (
-        "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free. The bulk"
+        "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
+        " root of the reduced chi-square where that is above 1, and at least the modulus' spread over"
+        " resampled measurements where the data are explained in part or not at all. The bulk"
         f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
     )
+    content["model_error"] = model_error(diagnosis.fit, modulus.direction)
+    content["baseline"] = baseline_entry(name, modulus, diagnosis)
+    content.update({h.field: part_entry(h.part) for h in handed.values() if h.part is not None})
+    asked = law_of(handed, stated, bulk_ratio * shear)
+    if asked is not None:
+        content["law"] = asked[0]
+        content["laws"][asked[0]] = {n: rounded(x) for n, x in asked[1].items()}
     effects = [
         {
             **_entry(k, diagnosis),
+            **becomes(handed.get(c)),
             "applies_to": "material" if diagnosis.effects[c.effect].effect.with_material else "shape",
             "base_law": law,
             "correlations": correlations(k, modulus, diagnosis),
@@ -89,6 +110,25 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
         if _of_specimen(c, diagnosis) and name in diagnosis.subject.materials.get(c, frozenset())
     ]
     return {**content, "effects": effects} if effects else content
+
+
+def _law(
+    name: str, ratio: float, bulk: float, shear: float, diagnosis: Diagnosis
+) -> tuple[str, dict[str, float | tuple[float, ...]]]:
+    """The law of a material with its parameters: the baseline's at these moduli [Pa], or the one that an
+    effect has put in its place, its moduli times `ratio`."""
+    if name not in diagnosis.subject.other_laws:
+        law = diagnosis.subject.law
+        return law, laws.get(law).from_moduli(shear, bulk)
+    law, parameters = diagnosis.subject.other_laws[name]
+    units = {n: unit for n, (unit, _) in laws.get(law).parameters.items()}
+
+    def times(n: str, value: float | tuple[float, ...]) -> float | tuple[float, ...]:
+        if units[n] != "Pa":
+            return value
+        return tuple(ratio * v for v in value) if isinstance(value, tuple) else ratio * value
+
+    return law, {n: times(n, value) for n, value in parameters.items()}
 
 
 def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
@@ -126,7 +166,13 @@ def _entry(index: int, diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _provenance(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Experiment) -> str:
+def _provenance(
+    name: str,
+    modulus: Modulus,
+    diagnosis: Diagnosis,
+    experiment: Experiment,
+    handed: Mapping[Candidate, HandedOn],
+) -> str:
     numbers = diagnosis.extended or diagnosis.baseline
     fit = diagnosis.fit
     lines = [
@@ -142,6 +188,15 @@ def _provenance(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: E
             f"The modulus is that beside {fit.label}; without it {before.shear_modulus_Pa[name]:.5g} Pa"
             f" at a reduced chi-square of {before.reduced_chi2:.2f}."
         )
+    for c, h in handed.items():
+        if h.part is not None:
+            lines.append(
+                f"{c.label} is the card's {h.field} ({h.part.title}); the laws' modulus is {h.states},"
+                f" {h.modulus_ratio:.4g} times that beside the effect."
+            )
+        elif h.law is not None:
+            lines.append(f"{c.label} is the card's law, {h.law(1.0, 1.0)[0]}.")
+        lines += [f"{c.label}: {remark}." for remark in h.remarks]
     if diagnosis.finding.verdict == "unexplained":
         lines.append("Unexplained: this is the baseline's modulus, and the measurements depart from it.")
     if not fit.converged:

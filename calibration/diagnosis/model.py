@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from calibration.diagnosis.catalogue import effects_of, true_name
 from calibration.errors import InputError
@@ -20,6 +21,8 @@ def model_of(
     without: Sequence[str] = (),
     simulator: str = DEFAULT_SIMULATOR,
     workers: int | None = None,
+    further: bool = True,
+    **baseline: Any,
 ) -> MeasurementModel:
     """The model of an experiment's measurements with all effects of the catalogue.
 
@@ -29,6 +32,8 @@ def model_of(
     without : effects taken out of the catalogue.
     simulator : of outlines, a name of `calibration.measurements.outlines.simulators.SIMULATORS`.
     workers : processes; None for all cores.
+    further : with effects that are looked for only where the others do not explain the data.
+    baseline : law, terms and richer of kinds whose baseline has a choice of laws.
 
     Raises
     ------
@@ -40,9 +45,12 @@ def model_of(
     for name in without:
         if true_name(chosen.name, name) not in effects:
             raise InputError(f"--without {name}: expected some of {', '.join(effects)}")
-    kept = {n: e for n, e in effects.items() if n not in left_out}
+    for name in baseline:
+        if name not in chosen.takes:
+            raise InputError(f"--{name} {baseline[name]}: {chosen.name} has one law only, expected auto")
+    kept = {n: e for n, e in effects.items() if n not in left_out and (further or not e.further)}
     if simulator == DEFAULT_SIMULATOR:
-        return build(chosen, experiment, effects=kept, workers=workers)
+        return build(chosen, experiment, effects=kept, workers=workers, **baseline)
     if "simulator" not in chosen.takes:
         raise InputError(f"--simulator {simulator}: only outlines are simulated in several ways")
     from calibration.measurements.outlines.simulators import SIMULATORS

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,10 +19,15 @@ MAIN = "experiment.yaml"
 
 
 class Files:
-    """Reads files by the names that experiment.yaml gives them; refuses those that lie outside the folder."""
+    """Reads files by the names that experiment.yaml gives them; refuses those that lie outside the folder.
 
-    def __init__(self, folder: Path) -> None:
+    leave_out_rows : go on without rows at which a clock runs backwards, in place of an error.
+    """
+
+    def __init__(self, folder: Path, *, leave_out_rows: bool = False) -> None:
         self.folder = folder
+        self.leave_out_rows = leave_out_rows
+        self.left_out: list[str] = []  # a sentence for each file of which rows were left out
         self._sums: dict[str, str] = {}
         if not folder.is_dir():
             raise InputError(f"{folder}: expected a folder that holds {MAIN}")
@@ -66,6 +72,30 @@ class Files:
         return total.hexdigest()
 
 
+MOST_LINES = 8  # that a message names
+MOST_LOST = 0.25  # part of its rows that a table may lose
+
+
+def longest_growing(values: Array) -> list[int]:
+    """Indices of a longest strictly growing run of values (k,), in order; others may lie between them."""
+    ends: list[float] = []  # least last value of a run of each length
+    last: list[int] = []
+    before = [-1] * len(values)
+    for k, value in enumerate(values):
+        at = bisect_left(ends, float(value))
+        before[k] = last[at - 1] if at else -1
+        if at == len(ends):
+            ends.append(float(value))
+            last.append(k)
+        else:
+            ends[at], last[at] = float(value), k
+    found, k = [], last[-1] if last else -1
+    while k >= 0:
+        found.append(k)
+        k = before[k]
+    return found[::-1]
+
+
 _LARGEST = 1e9  # beyond it a number is damage, not a measurement
 
 
@@ -104,8 +134,42 @@ class Table:
             at = int(bad[0]) + 1
             raise self.error(
                 chosen[at],
-                f"column {name}: expected more than {values[at - 1]:g}{of} before it, got {values[at]:g}",
+                f"column {name}: expected more than {values[at - 1]:g}{of} before it, got {values[at]:g}"
+                + self._also([chosen[int(k) + 1] for k in bad[1:]]),
             )
+
+    def _also(self, rows: list[int]) -> str:
+        """Further rows with the same fault, for a message."""
+        if not rows:
+            return ""
+        first = ", ".join(str(self.lines[r]) for r in rows[:MOST_LINES])
+        more = f" and {len(rows) - MOST_LINES} more" if len(rows) > MOST_LINES else ""
+        return f"; the same in line{'s' if len(rows) > 1 else ''} {first}{more}"
+
+    def growing(self, name: str, files: Files) -> Table:
+        """The rows in which a column grows: all, or else those of the longest run through the table that
+        does, where `files` may leave rows out. InputError otherwise, and where more than MOST_LOST of them
+        would go."""
+        kept = longest_growing(self.numbers[name])
+        lost = sorted(set(range(len(self))) - set(kept))
+        if not lost:
+            return self
+        if not files.leave_out_rows:
+            self.need_growing(name, of=" s")
+        if len(lost) > MOST_LOST * len(self):
+            raise InputError(
+                f"{self.path}: column {name}: expected that it grows from row to row, but {len(lost)} of"
+                f" {len(self)} rows stand against it"
+            )
+        lines = ", ".join(str(self.lines[r]) for r in lost[:MOST_LINES])
+        more = f" and {len(lost) - MOST_LINES} more" if len(lost) > MOST_LINES else ""
+        files.left_out.append(f"{self.path.name}: {name} does not grow in lines {lines}{more}, left out")
+        return Table(
+            path=self.path,
+            numbers={n: values[kept] for n, values in self.numbers.items()},
+            texts={n: [values[k] for k in kept] for n, values in self.texts.items()},
+            lines=[self.lines[k] for k in kept],
+        )
 
     def need_within(self, name: str, limit: float, why: str) -> None:
         """Refuses values beyond +-limit."""

@@ -72,7 +72,7 @@ class ExperimentEntry(Strict):
         return self
 
 
-def read(folder: Path) -> Experiment:
+def read(folder: Path, *, leave_out_rows: bool = False) -> Experiment:
     """The experiment of a folder that holds experiment.yaml (format 1), in SI.
 
     Each file that it names is read and checked. An outline's sides are (k, 2) arrays from the clamp on: a
@@ -83,8 +83,11 @@ def read(folder: Path) -> Experiment:
 
     Raises InputError, one sentence that names the file, the key or line, and what was expected. In it, trials
     go by their id and other lists count from 1: `trials[NAME].captures[#2].time_s`.
+
+    leave_out_rows : rows of homogeneous tests at which the clock runs backwards are left out, in place of an
+    error; the experiment's notes say which.
     """
-    files = Files(Path(folder))
+    files = Files(Path(folder), leave_out_rows=leave_out_rows)
     entry = parse(files.read(MAIN, ""), files.main, ExperimentEntry)
     trials = tuple(_trial(trial, files) for trial in entry.trials)
     materials = {
@@ -99,7 +102,7 @@ def read(folder: Path) -> Experiment:
     return Experiment(
         name=entry.name,
         folder=files.folder,
-        notes=entry.notes,
+        notes="\n".join([entry.notes, *files.left_out]).strip(),
         materials=MappingProxyType(materials),
         trials=trials,
         digest=files.digest(),

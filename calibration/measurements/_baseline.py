@@ -172,7 +172,9 @@ class Baseline:
             return np.asarray(u[begin : begin + len(self.free)])
         found = self.law.start(shear=REFERENCE)
         found[0] = np.log(REFERENCE)
-        found[list(self.free)] = u[begin : begin + len(self.free)]
+        low, high = self.law.bounds[list(self.free)].T if self.free else (-np.inf, np.inf)
+        # at an end of its range a constant stays, and the others go on
+        found[list(self.free)] = np.clip(u[begin : begin + len(self.free)], low, high)
         return found
 
     def material(self, specimen: str, u: Array, *, density: float = 1000.0) -> Material:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
+from tisim.parts import Part
+
 Owner = Literal["specimen", "rig", "camera", "simulator"]
 
 
@@ -43,6 +45,51 @@ class Effect:
     def in_file(self, amplitude: float) -> float:
         """The amplitude in the file's unit."""
         return amplitude * self.per_unit
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Occurrence:
+    """An effect as it was found in a material, for `EffectModel.hands_on`.
+
+    Attributes
+    ----------
+    amplitude : [SI].
+    variant : which of its forms.
+    shear_modulus : of the material, as fitted beside it [Pa].
+    records : that it was found in.
+    """
+
+    amplitude: float
+    variant: float | None
+    shear_modulus: float
+    records: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandedOn:
+    """What an effect is of a material: one of its parts (`tisim.parts`), or another law.
+
+    Attributes
+    ----------
+    field : of `tisim.Material` (viscosity, softening, fibres, law).
+    part : None where the effect makes none; `remarks` say why.
+    law : small-strain shear and bulk moduli [Pa] to the name of a law and its parameters.
+    modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
+    states : which modulus that is, for people.
+    remarks : what the measurement did not see, and what differs from the effect, a sentence each.
+    """
+
+    field: Literal["viscosity", "softening", "fibres", "law"]
+    part: Part | None = None
+    law: Callable[[float, float], tuple[str, Mapping[str, float]]] | None = None
+    modulus_ratio: float = 1.0
+    states: str = ""
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def made(self) -> bool:
+        """Whether the material has it."""
+        return self.part is not None or self.law is not None
 
 
 def everywhere(record: Any) -> bool:
@@ -86,7 +133,13 @@ class EffectModel:
         a candidate that no protocol shows has no column.
     variants : forms of the effect (a time constant, a direction), from the records that it applies to.
     variant_label : a variant in words.
+    conclusive : whether the records that a candidate reaches, among all, can tell it from anything else that
+        is smooth along them; where they cannot, it is named as part of an explanation only.
+    switch : it is there or not: where it is named its amplitude is the upper bound.
+    further : it is looked for only where no other cause explains the data: it is rarer than they are, or so
+        free in its form that it would stand in for them.
     action : what to do about it with this kind of measurement, where that is not the catalogue's remedy.
+    hands_on : the part of the material that it is, for extended cards; None for an effect that is none.
     """
 
     effect: Effect
@@ -102,7 +155,11 @@ class EffectModel:
     identifiable: Callable[[Sequence[Any], Sequence[Any]], bool] = always
     variants: Callable[[Sequence[Any]], tuple[float | None, ...]] = one_variant
     variant_label: Callable[[float], str] = lambda variant: f"{variant:g}"
+    conclusive: Callable[[Sequence[Any], Sequence[Any]], bool] = always
+    switch: bool = False
+    further: bool = False
     action: str = ""
+    hands_on: Callable[[Occurrence], HandedOn] | None = None
 
     @property
     def name(self) -> str:

@@ -35,7 +35,7 @@ class Kind:
         the options of `build` that `takes` names.
     refines : a kind whose trials these are too; `claims` decides which of the two is meant where none is
         named.
-    takes : options that its model has: workers, simulator.
+    takes : options that its model has: workers, simulator; law, terms and richer (of the baseline).
     old_name : that it had in earlier versions, still understood.
     compares : trials of one material that a fit compares by this kind's model; no trial for a kind that only
         diagnoses.
@@ -113,8 +113,8 @@ def compared(experiment: Experiment) -> list[tuple[Kind, Experiment]]:
 def build(
     kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
 ) -> MeasurementModel:
-    """The model of an experiment's measurements of a kind. options : workers, simulator; those that the kind
-    does not take are left out."""
+    """The model of an experiment's measurements of a kind. options : see `Kind.takes`; those that
+    the kind does not take are left out."""
     own = {n: v for n, v in options.items() if n in kind.takes}
     return kind.load()(experiment, effects=effects, **own)
 
@@ -190,6 +190,7 @@ register(
         name="homogeneous",
         holds=lambda e: any(isinstance(t, CouponTrial) for t in e.trials),
         load=_loader("homogeneous", "HomogeneousModel"),
+        takes=("law", "terms", "richer"),
         old_name="coupons",
         compares=lambda e: [] if _all_compressed(e) else _coupons(e),
         over_time=_follower("homogeneous"),

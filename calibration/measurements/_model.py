@@ -9,19 +9,29 @@ scores come from here. `calibration.diagnosis.engine` searches these models for 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, scatter_basis
-from calibration.measurements._effect import Candidate, EffectModel, candidates_of, reaches
+from calibration.measurements._effect import (
+    Candidate,
+    EffectModel,
+    HandedOn,
+    Occurrence,
+    candidates_of,
+    reaches,
+)
 from calibration.measurements._folds import folds_of
+from calibration.measurements._layers import Curve, Layers, deviations, layers_of
 from calibration.measurements._noise import Noise
+from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import Linearisation, State
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -47,6 +57,30 @@ class Record(Protocol):
     def ranges(self) -> Mapping[str, tuple[float, float]]: ...
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Shown:
+    """A record as people look at it, point by point.
+
+    Attributes
+    ----------
+    axis : what x is, with its unit. x : shape (p,), in that unit.
+    quantity : what is compared. unit : of it in files, and how many of them are one SI unit.
+    measured : shape (p,) [SI]; 0 where what is compared is a distance between simulated and measured.
+    of_rows : points by the record's rows, shape (p, rows); None where they are the same.
+    """
+
+    axis: str
+    x: Array
+    quantity: str
+    unit: tuple[str, float]
+    measured: Array
+    of_rows: Array | None = None
+
+    def points(self, rows: Array) -> Array:
+        """Values of the record's rows, shape (rows,) or (rows, k), at the points."""
+        return rows if self.of_rows is None else np.asarray(self.of_rows @ rows)
+
+
 class MeasurementModel(ABC):
     """Measurements of one kind with a simulator in which effects are nested.
 
@@ -61,7 +95,10 @@ class MeasurementModel(ABC):
     experiments : what a lab can do next, the cheapest first.
     enough : improvement of chi-square from which on two explanations are separated by an experiment.
     separates : whether advice asks for an experiment that separates "all" explanations, or "most" of them.
+    laws : that may be its baseline's, the simplest first, with terms of a series law; none where the kind
+        knows one only.
     no_answer : what a ValueError says of a state without an answer.
+    noise_scale : the noise from point to point over what `noise` has (`NoiseKnown.scale`).
     records : in the order of the rows, as far as rows belong to one record each.
     row_record : index of the record of each row, shape (rows,).
     effects : by name. candidates : of all effects. visible : whether the records identify a candidate at all.
@@ -77,7 +114,9 @@ class MeasurementModel(ABC):
     experiments: ClassVar[Sequence[Any]] = ()
     enough: ClassVar[float] = 25.0
     separates: ClassVar[Literal["all", "most"]] = "all"
+    laws: ClassVar[Sequence[tuple[str, int]]] = ()
     no_answer: ClassVar[str] = "the simulation has no answer at this state"
+    noise_scale: float = 1.0
 
     records: Sequence[Any]
     row_record: NDArray[np.intp]
@@ -121,6 +160,22 @@ class MeasurementModel(ABC):
         del test, state
         return None
 
+    def with_law(self, law: str, terms: int) -> Self:
+        """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
+        no answer."""
+        raise NotImplementedError(f"{self.kind}: has one law, not {law} of {terms}")
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        """The law, with its parameters, that an effect has put in the place of the baseline's; None where
+        none has."""
+        del material, state
+        return None
+
+    def brings(self, candidate: Candidate) -> int:
+        """Coordinates that matter only beside a candidate: they count as parameters of its own."""
+        del candidate
+        return 0
+
     def remarks(self) -> list[str]:
         """What a reader of the verdict should know of the model, a sentence each."""
         return []
@@ -133,6 +188,121 @@ class MeasurementModel(ABC):
     def noise_sentence(self) -> str:
         """What the noise model consists of, for people."""
         return ""
+
+    def point_noise(self) -> list[PointNoise]:
+        """What each record shows of its noise from point to point: the scatter of the misfit about a smooth
+        curve, in the order of its rows. Nothing where errors are correlated from row to row, or the baseline
+        has no answer to begin from."""
+        if self.noise.covariance is not None:
+            return []
+        misfit = self._misfit([State(u=self.start())])[0]
+        found = []
+        for k, r in enumerate(self.records):
+            rows = (self.row_record == k) & self.noise.used & np.isfinite(misfit)
+            sd = self.noise.sd[rows]
+            factor, points = roughness(misfit[rows] / sd)
+            if points >= FEWEST and factor > 0.0:
+                assumed = float(np.median(sd))
+                found.append(
+                    PointNoise(
+                        record=str(r.name),
+                        stated=self.states_noise(k),
+                        assumed=assumed,
+                        shown=factor * assumed,
+                        points=points,
+                    )
+                )
+        return found
+
+    def states_noise(self, k: int) -> bool:
+        """Whether the lab states the noise of a record, by its index."""
+        return not getattr(self.records[k], "estimated", False)
+
+    def repeated(self) -> tuple[str, ...]:
+        """Names of the tests whose repeats show how one differs from the next; () where none do."""
+        return ()
+
+    def repeat_of(self, k: int) -> Hashable | None:
+        """What a record, by its index, has in common with its repeats, beside material and specimen (mode,
+        range, rate, ...); None where no record of this kind counts as a repeat of another."""
+        del k
+        return None
+
+    def noise_known(self) -> NoiseKnown:
+        """What is known of the noise, as it is used: what repeats show counts from here on."""
+        stated = all(self.states_noise(k) for k in range(len(self.records)))
+        repeats, layers = self.repeated(), Layers()
+        points = tuple(self.point_noise())
+        if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
+            curves = self._curves()
+            layers = layers_of(curves)
+            if layers.repeat is not None:
+                repeats = layers.repeats
+                rows = [self.row_record == k for k in range(len(self.records))]
+                columns = []
+                for own, bends in zip(rows, deviations(curves, layers.repeat), strict=True):
+                    for bend in bends:
+                        columns.append(np.zeros(len(own)))
+                        columns[-1][own] = bend
+                self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
+        return NoiseKnown(
+            known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
+        )
+
+    def _curves(self) -> list[Curve]:
+        """The misfit where a fit begins, of each record that is driven; none where it is not known."""
+        scale = self.full_scale()
+        along = [self.along(k) for k in range(len(self.records))]
+        if scale is None or any(a is None for a in along):
+            return []
+        misfit = self._misfit([State(u=self.start())])[0]
+        return [
+            Curve(
+                name=str(r.name),
+                material=r.material,
+                specimen=r.specimen,
+                test=self.repeat_of(k),
+                x=a[1],
+                misfit=misfit[self.row_record == k],
+                scale=float(scale[k]),
+            )
+            for k, (r, a) in enumerate(zip(self.records, along, strict=True))
+            if a is not None
+        ]
+
+    def with_noise_of_data(self) -> NoiseKnown:
+        """Take the noise of each record as the data show it, where that is not what the lab states; what is
+        known of it then."""
+        known = self.noise_known()
+        factors = {p.record: p.factor for p in known.points if p.contradicts}
+        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
+        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
+        # a median of third differences tells a third of what as many independent points would
+        dof = float(np.median([p.points for p in known.points])) / 3.0 if factors else known.dof
+        return replace(known, source="data", dof=dof)
+
+    def full_scale(self) -> Array | None:
+        """Largest measured value of each record [SI], shape (records,); None where what is compared has no
+        scale (distances between simulated and measured)."""
+        found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
+        return found if (found > 0.0).all() else None
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        """What drives a record, by its index: its name for people, and its value at each of the record's
+        rows; None where rows are no points along anything."""
+        del k
+        return None
+
+    def shown(self, k: int) -> Shown:
+        """A record, by index, as people look at it."""
+        rows = int(np.count_nonzero(self.row_record == k))
+        return Shown(
+            axis="row of the record",
+            x=np.arange(float(rows)),
+            quantity="simulated less measured",
+            unit=self.unit,
+            measured=np.zeros(rows),
+        )
 
     def pictures(self, diagnosis: Any) -> list[Any]:
         """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
@@ -175,6 +345,12 @@ class MeasurementModel(ABC):
             candidates=tuple(candidates),
             alias_tolerance=self.alias_tolerance,
         )
+
+    def sensitivities(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array]:
+        """Simulated less measured (rows,), and its derivatives (rows, n + c) by u and by amplitudes [SI];
+        rows that the noise does not use need not be right. ValueError where the state has no answer."""
+        misfit, by_u, columns = self._differences(state, candidates)
+        return misfit, np.column_stack([by_u, columns])
 
     def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
         """Misfit (rows,), its derivatives by u (rows, n) and by amplitudes (rows, c) [SI]."""
@@ -336,7 +512,7 @@ class MeasurementModel(ABC):
 
     def noise_rms(self) -> float:
         """What `distance_rms` would be of the noise alone [SI]."""
-        return float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
+        return self.noise_scale * float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
 
     def _measured_points(self) -> int:
         """Measured points behind the rows that are used."""
@@ -363,6 +539,27 @@ class MeasurementModel(ABC):
     def shear_moduli(self, u: Array) -> dict[str, float]:
         """Of each material [Pa]: the geometric mean over its specimens."""
         return self.baseline.shear_moduli(u)
+
+    def hands_on(self, candidate: Candidate, state: State) -> Mapping[str, HandedOn]:
+        """The part of the material that an effect is at a state, by material; none for other effects, and for
+        one that was found in a specimen or a trial alone."""
+        effect = self.effects[candidate.effect]
+        if effect.hands_on is None or candidate not in state.amplitudes:
+            return {}
+        hit = self.reached(candidate)
+        moduli = self.shear_moduli(state.u)
+        found = {}
+        for material, shear_modulus in moduli.items():
+            mine = [r for r, h in zip(self.records, hit, strict=True) if h and r.material == material]
+            if mine and candidate.at in ("all", material):
+                occurrence = Occurrence(
+                    amplitude=state.amplitudes[candidate],
+                    variant=candidate.variant,
+                    shear_modulus=shear_modulus,
+                    records=mine,
+                )
+                found[material] = effect.hands_on(occurrence)
+        return found
 
     def valid_range(self, candidate: Candidate) -> dict[str, tuple[float, float]]:
         """Between what an effect was measured, by the quantity's name in files."""

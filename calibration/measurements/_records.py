@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,3 +89,22 @@ def listed(records: Sequence[Named]) -> str:
     """Names of records, a few of them where there are many."""
     names = [r.name for r in records]
     return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"
+
+
+HELD = 0.3  # fraction of a record's points in holds from which on it is shown over time
+STILL = 1e-3  # of the range of what is driven: a smaller step is none
+
+
+class Axis(TypedDict):
+    """What a record is shown over, with its unit, and where its points are."""
+
+    axis: str
+    x: Array
+
+
+def over_time(time: Array, driven: str, values: Array) -> Axis:
+    """The axis of a record: time where it has a clock and holds, what is driven otherwise."""
+    still = np.abs(np.diff(values)) < STILL * max(float(np.ptp(values)), 1e-300)
+    if np.isfinite(time).all() and still.size and still.mean() > HELD:
+        return {"axis": "time [s]", "x": time}
+    return {"axis": driven, "x": values}

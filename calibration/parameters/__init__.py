@@ -13,6 +13,7 @@ from calibration.parameters import mullins as _mullins  # noqa: F401 - registers
 from calibration.parameters import prony as _prony  # noqa: F401
 from calibration.parameters._coordinates import (
     Coordinate,
+    Parameters,
     Parametrisation,
     bulk_ratio,
     shear_modulus,
@@ -75,6 +76,7 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
 __all__ = [
     "Coordinate",
     "Option",
+    "Parameters",
     "Parametrisation",
     "PartCoordinates",
     "PartKind",

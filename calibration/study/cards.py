@@ -20,6 +20,9 @@ from calibration.experiment import Experiment
 from calibration.parameters import parametrisation
 from calibration.study.calibration import Calibration
 from tisim import laws
+from tisim.parts import Part
+
+PART_UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key of a part may end with
 
 # How a mixture is given to a surrogate: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
 _STIFFEST, _PER_RATIO = 0.8, 0.8
@@ -75,6 +78,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
             "text": _certainty(chosen),
         },
         "density": float(belief.density if belief.density is not None else 1000.0),
+        "law": chosen.law,
         "stiffness": float(max(0.0, _STIFFEST - _PER_RATIO * ratio)) if ratio is not None else 0.0,
         "laws": parameters,
         **_parts(chosen),
@@ -110,13 +114,15 @@ def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any
 
 def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
     """What the material has beside its law, by the card's keys: kinds of `tisim.parts`, parameters."""
-    found = {}
-    for name, part in chosen.material_parts.items():
-        values = {f.name: getattr(part, f.name) for f in fields(part)}
-        words = {k: v for k, v in values.items() if isinstance(v, str)}
-        numbers = _plain({k: v for k, v in values.items() if k not in words})
-        found[name] = {"kind": part.name, **words, **numbers}
-    return found
+    return {name: part_entry(part) for name, part in chosen.material_parts.items()}
+
+
+def part_entry(part: Part) -> dict[str, Any]:
+    """A part of `tisim.parts` as a card states it: its kind, and its parameters."""
+    values = {f.name: getattr(part, f.name) for f in fields(part)}
+    words = {k: v for k, v in values.items() if isinstance(v, str)}
+    numbers = _plain({k: v for k, v in values.items() if k not in words})
+    return {"kind": part.name, **words, **numbers}
 
 
 def _provenance(

@@ -139,6 +139,18 @@ def rms(record: Meat, force: Array) -> float:
     return float(np.sqrt(np.mean((force[hold] - record.force[hold]) ** 2)))
 
 
+def of_the_ramp(records: Sequence[Meat], fractions: Array) -> tuple[Array, Array]:
+    """How the force AT[1] after the largest goes with how long the loading took: line's slope [1/s] and
+    correlation, as measured and as one relaxation of all places predicts it; shape (2,) each."""
+    took = np.array([r.time[r.turn] for r in records])
+    measured = np.array([r.after(AT[1]) for r in records])
+    found = np.array(
+        [np.interp(r.time[r.turn] + AT[1], r.time, predicted(r, fractions)) for r in records], dtype=float
+    )
+    lines = [np.array([np.polyfit(took, y, 1)[0], np.corrcoef(took, y)[0, 1]]) for y in (measured, found)]
+    return lines[0], lines[1]
+
+
 def _spread(values: Sequence[float]) -> str:
     low, middle, high = np.percentile(100.0 * np.asarray(values), [10.0, 50.0, 90.0])
     return f"{middle:.2f} ({low:.2f} to {high:.2f})"
@@ -188,6 +200,12 @@ def main() -> int:
             f" {np.mean(left):+.3f} ± {np.std(left, ddof=1):.3f} |"
         )
     spectra = np.array([f.fractions for f in fits])
+    measured, found = of_the_ramp(records, spectra.mean(0))
+    print(
+        f"\nForce {AT[1]:g} s after the largest, over it, a second more of loading: measured"
+        f" {measured[0]:+.4f} (correlation {measured[1]:+.2f}), predicted {found[0]:+.4f}"
+        f" (correlation {found[1]:+.2f})"
+    )
     print("\nFractions of the long-time modulus, mean and sd over places\n")
     print("| " + " | ".join(f"{t:.2g} s" for t in TIMES) + " | power |")
     print("| --- " * (len(TIMES) + 1) + "|")

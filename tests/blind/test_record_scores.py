@@ -56,7 +56,7 @@ PAIRS = [
         ("named set, of those named", "3 of 4"),
         ("unique and wrong", "1 of 5"),
         ("unexplained: clean", "1 of 2"),
-        ("unexplained or ambiguous", "1 of 2"),
+        ("unexplained, in part or ambiguous", "1 of 2"),
         ("10 sigmas: one name", "1 of 2"),
         ("within 3 of its sd", "0 of 2"),
         ("moduli within 2 %", "0 of 2"),

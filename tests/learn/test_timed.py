@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +18,8 @@ from learn.data import MemoryDataset, StreamDataset, open_store, split_pokes, st
 from learn.errors import InputError
 from learn.models import Pokes, make_model, pokes_of, scene_of
 from learn.models.single_poke import SinglePoke
+from learn.onnx_bundle import CLOCK as CLOCK_NAMES
+from learn.onnx_bundle import TOLERANCE, OnnxBundle, write_bundle
 from learn.training import Recipe, Trainer, load_run
 from tests.learn.small_store import write_manifest, write_store
 
@@ -176,3 +180,22 @@ def test_a_model_that_takes_no_time_is_not_trained_on_it(folder: Path, tmp_path:
     with pytest.raises(InputError, match="its frames have time, which model cegnn takes no account of"):
         Trainer(open_store(folder), TINY.model_copy(update={"model": "cegnn"}), tmp_path / "run")
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in ("onnx", "onnxscript", "onnxruntime")),
+    reason="the onnx packages are not installed",
+)
+def test_onnx_takes_the_clock(folder: Path, run: Path, tmp_path: Path) -> None:
+    store, trained = open_store(folder), load_run(run)
+    _, wrong, checked = write_bundle(trained, store, tmp_path / "onnx", None)
+    assert checked > 1
+    assert wrong < TOLERANCE
+    assert json.loads((tmp_path / "onnx" / "model.json").read_text())["clock"] == CLOCK_NAMES
+    bundle, scene = OnnxBundle(tmp_path / "onnx"), scene_of(store)
+    pokes = pokes_of(MemoryDataset(store, np.array([1])).__getitems__([0]))
+    code = bundle.encode(scene.rigid[0])
+    now, _ = bundle.poke(code, pokes, 0)
+    later, _ = bundle.poke(code, replace(pokes, clock=pokes.clock * torch.tensor([5.0, 0.0, 1.0])), 0)
+    assert np.abs(later - now).max() > 10.0 * TOLERANCE * np.abs(now).max()

@@ -25,6 +25,7 @@ OPTIONAL = {
     "onnx",
     "dask",
     "xarray",
+    "pooch",
 }
 
 

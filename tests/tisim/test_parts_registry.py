@@ -257,10 +257,6 @@ BEAM = tisim.Beam(material=SOFT, length=0.05)
             "Beam.solver.until_rest: expected False for a viscous beam",
         ),
         (
-            replace(BEAM, course=HANG, clamp_imperfections=tisim.ClampImperfections(compliance=0.1)),
-            "compliance: expected 0 on a beam with a course",
-        ),
-        (
             replace(
                 BEAM,
                 course=tisim.Course().ramp(to=1.0, speed=1.0),

@@ -14,6 +14,7 @@ from tisim.bodies import Rod
 from tisim.io.export import checked_path, frame_index
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
+from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
 from tisim.scene import Poke
 
@@ -101,7 +102,8 @@ def picture(
     colours = _colour_map()(scale(moved[facets].mean(axis=1)))[:, :3]
     sheets = [_shaded(polygons, colours, camera, edges=True)]
     if poke is not None and result.rod_tip is not None:
-        rod = rod_surface(poke.rod, result.rod_tip[frame], np.asarray(poke.direction, dtype=float))
+        time = 0.0 if result.time is None else float(result.time[frame])
+        rod = rod_surface(poke.rod, result.rod_tip[frame], axis_at(poke, time))
         sheets.append(_shaded(rod, np.tile(_STEEL, (len(rod), 1)), camera, edges=False))
     figure = Figure(figsize=(8.0, 5.2), layout="constrained")
     axes = figure.add_subplot()

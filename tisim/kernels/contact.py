@@ -82,10 +82,25 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
         return y
 
     @ti.func
+    def rod_shift(y, rod: ti.template()):
+        """Displacement since the last converged step of the rod's point that is now at y."""
+        shift = ti.Vector([rod[8], rod[9], rod[10]])
+        return shift + rod_spin(rod) @ (y - ti.Vector([rod[0], rod[1], rod[2]]))
+
+    @ti.func
+    def rod_spin(rod: ti.template()):
+        """I - R^T, R the rod's rotation since the last converged step."""
+        W = ti.Matrix.zero(f64, 3, 3)
+        for i in ti.static(range(3)):
+            for j in ti.static(range(3)):
+                W[i, j] = rod[11 + 3 * i + j]
+        return W
+
+    @ti.func
     def total_slip(y, z, shift, memory: ti.template(), part: ti.template(), f, q):
         """Slip since the last step, added to the remembered one; its tangential part is the elastic slip.
 
-        z: the point at the last converged step; shift: the rod's displacement since then; part: of the
+        z: the point at the last converged step; shift: the rod's displacement there since then; part: of the
         step in which the point touches, 0 where it has no friction yet.
         """
         g = ti.Vector([memory[f, q, 0], memory[f, q, 1], memory[f, q, 2]])
@@ -119,7 +134,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                         total += area[f, q] * 0.5 * law[0] * d * d
                     limit = law[2] * pressure[f, q]
                     if limit > 0.0 and part[f, q] > 0.0:
-                        shift = ti.Vector([rod[8], rod[9], rod[10]])
+                        shift = rod_shift(y, rod)
                         g0 = total_slip(y, sample(z, conn, shape, f, q), shift, memory, part, f, q)
                         g = (g0 - g0.dot(n) * n).norm()
                         if law[1] * g <= limit:
@@ -165,14 +180,18 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                         )
                         limit = law[2] * pressure[f, q]
                         if limit > 0.0 and part[f, q] > 0.0:
-                            shift = ti.Vector([rod[8], rod[9], rod[10]])
+                            shift = rod_shift(y, rod)
                             z_q = sample(z, conn, shape, f, q)
                             g0 = total_slip(y, z_q, shift, memory, part, f, q)
                             g = g0 - g0.dot(n) * n
                             size = g.norm()
                             N = km * m.outer_product(m) + kr * t.outer_product(t)  # dn/dy
                             T = ti.Matrix.identity(f64, 3) - n.outer_product(n)
-                            G = part[f, q] * T - n.outer_product(N @ g0) - g0.dot(n) * N  # dg/dy
+                            G = (
+                                part[f, q] * T @ (ti.Matrix.identity(f64, 3) - rod_spin(rod))
+                                - n.outer_product(N @ g0)
+                                - g0.dot(n) * N
+                            )  # dg/dy
                             D = law[1] * G
                             symmetric = part[f, q] * law[1] * T
                             pull = law[1] * g
@@ -214,6 +233,11 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
     return measure, energy, assemble
 
 
-def pack_rod(tip: Any, axis: Any, radius: float, edge_radius: float, shift: Any) -> Any:
-    """The rod as the kernels read it: tip (3), unit axis (3), radius, edge radius, displacement (3)."""
-    return np.concatenate([tip, axis, [radius, edge_radius], shift]).astype(np.float64)
+def pack_rod(tip: Any, axis: Any, radius: float, edge_radius: float, shift: Any, rotation: Any = None) -> Any:
+    """The rod as the kernels read it: tip (3), unit axis (3), radius, edge radius, displacement (3), I - R^T.
+
+    shift, rotation: of the tip [m], and R (3, 3) of the rod, since the last converged step; None: it kept
+    its direction.
+    """
+    spin = np.zeros(9) if rotation is None else (np.eye(3) - np.asarray(rotation).T).ravel()
+    return np.concatenate([tip, axis, [radius, edge_radius], shift, spin]).astype(np.float64)

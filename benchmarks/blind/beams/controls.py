@@ -68,8 +68,9 @@ def control_goals(
 
 
 def excused(full: Scored, now: Scored) -> bool:
-    """Whether the diagnosis without the truth was equivalent to it already, or is `unexplained`."""
-    if now.verdict == "unexplained":
+    """Whether the diagnosis without the truth was equivalent to it already, or is `unexplained`, or explained
+    in part by a stand-in."""
+    if now.verdict in ("unexplained", "partly explained"):
         return True
     listed = {tuple(sorted(names)) for names in full.diagnosis["alternatives"]}
     return bool(now.named) and now.named in listed

@@ -113,10 +113,10 @@ def goals(cases: list[Scored]) -> list[Goal]:
         _part("density alone: anything named", "0 %", density, lambda c: bool(c.named)),
         _part("density alone: weighing advised", "100 %", density, _weighing),
         _part(
-            "outside the library, >= 10 sigma: unexplained or ambiguous",
+            "outside the library, >= 10 sigma: unexplained, in part or ambiguous",
             "90 %",
             outside,
-            lambda c: c.verdict in ("unexplained", "ambiguous"),
+            lambda c: c.verdict in ("unexplained", "partly explained", "ambiguous"),
         ),
         _part(
             "outside the library, >= 10 sigma: one confident name",

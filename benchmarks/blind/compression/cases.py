@@ -103,6 +103,32 @@ def _repeats(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
     )
 
 
+def _tested_again(
+    seed: int, strain_of: Callable[[Array, int], Array], factor_of: Callable[[int], float]
+) -> tuple[Record, ...]:
+    """Five tests of one bonded cylinder that scatter by half a percent; strain_of, factor_of : what the
+    cylinder feels, and how much stiffer it is, by the number of the test."""
+    rng = np.random.default_rng(seed)
+    strain = ramps(1)
+    found = []
+    for k in range(5):
+        a, b = rng.standard_normal(2)
+        stress = bonded()(strain_of(strain, k)) * factor_of(k)
+        scatter = np.exp(0.001 * a + 0.001 * b * (4.0 * strain - 1.0))
+        found.append(measured(f"A{k}", stress * scatter, strain=strain, seed=seed + k, noise=0.002))
+    return tuple(found)
+
+
+def _set(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
+    lost = float(rng.uniform(0.003, 0.006))  # of the height, a test
+    return _tested_again(seed, lambda strain, k: strain / (1.0 - lost * k), lambda _: 1.0)
+
+
+def _order(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
+    grown = float(rng.uniform(0.006, 0.012))  # of the stress, a test
+    return _tested_again(seed, lambda strain, _: strain, lambda k: 1.0 + grown * k)
+
+
 def _bonded(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
     return one_each(bonded(), seed=seed, noise=float(rng.uniform(0.001, 0.006)))
 
@@ -121,6 +147,8 @@ KINDS: dict[str, tuple[str, Callable[[int, np.random.Generator], tuple[Record, .
     "repeats": ("five tests that differ smoothly by a percent, and by nothing else", _repeats),
     "bonded": ("bonded platens", _bonded),
     "mooney": ("bonded platens, and a second invariant", _mooney),
+    "set": ("bonded platens; each test begins with 0.3 to 0.6 % more set", _set),
+    "order": ("bonded platens; each test is 0.6 to 1.2 % stiffer than the one before", _order),
     "kink": ("a drop by 2 to 6 % somewhere, outside the library", _kink),
 }
 

@@ -117,7 +117,13 @@ def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ..
         chosen[0] = "tension"
     if "anisotropy" in names and set(chosen) <= {"tension", "compression"}:
         chosen[0 if pressed == len(chosen) - 1 else -1] = "equibiaxial"
+    if "tension-compression-asymmetry" in names:
+        chosen = ["tension", "compression", "simple-shear"]
+    if "gauge-length" in names:
+        chosen = ["tension", "planar", "simple-shear"]
     turns = int(rng.choice([0, 1, 3], p=[0.6, 0.25, 0.15]))
+    if "permanent-set" in names:
+        turns = max(turns, 1)
     if "hysteresis" in names:
         turns = max(turns, 1)
     if "mullins" in names:

@@ -124,6 +124,8 @@ LIBRARY = (
     "second-invariant",
     "limited-extensibility",
 )
+# causes that a diagnosis asks only where no other explains the data; never drawn, made by name
+FURTHER = ("tension-compression-asymmetry", "permanent-set", "gauge-length")
 OUTSIDE = ("cell-drift", "slip", "wrong-area", "cell-saturates", "wavy-gauge")
 # the largest that a lab meets, in the unit of truth (SI)
 LARGEST = {
@@ -137,6 +139,9 @@ LARGEST = {
     "strain-stiffening": 0.3,
     "second-invariant": 0.6,
     "limited-extensibility": 0.5,
+    "tension-compression-asymmetry": 2.0,
+    "permanent-set": 0.4,
+    "gauge-length": 0.4,
     "cell-drift": 0.4,
     "slip": 0.3,
     "wrong-area": 0.25,
@@ -271,6 +276,8 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
         if "rate-dependence" in a:
             # a power of the rate, whose slope a decade at the reference is the amplitude
             found = found * (p.rate / REFERENCE_RATE) ** (a["rate-dependence"] / math.log(10.0))
+        if "tension-compression-asymmetry" in a and p.mode == "uniaxial":
+            found = np.where(true < 1.0, 1.0 + a["tension-compression-asymmetry"], 1.0) * found
         if "platen-friction" in a and p.mode == "uniaxial" and p.top < 1.0:
             # Coulomb friction under a cylinder: the pressure grows exponentially inwards
             x = 3.0 * a["platen-friction"] * true**-1.5
@@ -282,6 +289,10 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
     waves = a.get("wavy-gauge", 0.0) * (p.top - 1.0)
     wave = waves * np.sin(2.0 * np.pi * shape.get("wavy-gauge", 1.0) * (recorded - 1.0) / (p.top - 1.0))
     true = recorded + offset - slipped + wave
+    if "permanent-set" in a:  # back at zero stress before it is back at its length
+        true = np.where(ramp >= 1, true - a["permanent-set"] * (p.top - true), true)
+    if "gauge-length" in a and p.mode == "uniaxial" and p.top > 1.0:
+        true = 1.0 + (1.0 + a["gauge-length"]) * (true - 1.0)
     if soft:
         true = inverse_of(lambda s: s + soft * stress(s), true)
     found = stress(true)

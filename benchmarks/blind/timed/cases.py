@@ -183,11 +183,17 @@ def draw_together(seed: int) -> Case:
     return _beams_of(_coupons_of(case, rng, float(rng.uniform(1.5, 1.9))), rng)
 
 
+def draw_pushed_and_hung(seed: int) -> Case:
+    """The indentations of `draw_indentation`, and creeping beams of the same material."""
+    return _beams_of(draw_indentation(seed), np.random.default_rng([seed, 25]))
+
+
 KINDS: dict[str, Callable[[int], Case]] = {
     "coupons": draw_coupons,
     "beams": draw_beams,
     "indentation": draw_indentation,
     "together": draw_together,
+    "pushed-and-hung": draw_pushed_and_hung,
 }
 
 

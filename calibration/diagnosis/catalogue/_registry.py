@@ -19,7 +19,13 @@ _ADDED: dict[str, dict[str, EffectModel]] = {}
 # Names that effects of a kind had in earlier versions, where one name meant two things; read in files.
 ALIASES: dict[str, dict[str, str]] = {
     "compression": {"platen-friction": "platen-bonding", "force-offset": "stress-offset"},
-    "release": {"radius": "section-scale", "relaxation": "relaxation-branch"},
+    "release": {"radius": "section-scale", "relaxation-branch": "relaxation"},
+}
+
+# Names that parameters of an effect had in earlier versions, by the effect's name now. `part_of_modulus` was
+# a fraction of a vibration's modulus: the same but for times near its period.
+PARAMETERS: dict[str, dict[str, str]] = {
+    "relaxation": {"loss": "fraction_of_modulus", "part_of_modulus": "fraction_of_modulus"},
 }
 
 
@@ -46,3 +52,8 @@ def effects_of(kind: str) -> dict[str, EffectModel]:
 def true_name(kind: str, name: str) -> str:
     """The name of an effect now, of one that it may have had in an earlier version."""
     return ALIASES.get(kind, {}).get(name, name)
+
+
+def true_parameter(effect: str, name: str) -> str:
+    """The name of an effect's parameter now, of one that it may have had in an earlier version."""
+    return PARAMETERS.get(effect, {}).get(name, name)

@@ -44,6 +44,16 @@ LIMITED_EXTENSIBILITY = Effect(
     with_material=True,
 )
 
+LAW_FORM = Effect(
+    name="law-form",
+    parameter="in_its_place",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the law has the wrong form for this material",
+    remedy="use the law that is named; a mode of loading that its fit has not seen confirms its form",
+    with_material=True,
+)
+
 COMPRESSIBILITY = Effect(
     name="compressibility",
     parameter="poisson_drop",
@@ -84,6 +94,26 @@ MULLINS = Effect(
     with_material=True,
 )
 
+TENSION_COMPRESSION_ASYMMETRY = Effect(
+    name="tension-compression-asymmetry",
+    parameter="compression_excess",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material is stiffer, or softer, in compression than in tension",
+    remedy="pull and press one specimen, bonded to the same plates, through zero",
+    with_material=True,
+)
+
+PERMANENT_SET = Effect(
+    name="permanent-set",
+    parameter="part_of_largest_strain",
+    per_unit=1.0,
+    belongs_to="specimen",
+    sentence="the material keeps part of its largest strain: unloaded it does not come back to its length",
+    remedy="measure the specimen's length after the test, at once and an hour later",
+    with_material=True,
+)
+
 RATE_DEPENDENCE = Effect(
     name="rate-dependence",
     parameter="per_decade",
@@ -94,6 +124,7 @@ RATE_DEPENDENCE = Effect(
     with_material=True,
 )
 
+# of the modulus at 1 s, the fraction that goes with each decade of time
 CREEP = Effect(
     name="creep",
     parameter="per_decade",
@@ -104,22 +135,14 @@ CREEP = Effect(
     with_material=True,
 )
 
+# of the modulus before it relaxes, the fraction that goes with the relaxation time that is named beside it;
+# where none is named (log-time relaxation, indentation), the fraction that goes with each decade
 RELAXATION = Effect(
     name="relaxation",
-    parameter="loss",
+    parameter="fraction_of_modulus",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the force relaxes: it falls with time while the rod rests, and depends on its speed",
-    remedy="hold the rod at the deepest depth for a minute, or poke at a tenth and ten times the speed",
-    with_material=True,
-)
-
-RELAXATION_BRANCH = Effect(
-    name="relaxation-branch",
-    parameter="part_of_modulus",
-    per_unit=1.0,
-    belongs_to="specimen",
-    sentence="the material has a second relaxation time",
-    remedy="release it with other masses, so that it vibrates at other frequencies",
+    sentence="the material relaxes: its modulus falls with time under load, and depends on the speed",
+    remedy="hold a constant load or strain for a minute, or load at a tenth and at ten times the speed",
     with_material=True,
 )

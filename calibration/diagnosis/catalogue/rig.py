@@ -85,6 +85,15 @@ LOAD_HEIGHT = Effect(
     remedy="measure where on the end face the mass hangs",
 )
 
+LOOSE_LOAD = Effect(
+    name="loose-load",
+    parameter="part_of_inertia",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the hung mass is tied loosely: it does not move with the beam as one body",
+    remedy="clamp or glue the mass to the end face, and repeat",
+)
+
 AIR_DRAG = Effect(
     name="air-drag",
     parameter="rate_per_s",
@@ -112,6 +121,15 @@ PLATEN_BONDING = Effect(
     remedy="lubricate the platens and repeat, or press cylinders of two heights",
 )
 
+PLATEN_SLIP = Effect(
+    name="platen-slip",
+    parameter="coefficient",
+    per_unit=1.0,
+    belongs_to="rig",
+    sentence="the ends of the compressed cylinder rub at the platens, and slip in part (Coulomb friction)",
+    remedy="lubricate the platens and repeat, or press cylinders of two heights",
+)
+
 PLATEN_TILT = Effect(
     name="platen-tilt",
     parameter="gap_percent",
@@ -119,6 +137,15 @@ PLATEN_TILT = Effect(
     belongs_to="rig",
     sentence="platen and end face are not parallel: an edge touches first",
     remedy="seat the platen on a ball, or measure the gap with feelers before the test",
+)
+
+GAUGE_LENGTH = Effect(
+    name="gauge-length",
+    parameter="strain_percent",
+    per_unit=100.0,
+    belongs_to="rig",
+    sentence="the strain is not that of the specimen's middle: its ends stretch less, or slip in the grips",
+    remedy="measure the strain by two marks on the middle of the specimen",
 )
 
 MACHINE_COMPLIANCE = Effect(

@@ -76,6 +76,25 @@ SKIN = Effect(
     remedy="cut the beam and press both sides; refine the mesh to tell it from locking elements",
 )
 
+SET_BETWEEN_TESTS = Effect(
+    name="set-between-tests",
+    parameter="length_percent_per_test",
+    per_unit=100.0,
+    belongs_to="specimen",
+    sentence="the specimen had not come back to its length between tests: each begins with more set",
+    remedy="measure its height before each test, or wait ten times as long between them",
+)
+
+TEST_ORDER = Effect(
+    name="test-order",
+    parameter="stress_percent_per_test",
+    per_unit=100.0,
+    belongs_to="specimen",
+    sentence="the stress changes with the number of the test: the specimen ages, heals or wears, or the load"
+    " cell wanders",
+    remedy="load a second specimen as often, and weigh the load cell before each test",
+)
+
 ADDED_MASS = Effect(
     name="added-mass",
     parameter="mass_g",

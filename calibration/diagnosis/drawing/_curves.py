@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis.engine.explanation import Explanation
-from calibration.diagnosis.engine.search import Finding
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
 MOST = 24  # panels of one picture
-NAMED, PARTIAL = "extended", "best of the library, which is not the cause"
+NAMED, PARTIAL = "extended", "nearest of the library, not named"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -51,11 +50,14 @@ def rms_of_all(curves: Sequence[DrawnCurve], which: str) -> float:
     return float(np.sqrt(np.mean(np.concatenate([c.left(which) for c in curves]) ** 2)))
 
 
-def shown_explanation(finding: Finding, chosen: Explanation | None) -> Explanation | None:
+def shown_explanation(diagnosis: Diagnosis) -> Explanation | None:
     """What stands for the extension: the chosen explanation; where nothing is named, what explains most of an
     unexplained departure."""
-    if chosen is not None:
-        return chosen
+    finding = diagnosis.finding
+    if diagnosis.chosen is not None:
+        return diagnosis.chosen
+    if diagnosis.nearest is not None:
+        return diagnosis.nearest.explanation
     best = finding.explanations[0] if finding.explanations else None
     return best if finding.verdict == "unexplained" and finding.p_value < 0.01 else None
 
@@ -80,7 +82,7 @@ def before_and_after(
         One pair a record; the second is None, for all records alike, where nothing stands for the extension.
     """
     before = evaluate(diagnosis.finding.baseline.state)
-    shown = shown_explanation(diagnosis.finding, diagnosis.chosen)
+    shown = shown_explanation(diagnosis)
     if shown is None:
         return [(b, None) for b in before]
     return list(zip(before, evaluate(shown.fit.state), strict=True))
@@ -88,7 +90,7 @@ def before_and_after(
 
 def legend_of(diagnosis: Diagnosis) -> str:
     """What the lines after are called; empty where there are none."""
-    shown = shown_explanation(diagnosis.finding, diagnosis.chosen)
+    shown = shown_explanation(diagnosis)
     if shown is None:
         return ""
     names = " + ".join(shown.names)

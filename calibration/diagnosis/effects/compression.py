@@ -38,6 +38,24 @@ PLATEN_BONDING = CompressionEffect(
 )
 
 
+# -- platen-slip --
+# Coulomb friction: where all of an end face slips, the pressure grows exponentially inwards (slab method);
+# where friction is enough to hold, the face sticks. The logarithm of the force over a free cylinder's goes
+# over from the one to the other, l = l_stuck (1 - exp(-l_slip / l_stuck)).
+
+
+PLATEN_SLIP = CompressionEffect(
+    effect=catalogue.PLATEN_SLIP,
+    step=1e-3,
+    bounds=(0.0, 2.0),
+    physical_limits=(2.0,),  # nothing slips any more
+    prior_scale=0.3,
+    rubs=True,
+    further=True,
+    scopes=("mode", "trial"),
+)
+
+
 # -- platen-tilt --
 # An end face and its platen are not parallel: one edge touches first, the rest of the face later. Columns
 # of the cylinder are pressed side by side, each from where the platen meets it: a foundation of springs,
@@ -95,5 +113,5 @@ EFFECTS: dict[str, HomogeneousEffect] = {
     # platens that hold are simulated here; and repeats of one sample are compressed along one axis
     **{n: e for n, e in homogeneous.EFFECTS.items() if n != catalogue.PLATEN_FRICTION.name},
     catalogue.ANISOTROPY.name: replace(homogeneous.ANISOTROPY, scopes=("material", "specimen")),
-    **{e.name: e for e in (PLATEN_BONDING, PLATEN_TILT, STRESS_OFFSET, FORCE_GAIN)},
+    **{e.name: e for e in (PLATEN_BONDING, PLATEN_SLIP, PLATEN_TILT, STRESS_OFFSET, FORCE_GAIN)},
 }

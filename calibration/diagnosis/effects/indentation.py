@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import one_time, seen, softening_of, viscosity_of
+from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.indentation._effect import IndentationEffect
 from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation._scene import FRICTION as BELIEVED
@@ -248,6 +250,14 @@ def _identifiable_relaxation(reached: Sequence[Record], everything: Sequence[Rec
     return False
 
 
+def _viscosity_relaxation(found: Occurrence) -> HandedOn:
+    first, last = seen([r.time for r in found.records])
+    a, variant = found.amplitude, found.variant
+    if variant is None:
+        return viscosity_of(lambda t: 1.0 - a * np.log10(1.0 + t / LOG_ONSET), first=first, last=last)
+    return one_time(a, variant, first=first, last=last)
+
+
 RELAXATION = IndentationEffect(
     effect=catalogue.RELAXATION,
     step=1e-3,
@@ -258,6 +268,8 @@ RELAXATION = IndentationEffect(
     variants=_variants_relaxation,
     variant_label=lambda variant: f"in {variant:.3g} s",
     identifiable=_identifiable_relaxation,
+    action="hold the rod at the deepest depth for a minute, or poke at a tenth and ten times the speed",
+    hands_on=_viscosity_relaxation,
 )
 
 
@@ -285,6 +297,22 @@ def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record
     return any(r.reloaded for r in reached)
 
 
+def _softening_mullins(found: Occurrence) -> HandedOn:
+    """Energies grow with the square of the depth (of a flat indenter at small strain); the largest is of a
+    strain of the depth over the indenter's radius, at most 1."""
+    strain = max(min(float(r.peak.max()) / r.geometry.rod.radius, 1.0) for r in found.records)
+
+    def lost(ratio: Array) -> Array:
+        below = np.ones(ratio.size) if found.variant == EVEN_SOFTENING else 1.0 - np.sqrt(ratio)
+        return np.asarray(found.amplitude * np.where(ratio < 1.0, below, 0.0))
+
+    return softening_of(
+        lost,
+        energy=1.5 * found.shear_modulus * strain**2,
+        remarks=("the softening of the force is taken for that of the stress at each point",),
+    )
+
+
 MULLINS = IndentationEffect(
     effect=catalogue.MULLINS,
     step=1e-3,
@@ -296,6 +324,7 @@ MULLINS = IndentationEffect(
     variant_label=lambda variant: "all the way" if variant == EVEN_SOFTENING else "below the deepest depth",
     applies_to=lambda record: record.reloaded,
     identifiable=_identifiable_mullins,
+    hands_on=_softening_mullins,
     action="poke the same place twice to the same depth",
 )
 

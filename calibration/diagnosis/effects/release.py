@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import branches, stiffening
+from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._effect import ReleaseEffect, hung
+from calibration.measurements.release._record import reference_time
 from tisim import Circle, Rectangle
 
 # -- clamp-compliance --
@@ -91,9 +94,8 @@ GRAVITY_TILT = ReleaseEffect(
 
 
 # -- creep --
-# The material creeps: its modulus relaxes by this fraction of the vibration's modulus with each decade of
-# time, from a millisecond to a quarter of an hour (two relaxation times a decade): the vibration loses energy
-# by it too.
+# The material creeps: of its modulus at 1 s this fraction goes with each decade of time, from a millisecond
+# to a quarter of an hour (two relaxation times a decade): the vibration loses energy by it too.
 
 
 BRANCHES_A_DECADE = 2
@@ -103,10 +105,31 @@ CREEP_TIMES = tuple(
 )
 
 
+def _creep_branches(amplitude: float, reference: float) -> float:
+    """Each branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    times = np.array(CREEP_TIMES)
+    slow = (times / reference) ** 2
+    sunk = float(np.sum(slow / (1.0 + slow) - np.exp(-1.0 / times)))  # from the vibration to 1 s
+    return amplitude / (BRANCHES_A_DECADE + amplitude * sunk)
+
+
 def _alter_creep(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
     if amplitude == 0.0:
         return s
-    return replace(s, branches=s.branches + tuple((amplitude / BRANCHES_A_DECADE, t) for t in CREEP_TIMES))
+    one = _creep_branches(amplitude, s.reference_time)
+    return replace(s, branches=s.branches + tuple((one, t) for t in CREEP_TIMES))
+
+
+def _viscosity_creep(found: Occurrence) -> HandedOn:
+    reference = reference_time(found.records)
+    one = _creep_branches(found.amplitude, reference)
+    return branches(
+        np.full(len(CREEP_TIMES), one),
+        np.array(CREEP_TIMES),
+        reference=reference,
+        first=reference,
+        last=max(float(np.ptp(r.time)) for r in found.records),
+    )
 
 
 CREEP = ReleaseEffect(
@@ -116,30 +139,46 @@ CREEP = ReleaseEffect(
     prior_scale=0.1,
     alter=_alter_creep,
     action="record ten times as long",
+    hands_on=_viscosity_creep,
 )
 
 
-# -- relaxation-branch --
-# The material has one more relaxation time: this fraction of the vibration's modulus goes with it.
+# -- relaxation --
+# The material has one more relaxation time: this fraction of the modulus before it goes with it.
 
 
-def _alter_relaxation_branch(s: BeamParameters, amplitude: float, time: float | None) -> BeamParameters:
+def _relaxing_branch(amplitude: float, time: float, reference: float) -> float:
+    """The branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    return amplitude / (1.0 - amplitude / (1.0 + (time / reference) ** 2))
+
+
+def _alter_relaxation(s: BeamParameters, amplitude: float, time: float | None) -> BeamParameters:
     assert time is not None
-    return s if amplitude == 0.0 else replace(s, branches=(*s.branches, (amplitude, time)))
+    if amplitude == 0.0:
+        return s
+    return replace(s, branches=(*s.branches, (_relaxing_branch(amplitude, time, s.reference_time), time)))
 
 
-def _label_relaxation_branch(time: float) -> str:
-    return f"relaxation time {time:g} s"
+def _viscosity_relaxation(found: Occurrence) -> HandedOn:
+    assert found.variant is not None
+    last = max(float(np.ptp(r.time)) for r in found.records)
+    reference = reference_time(found.records)
+    one = _relaxing_branch(found.amplitude, found.variant, reference)
+    return branches(
+        np.array([one]), np.array([found.variant]), reference=reference, first=reference, last=last
+    )
 
 
-RELAXATION_BRANCH = ReleaseEffect(
-    effect=catalogue.RELAXATION_BRANCH,
+RELAXATION = ReleaseEffect(
+    effect=catalogue.RELAXATION,
     step=1e-05,
     bounds=(0.0, 0.8),
     prior_scale=0.2,
-    alter=_alter_relaxation_branch,
+    alter=_alter_relaxation,
     variants=lambda _: (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0),
-    variant_label=_label_relaxation_branch,
+    variant_label=lambda time: f"relaxation time {time:g} s",
+    action="release it with other masses, so that it vibrates at other frequencies",
+    hands_on=_viscosity_relaxation,
 )
 
 
@@ -177,6 +216,7 @@ STRAIN_STIFFENING = ReleaseEffect(
     prior_scale=1.5,
     alter=_alter_strain_stiffening,
     action="hang a larger mass; pull a coupon to large strain",
+    hands_on=stiffening,
 )
 
 
@@ -293,6 +333,28 @@ LOAD_HEIGHT = ReleaseEffect(
 )
 
 
+# -- loose-load --
+# The hung mass is tied loosely: its weight acts, but this part of its inertia does not move with the beam
+# (on a string it swings behind).
+
+
+def _alter_loose_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, tip_mass=(1.0 - amplitude) * s.tip_mass)
+
+
+LOOSE_LOAD = ReleaseEffect(
+    effect=catalogue.LOOSE_LOAD,
+    step=1e-04,
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),
+    prior_scale=0.2,
+    alter=_alter_loose_load,
+    applies_to=hung,
+    further=True,
+    scopes=("load", "trial"),
+)
+
+
 # -- image-scale --
 # The cameras show displacements too large (positive) or too small.
 
@@ -356,7 +418,7 @@ EFFECTS: dict[str, ReleaseEffect] = {
         GRIP_LENGTH,
         GRAVITY_TILT,
         CREEP,
-        RELAXATION_BRANCH,
+        RELAXATION,
         AIR_DRAG,
         STRAIN_STIFFENING,
         RESIDUAL_CURVATURE,
@@ -365,6 +427,7 @@ EFFECTS: dict[str, ReleaseEffect] = {
         SECTION_SCALE,
         ADDED_MASS,
         LOAD_HEIGHT,
+        LOOSE_LOAD,
         IMAGE_SCALE,
         CAMERA_ROLL,
         CLOCK_RATE,

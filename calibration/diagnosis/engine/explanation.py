@@ -65,16 +65,20 @@ def explain(
     for c, a in zip(candidates, amplitudes, strict=True):
         effect = model.effects[c.effect]
         low, high = effect.bounds
-        known.setdefault(c, float(np.clip(a, effect.start_fraction * low, effect.start_fraction * high)))
+        there = (
+            high if effect.switch else np.clip(a, effect.start_fraction * low, effect.start_fraction * high)
+        )
+        known.setdefault(c, float(there))
     for fraction in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
-        inside = {c: fraction * known[c] for c in candidates}
+        inside = {c: known[c] if model.effects[c.effect].switch else fraction * known[c] for c in candidates}
         try:
             found = fit(model, replace(start.state, amplitudes=inside), candidates)
         except ValueError:
             continue
         if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:
             continue  # lost, so far out
-        cost = sum(np.log(len(found.z)) + multiplicity_penalty(c) for c in found.candidates)
+        constants = [1 + model.brings(c) for c in found.candidates]
+        cost = np.log(len(found.z)) * sum(constants) + sum(map(multiplicity_penalty, found.candidates))
         left = null.lack_of_fit(found.z, found.jacobian)
         return Explanation(fit=found, cost=float(cost), lack_of_fit=left)
     return None

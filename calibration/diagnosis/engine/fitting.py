@@ -102,9 +102,10 @@ def _step(
     free = np.ones(jacobian.shape[1], dtype=bool)
     gradient = jacobian.T @ linear.z
     for k, c in enumerate(wanted):
-        low, high = model.effects[c.effect].bounds
-        a = linear.state.amplitudes[c]
-        free[n + k] = not ((a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0))
+        effect, a = model.effects[c.effect], linear.state.amplitudes[c]
+        low, high = effect.bounds
+        pushed = (a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0)
+        free[n + k] = not (effect.switch or pushed)
     for _ in range(len(wanted) + 1):
         move = np.zeros(jacobian.shape[1])
         # columns differ by orders of magnitude in scale: bring them to one before the rank is judged

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.diagnosis.engine.fitting import LONGEST, TOLERANCE, Fit, fit
+from calibration.diagnosis.engine.skill import Prediction, skill, together
 from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
 
 KEPT = 0.5  # fraction of an amplitude's information that every training set must keep
-FALLBACK = 0.2  # below this, no fold of a set is used at all
+FALLBACK = 0.2  # below this, folds of a set are used only where
+VISIBLE = 5.0  # standard deviations by which an effect shows in a fold
+SEEN = 10.0  # standard deviations of every amplitude are left in every training set
+UNSEEN_STEPS = 10  # of Gauss-Newton, over the coordinates that only a fold tells of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +38,10 @@ class HeldOut:
     log_likelihood : improvement on the held-out measurements.
     folds : how many.
     note : why nothing was held out.
+    parts : the prediction of each fold.
+    amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
+    acts : whether an effect, as large as it was fitted, shows in each fold at all.
+    within : whether folds part single records: what all of a record shares is then in the training too.
     """
 
     held_out: str
@@ -42,37 +52,77 @@ class HeldOut:
     log_likelihood: float
     folds: int
     note: str = ""
+    parts: tuple[Prediction, ...] = ()
+    amplitudes: tuple[tuple[float, ...], ...] = ()
+    acts: tuple[bool, ...] = ()
+    within: bool = False
+
+    @property
+    def skill(self) -> float:
+        """Of all folds together; NaN where nothing was held out, or the baseline has nothing to gain."""
+        return skill(self.rms_before, self.rms_after, self.rms_noise) if self.held_out else math.nan
+
+    @property
+    def helps_everywhere(self) -> bool:
+        """Whether the extension predicts every fold in which it acts better than the baseline does."""
+        return bool(self.parts) and not self.worse
+
+    @property
+    def worse(self) -> tuple[str, ...]:
+        """Folds in which it acts, and that it predicts no better. An effect that shows in no fold alone (a
+        law that brings constants of its own) acts in all."""
+        acts = self.acts if any(self.acts) else (True,) * len(self.parts)
+        return tuple(p.name for p, own in zip(self.parts, acts, strict=True) if own and not p.helps)
 
 
 def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:
     """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold of the
-    first set that leaves at least KEPT of the information in training (of the best set otherwise)."""
-    kept = {name: _kept(model, folds, chosen) for name, folds in model.folds().items()}
-    usable = {name: k for name, k in kept.items() if k >= KEPT}
-    name = next(iter(usable), None) or max(kept, key=lambda n: kept[n], default=None)
-    if name is None or kept[name] < FALLBACK:
-        return _nothing(max(kept.values(), default=0.0), "no fold leaves enough of the effect in training")
-    folds = model.folds()[name]
-    squares, better, count = np.zeros(3), 0.0, 0
+    set that `_choice` takes."""
+    choice = _choice(model, chosen)
+    if not choice.folds:
+        return _nothing(choice.kept, "no fold leaves enough of the effect in training")
+    name, folds = choice.name, choice.folds
+    parts, amplitudes, better = [], [], 0.0
     for left_out, fold in folds:
         try:
             before = _predicted(model, fold, baseline, ())
             after = _predicted(model, fold, chosen, chosen.candidates)
         except ValueError as problem:
-            return _nothing(kept[name], f"{name}: {left_out} cannot be predicted: {problem}")
-        noise = model.subset(fold, others=False).noise_rms()
-        squares += np.array([before[1], after[1], noise]) ** 2 * before[2]
-        count += before[2]
-        better += 0.5 * (before[0] - after[0])
-    rms = np.sqrt(squares / count)
+            return _nothing(choice.kept, f"{name}: {left_out} cannot be predicted: {problem}")
+        parts.append(
+            Prediction(
+                name=left_out,
+                points=before.points,
+                rms_before=before.rms,
+                rms_after=after.rms,
+                rms_noise=model.subset(fold, others=False).noise_rms(),
+            )
+        )
+        amplitudes.append(tuple(after.state.amplitudes[c] for c in chosen.candidates))
+        better += 0.5 * (before.chi2 - after.chi2)
+    whole = together(parts)
     return HeldOut(
         held_out=name,
-        kept=kept[name],
-        rms_before=float(rms[0]),
-        rms_after=float(rms[1]),
-        rms_noise=float(rms[2]),
+        kept=choice.kept,
+        rms_before=whole.rms_before,
+        rms_after=whole.rms_after,
+        rms_noise=whole.rms_noise,
         log_likelihood=better,
         folds=len(folds),
+        note=choice.note,
+        parts=tuple(parts),
+        amplitudes=tuple(amplitudes),
+        acts=tuple(bool(_visible(model, fold, chosen).any()) for _, fold in folds),
+        within=_within(model, [fold for _, fold in folds]),
+    )
+
+
+def _within(model: MeasurementModel, folds: Sequence[Rows]) -> bool:
+    """Whether some record is in several folds."""
+    used = model.noise.used
+    return any(
+        sum(bool((fold & used & (model.row_record == k)).any()) for fold in folds) > 1
+        for k in np.unique(model.row_record[used])
     )
 
 
@@ -90,16 +140,64 @@ def _nothing(kept: float, note: str) -> HeldOut:
     )
 
 
-def _kept(model: MeasurementModel, folds: Sequence[tuple[str, NDArray[np.bool_]]], chosen: Fit) -> float:
-    """Least fraction of any amplitude's information that a training set keeps."""
-    if len(folds) < 2:
-        return 0.0
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Choice:
+    """Folds of a set that are predicted, and the least information on an amplitude that their training keeps;
+    no folds where none may be."""
+
+    name: str = ""
+    folds: Sequence[tuple[str, Rows]] = ()
+    kept: float = 0.0
+    note: str = ""
+
+
+def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
+    """The first set of folds of which each leaves at least KEPT of the information in training; else the set
+    that leaves most. Else the first of which two or more folds that show the effect leave enough: the others
+    are not predicted, since that would be extrapolated. Else the first in which the amplitudes are still seen
+    well."""
+    sets = [(n, f, _kept(model, f, chosen)) for n, f in model.folds().items() if len(f) > 1]
+    for name, folds, kept in sets:
+        if kept.min() >= KEPT:
+            return _Choice(name=name, folds=folds, kept=float(kept.min()))
+    name, folds, worst = max(sets, key=lambda s: float(s[2].min()), default=("", [], np.zeros(1)))
+    if worst.min() >= FALLBACK:
+        return _Choice(name=name, folds=folds, kept=float(worst.min()))
+    for name, folds, kept in sets:
+        some = [
+            k for k in range(len(folds)) if kept[k] >= KEPT and _visible(model, folds[k][1], chosen).all()
+        ]
+        if len(some) > 1:
+            left = ", ".join(folds[k][0] for k in range(len(folds)) if k not in some)
+            return _Choice(
+                name=name,
+                folds=[folds[k] for k in some],
+                kept=float(kept[some].min()),
+                note="Not predicted, since the others tell too little of the effect, or it does not act"
+                f" there: {left}.",
+            )
+    least = min(abs(value) / sd for value, sd in map(chosen.amplitude, chosen.candidates))
+    for name, folds, own in sets:
+        if least * np.sqrt(own.min()) >= SEEN:
+            return _Choice(name=name, folds=folds, kept=float(own.min()))
+    return _Choice(kept=float(worst.min()))
+
+
+def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], chosen: Fit) -> Array:
+    """Least fraction of any amplitude's information that is left without each fold, shape (folds,)."""
     everything = _information(chosen, np.ones(len(chosen.z), dtype=bool))
-    parts = [_information(chosen, ~model.rows(fold)) / everything for _, fold in folds]
-    return float(np.min(parts))
+    return np.array(
+        [float(np.min(_information(chosen, ~model.rows(fold)) / everything)) for _, fold in folds]
+    )
 
 
-def _information(chosen: Fit, rows: NDArray[np.bool_]) -> Array:
+def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
+    """Whether each amplitude, as it was fitted, would show in a fold alone, shape (c,)."""
+    values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
+    return np.asarray(values**2 * _information(chosen, model.rows(fold)) >= VISIBLE**2)
+
+
+def _information(chosen: Fit, rows: Rows) -> Array:
     """One over the variance of each amplitude, from some of the rows."""
     n = len(chosen.state.u)
     found = []
@@ -113,29 +211,56 @@ def _information(chosen: Fit, rows: NDArray[np.bool_]) -> Array:
     return np.array(found)
 
 
-def _predicted(
-    model: MeasurementModel, fold: NDArray[np.bool_], full: Fit, candidates: tuple[Candidate, ...]
-) -> tuple[float, float, int]:
-    """Chi-square, rms distance and number of a fold's measurements, predicted from all others."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Fold:
+    """A fold predicted from all other measurements.
+
+    state: as trained on the others, with what they do not tell fitted to the fold. chi2, rms [SI], points: of
+    the fold's measurements alone, without the prior.
+    """
+
+    state: State
+    chi2: float
+    rms: float
+    points: int
+
+
+def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]) -> _Fold:
     trained = fit(model.subset(fold, others=True), full.state, candidates).state
     test = model.subset(fold, others=False)
-    alone_here = model.unconstrained(fold)
-    if alone_here.any():
-        # a modulus that only this fold constrains is fitted to it, with the effect as trained
-        alone = _only_u(test, trained)
-        trained = State(u=np.where(alone_here, alone.u, trained.u), amplitudes=trained.amplitudes)
-    z = test.residuals([trained])[0]
-    return float(z @ z), test.distance_rms(trained), test.points
+    state = _with_unseen(test, trained, model.unconstrained(fold))
+    z = test.residuals([state])[0][: test.points]
+    return _Fold(state=state, chi2=float(z @ z), rms=test.distance_rms(state), points=test.points)
 
 
-def _only_u(test: MeasurementModel, state: State) -> State:
-    for _ in range(4):
+def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:
+    """The coordinates that only the fold tells of (the modulus of a material that was left out, a release
+    time) fitted to it. What the training tells of, and the amplitudes, stay as they were trained: were the
+    seen ones to move beside the unseen, these would take up what belongs to those."""
+    if not unseen.any():
+        return trained
+    state, now = trained, _squares(test, trained)
+    for _ in range(UNSEEN_STEPS):
         linear = test.linearise(state, ())
         size = np.linalg.norm(linear.by_u, axis=0)
+        used = unseen & (size > 0.0)
         move = np.zeros(len(state.u))
-        used = size > 0
         move[used] = -np.linalg.lstsq(linear.by_u[:, used] / size[used], linear.z, rcond=1e-6)[0] / size[used]
-        state = State(u=state.u + np.clip(move, -0.5, 0.5), amplitudes=state.amplitudes)
-        if np.abs(move).max(initial=0.0) < 2e-3:
+        move *= min(1.0, LONGEST / max(float(np.abs(move).max(initial=0.0)), LONGEST))
+        for part in 0.5 ** np.arange(5):
+            moved = State(u=state.u + part * move, amplitudes=state.amplitudes)
+            squares = _squares(test, moved)
+            if squares < now:
+                break
+        else:
+            return state
+        gained, state, now = now - squares, moved, squares
+        if gained < TOLERANCE:
             break
     return state
+
+
+def _squares(test: MeasurementModel, state: State) -> float:
+    z = test.residuals([state])[0]
+    squares = float(z @ z)
+    return squares if np.isfinite(squares) else float("inf")

@@ -109,12 +109,12 @@ def _pairs(
         left = columns[:, [a, b]] - screened.free @ (screened.free.T @ columns[:, [a, b]])
         guess = [float(x) for x in -np.linalg.lstsq(left, target, rcond=None)[0]]
         pair = explain(model, start, both, guess, null)
-        if pair is not None and _inside_bounds(model, pair):
+        if pair is not None and inside_bounds(model, pair):
             found.append(pair)
     return found
 
 
-def _inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
+def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
     """Whether no amplitude ended at a bound: at zero it is no cause, elsewhere none that makes sense, except
     at a physical limit."""
     return not any(
@@ -214,7 +214,7 @@ class _Triples:
         self._tried.add(frozenset(guess))
         self.on_progress(f"confirming {' + '.join(c.label for c in guess)}")
         three = explain(self.model, start.fit, tuple(guess), list(guess.values()), self.null)
-        if three is not None and _inside_bounds(self.model, three) and self._all_needed(three):
+        if three is not None and inside_bounds(self.model, three) and self._all_needed(three):
             self.found.append(three)
 
     def _all_needed(self, three: Explanation) -> bool:

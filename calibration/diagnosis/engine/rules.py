@@ -23,6 +23,20 @@ class Rules:
     max_causes : causes that are named together, where the model allows as many.
     triples : pairs that a third cause is looked for beside, and thirds of each that are confirmed.
     seed : of the bootstrap.
+    draws : replicates of the bootstrap over specimens, tests or stretches of records.
+    least_share : of the explainable misfit that causes must take to be named where more than noise is left.
+    sure : part of the replicates in which they must.
+    least_share_within : the same where measurements can only be held out from within a test: what all of one
+        test shares, a smooth error that nobody stated among it, is then in the training as well.
+    further_share : that one cause more must take.
+    as_good, alike : part of the replicates in which another explanation may take more before it is named as
+        well; share by which it must take less.
+    same_amplitude : fraction of an amplitude, or `same_sds` of its standard deviations, by which it may
+        change from fold to fold.
+    tries : explanations whose held-out skill is measured, before none is named.
+    smooth_error : part of full scale that a smooth error which nobody stated may have: a departure of the
+        baseline below it is not named where the noise is not known.
+    negligible : part of full scale below which what is left does not matter in practice.
     """
 
     false_alarm_rate: float = 0.02
@@ -34,3 +48,15 @@ class Rules:
     max_causes: int = 3
     triples: tuple[int, int] = (2, 3)
     seed: int = 0
+    draws: int = 400
+    least_share: float = 0.5
+    sure: float = 0.95
+    least_share_within: float = 0.75
+    further_share: float = 0.1
+    as_good: float = 0.05
+    alike: float = 0.02
+    same_amplitude: float = 0.5
+    same_sds: float = 3.0
+    tries: int = 5
+    smooth_error: float = 0.01
+    negligible: float = 0.01

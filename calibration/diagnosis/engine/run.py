@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 from calibration.diagnosis.engine.advice import advice
 from calibration.diagnosis.engine.explanation import Explanation, explain
 from calibration.diagnosis.engine.fitting import Fit, fit
 from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.model_error import model_error_of
 from calibration.diagnosis.engine.null import Null
+from calibration.diagnosis.engine.partly import Assessed, assess
+from calibration.diagnosis.engine.remainder import about_remainder, remainder_of
 from calibration.diagnosis.engine.search import Finding, Progress, Rules, search
+from calibration.diagnosis.engine.shares import Interval, Shares
 from calibration.diagnosis.engine.verdict import Diagnosis, Numbers, Subject, reduced, undetectable
 from calibration.measurements._baseline import SPECIMENS
+from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise_known import NoiseKnown, Source
 from calibration.measurements._state import State
 
 # Nuisances and the mesh's error are taken at an explanation again as long as it moves by more than this
@@ -25,6 +32,7 @@ def diagnose(
     *,
     rules: Rules | None = None,
     gain: bool = True,
+    noise: Source = "stated",
     on_progress: Progress = lambda _: None,
 ) -> Diagnosis:
     """Search for what the baseline lacks, and reach a verdict.
@@ -33,7 +41,8 @@ def diagnose(
     ----------
     model : measurements of one kind, with effects.
     rules : of the search.
-    gain : predict held-out data too.
+    gain : predict held-out data too. An explanation that leaves more than noise is always tried on them.
+    noise : "stated" or "data": what it is taken from where the data contradict what the lab states.
     on_progress : called with a sentence at each step.
 
     Raises
@@ -41,22 +50,42 @@ def diagnose(
     ValueError : the baseline has no answer anywhere.
     """
     begun = time.monotonic()
+    rules = rules or Rules()
+    known = model.with_noise_of_data() if noise == "data" else model.noise_known()
+    model.noise_scale = known.scale
     finding = search(model, rules=rules, on_progress=on_progress)
     baseline = finding.baseline
     before = _numbers(model, baseline, finding.lack_of_fit.p_value)
+    nearest: Assessed | None = None
+    if finding.verdict == "unexplained":
+        finding, nearest = _in_degrees(model, finding, known, rules, on_progress)
     after: Numbers | None = None
     held_out: HeldOut | None = None
     refined: Explanation | None = None
+    shares: Shares | None = None
+    causes: dict[Candidate, Interval] = {}
     if finding.chosen is not None:
         on_progress("refining what was found")
         next_experiment = _advice(model, finding, on_progress)
-        refined, baseline = _refined(model, finding, rules or Rules())
+        refined, baseline, null = _refined(model, finding, rules)
         after = _numbers(model, refined.fit, refined.lack_of_fit.p_value)
         if gain:
             on_progress("predicting held-out measurements")
             held_out = held_out_improvement(model, baseline, refined.fit)
+            if not held_out.held_out and nearest is not None and nearest.held_out is not None:
+                # as it was found: where nuisances are taken anew, a fold may have no answer
+                held_out = nearest.held_out
+        shares = _shares(model, baseline, rules, known)
+        causes = shares.of_causes(model, baseline, refined, null)
     else:
         next_experiment = _no_cause(model, finding)
+        if finding.verdict == "unexplained":
+            shares = _shares(model, baseline, rules, known)
+    fit_now = baseline if refined is None else refined.fit
+    left = remainder_of(model, fit_now, negligible=rules.negligible) if shares is not None else None
+    named_whole = finding.verdict in ("none", "found", "ambiguous")
+    if left is not None and not named_whole:
+        next_experiment = "; ".join(x for x in (next_experiment, about_remainder(left)) if x)
     return Diagnosis(
         finding=finding,
         chosen=refined,
@@ -67,12 +96,59 @@ def diagnose(
         subject=Subject.of(model, finding.baseline if refined is None else refined.fit),
         next_experiment=next_experiment,
         undetectable=undetectable(model, finding),
-        notes=tuple(_notes(model, finding, refined, rules or Rules())),
+        notes=tuple(_notes(model, finding, refined, rules, known)),
         seconds=time.monotonic() - begun,
+        share=shares.share(shares.misfit(refined.fit)) if shares and refined else None,
+        shares=causes,
+        resampled=shares.groups.over if shares else "",
+        nearest=nearest if refined is None else None,
+        rivals=dict(nearest.rivals) if nearest is not None and refined is not None else {},
+        remainder=left,
+        model_error=model_error_of(model, fit_now, left, shares, reduced(fit_now))
+        if shares is not None and left is not None and not named_whole
+        else None,
+        noise=known,
     )
 
 
-def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[Explanation, Fit]:
+def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKnown) -> Shares:
+    return Shares(
+        model,
+        baseline,
+        draws=rules.draws,
+        seed=rules.seed,
+        noise_dof=noise.dof,
+        noise_scale=noise.scale,
+    )
+
+
+def _in_degrees(
+    model: MeasurementModel, finding: Finding, noise: NoiseKnown, rules: Rules, on_progress: Progress
+) -> tuple[Finding, Assessed | None]:
+    """The finding with what explains it in part, where that may be named; and what comes nearest."""
+    shares = _shares(model, finding.baseline, rules, noise)
+    nearest = assess(
+        model,
+        finding.baseline,
+        finding.explanations,
+        shares,
+        rules,
+        noise_known=noise.known,
+        on_progress=on_progress,
+    )
+    if nearest is None or nearest.against or finding.p_value > rules.false_alarm_rate:
+        return finding, nearest
+    named = replace(
+        finding,
+        verdict="partly explained",
+        dominant=nearest.explanation,
+        equivalent=(nearest.explanation.names, *(names for names, _ in nearest.rivals)),
+        confidence=nearest.confidence,
+    )
+    return named, nearest
+
+
+def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[Explanation, Fit, Null]:
     """The chosen explanation and the baseline, fitted with nuisances and discretisation errors taken where
     the explanation is; they compare with each other only, not with what the search found."""
     chosen = finding.chosen
@@ -88,7 +164,7 @@ def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[E
         found = [(c, *again.fit.amplitude(c)) for c in again.candidates]
         if all(abs(value - before[c]) < SETTLED * sd for c, value, sd in found):
             break
-    return again, fit(model, State(u=finding.baseline.state.u))
+    return again, fit(model, State(u=finding.baseline.state.u)), null
 
 
 def _numbers(model: MeasurementModel, found: Fit, p: float) -> Numbers:
@@ -103,7 +179,7 @@ def _numbers(model: MeasurementModel, found: Fit, p: float) -> Numbers:
 def _advice(model: MeasurementModel, finding: Finding, on_progress: Progress) -> str:
     chosen = finding.chosen
     assert chosen is not None
-    if finding.verdict == "found":
+    if len(finding.equivalent) == 1:
         return "; ".join(f"to confirm: {model.effects[name].remedy}" for name in chosen.names)
     named = dict.fromkeys(name for names in finding.equivalent for name in names)
     own = [e for e in (model.effects[name] for name in named) if e.belongs_to == "simulator"]
@@ -122,7 +198,7 @@ def _no_cause(model: MeasurementModel, finding: Finding) -> str:
                 "see whether each measurement is filed under its own specimen and material: moduli within a"
                 " material differ by more than its specimens do"
             )
-        return "look at the residuals; repeat the measurements that depart most, in another pose"
+        return ""
     never = [e for name, e in model.effects.items() if _never(finding, name)]
     return "; ".join(dict.fromkeys(f"{e.remedy} ({e.name} cannot be seen)" for e in never))
 
@@ -136,8 +212,11 @@ def _never(finding: Finding, name: str) -> bool:
     return bool(sizes) and max(sizes) == 0.0
 
 
-def _notes(model: MeasurementModel, finding: Finding, chosen: Explanation | None, rules: Rules) -> list[str]:
-    found = model.remarks() + _at_limits(model, chosen) + _other_scopes(model, finding, rules)
+def _notes(
+    model: MeasurementModel, finding: Finding, chosen: Explanation | None, rules: Rules, noise: NoiseKnown
+) -> list[str]:
+    found = noise.sentences() + model.remarks()
+    found += _at_limits(model, chosen) + _other_scopes(model, finding, rules)
     for e in (finding.baseline, *(x.fit for x in finding.explanations)):
         if not e.converged:
             found.append(f"fit of {e.label}: {e.message}")
@@ -149,7 +228,7 @@ def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]
     found = []
     for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
         effect = model.effects[c.effect]
-        if a in effect.physical_limits:
+        if a in effect.physical_limits and not effect.switch:
             found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is as far as it goes")
     return found
 

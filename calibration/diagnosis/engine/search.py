@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 HOPELESS = 0.35  # of the best candidate's improvement: one that promises less is not fitted
 POSITIONED = 3  # pairs, and triples, whose causes are moved to their best position: the best ones
 FAR = 0.05  # of ln G: nuisances that were taken so far from the end of the fit are taken again
-Verdict = Literal["none", "found", "ambiguous", "unexplained"]
+Verdict = Literal["none", "found", "ambiguous", "partly explained", "unexplained"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -39,14 +39,17 @@ class Finding:
 
     Attributes
     ----------
-    verdict : none, found, ambiguous (several equivalent explanations) or unexplained.
+    verdict : none, found, ambiguous (several equivalent explanations), partly explained (`partly.py`; a
+        search alone calls that unexplained) or unexplained.
     baseline : its fit.
     lack_of_fit : test of the baseline's residuals.
     p_value : probability that noise alone gives the best candidate its improvement.
     screened : all candidates at the baseline.
     explanations : all that were confirmed in the simulator, best first.
     equivalent : sets of effects that the data cannot separate, the chosen one first.
-    confidence : probability that the chosen set would be ranked first again with other noise.
+    confidence : probability that the chosen set would be ranked first again with other noise; of one that
+        explains in part, the part of the replicates in which no other set of as many causes takes more.
+    dominant : what is named where the data are explained in part.
     """
 
     verdict: Verdict
@@ -58,10 +61,13 @@ class Finding:
     explanations: tuple[Explanation, ...] = ()
     equivalent: tuple[Names, ...] = field(default=())
     confidence: float = 0.0
+    dominant: Explanation | None = None
 
     @property
     def chosen(self) -> Explanation | None:
         """What the verdict names first; None where it names nothing."""
+        if self.verdict == "partly explained":
+            return self.dominant
         return self.explanations[0] if self.verdict in ("found", "ambiguous") else None
 
 

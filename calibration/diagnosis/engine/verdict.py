@@ -10,16 +10,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.explanation import Explanation, Names
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut
+from calibration.diagnosis.engine.model_error import ModelError
+from calibration.diagnosis.engine.partly import Assessed
+from calibration.diagnosis.engine.remainder import Remainder
 from calibration.diagnosis.engine.search import Finding
-from calibration.measurements._effect import Candidate
+from calibration.diagnosis.engine.sentences import sentence
+from calibration.diagnosis.engine.shares import Interval
+from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise_known import STATED, NoiseKnown
+from calibration.parameters import Parameters
 
 Array = NDArray[np.float64]
 
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +84,9 @@ class Subject:
         coordinates, shape (n,).
     ranges : between what each named candidate was measured, by the quantity's name in files.
     materials : that each named candidate concerns.
+    other_laws : of each material in which an effect replaces the baseline's law, that law and its parameters
+        at the fitted modulus.
+    handed_on : the part of each material that each named candidate is, where it is one.
     """
 
     kind: str
@@ -86,6 +96,8 @@ class Subject:
     modulus_weights: Mapping[str, Array] = field(default_factory=dict)
     ranges: Mapping[Candidate, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
     materials: Mapping[Candidate, frozenset[str]] = field(default_factory=dict)
+    other_laws: Mapping[str, tuple[str, Parameters]] = field(default_factory=dict)
+    handed_on: Mapping[Candidate, Mapping[str, HandedOn]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, model: MeasurementModel, fit: Fit) -> Subject:
@@ -104,13 +116,26 @@ class Subject:
                 )
                 for c in fit.candidates
             },
+            other_laws={m: own for m in base.materials if (own := model.law_in(m, fit.state)) is not None},
+            handed_on={c: model.hands_on(c, fit.state) for c in fit.candidates},
         )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Diagnosis:
-    """All that is known of an experiment. chosen: the explanation that is named, refined; it, extended and
-    held_out are None where no cause is named."""
+    """All that is known of an experiment.
+
+    Attributes
+    ----------
+    chosen : the explanation that is named, refined; it, extended and held_out are None where none is.
+    share : of the explainable misfit, that it takes. shares : of each of its causes (they add up to it).
+    resampled : over what their intervals are.
+    nearest : where the data are unexplained, what comes nearest.
+    rivals : where they are explained in part, other sets of effects that take as much, with their shares.
+    remainder : what is left; None where the baseline leaves only noise.
+    model_error : the remainder as an error of the model, where more than noise is left.
+    noise : what is known of it.
+    """
 
     finding: Finding
     chosen: Explanation | None
@@ -123,6 +148,14 @@ class Diagnosis:
     undetectable: tuple[Undetectable, ...]
     notes: tuple[str, ...]
     seconds: float
+    share: Interval | None = None
+    shares: Mapping[Candidate, Interval] = field(default_factory=dict)
+    resampled: str = ""
+    nearest: Assessed | None = None
+    rivals: Mapping[Names, Interval] = field(default_factory=dict)
+    remainder: Remainder | None = None
+    model_error: ModelError | None = None
+    noise: NoiseKnown = STATED
 
     @property
     def unit(self) -> tuple[str, float]:
@@ -136,17 +169,33 @@ class Diagnosis:
 
     def causes(self) -> list[dict[str, Any]]:
         """One entry for each effect of the chosen explanation."""
-        return [] if self.chosen is None else _causes(self.chosen, self.effects, self.finding.confidence)
+        if self.chosen is None:
+            return []
+        found = _causes(self.chosen, self.effects, self.finding.confidence)
+        for cause, c in zip(found, self.chosen.candidates, strict=True):
+            own = self.shares.get(c)
+            cause["share"] = None if own is None else _interval(own)
+        return found
 
     def to_json(self) -> dict[str, Any]:
-        found: dict[str, Any] = {
+        """Content of diagnosis.json (docs/diagnosis.md)."""
+        unit = self.unit
+        return {
             "format": FORMAT,
+            "kind": self.subject.kind,
             "verdict": self.finding.verdict,
+            "sentence": self.sentence(),
             "causes": self.causes(),
             "alternatives": [list(names) for names in self.finding.equivalent],
-            "baseline": self.baseline.to_json(self.unit[0]),
-            "extended": self.extended.to_json(self.unit[0]) if self.extended else None,
-            "gain": None,
+            "share": None if self.share is None else _interval(self.share),
+            "resampled_over": self.resampled,
+            "baseline": self.baseline.to_json(unit[0]),
+            "extended": self.extended.to_json(unit[0]) if self.extended else None,
+            "gain": None if self.held_out is None else _gain(self.held_out, unit),
+            "nearest": None if self.nearest is None else self._nearest(self.nearest),
+            "remainder": None if self.remainder is None else _remainder(self.remainder, unit),
+            "model_error": None if self.model_error is None else self.model_error.to_json(unit),
+            "noise": self.noise.to_json(),
             "next_experiment": self.next_experiment,
             "not_visible": [
                 {
@@ -159,43 +208,67 @@ class Diagnosis:
             "notes": list(self.notes),
             "seconds": round(self.seconds, 1),
         }
-        if self.held_out is not None:
-            g, (unit, per_si) = self.held_out, self.unit
-            found["gain"] = {
-                "held_out": g.held_out or "none",
-                f"rms_{unit}_before": per_si * g.rms_before if g.held_out else None,
-                f"rms_{unit}_after": per_si * g.rms_after if g.held_out else None,
-                f"rms_{unit}_noise": per_si * g.rms_noise if g.held_out else None,
-                "log_likelihood": g.log_likelihood if g.held_out else None,
-                "information_kept": g.kept,
-                "note": g.note,
-            }
-        return found
+
+    def _nearest(self, nearest: Assessed) -> dict[str, Any]:
+        causes = _causes(nearest.explanation, self.effects, nearest.confidence)
+        return {
+            "causes": [{k: v for k, v in c.items() if k != "confidence"} for c in causes],
+            "share": _interval(nearest.share),
+            "gain": None if nearest.held_out is None else _gain(nearest.held_out, self.unit),
+            "not_named_because": list(nearest.against),
+        }
 
     def sentence(self) -> str:
         """The verdict for people."""
-        verdict = self.finding.verdict
-        if verdict == "none":
-            return "The simulation agrees with the measurements to within their noise: no cause to name."
-        if verdict == "unexplained":
-            return (
-                "The measurements depart from the simulation, and no effect of the catalogue explains how:"
-                " look at the residuals."
-            )
-        chosen = self.chosen
-        assert chosen is not None
-        parts = [
-            f"{self.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
-            for c in chosen.candidates
-        ]
-        named = " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
-        if verdict == "found":
-            return f"Found: {named} ({' + '.join(chosen.names)})."
-        others = "; or ".join(" + ".join(names) for names in self.finding.equivalent[1:])
-        return (
-            f"Something is wrong, but these data cannot say which: most likely {named}"
-            f" ({' + '.join(chosen.names)}); or {others}."
-        )
+        return sentence(self)
+
+
+def _interval(share: Interval) -> dict[str, float | None]:
+    return {
+        "value": share.value,
+        "low": share.low if math.isfinite(share.low) else None,
+        "high": share.high if math.isfinite(share.high) else None,
+    }
+
+
+def _gain(g: HeldOut, unit: tuple[str, float]) -> dict[str, Any]:
+    name, per_si = unit
+
+    def figure(x: float) -> float | None:
+        return x if g.held_out and math.isfinite(x) else None
+
+    return {
+        "held_out": g.held_out or "none",
+        f"rms_{name}_before": figure(per_si * g.rms_before),
+        f"rms_{name}_after": figure(per_si * g.rms_after),
+        f"rms_{name}_noise": figure(per_si * g.rms_noise),
+        "skill": figure(g.skill),
+        "folds": [
+            {
+                "left_out": p.name,
+                f"rms_{name}_before": per_si * p.rms_before,
+                f"rms_{name}_after": per_si * p.rms_after,
+                f"rms_{name}_noise": per_si * p.rms_noise,
+                "skill": p.skill if math.isfinite(p.skill) else None,
+            }
+            for p in g.parts
+        ],
+        "log_likelihood": figure(g.log_likelihood),
+        "information_kept": g.kept,
+        "note": g.note,
+    }
+
+
+def _remainder(left: Remainder, unit: tuple[str, float]) -> dict[str, Any]:
+    return {
+        f"rms_{unit[0]}": unit[1] * left.rms,
+        "of_full_scale": left.of_full_scale,
+        "negligible": left.negligible,
+        "repeats": left.repeats,
+        "cosines": left.cosines,
+        "records": list(left.records),
+        "place": left.place,
+    }
 
 
 def _causes(chosen: Explanation, effects: dict[str, Any], confidence: float) -> list[dict[str, Any]]:

@@ -34,23 +34,26 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
     finding = diagnosis.finding
     draws = len(finding.null.noise)
     base = finding.lack_of_fit
-    text = f"Against the baseline {_failing(base)} (all tests together: p {chance(base.p_value, draws)})."
+    kind = diagnosis.subject.kind
+    text = (
+        f"Against the baseline {_failing(base, kind)} (all tests together: p {chance(base.p_value, draws)})."
+    )
     if not finding.explanations or finding.p_value > RARE:
         return f"{text} No effect of the library improves χ² by more than noise alone would."
     best = finding.explanations[0]
     return (
         f"{text} The best that the library offers ({best.fit.label}) improves χ² by"
         f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"
-        f" {_failing(best.lack_of_fit)} (all tests together: p"
+        f" {_failing(best.lack_of_fit, kind)} (all tests together: p"
         f" {chance(best.lack_of_fit.p_value, draws)}). So it is not"
-        " named as the cause."
+        f" {'all of the cause' if finding.verdict == 'partly explained' else 'named as the cause'}."
     )
 
 
-def _failing(found: LackOfFit) -> str:
+def _failing(found: LackOfFit, kind: str) -> str:
     """The tests of residuals that fail; the one nearest to it where none does alone."""
     worst = [n for n, p in found.each.items() if p < SUSPECT] or [found.worst]
-    return f"more than noise is found in the {listed([pattern(n) for n in worst])}"
+    return f"more than noise is found in the {listed([pattern(n, kind) for n in worst])}"
 
 
 def troubles(diagnosis: Diagnosis) -> list[str]:
@@ -74,6 +77,16 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
     draws = len(finding.null.noise)
     candidates = finding.screened.candidates
     effects = {c.effect for c in candidates}
+    resampled = (
+        [
+            "Shares: of the explainable misfit, which is χ² less what noise alone would leave of it;"
+            f" intervals of 95 % by a bootstrap over {diagnosis.resampled}, never over points; causes that"
+            " are correlated part it by Shapley's value. Held-out skill: the part of the squared error beyond"
+            " noise that the extension takes away on measurements that its fit has not seen."
+        ]
+        if diagnosis.resampled
+        else []
+    )
     return [
         f"Noise: {model.points} measured coefficients, whitened by their covariance, nuisances included."
         f" {noise}".strip(),
@@ -86,5 +99,6 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
         " itself. How many were tried is accounted for in the chance above.",
         f"Confidence: {min(1000, draws)} replicates of what the best explanation predicts with new noise, all"
         " explanations fitted anew to first order: how often the same set of effects comes first.",
+        *resampled,
         f"This diagnosis took {significant(diagnosis.seconds)} s.",
     ]

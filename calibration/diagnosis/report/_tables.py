@@ -5,35 +5,132 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from calibration.diagnosis.engine.remainder import about_remainder
+from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._units import quantity_and_unit
 from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
-from calibration.report import NOTHING, Cell, significant, with_sd
+from calibration.report import NOTHING, Cell, listed, significant, with_sd
 
 Rows = list[list[Cell]]
 
-CAUSES = ("cause", "what it is", "where", "amplitude ± sd", "confidence", "belongs to", "which means")
-ALTERNATIVES = ("set of causes", "what it is", "worse than the best by", "belongs to")
+BUDGET = (
+    "cause",
+    "what it is",
+    "where",
+    "amplitude ± sd",
+    "share of what is to explain",
+    "belongs to",
+    "evidence",
+    "what would settle it",
+)
+FOLDS = ("left out", "baseline", "extended", "noise alone", "skill")
+ALTERNATIVES = ("set of causes", "what it is", "against the best", "belongs to")
 FITS = ("", "baseline", "extended", "change")
 TESTS = ("test of what is left", "baseline", "best explanation")
 INVISIBLE = ("effect", "what it is", "amplitude needed for 5 sd", "what to do instead")
 
 
-def cause_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
-    """One row a cause; several parameters of one stand in one cell each under the other."""
+def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
+    """One row a cause (named, or nearest), then what is not modelled; no rows where all is well."""
+    causes = sorted(told["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
+    rows = [_cause_row(diagnosis, c, told, named=True) for c in causes]
+    nearest = told["nearest"]
+    if nearest is not None:
+        rows += [_cause_row(diagnosis, c, nearest, named=False) for c in nearest["causes"]]
+    left = diagnosis.remainder
+    if left is None:
+        return rows
+    unit, per_si = diagnosis.unit
+    share = told["share"]
+    part = (
+        _one_less(share) if share is not None else "all" if nearest is None else _one_less(nearest["share"])
+    )
+    place = "; ".join(x for x in (left.place, listed(list(left.records)) if left.records else "") if x)
+    rows.append(
+        [
+            Cell(text="not modelled"),
+            Cell(text="what the causes above leave beside noise" if rows else "what the baseline leaves"),
+            Cell(text=place or "all measurements"),
+            Cell(text=f"{significant(per_si * left.rms, 2)} {unit} rms", value=per_si * left.rms),
+            Cell(text=part),
+            Cell(text="not known" if left.rms else NOTHING),
+            Cell(text=_REPEATS[left.repeats] if left.rms else "no more than noise"),
+            Cell(text=about_remainder(left) or NOTHING),
+        ]
+    )
+    return rows
+
+
+_REPEATS = {
+    "everywhere": "alike in all tests: the form of the model, or the rig",
+    "within a material": "alike within each material",
+    "within a specimen": "alike within a specimen only: its own fault",
+    "nowhere": "differs from test to test",
+    "not known": "no test was done twice, so that it cannot be said to repeat",
+}
+
+
+def _one_less(share: dict[str, float | None]) -> str:
+    assert share["value"] is not None
+    return f"{100.0 * min(max(1.0 - share['value'], 0.0), 1.0):.0f} %"
+
+
+def _cause_row(
+    diagnosis: Diagnosis, cause: dict[str, Any], told: dict[str, Any], *, named: bool
+) -> list[Cell]:
+    """Several parameters of one cause stand in one cell each under the other."""
+    effect = diagnosis.effects[cause["effect"]]
+    values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
+    share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
+    evidence = _evidence(cause, told["gain"])
+    return [
+        Cell(text=cause["effect"] + ("" if named else " (not named)"), mark="chosen" if named else ""),
+        Cell(text=effect.sentence),
+        Cell(text=scope(cause["scope"])),
+        Cell(text="; ".join(t for t, _ in values), value=values[0][1], mark="chosen" if named else ""),
+        Cell(
+            text=NOTHING if share is None else _share(share) + ("" if alone else " together"),
+            value=None if share is None else share["value"],
+        ),
+        Cell(text=meaning(effect)),
+        Cell(text=evidence, value=cause.get("confidence")),
+        Cell(text=effect.remedy),
+    ]
+
+
+def _share(share: dict[str, float | None]) -> str:
+    def part(x: float) -> str:
+        return f"{100.0 * min(max(x, 0.0), 1.0):.0f}"
+
+    value, low, high = share["value"], share["low"], share["high"]
+    assert value is not None
+    return f"{part(value)} %" + ("" if low is None or high is None else f" [{part(low)}, {part(high)}]")
+
+
+def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None) -> str:
+    parts = []
+    if "confidence" in cause:
+        parts.append(f"first again in {_confidence(cause['confidence'])} of replicates")
+    if gain is not None and gain["skill"] is not None:
+        parts.append(f"held-out skill {gain['skill']:.2f} ({gain['held_out']})")
+    elif gain is not None:
+        parts.append("nothing held out")
+    return "; ".join(parts)
+
+
+def fold_rows(told: dict[str, Any], unit: str) -> Rows:
+    """What was left out, part by part, predicted from the rest."""
+    gain = told["gain"] or (told["nearest"] or {}).get("gain")
     rows = []
-    for cause in told["causes"]:
-        effect = diagnosis.effects[cause["effect"]]
-        values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
+    for part in gain["folds"] if gain is not None else []:
+        figures = [part[f"rms_{unit}_{x}"] for x in ("before", "after", "noise")]
+        skill = part["skill"]
         rows.append(
             [
-                Cell(text=cause["effect"], mark="chosen"),
-                Cell(text=effect.sentence),
-                Cell(text=scope(cause["scope"])),
-                Cell(text="; ".join(text for text, _ in values), value=values[0][1], mark="chosen"),
-                Cell(text=_confidence(cause["confidence"]), value=cause["confidence"]),
-                Cell(text=effect.belongs_to),
-                Cell(text=meaning(effect)),
+                Cell(text=part["left_out"]),
+                *(Cell(text=f"{significant(x)} {unit}", value=x) for x in figures),
+                Cell(text=NOTHING if skill is None else f"{skill:.2f}", value=skill),
             ]
         )
     return rows
@@ -52,13 +149,19 @@ def alternative_rows(diagnosis: Diagnosis) -> Rows:
     for k, names in enumerate(finding.equivalent):
         score = min(e.score for e in finding.explanations if e.names == names)
         parts = [diagnosis.effects[n] for n in names]
+        if names in diagnosis.rivals:
+            share = diagnosis.rivals[names]
+            worse = Cell(text=f"takes {percent(share)}", value=share.value)
+        elif diagnosis.rivals and diagnosis.share is not None:
+            worse = Cell(text=f"takes {percent(diagnosis.share)}", value=diagnosis.share.value)
+        else:
+            text = "the best" if k == 0 else f"{significant(score - best, 2)} of χ²"
+            worse = Cell(text=text, value=score - best)
         rows.append(
             [
                 Cell(text=" + ".join(names), mark="chosen" if k == 0 else ""),
                 Cell(text="; and ".join(p.sentence for p in parts)),
-                Cell(
-                    text="the best" if k == 0 else f"{significant(score - best, 2)} of χ²", value=score - best
-                ),
+                worse,
                 Cell(text=", ".join(dict.fromkeys(p.belongs_to for p in parts))),
             ]
         )
@@ -84,6 +187,8 @@ def _held_out_rows(gain: dict[str, Any] | None, draws: int) -> Rows:
         return []
     rows = []
     for key, before in gain.items():
+        if key == "folds":
+            continue
         if key.endswith("_before") and before is not None:
             stem = key.removesuffix("_before")
             rows.append(_fit_row(stem, before, gain[f"{stem}_after"], draws, of="what was held out"))
@@ -143,7 +248,10 @@ def test_rows(diagnosis: Diagnosis) -> Rows:
         return Cell(text=chance(p, draws), value=p, mark="bad" if p < SUSPECT else "")
 
     rows = [
-        [Cell(text=pattern(n)), *(cell(None if d is None else d.each[n]) for d in both)]
+        [
+            Cell(text=pattern(n, diagnosis.subject.kind)),
+            *(cell(None if d is None else d.each[n]) for d in both),
+        ]
         for n in finding.lack_of_fit.each
     ]
     whole = [cell(None if d is None else d.p_value) for d in both]

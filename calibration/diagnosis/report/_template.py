@@ -11,6 +11,7 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 .none { background: #E8F5EF; border-color: #009E73; } .none strong { color: #00694B; }
 .found { background: #FDF1E6; border-color: #D55E00; } .found strong { color: #B34700; }
 .ambiguous { background: #FDF7E3; border-color: #E69F00; } .ambiguous strong { color: #8A5A00; }
+.partly { background: #FDF3EA; border-color: #CC79A7; } .partly strong { color: #8A1F5C; }
 .unexplained { background: #F7EAF2; border-color: #A3286F; } .unexplained strong { color: #8A1F5C; }
 .next { background: #EEF4FA; border-left: 4px solid #0072B2; padding: .5rem 1rem; margin: .8rem 0; }
 {% endblock %}
@@ -18,8 +19,14 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 <h1>Diagnosis: {{ title }}</h1>
 <p class="verdict {{ verdict }}"><strong>{{ headline }}</strong>
 {{ sentence }}</p>
-{% if causes %}
-{{ table(cause_headings, causes) }}
+{% for p in shapes[:1] %}
+{{ figure(p) }}
+{% else %}
+<p class="note">No pictures of shapes.</p>
+{% endfor %}
+{% if budget %}
+<h2>Where the departure comes from</h2>
+{{ table(budget_headings, budget) }}
 {% endif %}
 {% if alternatives | length > 1 %}
 <h3>These data cannot tell apart</h3>
@@ -31,41 +38,35 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 {% for t in troubles %}
 <p class="trouble">{{ t }}</p>
 {% endfor %}
-<section id="shapes">
-<h2>Measured against simulated</h2>
-{% for p in shapes %}
+<section id="gain">
+<h2>{{ "Measured against baseline and extended" if extended else "Measured against the baseline" }}</h2>
+{% for p in shapes[1:] %}
 {{ figure(p) }}
-{% else %}
-<p class="note">No pictures of shapes.</p>
 {% endfor %}
-</section>
-{% if verdict == "unexplained" %}
-<section id="lack-of-fit">
-<h2>What nothing in the library explains</h2>
-<p>{{ lack_of_fit }}</p>
-{{ table(test_headings, tests) }}
+{{ table(fit_headings, fits) }}
+{% if extended %}
+<p class="note">What a modulus changes by is what the baseline's calibration had absorbed of the cause.
+{{ gain }}</p>
+{% endif %}
+{% if folds %}
+<h3>Predicted, each from all others{{ "" if extended else ", with the nearest explanation" }}</h3>
+{{ table(fold_headings, folds) }}
+{% endif %}
 {% for p in residuals %}
 {{ figure(p) }}
 {% endfor %}
+</section>
+{% if verdict in ("unexplained", "partly explained") %}
+<section id="lack-of-fit">
+<h2>{{ "What nothing in the library explains" if verdict == "unexplained" else "What is left" }}</h2>
+<p>{{ lack_of_fit }}</p>
+{{ table(test_headings, tests) }}
 </section>
 {% endif %}
 <section id="evidence">
 <h2>Evidence, cause by cause</h2>
 {{ figure(evidence) }}
 <p class="note">{{ alarm }}</p>
-</section>
-<section id="gain">
-<h2>{{ "Before and after" if extended else "How well the baseline does" }}</h2>
-{{ table(fit_headings, fits) }}
-{% if extended %}
-<p class="note">What a modulus changes by is what the baseline's calibration had absorbed of the cause.
-{{ gain }}</p>
-{% endif %}
-{% if verdict != "unexplained" %}
-{% for p in residuals %}
-{{ figure(p) }}
-{% endfor %}
-{% endif %}
 </section>
 <section id="invisible">
 <h2>What this design cannot see</h2>
@@ -89,7 +90,7 @@ plausible.</p>
 {% for m in method %}
 <p class="note">{{ m }}</p>
 {% endfor %}
-{% if verdict != "unexplained" %}
+{% if verdict not in ("unexplained", "partly explained") %}
 {{ table(test_headings, tests) }}
 {% endif %}
 </section>

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from calibration.diagnosis._rig_file import corrects
 from calibration.diagnosis.engine.null import EVERYTHING
+from calibration.diagnosis.engine.search import Finding
 from calibration.measurements._baseline import SPECIMENS
 from calibration.measurements._effect import EffectModel, Owner
 from calibration.report import significant
@@ -26,22 +27,51 @@ HEADLINE = {
     "none": "No cause to name",
     "found": "Cause found",
     "ambiguous": "Several causes would explain this",
+    "partly explained": "Explained in part",
     "unexplained": "Departure without a known cause",
 }
 
 _PATTERNS = {
     EVERYTHING: "size of all residuals together",
-    "trial edges": "bends of single edges that all photographs of a trial share",
-    "trial bends": "bends of the whole beam that all photographs of a trial share",
-    "support bends": "bends that beams of one length and support share",
-    "drifts": "bends that grow with the logarithm of time",
     SPECIMENS: "moduli that differ between specimens of one material by more than a lab's scatter",
 }
+_OF_KIND = {
+    "outlines": {
+        "trial edges": "bends of single edges that all photographs of a trial share",
+        "trial bends": "bends of the whole beam that all photographs of a trial share",
+        "support bends": "bends that beams of one length and support share",
+        "drifts": "bends that grow with the logarithm of time",
+    },
+    "homogeneous": {
+        "trial bends": "smooth bends of a test's curve",
+        "mode bends": "smooth bends that tests of one mode and material share",
+        "loops": "differences between loading and unloading",
+        "drifts": "drifts of a test in time",
+        "cycles": "shifts from one stroke to the next",
+        "jumps": "steps within a test",
+    },
+    "indentation": {
+        "trial bends": "smooth bends of a test's curve",
+        "phase bends": "smooth bends of single phases",
+        "drifts": "drifts of a test in time",
+        "shared bends": "smooth bends that tests of a specimen share",
+    },
+}
+_OF_KIND["compression"] = _OF_KIND["homogeneous"]
 
 
-def pattern(name: str) -> str:
-    """A set of patterns for people; what a domain calls it where it is not known here."""
-    return _PATTERNS.get(name, name)
+def pattern(name: str, kind: str) -> str:
+    """A set of patterns for people, in the words of a kind of measurement; what that kind calls it where it
+    is not known here."""
+    return _PATTERNS.get(name) or _OF_KIND.get(kind, {}).get(name, name)
+
+
+def headline(finding: Finding) -> str:
+    """The verdict in a few words."""
+    sets = finding.equivalent
+    if finding.verdict == "ambiguous" and any(all(n in s for s in sets) for n in sets[0]):
+        return "A cause found, and one more that cannot be told"
+    return HEADLINE[finding.verdict]
 
 
 def meaning(effect: EffectModel) -> str:

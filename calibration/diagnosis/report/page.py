@@ -12,7 +12,7 @@ from calibration.diagnosis.report import _tables as tables
 from calibration.diagnosis.report._evidence import draw_evidence
 from calibration.diagnosis.report._method import alarm, lack_of_fit, method, troubles
 from calibration.diagnosis.report._template import PAGE
-from calibration.diagnosis.report._words import HEADLINE
+from calibration.diagnosis.report._words import headline
 from calibration.measurements._model import MeasurementModel
 from calibration.report import Picture, file_name, picture, template
 
@@ -55,10 +55,12 @@ def render(
     return template(PAGE).render(
         title=title,
         verdict=finding.verdict,
-        headline=HEADLINE[finding.verdict],
+        headline=headline(finding),
         sentence=diagnosis.sentence(),
-        cause_headings=tables.CAUSES,
-        causes=tables.cause_rows(diagnosis, told),
+        budget_headings=tables.BUDGET,
+        budget=tables.budget_rows(diagnosis, told),
+        fold_headings=tables.FOLDS,
+        folds=tables.fold_rows(told, diagnosis.unit[0]),
         alternative_headings=tables.ALTERNATIVES,
         alternatives=tables.alternative_rows(diagnosis),
         next_experiment=diagnosis.next_experiment,
@@ -72,7 +74,9 @@ def render(
         alarm=alarm(diagnosis),
         extended=diagnosis.extended is not None,
         fit_headings=tables.FITS if diagnosis.extended else tables.FITS[:2],
-        fits=tables.fit_rows(told, len(finding.null.noise)),
+        fits=[
+            row[: 4 if diagnosis.extended else 2] for row in tables.fit_rows(told, len(finding.null.noise))
+        ],
         gain=tables.gain_sentence(told),
         invisible_headings=tables.INVISIBLE,
         invisible=tables.invisible_rows(diagnosis),

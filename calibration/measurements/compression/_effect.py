@@ -22,11 +22,13 @@ class CompressionEffect(HomogeneousEffect):
     Attributes
     ----------
     bonds : the amplitude is the fraction of the way from free to bonded platens (in the force's logarithm).
+    rubs : the amplitude is the coefficient of friction of the platens.
     tilts : the amplitude is the gap across an end face when its first edge touches, over the height.
     reads : nominal stress [Pa] that the load cell shows, from the true one and the amplitude.
     """
 
     bonds: bool = False
+    rubs: bool = False
     tilts: bool = False
     reads: Callable[[Array, float], Array] | None = None
     applies_to: Callable[[Any], bool] = is_compressed

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm, t
+from scipy.stats import linregress, norm, t
 
 from calibration.measurements.compression._record import is_compressed
 from calibration.measurements.homogeneous._record import Record
@@ -20,6 +20,7 @@ FIRST = 0.02  # strain from which repeats are compared: before, a record is most
 BEND = 4  # highest degree in the strain
 TERMS = ("zero of the strain", "scale", *(f"bend {k}" for k in range(1, BEND + 1)))
 GRID = 60
+STEEP = 0.02  # probability that noise makes a line over the number of the test so steep
 LEAST = 0.001  # of a bend: that some repeats agree better than this may be luck
 ALIKE = 1.3  # ratio of the times of two loadings at one speed, at most
 _SURE = 0.995  # few repeats tell their own scatter badly: as much wider as Student's t is here
@@ -58,8 +59,9 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
         grid = np.linspace(FIRST, reached, GRID)
         logs = np.array([np.log(_loading(r, grid)) for r in group])
         terms = np.linalg.lstsq(basis(grid, last), (logs - np.median(logs, axis=0)).T, rcond=None)[0]
+        terms, known = _without_order(terms, np.array([r.earlier for r in group], dtype=float))
         spread = _NORMAL * np.median(np.abs(terms - np.median(terms, axis=1)[:, None]), axis=1)
-        spread *= t.ppf(_SURE, len(group) - 1) / norm.ppf(_SURE)
+        spread *= np.sqrt((len(group) - 1) / known) * t.ppf(_SURE, known) / norm.ppf(_SURE)
         spread[TERMS.index("scale") :] = np.maximum(spread[TERMS.index("scale") :], LEAST)
         if len({r.specimen for r in group}) > 1:
             spread[TERMS.index("scale")] = 0.0
@@ -67,6 +69,22 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
         names += [r.name for r in group]
     sds = np.sqrt(np.mean(squares, axis=0)) if squares else np.zeros(len(TERMS))
     return Repeatability(last=last, sds=sds, repeats=tuple(names))
+
+
+def _without_order(terms: Array, order: Array) -> tuple[Array, Array]:
+    """Terms (k, n) of n tests less what goes on from test to test, and the degrees of freedom left (k,). A
+    line over their number is taken out of a term where noise would not make one so steep; what it says is a
+    cause (set between tests, their order), and no scatter."""
+    known = np.full(len(terms), len(order) - 1.0)
+    if np.ptp(order) == 0.0:
+        return terms, known
+    left = terms.copy()
+    for k, own in enumerate(terms):
+        line = linregress(order, own)
+        if line.pvalue < STEEP:
+            left[k] = own - line.slope * (order - order.mean())
+            known[k] -= 1.0
+    return left, known
 
 
 def _repeats(records: Sequence[Record], last: float) -> list[list[Record]]:

@@ -28,6 +28,7 @@ from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._forward import Acting, Loading
 from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.kinematics import slab_factor
 from calibration.measurements.homogeneous.model import HomogeneousModel
 
 Array = NDArray[np.float64]
@@ -99,7 +100,8 @@ class CompressionModel(HomogeneousModel):
         """The mesh's error counts where platens hold; what load cells do does not change the stress."""
         acting = [(e, a) for e, a in acting if not (isinstance(e, CompressionEffect) and e.reads)]
         found = super()._loading(record, state, acting)
-        return replace(found, further=self.coordinates.mesh(state.u)) if _amount(found, "bonds") else found
+        held = _amount(found, "bonds") or _amount(found, "rubs")
+        return replace(found, further=self.coordinates.mesh(state.u)) if held else found
 
     def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
         """A tilted cylinder is compressed in columns side by side, shape (COLUMNS, k). Platens push and do
@@ -114,13 +116,25 @@ class CompressionModel(HomogeneousModel):
         found = []
         free = super()._at_own_stretches(loadings, level)
         for x, s, p in zip(loadings, level, free, strict=True):
-            fraction = _amount(x, "bonds")
-            if fraction:
+            fraction, friction = _amount(x, "bonds"), _amount(x, "rubs")
+            if fraction or friction:
                 law = {e.name: a for e, a in x.acting}
                 log_ratio = self.bonded.log_ratio(s, law) + self.coordinates.mesh_error(1.0 - s, x.further)
-                p = p * np.exp(fraction * log_ratio)
+                p = p * np.exp(fraction * log_ratio + self._rubbed(s, friction, log_ratio))
             found.append(_SHARES @ p if p.ndim == 2 else p)
         return found
+
+    def _rubbed(self, stretch: Array, friction: float, bonded: Array) -> Array:
+        """ln of the force between platens with this coefficient of friction over that between free ones,
+        shape of the stretch; bonded : the same of platens that stick all over, which it tends to."""
+        if friction == 0.0:
+            return np.zeros(stretch.shape)
+        slipping = np.log(slab_factor(friction * self.bonded.slender * np.maximum(stretch, 1e-3) ** -1.5))
+        stuck = np.maximum(bonded, 1e-9)
+        return np.asarray(-stuck * np.expm1(-slipping / stuck))
+
+    def repeated(self) -> tuple[str, ...]:
+        return self.repeatability.repeats
 
     def remarks(self) -> list[str]:
         c = self.bonded.cylinder
@@ -162,7 +176,7 @@ class CompressionModel(HomogeneousModel):
         return f"{super().noise_sentence()[:-1]}; {known}; 0.3 % of mesh error in what bonded platens add."
 
 
-def _amount(loading: Loading, what: Literal["bonds", "tilts"]) -> float:
-    """Sum of the amplitudes [SI] of those of a record's effects that bond, or tilt, its platens."""
+def _amount(loading: Loading, what: Literal["bonds", "rubs", "tilts"]) -> float:
+    """Sum of the amplitudes [SI] of those of a record's effects that bond, rub at, or tilt its platens."""
     own = [(e, a) for e, a in loading.acting if isinstance(e, CompressionEffect)]
     return sum((a for e, a in own if getattr(e, what)), 0.0)

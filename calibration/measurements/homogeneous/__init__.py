@@ -2,7 +2,7 @@
 
 from calibration.measurements.homogeneous._forward import predicted
 from calibration.measurements.homogeneous._record import protocol_window
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, slope, unstated_sd
 from calibration.measurements.homogeneous.fit import CouponFit, FitStatus, fit_coupons
 from calibration.measurements.homogeneous.misfit import percent_error
 from calibration.measurements.homogeneous.stress import MODES, nominal_stress, nominal_stresses
@@ -19,6 +19,6 @@ __all__ = [
     "predicted",
     "protocol_window",
     "relative_sd",
-    "scatter_scale",
     "slope",
+    "unstated_sd",
 ]

@@ -102,7 +102,7 @@ def balanced(
         open_ = free.copy()
         open_[:, AXIAL] |= pushed & (left[:, AXIAL] - modulus * x[:, AXIAL] > 0.0)
         left = np.where(open_, left, modulus * x)
-        lost = ~(np.abs(left) <= ENOUGH * modulus).all(axis=1)
+        lost = np.any(~(np.abs(left) <= ENOUGH * modulus), axis=1)
         if not lost.any() or not np.isfinite(left).all():
             break
         slopes, own = np.zeros((len(F), 4, 3)), np.zeros((len(F), 3, 3))

@@ -51,7 +51,7 @@ class Loading:
     @property
     def key(self) -> Hashable:
         """Of the stress over the shear modulus."""
-        effects = tuple((e.name, a) for e, a in self.acting)
+        effects = tuple((e.name, e.form, a) for e, a in self.acting)
         return self.record, self.law.tobytes(), effects, self.compliance, self.further.tobytes()
 
 

@@ -20,7 +20,7 @@ from calibration.measurements.homogeneous._course import (
     largest_before,
     window_of,
 )
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, scatter_scale, slope
+from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, slope, unstated_sd
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 MOST = 100  # points that are kept of a branch: more are averaged in bins of neighbours
 TURN = 0.03  # fraction of the record's range that a real turn goes back by
 NOISE = 6.0  # standard deviations of the stretch that are no turn
+SAME_REACH, SAME_RATE = 0.05, 1.2  # part of the strain, and quotient of rates, within which tests are alike
 LATE = 0.3  # fraction of a ramp's time for which it may stand still before this is a hold
 
 
@@ -50,6 +51,8 @@ class Record:
     rate : of the stretch [1/s]; in a hold, the stretch over the time since its ramp began; NaN without time.
     estimated : the lab states no error of the stress, and sd comes from the scatter.
     ranges : see `calibration.measurements.Record`.
+    earlier : how many tests like it its specimen had before, and `alike` in all, itself among them: of its
+        mode, as far, at its rate.
     course : the rows that it was made of, for materials that remember; None where it was made for others.
     """
 
@@ -69,6 +72,8 @@ class Record:
     rate: Array
     estimated: bool
     ranges: Mapping[str, tuple[float, float]]
+    earlier: int = 0
+    alike: int = 1
     course: Course | None = None
 
     @property
@@ -109,7 +114,24 @@ def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[
         top = float(first_excess(t.mode, record.stretch).max())
         seen[own] = max(seen.get(own, 0.0), top)
         furthest[own] = largest_before(t.mode, t.stretch, furthest.get(own, 1.0))
-    return found
+    return [
+        replace(
+            r,
+            earlier=sum(_alike(r, other) for other in found[:k]),
+            alike=sum(_alike(r, other) for other in found),
+        )
+        for k, r in enumerate(found)
+    ]
+
+
+def _alike(one: Record, other: Record) -> bool:
+    """Whether two records are of one test, repeated. Trials that name no specimen share one."""
+    if (one.material, one.specimen, one.mode) != (other.material, other.specimen, other.mode):
+        return False
+    reaches = [float(r.stretch[np.argmax(np.abs(r.stretch - 1.0))] - 1.0) for r in (one, other)]
+    rates = [float(np.median(r.rate)) for r in (one, other)]
+    same_rate = np.isnan(rates).all() or max(rates) <= SAME_RATE * min(rates)
+    return bool(abs(reaches[0] - reaches[1]) <= SAME_REACH * abs(reaches[0])) and bool(same_rate)
 
 
 def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record:
@@ -223,15 +245,11 @@ def _sd_over_time(
 def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
     """Of the stress alone; over : what its scatter is taken about a smooth curve of."""
     if trial.stress_sd is None:
-        one = relative_sd(over, trial.stress[b.points])
-        relative = np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE)
-        largest = np.abs(trial.stress).max(initial=0.0)
-        return np.asarray(relative * np.maximum(scatter_scale(stress), _FLOOR * largest))
+        return np.maximum(
+            unstated_sd(over, trial.stress[b.points], stress, count),
+            SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
+        )
     return np.asarray(trial.stress_sd / np.sqrt(count))
-
-
-# As in `_scatter`: below this fraction of the largest stress an error stays what it is there.
-_FLOOR = 0.05
 
 
 def turning(trial: CouponTrial) -> float:

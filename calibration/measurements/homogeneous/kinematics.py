@@ -38,3 +38,12 @@ def stress_of(mode: CouponMode, s: Array, by_first: Array | float, by_second: Ar
     """Nominal stress of an energy with dW/dI1 and dW/dI2 at these points, in their unit."""
     one, two = slopes(mode, s)
     return np.asarray(one * by_first + two * by_second)
+
+
+def slab_factor(x: Array) -> Array:
+    """Mean pressure under a rubbing platen over that without friction, shape of x: x is the coefficient of
+    friction times the diameter over the height. The pressure grows exponentially inwards (slab method)."""
+    small = np.abs(x) < 1e-2
+    large = np.where(small, 1.0, x)
+    exact = 2.0 * (np.expm1(large) - large) / large**2
+    return np.asarray(np.where(small, 1.0 + x / 3.0 + x**2 / 12.0, exact))

@@ -22,9 +22,9 @@ from calibration.measurements._basis import Columns, legendre
 from calibration.measurements._effect import Candidate
 from calibration.measurements._folds import fifths
 from calibration.measurements._memory import Memory
-from calibration.measurements._model import MeasurementModel
+from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
-from calibration.measurements._records import listed
+from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._forward import (
@@ -35,8 +35,10 @@ from calibration.measurements.homogeneous._forward import (
     yielding,
 )
 from calibration.measurements.homogeneous._record import Record, records_of
+from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
+from calibration.parameters import Parameters, parametrisation
 
 Array = NDArray[np.float64]
 
@@ -45,6 +47,17 @@ Array = NDArray[np.float64]
 # holds K/G (`Parametrisation.holding`) has these curves too, whatever its prior says.
 BULK_RATIO = 3000.0
 REMEMBERED = 8192  # stresses of a record
+# The simplest first, by the number of their constants; terms of a series law. St Venant-Kirchhoff and the
+# stable neo-Hookean law are no rubber's, and the latter has the neo-Hookean curve at this K/G.
+LAWS = (
+    ("neo-hookean", 1),
+    ("mooney-rivlin", 1),
+    ("arruda-boyce", 1),
+    ("ogden", 1),
+    ("ogden", 2),
+    ("ogden", 3),
+)
+ALIKE = 0.15  # of range and rate: of two repeats of one test
 BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
 
 
@@ -58,6 +71,7 @@ class HomogeneousModel(MeasurementModel):
     effects : by name; see `calibration.diagnosis.effects.homogeneous`.
     law, terms : of the baseline; terms of a series law (Ogden, 1 to 3).
     baseline : in place of that.
+    richer : a law, and its terms, that one of the effects has in place of the baseline's.
 
     Raises
     ------
@@ -71,6 +85,7 @@ class HomogeneousModel(MeasurementModel):
     enough = 60.0
     separates = "most"
     experiments: ClassVar[Sequence[Any]] = EXPERIMENTS
+    laws: ClassVar[Sequence[tuple[str, int]]] = LAWS
 
     records: Sequence[Record]
     effects: Mapping[str, HomogeneousEffect]
@@ -83,6 +98,7 @@ class HomogeneousModel(MeasurementModel):
         law: str = "neo-hookean",
         terms: int = 1,
         baseline: Baseline | None = None,
+        richer: tuple[str, int] | None = None,
     ) -> None:
         self.trials = [t for t in experiment.trials if isinstance(t, CouponTrial)]
         if not self.trials:
@@ -95,7 +111,60 @@ class HomogeneousModel(MeasurementModel):
             self.records, law=law, terms=terms, bulk_ratio=BULK_RATIO
         )
         self._base = BaseStress(self.baseline, bulk_ratio=BULK_RATIO)
+        self.richer: RicherLaw | None = None
+        if richer is not None:
+            self._take_richer(*richer)
+        self.effects = {n: self._own(e) for n, e in self.effects.items() if self.richer or not e.richer}
         self._set_candidates()
+
+    def _take_richer(self, law: str, terms: int) -> None:
+        """Constants of a richer law as further coordinates, each material's from a fit of its own."""
+        form = parametrisation(law, terms=terms)
+        centres = {}
+        for m in self.baseline.materials:
+            found = law_start(form, [r for r in self.records if r.material == m])
+            if found is None:
+                raise ValueError(f"{form.label}: no stress at the stretches of {m}")
+            centres[m] = found[1]
+        self.richer = RicherLaw(law=form, centres=centres)
+        self.baseline = self._base.baseline = self.baseline.with_extras(self.richer.extras())
+        self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
+
+    def _own(self, effect: HomogeneousEffect) -> HomogeneousEffect:
+        """An effect as these records have it: its bounds, and which law it brings in."""
+        touched = [r for r in self.records if effect.acts_on(r)]
+        if effect.bounds_in is not None and touched:
+            (low, high), (least, most) = effect.bounds, effect.bounds_in(touched)
+            effect = replace(effect, bounds=(max(low, least), min(high, most)))
+        if self.richer is None or not effect.richer:
+            return effect
+        label, plain = self.richer.law.label, self.baseline.law.label
+        sentence = f"{effect.effect.sentence}: {plain} does not describe its stress, {label} does"
+        said = replace(effect.effect, sentence=sentence)
+        return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
+
+    def with_law(self, law: str, terms: int) -> Self:
+        """The same measurements with another law as baseline and no effects, to compare laws.
+
+        ValueError where the law has no answer.
+        """
+        return type(self)(self.experiment, law=law, terms=terms)
+
+    def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
+        mine = [k for k, r in enumerate(self.records) if r.material == material]
+        acting = self._effects_in(state, mine[0]) if mine else []
+        own = self._richer_constants(self.records[mine[0]], state, acting) if mine else np.zeros(0)
+        if self.richer is None or not own.size:
+            return None
+        of_law = replace(self.baseline, law=self.richer.law, extras=())
+        shear = self.baseline.shear_moduli(state.u)[material]
+        return self.richer.law.law, self.richer.law.parameters(of_law.scaled(own, shear))
+
+    def brings(self, candidate: Candidate) -> int:
+        if self.richer is None or not self.effects[candidate.effect].richer:
+            return 0
+        hit = self.reached(candidate)
+        return len(self.richer.free) * len({r.material for r, h in zip(self.records, hit, strict=True) if h})
 
     def _measured_in(self, records: Sequence[Record]) -> None:
         """Take these records, one row a point."""
@@ -106,8 +175,10 @@ class HomogeneousModel(MeasurementModel):
         self._memory: Memory[Hashable, Array] = Memory(REMEMBERED)
 
     def start(self) -> Array:
-        """Moduli of the incompressible neo-Hookean curves nearest to the records. ValueError where a specimen
-        pulls back against its stretch."""
+        """Moduli of the incompressible neo-Hookean curves nearest to the records; a law with constants of its
+        own is fitted from several starts. ValueError where a specimen pulls back against its stretch."""
+        if self.baseline.free and not self.baseline.whole:
+            return start_of(self.baseline, self.records)
         found = {}
         for name in self.baseline.specimens:
             top = bottom = 0.0
@@ -139,8 +210,21 @@ class HomogeneousModel(MeasurementModel):
             shear_modulus=self.baseline.shear_modulus(record.specimen, state.u),
             law=self.baseline.law_coordinates(record.material, state.u),
             acting=acting,
-            further=np.zeros(0),
+            further=self._richer_constants(record, state, acting),
         )
+
+    def _richer_constants(self, record: Record, state: State, acting: Acting) -> Array:
+        """All coordinates of its material's richer law, where an effect brings it in; none otherwise."""
+        if self.richer is None or not any(e.richer for e, _ in acting):
+            return np.zeros(0)
+        return self.richer.of(record.material, state.u[self.baseline.first_extra :])
+
+    def _depends_on(self, record: Record) -> NDArray[np.bool_]:
+        found = self.baseline.informed_by(record, whole_material=False)
+        if self.richer is not None:
+            first = self.baseline.first_extra + self.richer.first(record.material)
+            found[first : first + len(self.richer.free)] = True
+        return found
 
     def _over_modulus(self, loadings: Sequence[Loading]) -> list[Array]:
         """Stress over the shear modulus at the records' stretches. It is remembered, since a coordinate or an
@@ -165,16 +249,30 @@ class HomogeneousModel(MeasurementModel):
 
     def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
         """Stress over the shear modulus at the specimens' own stretches, shape of each."""
-        base = self._base.over_modulus(loadings, stretches)
+        base = self._blended(loadings, stretches, self._base.over_modulus(loadings, stretches))
         return [with_effects(x, s, p) for x, s, p in zip(loadings, stretches, base, strict=True)]
+
+    def _blended(
+        self, loadings: Sequence[Loading], stretches: Sequence[Array], base: list[Array]
+    ) -> list[Array]:
+        """The baseline's stresses, with the richer law's in their place as far as an effect says."""
+        parts = [sum(a for e, a in x.acting if e.richer) for x in loadings]
+        some = [k for k, part in enumerate(parts) if part]
+        if not some:
+            return base
+        theirs = [replace(loadings[k], law=loadings[k].further) for k in some]
+        rich = self._rich.over_modulus(theirs, [stretches[k] for k in some])
+        for k, p in zip(some, rich, strict=True):
+            base[k] = (1.0 - parts[k]) * base[k] + parts[k] * p
+        return base
 
     def _effects_in(self, state: State, k: int) -> Acting:
         """Effects in a record, by index, with the sums of their amplitudes there."""
-        found: dict[str, float] = {}
+        found: dict[tuple[str, float | None], float] = {}
         for c, a in state.amplitudes.items():
             if self.visible.get(c, True) and self.reached(c)[k]:
-                found[c.effect] = found.get(c.effect, 0.0) + a
-        return [(self.effects[name], a) for name, a in found.items()]
+                found[c.effect, c.variant] = found.get((c.effect, c.variant), 0.0) + a
+        return [(self.effects[name].formed(variant), a) for (name, variant), a in found.items()]
 
     def reached(self, candidate: Candidate) -> NDArray[np.bool_]:
         if candidate not in self._reached:
@@ -273,8 +371,8 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the stress; its median is"
-                f" {100 * typical:.2g} % of the largest stress"
+                " scatter about a smooth curve, at least 0.5 % of the largest stress; its median is"
+                f" {100 * typical:.2g} %"
             )
         loops = [r for r in records if r.unloads and not r.reloaded]
         if loops:
@@ -290,6 +388,19 @@ class HomogeneousModel(MeasurementModel):
             )
         return found
 
+    def repeat_of(self, k: int) -> Hashable | None:
+        """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
+        own = _protocol(self.records[k])
+        for j, other in enumerate(self.records):
+            there = _protocol(other)
+            if there[:2] == own[:2] and np.allclose(there[2:], own[2:], rtol=ALIKE):
+                return j
+        raise AssertionError("a record is a repeat of itself")
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        r = self.records[k]
+        return "strain", np.abs(r.stretch - 1.0)
+
     def noise_sentence(self) -> str:
         stated = [r for r in self.records if not r.estimated]
         parts = []
@@ -298,7 +409,7 @@ class HomogeneousModel(MeasurementModel):
         if len(stated) < len(self.records):
             parts.append(
                 "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " stress"
+                " largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
@@ -306,10 +417,26 @@ class HomogeneousModel(MeasurementModel):
             + "; the shear modulus free for each specimen."
         )
 
+    def shown(self, k: int) -> Shown:
+        r = self.records[k]
+        return Shown(
+            **over_time(r.time, "stretch", r.stretch),
+            quantity="nominal stress",
+            unit=self.unit,
+            measured=r.stress,
+        )
+
     def pictures(self, diagnosis: Any) -> list[Any]:
         from calibration.measurements.homogeneous.pictures import pictures
 
         return pictures(self, diagnosis)
+
+
+def _protocol(r: Record) -> tuple[str, int, float, float]:
+    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    rates = r.rate[np.isfinite(r.rate)]
+    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
+    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0
 
 
 def _clock(r: Record) -> Array:

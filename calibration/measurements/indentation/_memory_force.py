@@ -10,7 +10,8 @@ spring has the material's memory,
 and the force is sum F'' q de. While no spring lifts off this is the hereditary integral of F (E. H. Lee,
 J. R. M. Radok, J. Appl. Mech. 27, 1960); in retraction springs lift off from the outside, which is Ting's
 solution (J. Appl. Mech. 33, 1966), and recover freely until they are met again. Exact for linear viscoelastic
-half-spaces without friction; what else it leaves out is measured in `docs/calibration.md`.
+half-spaces without friction; what else it leaves out is measured in
+`studies/indentation/over-time.md`.
 """
 
 from __future__ import annotations

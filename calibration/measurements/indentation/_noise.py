@@ -36,9 +36,9 @@ SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wande
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
 # Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,
 # and the powers of how far it went back that it has. What a viscous material has stored at a large strain
-# acts on as that strain goes, and a force made of the elastic one knows no strains
-# (studies/indentation/over-time.md).
-RETRACTION, RETRACTED = 0.03, (1, 2, 3)
+# acts on as that strain goes, and a force made of the elastic one knows no strains: an error of a tenth of
+# this, whose powers partly cancel (studies/indentation/over-time.md).
+RETRACTION, RETRACTED = 0.3, (1, 2, 3)
 
 GRID = 120  # depths at which wandering is evaluated
 TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
@@ -179,12 +179,12 @@ def nuisances(
             left = r.depth_sd * remaining_noise(r.time[phase], int(r.count[phase].sum()), degree)
             for m, part in enumerate(left.T, 1):
                 add(f"depth {m} of {r.labels[n]} of {r.name}", own[phase], part * slope[phase])
-    for r, own, force, part in zip(records, rows, forces, relaxing, strict=True):
-        deepest = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
+    for r, own, force, fraction in zip(records, rows, forces, relaxing, strict=True):
+        reached = np.maximum.accumulate(np.maximum(r.depth, 1e-9))
         turned = np.logical_or.accumulate(r.direction < 0.0)
-        back = np.where(turned, np.clip(1.0 - r.depth / deepest, 0.0, 1.0), 0.0)
-        for power in RETRACTED if part > 0.0 and back.any() else ():
-            size = RETRACTION * part * float(np.abs(force).max())
+        back = np.where(turned, np.clip(1.0 - r.depth / reached, 0.0, 1.0), 0.0)
+        for power in RETRACTED if fraction > 0.0 and back.any() else ():
+            size = RETRACTION * fraction * float(np.abs(force).max())
             add(f"retraction {power} of {r.name}", own, size * back**power)
     return np.column_stack(found), names
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
 from calibration.measurements._records import bins
-from calibration.measurements.homogeneous import relative_sd, scatter_scale
+from calibration.measurements.homogeneous import unstated_sd
 from calibration.measurements.indentation._course import Course, bins_over_time, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
@@ -262,7 +262,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
     own = (
         np.full(depth.size, trial.force_sd)
         if trial.force_sd is not None
-        else relative_sd(raw.time, raw.force) * scatter_scale(raw.force)
+        else unstated_sd(raw.time, raw.force, raw.force)
     )
     across = None if raw.force_vector is None else raw.force_vector @ geometry.across.T
     columns: dict[str, list[Array]] = {name: [] for name in (*_ARRAYS, "across")}

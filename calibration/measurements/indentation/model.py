@@ -22,9 +22,9 @@ from calibration.measurements._baseline import Baseline
 from calibration.measurements._basis import Columns, legendre
 from calibration.measurements._effect import Candidate, reaches
 from calibration.measurements._folds import fifths
-from calibration.measurements._model import MeasurementModel
+from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
-from calibration.measurements._records import listed
+from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
@@ -422,6 +422,18 @@ class IndentationModel(MeasurementModel):
             + "; first touch, off by the depth's error once a record; the simulation's mesh error: 2.5 %"
             " common to all forces, wandering by 1 % with the depth, by more near the surface; the shear"
             " modulus free for each specimen."
+        )
+
+    def shown(self, k: int) -> Shown:
+        """Along the indenter; rows across it come after."""
+        r = self.records[k]
+        rows = int(np.count_nonzero(self.row_record == k))
+        return Shown(
+            **over_time(r.time, "depth [mm]", 1e3 * r.depth),
+            quantity="force",
+            unit=self.unit,
+            measured=r.force,
+            of_rows=None if rows == r.points else np.eye(r.points, rows),
         )
 
     def pictures(self, diagnosis: Any) -> list[Any]:

@@ -19,7 +19,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Capture, Experiment, TracedOutline
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import Candidate
-from calibration.measurements._model import MeasurementModel
+from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
 from calibration.measurements._state import State
 from calibration.measurements.outlines._creep import CreepCurves, settled_by_moduli
@@ -389,6 +389,17 @@ class OutlineModel(MeasurementModel):
             return f"{text} The mesh's error is not corrected: {self.uncorrected}."
         return (
             f"{text} The mesh's error is corrected by a finer mesh; part of the correction is left as noise."
+        )
+
+    def shown(self, k: int) -> Shown:
+        p = self.records[k]
+        return Shown(
+            axis="point of the outline",
+            x=np.arange(float(len(p.basis))),
+            quantity="simulated less measured, registered",
+            unit=self.unit,
+            measured=np.zeros(len(p.basis)),
+            of_rows=p.basis,
         )
 
     def pictures(self, diagnosis: Any) -> list[Any]:

@@ -365,3 +365,8 @@ def _means(time: Array, plane: Array, index: Index, period: float, where: str) -
     begin = np.array(starts) - first
     measured = np.add.reduceat(plane[used], begin, axis=0) / counts[:, None]
     return Sampled(index=index[used], starts=begin, counts=counts, measured=measured)
+
+
+def reference_time(records: Sequence[Record]) -> float:
+    """One over the angular frequency of records' vibrations, their geometric mean [s]."""
+    return float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)

@@ -22,13 +22,14 @@ from calibration.measurements._baseline import Baseline
 from calibration.measurements._joint import joint_fit
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
+from calibration.measurements._noise_known import FEWEST, PointNoise, roughness
 from calibration.measurements._state import State
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._fem import BULK_RATIO, Correction, corrections, uncorrected
 from calibration.measurements.release._forward import Coordinates, ForwardMap, start_of, viscous
 from calibration.measurements.release._nuisances import discrepancies, nuisance_columns
-from calibration.measurements.release._record import FIRST, LAST, Record, records_of
+from calibration.measurements.release._record import FIRST, LAST, Record, records_of, reference_time
 from calibration.measurements.release.experiments import EXPERIMENTS, RepeatedRelease
 from tisim import Material
 
@@ -94,7 +95,7 @@ class ReleaseModel(MeasurementModel):
         self.baseline = self.coordinates.baseline
         if viscous(self.baseline):
             self.noise = self.noise.subset(~self._dragged())
-        self.reference_time = float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)
+        self.reference_time = reference_time(records)
         self.forward = ForwardMap(
             records=records,
             coordinates=self.coordinates,
@@ -262,6 +263,26 @@ class ReleaseModel(MeasurementModel):
             np.isfinite(time) & ~self._after_vibration(),
             self.row_record,
         )
+
+    def point_noise(self) -> list[PointNoise]:
+        """From the samples themselves: a vibration is smooth from one to the next, means of a sixth of a
+        period are not."""
+        found = []
+        for r in self.records:
+            each = [roughness(m.displacement[:, axis]) for m in r.trial.markers for axis in (0, 2)]
+            shown = [sd for sd, points in each if points >= FEWEST and sd > 0.0]
+            if shown:
+                # of the noisiest markers: others may hardly move, and are filtered
+                sd = float(np.quantile(shown, 0.75))
+                points = sum(points for _, points in each)
+                found.append(PointNoise(record=r.name, stated=True, assumed=r.sd, shown=sd, points=points))
+        return found
+
+    def full_scale(self) -> Array | None:
+        return np.array([float(np.nanmax(np.abs(r.measured()))) for r in self.records])
+
+    def along(self, k: int) -> tuple[str, Array] | None:
+        return "seconds after the release", self.records[k].labels()[2]
 
     # -- advice and reports --
 

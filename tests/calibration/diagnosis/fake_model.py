@@ -202,7 +202,7 @@ class FakeModel(MeasurementModel):
         return {"waves": waves(7)[self.keep]}
 
     def _misfit(self, states: Sequence[State]) -> Array:
-        raise NotImplementedError
+        return np.array([self.predicted(s) - self.data for s in states])
 
     def _discrepancies(self) -> Mapping[str, Array]:
         raise NotImplementedError

@@ -11,6 +11,7 @@ from fake_model import LENGTHS, FakeModel, column, library, noise, of_length, of
 
 from calibration.diagnosis.engine.fitting import Fit, fit
 from calibration.diagnosis.engine.held_out import held_out_improvement
+from calibration.diagnosis.engine.skill import skill, together
 from calibration.measurements._effect import Candidate
 from calibration.measurements._state import State
 
@@ -99,6 +100,38 @@ def test_an_effect_that_lives_in_one_length_is_held_out_by_material() -> None:
     assert gain.rms_after == pytest.approx(1e-3 * np.sqrt(np.mean(after**2)), rel=1e-4)
     assert gain.rms_before == pytest.approx(1e-3 * np.sqrt(np.mean(before**2)), rel=1e-4)
     assert gain.rms_after < 0.8 * gain.rms_before
+
+
+def test_only_what_the_training_does_not_tell_of_is_fitted_to_the_fold() -> None:
+    """A modulus of the material left out, beside a coordinate that all share: were that one to move as well,
+    it would give back what it had taken from the effect."""
+    model = FakeModel(hidden=12.0 * library()["slack"], drawn=noise(3))
+    common = library()["slack"] + 0.3 * library()["slope"]
+    model.by_u = np.column_stack([model.by_u, 3.0 * common])
+    model.data = model.data + 3.0 * common
+    baseline, chosen = both(model, Candidate(effect="slack"))
+    gain = held_out_improvement(model, baseline, chosen)
+    assert gain.held_out == "leave-one-material-out"
+    groups = [of_material(m) for m in ("S0", "S1")]
+    after = left_out(model, library()["slack"][:, None], groups)
+    before = left_out(model, np.zeros((72, 0)), groups)
+    assert gain.rms_after == pytest.approx(1e-3 * np.sqrt(np.mean(after**2)), rel=1e-4)
+    assert gain.rms_before == pytest.approx(1e-3 * np.sqrt(np.mean(before**2)), rel=1e-4)
+
+
+def test_each_fold_has_its_skill_and_its_amplitudes() -> None:
+    model = FakeModel(hidden=12.0 * library()["bend"], drawn=noise(1), shared=True)
+    gain = held_out_improvement(model, *both(model, BEND))
+    assert [p.name for p in gain.parts] == ["0", "1", "2"]
+    assert together(gain.parts).rms_after == pytest.approx(gain.rms_after)
+    assert gain.skill == pytest.approx(
+        (gain.rms_before**2 - gain.rms_after**2) / (gain.rms_before**2 - 1e-6), rel=1e-9
+    )
+    assert 0.6 < gain.skill < 1.2
+    assert gain.helps_everywhere
+    assert np.array(gain.amplitudes)[:, 0] == pytest.approx(12.0, abs=4.0)
+    assert math.isnan(skill(1.0, 0.5, 1.0))  # nothing to gain
+    assert skill(2.0, 3.0, 1.0) < 0.0
 
 
 def test_where_no_family_keeps_half_the_best_is_taken() -> None:

@@ -40,14 +40,14 @@ def written(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def check_schema(data: dict[str, Any]) -> None:
     assert set(data) >= KEYS
-    assert data["format"] == 1
-    assert data["verdict"] in ("none", "found", "ambiguous", "unexplained")
-    named = data["verdict"] in ("found", "ambiguous")
+    assert data["format"] == 2
+    assert data["verdict"] in ("none", "found", "ambiguous", "partly explained", "unexplained")
+    named = data["verdict"] in ("found", "ambiguous", "partly explained")
     assert bool(data["causes"]) == bool(data["alternatives"]) == bool(data["extended"]) == named
     assert len(data["alternatives"]) == 1 or data["verdict"] != "found"
     assert len(data["alternatives"]) >= 2 or data["verdict"] != "ambiguous"
     for cause in data["causes"]:
-        assert set(cause) == {"effect", "parameters", "scope", "confidence"}
+        assert set(cause) == {"effect", "parameters", "scope", "confidence", "share"}
         assert isinstance(cause["effect"], str)
         assert isinstance(cause["scope"], str)
         assert 0.0 <= cause["confidence"] <= 1.0

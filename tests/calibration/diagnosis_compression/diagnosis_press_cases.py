@@ -85,6 +85,7 @@ def both(stress: Stress, *, strain: Array | None = None, seed: int = 0, noise: f
 def press_model(
     made: Experiment, *, without: Sequence[str] = (), cylinder: Cylinder | None = None
 ) -> CompressionModel:
-    """With the catalogue's effects."""
-    effects = {n: e for n, e in effects_of("compression").items() if n not in without}
+    """With the catalogue's effects of the first round."""
+    known = effects_of("compression").items()
+    effects = {n: e for n, e in known if n not in without and not e.further}
     return CompressionModel(made, effects=effects, cylinder=cylinder)  # type: ignore[arg-type]

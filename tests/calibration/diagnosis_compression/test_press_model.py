@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from calibration.diagnose import app
 from calibration.diagnosis import model_of
+from calibration.diagnosis.catalogue import effects_of
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.run import diagnose
 from calibration.errors import InputError
@@ -220,3 +221,23 @@ def test_a_fit_that_wants_beyond_a_bound_ends_there() -> None:
     assert all(e.converged for e in ends)
     assert all(e.state.amplitudes[friction] == 1.1 for e in ends)
     assert np.ptp([e.chi2 for e in ends]) < 0.1
+
+
+def test_rubbing_platens_are_between_the_slab_and_bonded_ones() -> None:
+    """Little friction: the closed form of the slab method (D/h = 5/3); much: bonded."""
+    effects = effects_of("compression")
+    model = CompressionModel(both(sliding), effects=effects)  # type: ignore[arg-type]
+    u = model.start()
+
+    def stress(name: str, amplitude: float) -> Array:
+        return model.stresses(State(u=u, amplitudes={Candidate(effect=name): amplitude}))[0]
+
+    record = model.records[0]
+    pressed_in = record.stretch < 0.99
+    free = stress("platen-slip", 0.0)[pressed_in]
+    x = 0.01 * (5.0 / 3.0) * record.stretch[pressed_in] ** -1.5
+    slab = 2.0 * (np.expm1(x) - x) / x**2
+    assert stress("platen-slip", 0.01)[pressed_in] / free == pytest.approx(slab, rel=5e-4)
+    bonded_ones = stress("platen-bonding", 1.0)[pressed_in]
+    assert stress("platen-slip", 2.0)[pressed_in] / bonded_ones == pytest.approx(1.0, abs=0.02)
+    assert (stress("platen-slip", 0.3)[pressed_in] / free < bonded_ones / free).all()

@@ -4,6 +4,7 @@ FElupe's table (`diagnosis_press_cases`); seeds are counted up from 1."""
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +21,8 @@ from diagnosis_press_cases import (
     sliding,
 )
 
+from benchmarks.blind.compression.cases import draw, write
+from calibration import api
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment import Experiment
@@ -217,3 +220,11 @@ def test_platens_that_hold_all_they_can_may_be_one_of_two_causes() -> None:
     pairs = [e for e in found.finding.explanations if e.names == ("platen-bonding", "second-invariant")]
     assert pairs
     assert {c.effect: a for c, a in pairs[0].fit.state.amplitudes.items()}["platen-bonding"] == 1.1
+
+
+@pytest.mark.parametrize(("kind", "name"), [("set", "set-between-tests"), ("order", "test-order")])
+def test_what_goes_on_from_test_to_test_is_a_cause(kind: str, name: str, tmp_path: Path) -> None:
+    write(draw(kind, 1), tmp_path / "made")
+    found = api.diagnose(tmp_path / "made", gain=False)
+    assert name in {c["effect"] for c in found.causes}
+    assert "platen-bonding" in {c["effect"] for c in found.causes}

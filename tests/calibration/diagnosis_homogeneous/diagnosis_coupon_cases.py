@@ -58,8 +58,9 @@ def ramps(top: float, count: int, points: int = 40) -> Array:
 
 
 def coupon_model(
-    made: Experiment, *, without: Sequence[str] = (), law: str = "neo-hookean"
+    made: Experiment, *, without: Sequence[str] = (), law: str = "neo-hookean", further: bool = False
 ) -> HomogeneousModel:
-    """With the catalogue's effects."""
-    effects = {n: e for n, e in effects_of("homogeneous").items() if n not in without}
+    """With the catalogue's effects; those of the second round where `further`."""
+    known = effects_of("homogeneous").items()
+    effects = {n: e for n, e in known if n not in without and (further or not e.further)}
     return HomogeneousModel(made, effects=effects, law=law)  # type: ignore[arg-type]

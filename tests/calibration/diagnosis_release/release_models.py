@@ -10,8 +10,14 @@ from calibration.measurements.release.model import ReleaseModel
 
 
 def bar_model(
-    made: Experiment, *, without: Sequence[str] = (), workers: int | None = None, fem: bool = True
+    made: Experiment,
+    *,
+    without: Sequence[str] = (),
+    workers: int | None = None,
+    fem: bool = True,
+    further: bool = False,
 ) -> ReleaseModel:
-    """With the catalogue's effects."""
-    effects = {n: e for n, e in effects_of("release").items() if n not in without}
+    """With the catalogue's effects; those of the second round where `further`."""
+    known = effects_of("release").items()
+    effects = {n: e for n, e in known if n not in without and (further or not e.further)}
     return ReleaseModel(made, effects=effects, workers=workers, fem=fem)  # type: ignore[arg-type]

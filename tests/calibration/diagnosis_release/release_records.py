@@ -27,13 +27,14 @@ MARKERS = {  # x, y, z [mm]
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm].
-    extra: a further height of the tip [m], of the time [s]."""
+    """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm]. loose: part
+    of the hung mass that does not move with the bar. extra: a further height of the tip [m], by the time."""
 
     shear: float = 6e5
     viscous: float = 4e-4
     branches: Sequence[tuple[float, float]] = ()
     clamp: float = 0.0
+    loose: float = 0.0
     extra: Callable[[Array], Array] | None = None
 
 
@@ -54,8 +55,9 @@ def beam(truth: Truth, hung: float) -> tuple[Array, Array, Array]:
             where = np.array([2 * e + offset, 2 * e + 2 + offset])
             mass[np.ix_(where, where)] += line * part
         load[[2 * e, 2 * e + 2]] -= 0.5 * h * DENSITY * area * GRAVITY
-    mass[-2, -2] += hung
-    mass[-1, -1] += hung * HEIGHT**2 / 12.0  # spread over the face
+    moving = (1.0 - truth.loose) * hung
+    mass[-2, -2] += moving
+    mass[-1, -1] += moving * HEIGHT**2 / 12.0  # spread over the face
     load[-2] -= hung * GRAVITY
     stiff[1, 1] += 1.0 / truth.clamp if truth.clamp else 1e9
     return stiff[1:, 1:], mass[1:, 1:], load[1:]

@@ -189,7 +189,7 @@ def test_turning_a_bar_over_shows_a_bend_and_round_a_gradient() -> None:
 
 def test_a_longer_record_parts_relaxation_times() -> None:
     model = made(RELAXING)
-    rivals = explained(model, [("relaxation-branch", 0.5), ("relaxation-branch", 1.0)])
+    rivals = explained(model, [("relaxation", 0.5), ("relaxation", 1.0)])
     found = {a.name: a.separations[0] for a in advise(model, rivals)}
     assert found["record-longer"] > 3.0 * found["turn-over"] > 0.0  # which is no more than another record
     longer = next(e for e in EXPERIMENTS if e.name == "record-longer")

@@ -126,11 +126,11 @@ def test_markers_make_it_a_bar(tmp_path: Path) -> None:
 
 
 def test_names_of_earlier_versions_are_understood(tmp_path: Path) -> None:
-    """`radius` and `relaxation` meant other quantities in other kinds."""
+    """`radius` meant another quantity in other kinds; `relaxation-branch` was a name for `relaxation`."""
     experiment = read(write_bars(tmp_path / "e", Truth()))
-    model = model_of(experiment, kind="bars", without=["radius", "relaxation"])
-    assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation-branch"}
-    assert not {"radius", "relaxation"} & set(EFFECTS)
+    model = model_of(experiment, kind="bars", without=["radius", "relaxation-branch"])
+    assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation"}
+    assert not {"radius", "relaxation-branch"} & set(EFFECTS)
 
 
 def test_a_record_states_its_groups_and_ranges(tmp_path: Path) -> None:

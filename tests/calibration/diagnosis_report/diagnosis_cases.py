@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Literal
 
 import numpy as np
@@ -22,6 +23,8 @@ from calibration.parameters import parametrisation
 
 ROWS = 80
 Kind = Literal["none", "found", "ambiguous", "unexplained"]
+
+LEVELS = ("material", "specimen", "trial")
 
 
 def effect(
@@ -74,7 +77,12 @@ class LinearModel(MeasurementModel):
             specimens=names, owners=names, law=parametrisation("neo-hookean"), bulk_ratio=300.0
         )
         self.noise = Noise.independent(np.ones(ROWS))
-        self.records, self.row_record, self.visible = (), np.zeros(ROWS, dtype=np.intp), {}
+        self.records = (
+            SimpleNamespace(
+                name="one", material=place, specimen=place, groups=dict.fromkeys(LEVELS, place), ranges={}
+            ),
+        )
+        self.row_record, self.visible = np.zeros(ROWS, dtype=np.intp), {}
         self.by_u, self.odd = basis[:, :2], basis[:, 6]
         signal = {"none": 0.0, "unexplained": 15.0 * self.odd}.get(kind, 15.0 * column["bend"])
         self.offset = draws.standard_normal(ROWS) + signal
@@ -105,13 +113,13 @@ class LinearModel(MeasurementModel):
         return 1e-4
 
     def _misfit(self, states: Sequence[State]) -> np.ndarray:
-        raise NotImplementedError
+        return np.array([1e-4 * self._z(s) for s in states])
 
     def _discrepancies(self) -> Mapping[str, np.ndarray]:
         raise NotImplementedError
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        raise NotImplementedError
+        return {}
 
     def remarks(self) -> list[str]:
         return [f"a remark on <{self.place}>"]

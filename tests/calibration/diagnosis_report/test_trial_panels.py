@@ -84,6 +84,7 @@ def test_what_stands_for_the_extension(named: bool, verdict: str, p_value: float
     best = SimpleNamespace(fit=SimpleNamespace(state=10))
     diagnosis: Any = SimpleNamespace(
         chosen=best if named else None,
+        nearest=None,
         finding=SimpleNamespace(
             baseline=SimpleNamespace(state=1), explanations=[best], verdict=verdict, p_value=p_value
         ),

@@ -1,4 +1,4 @@
-"""What the four commands have in common: verbs, versions, a light start, names with brackets, a full disk."""
+"""What the commands have in common: verbs, versions, a light start, names with brackets, a full disk."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from calibration.study._store import FitStore, locked
 from calibration.table import app as table
 
 ROOT = Path(__file__).resolve().parents[3]
-VERBS = ("reconstruct", "fit", "diagnose", "table")
+VERBS = ("reconstruct", "fit", "diagnose", "predict", "table")
 HEAVY = ("cma", "cv2", "matplotlib", "scipy.stats", "pyvista", "torch", "trimesh", "jinja2", "plotly")
 
 

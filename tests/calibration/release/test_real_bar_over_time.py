@@ -9,10 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.measurements.objective import ModelObjective
-from calibration.parameters import parametrisation
-from calibration.study import measurements, parts
-from studies.release.over_time import MATERIAL, SPECTRUM, compared, experiment_of, swings
+from studies.release.over_time import compared, experiment_of, least_squares_of, measured, swings
 
 ROOT = Path(__file__).resolve().parents[3]
 MEASURED = Path(os.environ.get("TISIM_MEASURED") or ROOT.parent / "shared" / "measured")
@@ -27,13 +24,9 @@ def test_one_spectrum_for_a_run_of_each_load() -> None:
     """By the reduced beam alone. The frequency with 52 g is predicted: its free vibration is left out."""
     whole = experiment_of(FOLDER)
     experiment = replace(whole, trials=tuple(t for t in whole.trials if t.id in ("gravity-a", "load52-a")))
-    law = parts.with_parts(parametrisation("neo-hookean"), (SPECTRUM,), experiment, MATERIAL)
-    (objective,) = measurements(experiment, MATERIAL, law, workers=1).objectives
-    assert isinstance(objective, ModelObjective)
+    _, objective = measured(experiment)
     objective.model.fem = False
-    u = objective.suggested_start()
-    assert u is not None
-    light, loaded = compared(objective.model, objective.state(u))
+    light, loaded = compared(objective.model, least_squares_of(objective))
     for run in (light, loaded):
         assert run.predicted.drop - run.held == pytest.approx(run.measured.drop, rel=0.03)
         assert run.predicted.ring.frequency == pytest.approx(run.measured.ring.frequency, rel=0.03)

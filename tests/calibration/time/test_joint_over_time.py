@@ -5,17 +5,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 from test_kinds_over_time import experiment, poke
 from timed_coupons import REST, trial
 
+from benchmarks.blind.timed.cases import draw_indentation, write
+from benchmarks.blind.timed.indentation import load
 from benchmarks.blind.timed.material import Prony, Solid
+from calibration.experiment import read
 from calibration.experiment.model import PokeTrial
 from calibration.inference import Problem, guess, identify, polish
-from calibration.measurements.indentation._curve import Curve
+from calibration.measurements.indentation._curve import FLAT, Curve
 from calibration.measurements.indentation._curve_cache import CurveCache, CurveRequest
 from calibration.parameters import parametrisation
 from calibration.study import parts
@@ -72,6 +77,63 @@ def pushed() -> PokeTrial:
     noise = sd * np.random.default_rng(4).standard_normal(time.size)
     record = replace(made.record, time=time, depth=np.interp(time, *corners), force=force + noise)
     return replace(made, record=record, force_sd=sd)
+
+
+def flat(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
+    """The flat rod's elastic curve by the laboratory's own finite elements: its loading at once."""
+    del self
+    step = load()["thick, hold"]
+    time, force = np.array(step["time"]), np.array(step["force"])
+    piece, prony = step["push"]["course"]["pieces"][0], step["push"]["prony"]
+    loading = time <= piece["duration"] * (1.0 + 1e-9)
+    depth = np.linspace(2e-5, piece["to"], 60)
+    at_once = 1.0 + sum(prony["fractions"])
+    along = PchipInterpolator(
+        piece["to"] * time[loading] / piece["duration"], (force[loading] / at_once) ** (1.0 / FLAT)
+    )(depth)
+    made = Curve(
+        depth=depth,
+        along=along**FLAT,
+        across=np.zeros((60, 2)),
+        reached=2e-3,
+        finer=2e-3,
+        round_tip=False,
+        status="converged",
+        core_seconds=0.0,
+    )
+    return [made for _ in requests]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_retraction_does_not_spoil_the_relaxation(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
+) -> None:
+    """Another code's flat rod, pushed, held and drawn back, at finite strain and with friction."""
+    monkeypatch.setattr(CurveCache, "fetch", flat)
+    case = draw_indentation(seed)
+    write(replace(case, pokes=tuple(p for p in case.pokes if p.base == "thick")), tmp_path / "e")
+    own = read(tmp_path / "e")
+    law = parts.with_parts(parametrisation("neo-hookean"), ("prony:2",), own, "M")
+    data = measurements(own, "M", law, workers=1)
+    problem = Problem(parametrisation=data.law.holding("bulk_ratio"), objectives=data.objectives)
+    start = guess(problem)
+    assert start is not None
+    end = polish(problem, start, max_steps=40)
+    chi2 = float(end.residuals @ end.residuals) / problem.points
+    known = identify(problem.parametrisation, end.u, end.jacobian, reduced_chi2=chi2)
+    assert case.solid.prony is not None
+    (f1, f2), (t1, t2) = case.solid.prony.fractions, case.solid.prony.times
+    truth = {
+        "shear_modulus": case.solid.shear_modulus,
+        "prony_fraction_1": f1,
+        "prony_time_1": t1,
+        "prony_fraction_2": f2,
+        "prony_time_2": t2,
+    }
+    found = {e.name: e for e in known.estimates}
+    assert all(found[name].low <= value <= found[name].high for name, value in truth.items())
+    assert chi2 < 1.2
 
 
 def test_both_together_find_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:

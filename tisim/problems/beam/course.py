@@ -7,22 +7,22 @@ the last ones point to; where it fails it is halved, in time and in load, from t
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
+from tisim import laws
 from tisim.course import Stop
 from tisim.discretisation.body import Discretisation
-from tisim.discretisation.history import weight
 from tisim.nonlinear.newton import CRUSHED, Outcome, newton
 from tisim.parts import Spectrum
 from tisim.problems._stops import shortest_time
 from tisim.problems.beam.equilibrium import Neighbour, equilibrium, mixed_newton
-from tisim.problems.beam.imperfect import imperfect_equilibrium
+from tisim.problems.beam.imperfect import MOST_ANGLES, Clamped, imperfect_equilibrium
 from tisim.problems.beam.rest_shape import is_ideal
 from tisim.problems.beam.system import BeamSystem, beam_system
+from tisim.problems.beam.trail import LinearCreep, Trail, predict
+from tisim.problems.beam.warped import Warped
 from tisim.result import Status
 from tisim.scene import Beam
 
@@ -35,89 +35,7 @@ LOOSEST = 1e-3  # tolerance of the first
 # PATIENCE of them, or where a step is GROWN times the last, there is a new tangent, MOST_FACTORS times.
 CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
 NEAR = 1e-4  # of the largest displacement: what a state between frames may be wrong by
-DISTINCT = 1e-3  # of the strain: states closer than this are one
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
-KNOWN = 4  # states that the next one is predicted from
-
-
-@lru_cache(maxsize=4)
-def _gradient_operator(discretisation: Discretisation) -> tuple[Array, sparse.csr_array]:
-    """Elements' mean gradients of shape functions (m, a, 3) [1/m], and free nodes' means over elements."""
-    mesh, ref = discretisation.mesh, discretisation.reference
-    volume = ref.weights.sum(axis=1)
-    mean = np.einsum("mq,mqak->mak", ref.weights, ref.gradients) / volume[:, None, None]
-    m, a = mesh.elements.shape
-    rows, columns = mesh.elements.ravel(), np.repeat(np.arange(m), a)
-    around = sparse.csr_array((volume[columns], (rows, columns)), shape=(mesh.n_nodes, m))
-    around = around[discretisation.pattern.free]
-    return mean, sparse.csr_array(sparse.diags_array(1.0 / around.sum(axis=1)) @ around)
-
-
-class Warped:
-    """The last factor of a beam's tangent, carried along with the rotation of the body since.
-
-    A tangent's factor costs some fifteen solves with it. As a beam creeps, its material hardly gets stiffer
-    or softer from one step to the next, but its parts turn, and what resists a change of volume does so in
-    turned directions. K = R K_0 R^T, R the rotation of each node, follows that.
-    """
-
-    def __init__(self, discretisation: Discretisation, x: Array) -> None:
-        self._discretisation = discretisation
-        self._mean, self._around = _gradient_operator(discretisation)
-        self._at_factor = np.linalg.inv(self._gradients(x))
-        self._turned = np.broadcast_to(np.eye(3), (len(discretisation.pattern.free), 3, 3))
-
-    def _gradients(self, x: Array) -> Array:
-        """Mean deformation gradient around each free node, (n_free, 3, 3)."""
-        F = x[self._discretisation.mesh.elements].transpose(0, 2, 1) @ self._mean
-        return np.asarray(self._around @ F.reshape(len(F), 9)).reshape(-1, 3, 3)
-
-    def turn(self, x: Array) -> None:
-        """Carry the factor along to positions x (n, 3)."""
-        moved = self._gradients(x) @ self._at_factor
-        skew = 0.5 * (moved - moved.transpose(0, 2, 1))
-        axis = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
-        sine = np.minimum(np.linalg.norm(axis, axis=1), 1.0)[:, None, None]
-        # Rodrigues: I + K + K^2 (1 - cos)/sin^2, K = skew
-        self._turned = np.eye(3) + skew + skew @ skew / (1.0 + np.sqrt(1.0 - sine**2))
-
-    def solve(self, rhs: Array) -> Array:
-        """(R K_0 R^T)^-1 rhs, both (n_free, 3)."""
-        R = self._turned
-        back = np.einsum("nji,nj->ni", R, rhs)
-        held = self._discretisation.held
-        back[held] = 0.0
-        found: Array = np.einsum("nij,nj->ni", R, self._discretisation.solver.solve(back))
-        found[held] = 0.0
-        return found
-
-
-class LinearCreep:
-    """Strain of a spectrum's linear material under a stress, in 1/G, step by step as `History` takes them.
-
-    A beam's shape is very nearly a function of it: that of an elastic beam as much softer.
-    """
-
-    def __init__(self, spectrum: Spectrum) -> None:
-        self._spectrum = spectrum
-        self._branches = np.zeros(len(spectrum.times))
-        self._strain = 0.0
-
-    def strain(self, dt: float, stress: float) -> float:
-        """Strain at the end of a step of length dt [s] to this stress."""
-        decay, c = self._weights(dt)
-        carried = float(decay @ self._branches) - float(c.sum()) * self._strain
-        return (stress - carried) / (self._spectrum.equilibrium + float(c.sum()))
-
-    def accept(self, dt: float, strain: float) -> None:
-        """Take a step of length dt [s] to this strain."""
-        decay, c = self._weights(dt)
-        self._branches = decay * self._branches + c * (strain - self._strain)
-        self._strain = strain
-
-    def _weights(self, dt: float) -> tuple[Array, Array]:
-        h = dt / self._spectrum.times
-        return np.exp(-h), self._spectrum.strengths * weight(h)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,16 +55,18 @@ class Frame:
 class Path:
     """A beam on its course: where it is, and what was kept and done on the way.
 
-    linear: the linear material under the same load. known: its strain and the beam's positions in the last
-    states. warped: the discretisation's factor, where it is this beam's.
+    linear: the linear material under the same load. trail: the states so far; other: the neighbour's.
+    warped: the discretisation's factor, where it is this beam's. clamps: where they are imperfect.
     """
 
     system: BeamSystem
     outcome: Outcome
     linear: LinearCreep
+    trail: Trail
     time: float = 0.0
     value: float = 0.0
-    known: list[tuple[float, Array]] = field(default_factory=list)
+    other: Trail | None = None
+    clamps: Clamped | None = None
     warped: Warped | None = None
     frames: list[Frame] = field(default_factory=list)
     steps: int = 0
@@ -180,13 +100,17 @@ def follow(
     path.system.step_limit = np.inf
     path.system.least_load = float(np.linalg.norm(path.system.full_load[discretisation.pattern.free]))
     path.linear.accept(0.0, path.linear.strain(0.0, path.value))
-    path.known = [(path.linear.strain(0.0, path.value), path.outcome.x)]
+    path.trail.add(0.0, path.linear.strain(0.0, path.value), path.outcome.x)
+    if neighbour is not None and neighbour.discretisation is discretisation:
+        path.other = neighbour.trail
     for stop in stops[1:] if path.steps else stops:
         status = _advance(scene, path, stop)
         if status is not Status.CONVERGED:
             break
         if stop.frame:
             path.keep()
+    if found is not None:
+        found = replace(found, trail=path.trail, warped=path.warped)
     return path, status, found
 
 
@@ -197,26 +121,59 @@ def _first(
     at_once = stop.time == 0.0 and stop.value == 1.0
     viscosity = scene.material.viscosity
     linear = LinearCreep(ELASTIC if viscosity is None else viscosity.spectrum())
+    stiffness = laws.get(scene.material.law).moduli(scene.material.parameters).shear_modulus
+    trail = Trail(scene, scene.material.density / stiffness)
     if not stop.frame:
         loose = scene.solver.tolerance * BETWEEN
         scene = replace(scene, solver=replace(scene.solver, tolerance=min(loose, LOOSEST)))
     if not is_ideal(scene):  # checked: the whole load at once
         found = imperfect_equilibrium(scene, discretisation, neighbour)
         system, outcome, counts, next_one = found.system, found.outcome, found.counts, found.neighbour
+        clamps = found.clamps
     else:
-        system = beam_system(scene, discretisation)
+        system, clamps = beam_system(scene, discretisation), None
         if not at_once:
             rest = Outcome(discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
-            return Path(system, rest, linear), None
+            return Path(system, rest, linear, trail), None
+        if neighbour is not None and neighbour.discretisation is discretisation:
+            beside = _beside(scene, system, linear, trail, neighbour, kept=stop.frame)
+            if beside is not None:
+                _begin(beside, stop)
+                return beside, neighbour
         outcome, counts, next_one = equilibrium(scene, system, neighbour)
-    path = Path(system, outcome, linear, value=1.0, steps=counts["steps"], cuts=counts["cuts"])
+    steps, cuts = counts["steps"], counts["cuts"]
+    path = Path(system, outcome, linear, trail, value=1.0, steps=steps, cuts=cuts, clamps=clamps)
     if outcome.status is Status.CONVERGED:
-        system.body.accept(outcome.x)
         if system.factored_at is not None:
-            path.warped = Warped(system.body.discretisation, system.factored_at)
-        if stop.frame:
-            path.keep()
+            path.warped = Warped(system.body, system.factored_at)
+        _begin(path, stop)
     return path, next_one
+
+
+def _begin(path: Path, stop: Stop) -> None:
+    path.system.body.accept(path.outcome.x)
+    if stop.frame:
+        path.keep()
+
+
+def _beside(
+    scene: Beam, system: BeamSystem, linear: LinearCreep, trail: Trail, neighbour: Neighbour, *, kept: bool
+) -> Path | None:
+    """The path with the whole load at once, from the neighbour's states and factor; None where these fail."""
+    other = neighbour.trail
+    if other is None or neighbour.warped is None or not other.leads(scene):
+        return None
+    x = other.at(0.0, trail.unit * linear.strain(0.0, 1.0))
+    if x is None:
+        return None
+    start = Outcome(x, Status.CONVERGED, np.inf, 0)
+    path = Path(system, start, linear, trail, value=1.0, steps=1, warped=neighbour.warped.of(system.body))
+    near = 0.0 if kept else _near(path)
+    outcome = _with_few_factors(path, x, scene.solver.tolerance, near)
+    if outcome is None:
+        return None
+    path.outcome = outcome
+    return path
 
 
 def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
@@ -233,12 +190,13 @@ def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
         tight = end == 1.0 and stop.frame
         tolerance = scene.solver.tolerance * (1.0 if tight else BETWEEN)
         strain = path.linear.strain(time - path.time, value)
-        trial = _solve(scene, path, strain, tolerance=tolerance)
+        start = predict(path.trail, path.other, time, strain)
+        trial = _clamped(scene, path, start, tolerance=tolerance)
         path.steps += 1
         if trial.status is Status.CONVERGED:
             body.accept(trial.x)
             path.linear.accept(time - path.time, strain)
-            path.known = [*path.known, (strain, trial.x)][-KNOWN:]
+            path.trail.add(time, strain, trial.x)
             path.outcome, path.time, path.value, reached = trial, time, value, end
             part *= 2.0
             continue
@@ -251,14 +209,38 @@ def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
     return Status.CONVERGED
 
 
-def _solve(scene: Beam, path: Path, strain: float, *, tolerance: float) -> Outcome:
-    """Equilibrium from where the last states point to: with few factors, by Newton, then on the potential."""
+def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
+    """Equilibrium with the clamps at the angles that their moments make, where they yield."""
+    clamps = path.clamps
+    if clamps is None or not clamps.yields:
+        return _solve(scene, path, start, tolerance=tolerance)
+    angles = clamps.angles
+    outcome = _solve(scene, path, clamps.hold(start), tolerance=tolerance)
+    for _ in range(MOST_ANGLES):
+        if outcome.status is not Status.CONVERGED:
+            break
+        if not clamps.opens(outcome.x):
+            return outcome
+        start, _ = clamps.turned(outcome.x)
+        outcome = _solve(scene, path, start, tolerance=tolerance)
+    clamps.angles = angles
+    if outcome.status is Status.CONVERGED:
+        return replace(outcome, status=Status.NOT_CONVERGED)
+    return outcome
+
+
+def _near(path: Path) -> float:
+    """What a state between frames may be wrong by [m]."""
+    return NEAR * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
+
+
+def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
+    """Equilibrium from where other states point to: with few factors, by Newton, then on the potential."""
     system, x = path.system, path.outcome.x
+    if path.clamps is not None:
+        x = path.clamps.hold(x)
     options = scene.solver
-    start = _predict(path, strain)
-    near = 0.0
-    if tolerance > options.tolerance:
-        near = NEAR * float(np.abs(x - system.body.discretisation.mesh.nodes).max())
+    near = _near(path) if tolerance > options.tolerance else 0.0
     if path.warped is not None:
         outcome = _with_few_factors(path, start, tolerance, near)
         if outcome is not None:
@@ -270,22 +252,9 @@ def _solve(scene: Beam, path: Path, strain: float, *, tolerance: float) -> Outco
             outcome = mixed_newton(relaxed, system, guess, system.body.pressures(guess))
             if outcome.status is Status.CONVERGED:
                 if system.factored_at is not None:
-                    path.warped = Warped(system.body.discretisation, system.factored_at)
+                    path.warped = Warped(system.body, system.factored_at)
                 return outcome
     return newton(system, x, tolerance=tolerance, max_iterations=options.max_iterations)
-
-
-def _predict(path: Path, strain: float) -> Array:
-    """The last states carried on by Lagrange's formula, as functions of the linear model's strain."""
-    known: list[tuple[float, Array]] = []
-    for clock, x in reversed(path.known):
-        if all(abs(clock - other) > DISTINCT * abs(strain) for other, _ in known):
-            known.append((clock, x))
-    guess = np.zeros_like(path.outcome.x)
-    for i, (clock, x) in enumerate(known):
-        others = [other for j, (other, _) in enumerate(known) if j != i]
-        guess += float(np.prod([(strain - other) / (clock - other) for other in others])) * x
-    return guess
 
 
 def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Outcome | None:
@@ -325,7 +294,7 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
                 step = system.step(system.linearise(x)[0], forcing=0.0)
             finally:
                 system.free_pressures(None)
-            path.warped = Warped(discretisation, x)
+            path.warped = Warped(body, x)
             renewed, slow, size = renewed + 1, 0, float(np.abs(step).max())
             seen.clear()
         before = size

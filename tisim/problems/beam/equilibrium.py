@@ -12,6 +12,8 @@ from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.nonlinear.newton import Outcome, newton
 from tisim.problems.beam.rods import planar_rod
 from tisim.problems.beam.system import BeamSystem
+from tisim.problems.beam.trail import Trail
+from tisim.problems.beam.warped import Warped
 from tisim.result import Status
 from tisim.scene import Beam
 
@@ -22,12 +24,17 @@ HELD = 0.5  # of the half thickness: how far a clamp keeps a bent section's shap
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """A solved candidate that the next one starts from: discretisation, positions, rod shape, pressures."""
+    """A solved candidate that the next one starts from: discretisation, positions, rod shape, pressures.
+
+    trail, warped: the states, and the last factor, of one with a course.
+    """
 
     discretisation: Discretisation
     x: Array
     rod: Array
     pressure: Array
+    trail: Trail | None = None
+    warped: Warped | None = None
 
 
 def equilibrium(

@@ -33,13 +33,17 @@ SMALL_TURN = 1e-6  # of a clamp, in difference quotients [rad]
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """How it ended, the part of the imperfections that was reached, and what the next beam starts from."""
+    """How it ended, the part of the imperfections that was reached, and what the next beam starts from.
+
+    clamps: those of the equilibrium, where it was found.
+    """
 
     system: BeamSystem
     outcome: Outcome
     counts: dict[str, int]
     part: float
     neighbour: Neighbour | None
+    clamps: Clamped | None = None
 
 
 def imperfect_equilibrium(
@@ -47,11 +51,11 @@ def imperfect_equilibrium(
 ) -> Found:
     """Equilibrium of an imperfect beam; discretisation: the ideal beam's."""
     system = imperfect_system(scene, discretisation)
-    attempt = _Attempt(scene, discretisation, system)
+    attempt = Clamped(scene, discretisation, system)
     for x, pressure in attempt.starts(neighbour):
         outcome = attempt.solve(x, pressure)
         if outcome.status is Status.CONVERGED:
-            return Found(system, outcome, {"steps": 1, "cuts": 0}, 1.0, attempt.neighbour(outcome.x))
+            return Found(system, outcome, {"steps": 1, "cuts": 0}, 1.0, attempt.neighbour(outcome.x), attempt)
     return _continuation(scene, discretisation, system.counts)
 
 
@@ -62,7 +66,7 @@ def imperfect_system(scene: Beam, discretisation: Discretisation) -> BeamSystem:
     return system
 
 
-class _Attempt:
+class Clamped:
     """One imperfect beam, from start values to the angles of its clamps."""
 
     def __init__(self, scene: Beam, discretisation: Discretisation, system: BeamSystem) -> None:
@@ -77,6 +81,10 @@ class _Attempt:
                 self.first_angles[1] *= scene.supports == "clamped-clamped"
         self.angles = self.first_angles
         self.guess = self._guess()
+
+    @property
+    def yields(self) -> bool:
+        return self.scene.clamp_imperfections.compliance > 0.0
 
     def _guess(self) -> Array | None:
         """The rod's shape with the clamps at their first angles; the held nodes are where they are held."""
@@ -93,9 +101,9 @@ class _Attempt:
             if bent is None:
                 return None
             x += bent - mesh.nodes
-        return self._hold(x)
+        return self.hold(x)
 
-    def _hold(self, x: Array) -> Array:
+    def hold(self, x: Array) -> Array:
         """x with the held nodes where the clamps, at their present angles, hold them."""
         x = x.copy()
         x[self.fixed] = clamped_positions(self.scene, self.discretisation.mesh, self.fixed, self.angles)
@@ -106,14 +114,14 @@ class _Attempt:
         if self.guess is None:
             return
         if neighbour is not None and neighbour.discretisation is self.discretisation:
-            yield self._hold(neighbour.x + (self.guess - neighbour.rod)), neighbour.pressure
+            yield self.hold(neighbour.x + (self.guess - neighbour.rod)), neighbour.pressure
             self.angles = self.first_angles  # which a start that failed may have changed
         yield self.guess, np.zeros(self.discretisation.mesh.n_elements)
 
     def from_answer(self, x: Array, guess: Array | None) -> Array:
         """The start from another answer x on this discretisation, moved on by the rods if both exist."""
         moved = x if self.guess is None or guess is None else x + (self.guess - guess)
-        return self._hold(moved)
+        return self.hold(moved)
 
     def neighbour(self, x: Array) -> Neighbour | None:
         if self.guess is None:
@@ -122,7 +130,7 @@ class _Attempt:
 
     def solve(self, x: Array, pressure: Array) -> Outcome:
         """Newton at the clamps' angles, and Newton on these angles, where the clamps yield."""
-        scene, yields = self.scene, self.scene.clamp_imperfections.compliance > 0.0
+        scene, yields = self.scene, self.yields
         failed = Outcome(x, Status.INVERTED, np.inf, 0)
         if not self.system.potential(x)[1] > 0.0:
             return failed
@@ -134,11 +142,9 @@ class _Attempt:
             return outcome
         final = early is scene
         for _ in range(MOST_ANGLES):
-            gap = self._gap(outcome.x)
-            small = ANGLE_TOLERANCE * float(np.abs(self.angles - self.tilts).max()) + SMALL_ANGLE
             pressure = self.system.body.pressures(outcome.x)
-            if np.abs(gap).max() > small:
-                start, pressure = self._turned(outcome.x, gap)
+            if self.opens(outcome.x):
+                start, pressure = self.turned(outcome.x)
                 if not self.system.potential(start)[1] > 0.0:  # nor where it is not a number
                     return failed
             elif final:
@@ -151,6 +157,13 @@ class _Attempt:
                 return outcome
         return replace(outcome, status=Status.NOT_CONVERGED)
 
+    def opens(self, x: Array) -> bool:
+        """Whether the clamps' angles are not what their moments at x make them."""
+        if not self.yields:
+            return False
+        small = ANGLE_TOLERANCE * float(np.abs(self.angles - self.tilts).max()) + SMALL_ANGLE
+        return bool(np.abs(self._gap(x)).max() > small)
+
     def _gap(self, x: Array) -> Array:
         """The clamps' angles less what their moments make them, (2,) [rad]."""
         moments = clamp_moments(self.scene, self.discretisation, self.system, x)
@@ -159,7 +172,7 @@ class _Attempt:
             gap[1] = 0.0
         return gap
 
-    def _turned(self, x: Array, gap: Array) -> tuple[Array, Array]:
+    def turned(self, x: Array) -> tuple[Array, Array]:
         """The answer x, and its pressures, moved on to first order to angles at which the gap closes.
 
         How x follows the clamps is solved for with the last factor of the tangent; differences of forces
@@ -186,10 +199,11 @@ class _Attempt:
             slope[clamp, clamp] += 1.0  # the gap's own angle, which `_gap` did not turn
         if not np.isfinite(slope).all():
             return np.full_like(x, np.nan), body.pressures(x)
-        step = np.linalg.lstsq(slope, -gap)[0]  # singular where a clamp's yield makes the beam buckle
+        # singular where a clamp's yield makes the beam buckle
+        step = np.linalg.lstsq(slope, -self._gap(x))[0]
         moved = step[0] * ways[0] + step[1] * ways[1]
         self.angles = self.angles + step
-        return self._hold(x + moved), body.pressures(x, moved)
+        return self.hold(x + moved), body.pressures(x, moved)
 
 
 def clamp_moments(scene: Beam, discretisation: Discretisation, system: BeamSystem, x: Array) -> Array:
@@ -217,12 +231,12 @@ def _continuation(scene: Beam, discretisation: Discretisation, spent: dict[str, 
     _spend(spent, system)
     if outcome.status is not Status.CONVERGED:
         return Found(system, outcome, counts, 0.0, None)
-    last = _Attempt(ideal, discretisation, system)
+    last = Clamped(ideal, discretisation, system)
     part, step = 0.0, 0.5
     while part < 1.0:
         wanted = min(1.0, part + step)
         trial_scene = _portion(scene, wanted)
-        attempt = _Attempt(trial_scene, discretisation, imperfect_system(trial_scene, discretisation))
+        attempt = Clamped(trial_scene, discretisation, imperfect_system(trial_scene, discretisation))
         start = attempt.from_answer(outcome.x, last.guess)
         trial = attempt.solve(start, last.system.body.pressures(outcome.x))
         counts["steps"] += 1
@@ -234,7 +248,7 @@ def _continuation(scene: Beam, discretisation: Discretisation, spent: dict[str, 
         step *= 0.5
         if step < SMALLEST_PART:
             return Found(last.system, replace(trial, x=outcome.x), counts, part, None)
-    return Found(last.system, outcome, counts, 1.0, last.neighbour(outcome.x))
+    return Found(last.system, outcome, counts, 1.0, last.neighbour(outcome.x), last)
 
 
 def _spend(spent: dict[str, int], system: BeamSystem) -> None:

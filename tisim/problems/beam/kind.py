@@ -75,9 +75,6 @@ def _check_course(scene: Beam) -> None:
         return
     if is_ideal(scene):
         return
-    if scene.clamp_imperfections.compliance > 0.0:
-        wanted = "0 on a beam with a course"
-        raise FieldError("clamp_imperfections.compliance", wanted, scene.clamp_imperfections.compliance)
     if scene.course.times[0] != 0.0 or scene.course.values[0] != 1.0:
         wanted = "the whole load at once, jump(1.0), where the specimen or the clamps are not ideal"
         raise FieldError("course.values", wanted, scene.course.values)

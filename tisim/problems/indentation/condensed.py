@@ -32,6 +32,7 @@ Bools = NDArray[np.bool_]
 # Near: closer to the rod's surface than this, also when it will have gone on by RENEW; then near nodes are
 # chosen anew (in radii of the rod).
 REACH, RENEW = 0.8, 1.2
+ASIDE = 0.3  # across the rod, of one that turns
 # A round ends after so many near iterations: in a snap, far nodes are to come along, and a trust region that
 # has grown small is begun anew (5, 6 and 20 take longer: benchmarks/README.md).
 INNER = 8
@@ -78,7 +79,7 @@ class CondensedBlock:
     def solve(self, x: Array, *, tolerance: float, max_iterations: int, kept: bool) -> Outcome:
         """Equilibrium from x (n, 3) on, as by `contact_newton`, whose tolerance and `kept` these are."""
         system = self._system
-        if self._chosen is None or np.linalg.norm(self._chosen - system.tip) > RENEW * self._radius:
+        if self._chosen is None or self._beyond(self._chosen):
             self._choose(x)
         split = self._split
         if split is None:
@@ -193,6 +194,13 @@ class CondensedBlock:
             condensation=Condensation(p.indptr, p.indices, kept),
             far=FarField(np.flatnonzero(interface).astype(np.int32), pattern),
         )  # fmt: skip
+
+    def _beyond(self, chosen: Array) -> bool:
+        """Whether the tip has gone so far from where it was chosen for that another choice is due."""
+        way = self._system.tip - chosen
+        aside = way - (way @ self._system.axis) * self._system.axis
+        far: bool = np.linalg.norm(way) > RENEW * self._radius
+        return far or bool(np.linalg.norm(aside) > ASIDE * self._radius)
 
     def _distance(self, x: Array) -> Array:
         """Distances (n,) [m] from the rod's surface on its way to the next choice, its inside 0."""

@@ -1,4 +1,4 @@
-"""A rod whose depth follows a course: holds and ramps at a speed, each step an equilibrium in its time."""
+"""A rod whose depth, and direction, follow a course: each step an equilibrium in its time."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from tisim.problems.indentation.steps import (
     stiffen_where_deep,
 )
 from tisim.problems.indentation.system import PokeSystem
+from tisim.problems.indentation.turning import angle, axis_at
 from tisim.result import Status
 from tisim.scene import Poke
 
@@ -69,6 +70,8 @@ def follow(
         way = np.sign(stop.value - walk.depth)
         if way:
             system.turn(float(way))
+        elif scene.turns:  # it sets elements free on one side
+            system.turn(-1.0)
         status = _advance(scene, system, block, walk, stop, corner - offset)
         if status is not Status.CONVERGED:
             return frames, status, walk.steps, walk.cuts
@@ -85,17 +88,21 @@ def _advance(
     part, refused = 1.0, 0
     while walk.time < stop.time or walk.depth != stop.value:
         left = stop.value - walk.depth
+        way = abs(left)
+        if scene.turns:
+            turn = angle(system.previous_axis, axis_at(scene, stop.time))
+            way = max(way, turn * max(walk.depth, stop.value, scene.rod.radius))
         share = min(part, 1.0)
-        if left:
-            share = min(share, walk.step / abs(left))
+        if way:
+            share = min(share, walk.step / way)
             if share > 0.7:  # no small rest
-                share = 1.0 if part >= 1.0 and abs(left) <= 1.25 * walk.step else 0.5
+                share = 1.0 if part >= 1.0 and way <= 1.25 * walk.step else 0.5
         done = share == 1.0
         target = stop.value if done else walk.depth + share * left
         time = stop.time if done else walk.time + share * (stop.time - walk.time)
-        system.move_to(target)
+        system.move_to(target, axis_at(scene, time) if scene.turns else None)
         system.begin(time - walk.time)
-        pace = _pace(walk, target, time, origin)
+        pace = time - walk.time if scene.turns else _pace(walk, target, time, origin)
         guess = walk.x.copy() if walk.velocity is None else predict(system, walk.x, walk.velocity * pace)
         system.touch(guess)
         kept = done and stop.frame
@@ -110,8 +117,8 @@ def _advance(
         if failed is not None:
             walk.cuts += 1
             refused += 1
-            if left:
-                walk.step = 0.4 * min(walk.step, abs(target - walk.depth))
+            if way:
+                walk.step = 0.4 * min(walk.step, share * way)
             else:
                 part = 0.5 * share
             if walk.step < SMALLEST_STEP or part < SMALLEST_PART:
@@ -119,7 +126,7 @@ def _advance(
                 return failed
             continue
         walk.velocity = (outcome.x - walk.x) / pace if pace else None
-        if left:
+        if way:
             if outcome.iterations <= 6:
                 walk.step = min(2.0 * walk.step, LARGEST_STEP)
             elif outcome.iterations > 12:

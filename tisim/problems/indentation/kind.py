@@ -14,7 +14,8 @@ from tisim._checks import (
     check_type,
     check_vector,
 )
-from tisim.bodies import Block, Inclusion, Rod
+from tisim.bodies import Block, Inclusion, Rod, Vector
+from tisim.course import Course
 from tisim.mesh.indentation import check_indentation
 from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
@@ -34,21 +35,19 @@ def check(scene: Poke) -> None:
             raise FieldError("course.values", "a depth above 0 m", scene.course.values)
         from tisim.problems.indentation.course import without_course
 
+        _check_turns(scene, scene.course)
         scene = without_course(scene)
+    elif scene.turns:
+        raise FieldError("turns", "none without a course", scene.turns)
     _check_block(scene.block)
     _check_rod(scene.rod)
     check_vector("site", scene.site, 2)
     inside = np.abs(np.asarray(scene.site)) < 0.5 * np.asarray(scene.block.size[:2])
     if not inside.all():
         raise FieldError("site", f"a place on the block's top, {scene.block.size[:2]} m large", scene.site)
-    check_vector("direction", scene.direction)
-    size = float(np.linalg.norm(scene.direction))
-    angle = np.degrees(np.arccos(np.clip(-scene.direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
-    if angle > STEEPEST + 1e-6:
-        raise FieldError("direction", f"a push within {STEEPEST:g} degrees of (0, 0, -1)", scene.direction)
     check_length("depth", scene.depth)
-    if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
-        raise FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+    for name, direction in [("direction", scene.direction), *(("turns", way) for _, way in scene.turns)]:
+        _check_way(scene, name, direction)
     if scene.retract_to is not None:
         what = f"a depth [m] from 0 to less than the {scene.depth:g} m asked for, or None"
         check_number("retract_to", scene.retract_to, what, lambda v: 0.0 <= v < scene.depth)
@@ -67,6 +66,41 @@ def check(scene: Poke) -> None:
             rod=scene.rod,
             refinement=scene.refinement,
         )
+
+
+def _check_turns(scene: Poke, course: Course) -> None:
+    times = [time for time, _ in scene.turns]
+    rising = all(b > a for a, b in zip([0.0, *times], times, strict=False))
+    if not rising or not set(times) <= set(course.times):
+        wanted = f"rising times above 0 s at which a piece of the course ends, {course.times}"
+        raise FieldError("turns", wanted, tuple(times))
+
+
+def _check_way(scene: Poke, name: str, direction: Vector) -> None:
+    """Refuse a direction in which the rod does not go into the block, or leaves it at the depth asked for."""
+    check_vector(name, direction)
+    size = float(np.linalg.norm(direction))
+    angle = np.degrees(np.arccos(np.clip(-direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
+    if angle > STEEPEST + 1e-6:
+        raise FieldError(name, f"a push within {STEEPEST:g} degrees of (0, 0, -1)", direction)
+    if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
+        raise FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+    out = leaves(scene, direction, scene.depth)
+    if out is not None:
+        half = [0.5e3 * side for side in scene.block.size[:2]]
+        wanted = (
+            f"a path within the block's sides (x within +-{half[0]:g}, y within +-{half[1]:g} mm), which"
+            f" at {1e3 * scene.depth:.3g} mm of depth is at x = {1e3 * out[0]:.3g}, y = {1e3 * out[1]:.3g} mm"
+        )
+        raise FieldError(name, wanted, direction)
+
+
+def leaves(scene: Poke, direction: Vector, depth: float) -> tuple[float, float] | None:
+    """Where a rod pushed along `direction` to a depth [m] is, (x, y) [m], if outside the block's sides."""
+    size = float(np.linalg.norm(direction))
+    x, y = (scene.site[k] + depth * direction[k] / size for k in range(2))
+    inside = all(abs(at) <= 0.5 * side for at, side in zip((x, y), scene.block.size[:2], strict=True))
+    return None if inside else (x, y)
 
 
 def _check_block(block: Block) -> None:

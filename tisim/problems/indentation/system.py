@@ -16,6 +16,7 @@ from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
 from tisim.mesh import Mesh
 from tisim.problems.indentation.far_field import FarField
+from tisim.problems.indentation.turning import axes, axis_at, rotation
 from tisim.scene import Poke
 
 Array = NDArray[np.float64]
@@ -70,10 +71,11 @@ class PokeSystem:
             scene.material,
             dead_load=gravity_load(discretisation, scene.material.density, scene.gravity),
         )
-        self.axis = np.asarray(scene.direction, dtype=float) / np.linalg.norm(scene.direction)
+        self.axis = self.previous_axis = axis_at(scene, 0.0)
         self.edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
         height = float(mesh.nodes[mesh.facet_sets["top"], 2].max())
-        self.start = rod_start(rod, scene.site, height, self.axis)
+        self._height = height
+        self.start = self._previous_start = rod_start(rod, scene.site, height, self.axis)
         self.facets = np.ascontiguousarray(self._near(mesh), dtype=np.int32)
         self._slot = discretisation.pattern.slots(self.facets)
         self._shape = np.ascontiguousarray(facet_quadrature(self.facets.shape[1], POINTS_PER_SIDE)[0])
@@ -103,25 +105,34 @@ class PokeSystem:
         """Facets of the top that the rod can come to touch."""
         top = mesh.facet_sets["top"]
         centres = mesh.nodes[top].mean(axis=1)[:, :2] - np.asarray(self.scene.site)
-        along = np.array(self.axis[:2])
         reach = 0.5 * self.scene.depth + 4.0 * self.scene.rod.radius
-        travel = np.clip(centres @ along / max(float(along @ along), 1e-12), 0.0, self.scene.depth)
-        off = np.linalg.norm(centres - travel[:, None] * along, axis=1)
-        return top[off < reach]
+        near = np.zeros(len(top), dtype=bool)
+        for along in axes(self.scene)[:, :2]:
+            travel = np.clip(centres @ along / max(float(along @ along), 1e-12), 0.0, self.scene.depth)
+            near |= np.linalg.norm(centres - travel[:, None] * along, axis=1) < reach
+        return top[near]
 
     def _pose(self, depth: float) -> None:
         self.depth = depth
         rod = self.scene.rod
-        self._rod = pack_rod(
-            self.tip, self.axis, rod.radius, self.edge, (depth - self.previous_depth) * self.axis
-        )
+        shift = (depth - self.previous_depth) * self.axis
+        turned = None
+        if self.axis is not self.previous_axis:
+            shift += self.previous_depth * (self.axis - self.previous_axis)
+            shift += self.start - self._previous_start
+            turned = rotation(self.previous_axis, self.axis)
+        self._rod = pack_rod(self.tip, self.axis, rod.radius, self.edge, shift, turned)
 
     @property
     def tip(self) -> Array:
         return self.start + self.depth * self.axis
 
-    def move_to(self, depth: float) -> None:
-        """Put the rod at this depth; slip counts from the last accepted state."""
+    def move_to(self, depth: float, axis: Array | None = None) -> None:
+        """Put the rod at this depth, turned to a unit vector if given; slip counts from the last state."""
+        if axis is not None:
+            same = np.array_equal(axis, self.previous_axis)
+            self.axis = self.previous_axis if same else axis
+            self.start = rod_start(self.scene.rod, self.scene.site, self._height, self.axis)
         self._pose(depth)
 
     def turn(self, way: float) -> None:
@@ -150,6 +161,7 @@ class PokeSystem:
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
+        self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
             self._known = None

@@ -1,0 +1,192 @@
+"""Effects of a material as its parts (`tisim.parts`) or its law: relaxation as a Prony series, losses as
+softening, stiffness in one direction as fibres.
+
+An effect is a phenomenon of one kind of measurement (a stress that grows by so much a decade of the rate);
+a part is what the simulator has (a relaxation spectrum). The part is the one that shows the phenomenon over
+the times, or energies, that the measurement saw; beyond them it stays as it is there, and the card says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares, nnls
+from scipy.special import erf
+
+from calibration.measurements._effect import HandedOn, Occurrence
+from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
+
+Array = NDArray[np.float64]
+Curve = Callable[[Array], Array]
+
+A_DECADE = 2  # relaxation times: closer ones cannot be told apart
+GRID = 60  # times, or energies, at which a part is compared with the effect
+NEGLIGIBLE = 1e-9  # fractions below this are no term
+ALIKE = 0.02  # of what is compared: a larger departure of the part from the effect is said
+SMALL_ENERGY = 1e-3  # m of a softening that follows the largest energy alone, over that energy
+LONG_TIME = "the long-time modulus"
+
+
+def viscosity_of(relaxed: Curve, *, first: float, last: float) -> HandedOn:
+    """A Prony series of two terms a decade.
+
+    Parameters
+    ----------
+    relaxed : relaxation function at times (n,) [s] after a step, over the modulus of the fit.
+    first, last : between which the measurement saw it [s].
+    """
+    decades = max(np.log10(last / first), 1.0 / A_DECADE)
+    times = first * 10.0 ** (np.arange(round(A_DECADE * decades) + 1) / A_DECADE)
+    at = np.geomspace(first, last, GRID)
+    wanted = relaxed(at)
+    basis = np.column_stack([np.ones(GRID), np.exp(-at[:, None] / times)])
+    found, _ = nnls(basis, wanted)
+    return _prony(found[0], found[1:], times, first=first, last=last, off=_off(basis @ found, wanted))
+
+
+def one_time(fraction: float, time: float, *, first: float, last: float) -> HandedOn:
+    """A Prony series of one term: a fraction of the instantaneous modulus relaxes with a time [s].
+
+    first, last : between which the measurement saw it [s].
+    """
+    return _prony(1.0 - fraction, np.array([fraction]), np.array([time]), first=first, last=last, off=0.0)
+
+
+def branches(fractions: Array, times: Array, *, reference: float, first: float, last: float) -> HandedOn:
+    """A Prony series whose fractions are parts of the storage modulus at 1 / reference [rad/s]."""
+    slow = (times / reference) ** 2
+    left = 1.0 - float(np.sum(fractions * slow / (1.0 + slow)))
+    found = _prony(left, fractions, times, first=first, last=last, off=0.0)
+    own = "the vibration's own damping, which was fitted beside it, is not in the viscosity"
+    return replace(found, remarks=(*found.remarks, own))
+
+
+def _prony(left: float, strengths: Array, times: Array, *, first: float, last: float, off: float) -> HandedOn:
+    """left, strengths : long-time modulus and terms over the modulus of the fit."""
+    if not left > 0.0:
+        return HandedOn(
+            field="viscosity",
+            part=None,
+            remarks=("no relaxation spectrum: the modulus relaxes to nothing within the record",),
+        )
+    some = strengths > NEGLIGIBLE
+    if not some.any():
+        return HandedOn(field="viscosity", part=None, remarks=("no relaxation spectrum: nothing relaxes",))
+    remarks = [
+        f"relaxation was seen between {first:.3g} and {last:.3g} s: faster and slower relaxation is not in"
+        " the viscosity"
+    ]
+    outside = [t for t in times[some] if not 0.99 * first <= t <= 1.01 * last]
+    if outside:
+        remarks.append(
+            f"relaxation times outside of that: {', '.join(f'{t:.3g}' for t in outside)} s, as the effect has"
+            " them"
+        )
+    if off > ALIKE:
+        remarks.append(f"the Prony series departs from the effect by up to {off:.0%} of the modulus")
+    part = Prony(
+        fractions=tuple(float(g) for g in strengths[some] / left), times=tuple(float(t) for t in times[some])
+    )
+    return HandedOn(
+        field="viscosity", part=part, modulus_ratio=float(left), states=LONG_TIME, remarks=tuple(remarks)
+    )
+
+
+def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -> HandedOn:
+    """Ogden and Roxburgh's softening, nearest to a fraction of the stress that is lost below the largest
+    energy so far.
+
+    Parameters
+    ----------
+    lost : fraction at energies (n,) over the largest so far.
+    energy : the largest that the measurement saw [J/m3].
+    """
+    ratio = np.linspace(0.0, 1.0, GRID)
+    wanted = lost(ratio)
+
+    def of(x: Array) -> Array:
+        return np.asarray(erf((1.0 - ratio) / np.exp(x[1])) / np.exp(x[0]))
+
+    def left(x: Array) -> Array:
+        return np.asarray(of(x) - wanted)
+
+    # ln r from 0 (r = 1), ln beta from a softening that sets in at once to a straight line
+    start = np.array([np.log(1.0 / max(float(wanted.max()), 1e-3)), 0.0])
+    found = least_squares(
+        left,
+        np.clip(start, [1e-6, -3.0], [20.0, 3.0]),
+        bounds=([0.0, -3.0], [20.0, 3.0]),
+        xtol=1e-12,
+    )
+    part = OgdenRoxburgh(
+        r=float(max(np.exp(found.x[0]), 1.0)), m=SMALL_ENERGY * energy, beta=float(np.exp(found.x[1]))
+    )
+    said = list(remarks)
+    off = _off(of(found.x), wanted)
+    if off > ALIKE:
+        said.append(f"the softening departs from the effect by up to {off:.0%} of the stress")
+    said.append(
+        f"softening was seen up to an energy of {energy:.3g} J/m3; residual set, recovery and the further"
+        " loss of later cycles are not in it"
+    )
+    states = "the modulus of the first loading"
+    return HandedOn(field="softening", part=part, states=states, remarks=tuple(said))
+
+
+def fibres_along_the_load(k1: float) -> HandedOn:
+    """One family of fibres along axis 1, in which coupons are loaded; k1 [Pa]."""
+    if k1 < 0.0:
+        return HandedOn(
+            field="fibres",
+            part=None,
+            remarks=("no fibres: the material is softer along the load, which fibres along it cannot be",),
+        )
+    return HandedOn(
+        field="fibres",
+        part=HolzapfelGasserOgden(direction=(1.0, 0.0, 0.0), k1=k1),
+        states="the modulus across the fibres",
+        remarks=(
+            "fibres lie along axis 1, in which the coupons were loaded: turn them to where that axis lies in"
+            " another body; they carry no compression",
+        ),
+    )
+
+
+def stiffening(found: Occurrence) -> HandedOn:
+    """Yeoh's law with one constant more, c2 over c1."""
+    if found.amplitude < 0.0:
+        text = "no law: one that softens with strain has no least energy"
+        return HandedOn(field="law", remarks=(text,))
+    return _law("yeoh", lambda g, k: {"mu": g, "stiffening": found.amplitude, "bulk": k})
+
+
+def mooney_rivlin(found: Occurrence) -> HandedOn:
+    """A fraction of the modulus is the second invariant's."""
+    c = found.amplitude
+    return _law("mooney-rivlin", lambda g, k: {"c10": 0.5 * g * (1.0 - c), "c01": 0.5 * g * c, "bulk": k})
+
+
+def eight_chain(found: Occurrence) -> HandedOn:
+    """Chains lock at a stretch of which the amplitude is one over the square."""
+    if not 0.0 < found.amplitude < 1.0:
+        text = "no law: the chains would lock at rest"
+        return HandedOn(field="law", remarks=(text,))
+    return _law("eight-chain", lambda g, k: {"mu": g, "locking": found.amplitude**-0.5, "bulk": k})
+
+
+def _law(name: str, parameters: Callable[[float, float], dict[str, float]]) -> HandedOn:
+    return HandedOn(field="law", law=lambda g, k: (name, parameters(g, k)), states="the small-strain modulus")
+
+
+def seen(times: list[Array]) -> tuple[float, float]:
+    """Shortest and longest times that records with these clocks (k,) show [s]."""
+    first = min(float(np.diff(t).min()) for t in times)
+    last = max(float(np.ptp(t)) for t in times)
+    return max(first, 1e-6 * last), last
+
+
+def _off(a: Array, b: Array) -> float:
+    return float(np.abs(a - b).max())

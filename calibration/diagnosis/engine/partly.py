@@ -1,0 +1,209 @@
+"""A verdict in degrees: what may be named where every explanation leaves more than noise.
+
+No real bench passes a test for "nothing but noise is left". What is named then is the smallest set of causes
+that takes most of the explainable misfit, if
+
+1. it takes at least half of it, in 95 % of the replicates over specimens, tests or stretches of records;
+2. it predicts every part of the measurements that its fit has not seen better than the baseline does;
+3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
+4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
+
+Levels are in `rules.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from calibration.diagnosis.engine.explanation import Explanation, Names
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.multi_cause import inside_bounds
+from calibration.diagnosis.engine.remainder import relative_rms
+from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
+from calibration.measurements._model import MeasurementModel
+
+EACH = 2  # sets of as many causes that are tried
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Assessed:
+    """An explanation, and what it buys.
+
+    Attributes
+    ----------
+    share : of the explainable misfit.
+    at_least : share that it takes in `Rules.sure` of the replicates.
+    rivals : other sets of names that take as much, with their shares.
+    held_out : None where it was not measured.
+    against : why it is not named, a clause each; nothing where it may be.
+    confidence : part of the replicates in which no other set of as many causes takes more.
+    """
+
+    explanation: Explanation
+    share: Interval
+    at_least: float
+    rivals: tuple[tuple[Names, Interval], ...] = ()
+    held_out: HeldOut | None = None
+    against: tuple[str, ...] = field(default=())
+    confidence: float = 0.0
+
+
+def assess(
+    model: MeasurementModel,
+    baseline: Fit,
+    explanations: Sequence[Explanation],
+    shares: Shares,
+    rules: Rules,
+    *,
+    noise_known: bool = True,
+    on_progress: Progress = lambda _: None,
+) -> Assessed | None:
+    """The explanation that may be named, or the one that comes nearest (`against` says why it is not named);
+    None where there is none at all.
+
+    explanations : those that were confirmed in the simulator, of a search that calls them unexplained.
+    """
+    if not explanations or not shares.baseline.value > 0.0:
+        return None
+    found = [(e, shares.misfit(e.fit)) for e in explanations]
+    sound = [(e, m) for e, m in found if inside_bounds(model, e)]
+    ordered = _dominant(sound or found, shares, rules)
+    first: Assessed | None = None
+    for explanation, misfit in ordered[: rules.tries]:
+        judged = _judge(model, baseline, explanation, misfit, sound, shares, rules, noise_known, on_progress)
+        if not judged.against:
+            return judged
+        first = first or judged
+    return first
+
+
+def _dominant(
+    found: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules
+) -> list[tuple[Explanation, Misfit]]:
+    """In the order in which they are tried: the best of the smallest number of causes that one cause more
+    adds little to; then those of one cause more each, and of fewer. Of each number the best `EACH` sets of
+    names."""
+    best: dict[int, list[tuple[Explanation, Misfit]]] = {}
+    for e, m in sorted(found, key=lambda pair: pair[1].value):
+        own = best.setdefault(len(e.names), [])
+        if len(own) < EACH and e.names not in [other.names for other, _ in own]:
+            own.append((e, m))
+    sizes = sorted(best)
+    chosen = sizes[0]
+    for size in sizes[1:]:
+        gained = shares.share(best[size][0][1]).value - shares.share(best[chosen][0][1]).value
+        if gained >= rules.further_share * (size - chosen):
+            chosen = size
+    larger = [k for k in sizes if k > chosen]
+    return [pair for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen)) for pair in best[k]]
+
+
+def _judge(
+    model: MeasurementModel,
+    baseline: Fit,
+    explanation: Explanation,
+    misfit: Misfit,
+    sound: Sequence[tuple[Explanation, Misfit]],
+    shares: Shares,
+    rules: Rules,
+    noise_known: bool,
+    on_progress: Progress,
+) -> Assessed:
+    share = shares.share(misfit)
+    drawn = shares.drawn(misfit)
+    at_least = float(np.quantile(drawn, 1.0 - rules.sure)) if shares.groups.count > 1 else -np.inf
+    at_least = min(at_least, share.value)
+    against = []
+    if not inside_bounds(model, explanation):
+        against.append("an amplitude is at the end of what makes sense")
+    if share.value < rules.least_share:
+        against.append(
+            f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
+        )
+    elif at_least < rules.least_share:
+        against.append(
+            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.least_share:.0f} % or more"
+        )
+    part = relative_rms(model, baseline)
+    if not noise_known and part is not None and part < rules.smooth_error:
+        against.append(
+            f"the departure is {100.0 * part:.2g} % of full scale, which a smooth error that nobody stated"
+            " may have"
+        )
+    on_progress(f"predicting held-out measurements: {explanation.fit.label}")
+    held_out = held_out_improvement(model, baseline, explanation.fit)
+    against += _held_out(held_out, explanation, at_least, rules)
+    others = [
+        shares.drawn(m)
+        for e, m in sound
+        if e.names != explanation.names and len(e.names) == len(explanation.names)
+    ]
+    first = np.mean(np.all([drawn >= o for o in others], axis=0)) if others else 1.0
+    return Assessed(
+        explanation=explanation,
+        share=share,
+        at_least=at_least,
+        confidence=float(first),
+        rivals=_rivals(explanation, share, drawn, sound, shares, rules),
+        held_out=held_out,
+        against=tuple(against),
+    )
+
+
+def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rules: Rules) -> list[str]:
+    if not held_out.held_out:
+        return [held_out.note]
+    found = []
+    if not held_out.helps_everywhere:
+        worse = held_out.worse
+        if len(worse) == 1:
+            found.append(f"{worse[0]}, held out, is predicted no better than without it")
+        else:
+            found.append(
+                f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
+                " it"
+            )
+    if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
+        found.append("held-out measurements are predicted no better with it")
+    for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
+        value, sd = explanation.fit.amplitude(c)
+        allowed = max(rules.same_amplitude * abs(value), rules.same_sds * sd)
+        if np.abs(values - value).max() > allowed:
+            found.append(f"the amplitude of {c.effect} changes with the part that is left out")
+    if held_out.within and rules.least_share <= at_least < rules.least_share_within:
+        found.append(
+            f"measurements could be held out from within the tests only, where its share must be sure to be"
+            f" {100.0 * rules.least_share_within:.0f} %"
+        )
+    return found
+
+
+def _rivals(
+    explanation: Explanation,
+    share: Interval,
+    drawn: np.ndarray,
+    sound: Sequence[tuple[Explanation, Misfit]],
+    shares: Shares,
+    rules: Rules,
+) -> tuple[tuple[Names, Interval], ...]:
+    """Other sets of as many names, or fewer, that take as much, altogether or in some of the replicates; best
+    first."""
+    found: dict[Names, Misfit] = {}
+    for e, m in sound:
+        if e.names == explanation.names or len(e.names) > len(explanation.names):
+            continue
+        if shares.share(m).value < rules.least_share:
+            continue
+        if set(e.names) < set(explanation.names):
+            continue
+        as_much = float(np.mean(shares.drawn(m) >= drawn)) > rules.as_good
+        as_much |= shares.share(m).value > share.value - rules.alike
+        if as_much and (e.names not in found or m.value < found[e.names].value):
+            found[e.names] = m
+    ordered = sorted(found.items(), key=lambda pair: pair[1].value)
+    return tuple((names, shares.share(misfit)) for names, misfit in ordered)

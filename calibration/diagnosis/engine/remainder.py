@@ -1,0 +1,183 @@
+"""What an explanation leaves: how large it is, where it lives, and whether it repeats.
+
+What repeats only within a specimen is a fault of that specimen; what repeats in all of them belongs to the
+form of the model or to the rig; what repeats nowhere is noise (the reasoning of gauge repeatability studies).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.measurements._model import MeasurementModel
+
+Array = NDArray[np.float64]
+Repeats = Literal["everywhere", "within a material", "within a specimen", "nowhere", "not known"]
+
+BINS = 12  # along a record, in which the remainder of two records is compared
+ALIKE = 0.5  # mean cosine from which on it repeats
+MOST = 0.5  # of the squares: where a third of the records' range, or some of the records, hold so much
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remainder:
+    """What is left beside noise.
+
+    Attributes
+    ----------
+    rms : beyond the noise [SI]; 0 where nothing is.
+    of_full_scale : the same over each record's largest value; None where records have no scale.
+    repeats : at which level it is alike.
+    cosines : mean cosine between records, by level; levels without two records are left out.
+    records : names of the records that hold most of it, where these are few.
+    place : where along the records it lives ("" where that is not known): the quantity, and between what.
+    negligible : whether it is below what matters in practice (`Rules.negligible`).
+    """
+
+    rms: float
+    of_full_scale: float | None
+    repeats: Repeats
+    cosines: dict[str, float]
+    records: tuple[str, ...]
+    place: str
+    negligible: bool = False
+
+
+def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Remainder:
+    """What a fit leaves; negligible : part of full scale that does not matter in practice. ValueError where
+    its state has no answer."""
+    left = [np.asarray(x) for x in model.registered(fit.state)]
+    rms = beyond(model.distance_rms(fit.state), model.noise_rms())
+    scale = model.full_scale()
+    cosines = _cosines(model.records, left)
+    squares = np.array([float(np.nansum(x**2)) for x in left])
+    if scale is not None:
+        squares = squares / scale**2
+    part = relative_rms(model, fit)
+    return Remainder(
+        rms=rms,
+        of_full_scale=part,
+        negligible=part is not None and part < negligible,
+        repeats=_repeats(cosines, model),
+        cosines=cosines,
+        records=_holders(model.records, squares),
+        place=_place(model, left),
+    )
+
+
+def about_remainder(left: Remainder) -> str:
+    """What to measure next of what is left, "" where nothing is that matters."""
+    if left.rms == 0.0 or left.negligible:
+        return ""
+    return {
+        "everywhere": "what is left is alike in all of them: test in another mode, at another rate or on"
+        " another rig, to tell the form of the model from the rig",
+        "within a material": "what is left is alike within each material: test one of them in another mode,"
+        " since the form of its law may be at fault",
+        "within a specimen": "what is left is alike within a specimen: turn it, or test another specimen of"
+        " the same batch",
+        "nowhere": "what is left differs from test to test: repeat tests, so that their scatter is known",
+        "not known": "repeat a test, so that it is known whether what is left repeats",
+    }[left.repeats]
+
+
+def beyond(rms: float, noise: float) -> float:
+    """What noise does not explain of a root mean square."""
+    return float(np.sqrt(max(rms**2 - noise**2, 0.0)))
+
+
+def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
+    """Root mean square beyond the noise, each record over its largest value; None where there is none."""
+    scale = model.full_scale()
+    if scale is None:
+        return None
+    total = noise = 0.0
+    points = 0
+    for k, x in enumerate(model.registered(fit.state)):
+        here = np.isfinite(x)
+        rows = (model.row_record == k) & model.noise.used
+        total += float(np.sum(x[here] ** 2)) / scale[k] ** 2
+        noise += float(np.sum((model.noise_scale * model.noise.sd[rows]) ** 2)) / scale[k] ** 2
+        points += int(np.count_nonzero(here))
+    return float(np.sqrt(max(total - noise, 0.0) / points)) if points else 0.0
+
+
+def _binned(values: Array) -> Array | None:
+    """Means of what is compared, in equal parts of a record."""
+    own = values[np.isfinite(values)]
+    if own.size < BINS:
+        return None
+    return np.array([float(part.mean()) for part in np.array_split(own, BINS)])
+
+
+def _cosines(records: Sequence[Any], left: Sequence[Array]) -> dict[str, float]:
+    """Mean cosine of what is left of two records of one kind of test, by what the two share."""
+    found: dict[str, list[float]] = {}
+    curves = [_binned(x) for x in left]
+    for a, b in combinations(range(len(records)), 2):
+        one, other = curves[a], curves[b]
+        if one is None or other is None or _kind(records[a]) != _kind(records[b]):
+            continue
+        size = float(np.linalg.norm(one) * np.linalg.norm(other))
+        if size > 0.0:
+            found.setdefault(_level(records[a], records[b]), []).append(float(one @ other) / size)
+    return {level: float(np.mean(values)) for level, values in found.items()}
+
+
+def _kind(record: Any) -> str:
+    return str(getattr(record, "groups", {}).get("mode", ""))
+
+
+def _level(one: Any, other: Any) -> str:
+    if one.material != other.material:
+        return "materials"
+    return "one specimen" if one.specimen == other.specimen else "specimens"
+
+
+def _repeats(cosines: dict[str, float], model: MeasurementModel) -> Repeats:
+    if not cosines:
+        return "not known"
+    if cosines.get("materials", -1.0) >= ALIKE:
+        return "everywhere"
+    if cosines.get("specimens", -1.0) >= ALIKE:
+        return "within a material" if len(model.baseline.materials) > 1 else "everywhere"
+    if cosines.get("one specimen", -1.0) >= ALIKE:
+        return "within a specimen"
+    return "nowhere"
+
+
+def _holders(records: Sequence[Any], squares: Array) -> tuple[str, ...]:
+    """The fewest records that hold MOST of the squares, where these are less than half of all."""
+    total = float(squares.sum())
+    if not total > 0.0 or len(records) < 2:
+        return ()
+    order = np.argsort(-squares)
+    count = int(np.searchsorted(np.cumsum(squares[order]), MOST * total)) + 1
+    return tuple(str(records[k].name) for k in order[:count]) if count < 0.5 * len(records) + 0.5 else ()
+
+
+def _place(model: MeasurementModel, left: Sequence[Array]) -> str:
+    """The part of a driven quantity, of three, in which more than MOST of it lies."""
+    along = [model.along(k) for k in range(len(model.records))]
+    pairs = [(a, x) for a, x in zip(along, left, strict=True) if a is not None]
+    if not pairs:
+        return ""
+    name = pairs[0][0][0]
+    where = np.concatenate([a[1] for a, _ in pairs])
+    value = np.concatenate([np.nan_to_num(x) ** 2 for _, x in pairs])
+    known = np.isfinite(where) & (value > 0.0)
+    if not known.any():
+        return ""
+    where, value = where[known], value[known]
+    edges = np.linspace(where.min(), where.max(), 4)
+    held = [float(value[(where >= a) & (where <= b)].sum()) for a, b in pairwise(edges)]
+    best = int(np.argmax(held))
+    if held[best] < MOST * float(value.sum()):
+        return ""
+    return f"{name} {edges[best]:.3g} to {edges[best + 1]:.3g}"

@@ -1,0 +1,138 @@
+"""The spread of a fit over specimens, tests or stretches of a record: bootstrap by groups, never over points.
+
+What a model lacks is the same for all points of a record, so that points are no independent witnesses of it;
+groups of them are resampled as they are (cluster bootstrap). Each replicate is fitted to first order around
+the fit, from sums over the groups, which costs no simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis.engine.fitting import Fit
+from calibration.measurements._folds import PARTS
+from calibration.measurements._model import MeasurementModel
+
+Array = NDArray[np.float64]
+
+ENOUGH = 6  # groups from which on resampling them says something
+RIDGE = 1e-9  # of a coordinate's own information, so that one that no drawn group tells of stays
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Groups:
+    """What is resampled.
+
+    Attributes
+    ----------
+    over : in words.
+    of_row : the group of each row of residuals, shape (m,); -1 for rows of the prior, which always count.
+    names : of the groups.
+    """
+
+    over: str
+    of_row: NDArray[np.intp]
+    names: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        return len(self.names)
+
+    def draws(self, count: int, seed: int) -> Array:
+        """How often each group is drawn, shape (count, groups); those of one group only are left out."""
+        drawn = np.random.default_rng(seed).multinomial(
+            self.count, np.full(self.count, 1.0 / self.count), size=count
+        )
+        several = np.count_nonzero(drawn, axis=1) > min(1, self.count - 1)
+        return np.asarray(drawn[several], dtype=float)
+
+
+def groups_of(model: MeasurementModel) -> Groups:
+    """Specimens, or tests where these are few; stretches of the records (fifths) where tests are few too."""
+    record = model.row_record[model.noise.used]
+    prior = np.full(len(model.baseline.prior), -1)
+    tests = [_test(r) for r in model.records]
+    specimens = [f"{r.material} {r.specimen}" for r in model.records]
+    for over, labels in (("specimens", specimens), ("tests", tests)):
+        there = list(dict.fromkeys(labels[k] for k in np.unique(record)))
+        if len(there) >= ENOUGH:
+            number = np.array([there.index(x) if x in there else -1 for x in labels])
+            return Groups(over=over, of_row=np.concatenate([number[record], prior]), names=tuple(there))
+    if model.noise.covariance is not None:  # rows are no points along a record
+        there = list(dict.fromkeys(tests[k] for k in np.unique(record)))
+        number = np.array([there.index(x) if x in there else -1 for x in tests])
+        return Groups(over="tests", of_row=np.concatenate([number[record], prior]), names=tuple(there))
+    of_row = np.zeros(len(record), dtype=np.intp)
+    names: list[str] = []
+    for k in np.unique(record):
+        for n, part in enumerate(np.array_split(np.flatnonzero(record == k), PARTS)):
+            if part.size:
+                of_row[part] = len(names)
+                names.append(f"{model.records[k].name}, part {n + 1}")
+    rows = np.concatenate([of_row, prior]).astype(np.intp)
+    return Groups(over="fifths of each record", of_row=rows, names=tuple(names))
+
+
+def _test(record: object) -> str:
+    groups = getattr(record, "groups", {})
+    return str(groups.get("trial", getattr(record, "name", "")))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Replicates:
+    """Fits to resampled groups.
+
+    Attributes
+    ----------
+    chi2 : of each, shape (b,).
+    expected : what noise of unit variance would leave of it, shape (b,).
+    moves : of the coordinates and amplitudes, shape (b, n).
+    """
+
+    chi2: Array
+    expected: Array
+    moves: Array
+
+
+class Resampled:
+    """A fit, ready to be repeated on resampled groups. expected: chi-square that noise alone would leave."""
+
+    def __init__(self, fit: Fit, groups: Groups) -> None:
+        self._z, self._jacobian, self._of_row = fit.z, fit.jacobian, groups.of_row
+        self._count = groups.count
+
+    @cached_property
+    def _sums(self) -> tuple[Array, Array, Array, Array]:
+        """Of each group, the prior last: J^T J, J^T z, z^T z, number of rows."""
+        places = [self._of_row == g for g in (*range(self._count), -1)]
+        grams = np.array([self._jacobian[p].T @ self._jacobian[p] for p in places])
+        slopes = np.array([self._jacobian[p].T @ self._z[p] for p in places])
+        squares = np.array([self._z[p] @ self._z[p] for p in places])
+        return grams, slopes, squares, np.array([float(np.count_nonzero(p)) for p in places])
+
+    def replicates(self, drawn: Array) -> Replicates:
+        """drawn : how often each group counts, shape (b, groups)."""
+        grams, slopes, squares, rows = self._sums
+        weights = np.column_stack([drawn, np.ones(len(drawn))])
+        size = np.sqrt(np.einsum("gii->i", grams))
+        size[size == 0.0] = 1.0
+        n = len(size)
+        if n == 0:
+            return Replicates(
+                chi2=weights @ squares, expected=weights @ rows, moves=np.zeros((len(drawn), 0))
+            )
+        whole = np.einsum("bg,gij->bij", weights, grams) / np.outer(size, size) + RIDGE * np.eye(n)
+        twice = np.einsum("bg,gij->bij", weights**2, grams) / np.outer(size, size)
+        slope = weights @ slopes / size
+        solved = np.linalg.solve(whole, np.concatenate([slope[:, :, None], twice], axis=2))
+        moves = -solved[:, :, 0]
+        taken = np.einsum("bii->b", solved[:, :, 1:])
+        return Replicates(
+            chi2=weights @ squares + np.einsum("bi,bi->b", slope, moves),
+            expected=weights @ rows - taken,
+            moves=moves / size,
+        )

@@ -1,0 +1,147 @@
+"""A verdict in sentences for people who have not read the documentation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from calibration.diagnosis.engine.explanation import Explanation
+    from calibration.diagnosis.engine.held_out import HeldOut
+    from calibration.diagnosis.engine.remainder import Remainder
+    from calibration.diagnosis.engine.shares import Interval
+    from calibration.diagnosis.engine.verdict import Diagnosis
+
+
+def sentence(diagnosis: Diagnosis) -> str:
+    """The verdict."""
+    finding = diagnosis.finding
+    if finding.verdict == "none":
+        return "The simulation agrees with the measurements to within their noise: no cause to name."
+    if finding.verdict == "unexplained":
+        return _unexplained(diagnosis)
+    chosen = diagnosis.chosen
+    assert chosen is not None
+    named, short = _named(diagnosis, chosen), " + ".join(chosen.names)
+    if finding.verdict == "found":
+        return f"Found: {named} ({short})."
+    if finding.verdict == "partly explained":
+        return _partly(diagnosis, chosen)
+    sets = finding.equivalent
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if common:
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
+        takes = _takes(diagnosis, common)
+        return (
+            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and"
+            f" these data cannot say which: {rest}."
+        )
+    others = "; or ".join(" + ".join(names) for names in sets[1:])
+    return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
+
+
+def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
+    """The share of one cause, in the middle of a sentence."""
+    own = [s for c, s in diagnosis.shares.items() if c.effect in names]
+    return f", {percent(own[0])} of what noise leaves to explain" if len(own) == 1 else ""
+
+
+def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
+    sets = diagnosis.finding.equivalent
+    share = "" if diagnosis.share is None else percent(diagnosis.share)
+    takes = f"which takes {share} of what noise leaves to explain{_skill(diagnosis.held_out)}."
+    common = [n for n in chosen.names if all(n in s for s in sets)]
+    if len(sets) == 1:
+        text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
+    elif common:
+        # what all explanations share comes first: it is what these data do tell
+        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        rest = [" + ".join(n for n in s if n not in common) for s in sets]
+        text = (
+            f"Partly explained: {first} ({' + '.join(common)}), together with {_or(rest)}, which these data"
+            f" cannot tell apart; with {rest[0]} it takes {takes.removeprefix('which takes ')}"
+        )
+    else:
+        others = _or([" + ".join(s) for s in sets[1:]])
+        text = (
+            f"Partly explained, by one of several causes that these data cannot tell apart: most likely"
+            f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
+        )
+    left = diagnosis.remainder
+    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+
+
+def _or(names: Sequence[str]) -> str:
+    known = [n for n in dict.fromkeys(names) if n]
+    return known[0] if len(known) == 1 else f"{', '.join(known[:-1])} or {known[-1]}"
+
+
+def _unexplained(diagnosis: Diagnosis) -> str:
+    text = "The measurements depart from the simulation, and no effect of the catalogue explains most of how."
+    nearest = diagnosis.nearest
+    if nearest is None:
+        return f"{text} Look at the residuals."
+    names = " + ".join(nearest.explanation.names)
+    skill = _skill(nearest.held_out)
+    why = f" It is not named: {'; '.join(nearest.against)}." if nearest.against else ""
+    return (
+        f"{text} Nearest comes {names}, which would take {percent(nearest.share)} of what noise leaves to"
+        f" explain{skill}.{why}"
+    )
+
+
+def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
+    """How much is left, where it lives, and whether it repeats."""
+    if left.rms == 0.0:
+        return "What remains is no more than noise."
+    size = f"{unit[1] * left.rms:.3g} {unit[0]}"
+    if left.of_full_scale is not None:
+        size += f" rms, {100.0 * left.of_full_scale:.2g} % of full scale"
+    parts = []
+    if left.place:
+        parts.append(f"most of it at {left.place}")
+    if left.records:
+        parts.append(f"more than half of it in {_few(left.records)}")
+    where = f" ({'; '.join(parts)})" if parts else ""
+    again = {
+        "everywhere": "is alike in all of them",
+        "within a material": "is alike within each material",
+        "within a specimen": "is alike within a specimen, not from one to the next",
+        "nowhere": "differs from test to test",
+        "not known": "cannot be said to repeat, since no test was done twice",
+    }[left.repeats]
+    small = " That is too little to matter in practice." if left.negligible else ""
+    return f"What remains, {size}{where}, {again}.{small}"
+
+
+def percent(share: Interval) -> str:
+    """A share with its interval, as it is read."""
+
+    def part(x: float) -> str:
+        return f"{100.0 * min(max(x, 0.0), 1.0):.0f}"
+
+    if not (math.isfinite(share.low) and math.isfinite(share.high)):
+        return f"{part(share.value)} %"
+    return f"{part(share.value)} % [{part(share.low)}, {part(share.high)}]"
+
+
+def _skill(held_out: HeldOut | None) -> str:
+    if held_out is None or not held_out.held_out or not math.isfinite(held_out.skill):
+        return ""
+    if held_out.skill <= 0.0:
+        return ", and nothing of measurements that its fit has not seen"
+    return f", and {100.0 * min(held_out.skill, 1.0):.0f} % on measurements that its fit has not seen"
+
+
+def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:
+    parts = [
+        f"{diagnosis.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
+        for c in chosen.candidates
+    ]
+    return " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) < 4 else f"{', '.join(names[:3])} and {len(names) - 3} more"

@@ -1,0 +1,220 @@
+"""A richer law beside the baseline's, for the effect that brings it in; and where a law's fit begins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from calibration.measurements._baseline import REFERENCE, Baseline, Extra
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.stress import DRIVEN
+from calibration.parameters import Parametrisation
+from tisim.laws import evaluate
+
+Array = NDArray[np.float64]
+
+WIDE = 0.25  # sd of a constant, as a part of its search range: it keeps a constant that nothing shows
+DRAWS = 60  # of constants, times their number, before the search
+SPREAD = 1.5  # sd of draws of a logarithm
+STARTS, MOST_STEPS = 3, 40  # local searches, and their steps
+_BAD = 1e6  # whitened residual of a point without an answer
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RicherLaw:
+    """A law whose constants are coordinates of a fit, of each material its own.
+
+    Attributes
+    ----------
+    law : in search coordinates.
+    centres : of each material all coordinates of the law, its first modulus REFERENCE, where a search begins.
+    """
+
+    law: Parametrisation
+    centres: Mapping[str, Array]
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """Coordinates other than the modulus and K/G, by index."""
+        return tuple(k for k, c in enumerate(self.law.coordinates) if k > 0 and c.name != "bulk_ratio")
+
+    @cached_property
+    def materials(self) -> tuple[str, ...]:
+        return tuple(self.centres)
+
+    def extras(self) -> list[Extra]:
+        """The constants as further coordinates of a baseline, held together by wide priors."""
+        bounds = self.law.bounds
+        return [
+            Extra(
+                name=f"{m} {self.law.label} {self.law.coordinates[k].name}",
+                sd=float(WIDE * np.ptp(bounds[k])),
+                centre=float(own[k]),
+            )
+            for m, own in self.centres.items()
+            for k in self.free
+        ]
+
+    def of(self, material: str, extras: Array) -> Array:
+        """All coordinates of a material's law, from those of `extras`, shape (n,)."""
+        first = self.first(material)
+        found = self.centres[material].copy()
+        low, high = self.law.bounds[list(self.free)].T
+        found[list(self.free)] = np.clip(extras[first : first + len(self.free)], low, high)
+        return found
+
+    def first(self, material: str) -> int:
+        """Where a material's constants begin among the extras."""
+        return self.materials.index(material) * len(self.free)
+
+
+def law_start(law: Parametrisation, records: Sequence[Record]) -> tuple[dict[str, float], Array] | None:
+    """The law that fits the records of a material best: shear modulus of each specimen [Pa], and coordinates
+    of the law, its first modulus REFERENCE. None where it has no answer.
+
+    At constant volume, where a stress takes one evaluation; moduli of specimens are linear and solved for.
+    Constants are drawn over their range, and the best draws descend.
+    """
+    curves = _Curves.of(law, records)
+    base = law.start(shear=REFERENCE)
+    moduli = [k for k, c in enumerate(law.coordinates) if c.start is None]
+    base[moduli] += np.log(REFERENCE) - base[0]
+    free = [k for k, c in enumerate(law.coordinates) if k > 0 and c.name != "bulk_ratio"]
+
+    def full(x: Array) -> Array:
+        u = base.copy()
+        u[free] = x
+        return u
+
+    def residuals(x: Array) -> Array:
+        return curves.residuals(full(x))
+
+    low, high = law.bounds[free].T if free else (np.zeros(0), np.zeros(0))
+    rng = np.random.default_rng(0)
+    logs = np.array([law.coordinates[k].log for k in free], dtype=bool)
+    drawn = [np.clip(base[free], low, high)]
+    for _ in range(DRAWS * len(free)):
+        x = np.where(logs, rng.normal(base[free], SPREAD), rng.uniform(low, high))
+        drawn.append(np.clip(x, low, high))
+    costs = np.array([_cost(residuals(x)) for x in drawn])
+    best = drawn[int(np.argmin(costs))]
+    least = float(costs.min())
+    for k in np.argsort(costs)[:STARTS] if free else []:
+        if not np.isfinite(costs[k]):
+            break
+        inside = 1e-6 * (high - low)
+        start = np.clip(drawn[k], low + inside, high - inside)
+        found = least_squares(
+            lambda x: np.nan_to_num(residuals(x), nan=_BAD), start, bounds=(low, high), max_nfev=MOST_STEPS
+        )
+        if 2.0 * found.cost < least:
+            best, least = found.x, 2.0 * found.cost
+    if not np.isfinite(least):
+        return None
+    u = full(best)
+    scale = law.moduli(u).shear_modulus
+    return {s: scale * x for s, x in curves.scales(u).items()}, u
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Curves:
+    """Measured curves of a material, whitened, beside those of a law at constant volume.
+
+    Attributes
+    ----------
+    F : deformation gradients of all points, shape (n, 3, 3).
+    free, driven : of each point the free principal stretch, and the driven one; 1 in simple shear.
+    sheared : points in simple shear, shape (n,).
+    stress, sd : measured [Pa], shape (n,).
+    owners : of each specimen the points that are its own.
+    """
+
+    law: Parametrisation
+    F: Array
+    free: Array
+    driven: Array
+    sheared: NDArray[np.bool_]
+    stress: Array
+    sd: Array
+    owners: Mapping[str, NDArray[np.bool_]]
+
+    @classmethod
+    def of(cls, law: Parametrisation, records: Sequence[Record]) -> _Curves:
+        sizes = [r.points for r in records]
+        s = np.concatenate([r.stretch for r in records])
+        sheared = np.repeat([r.mode == "simple-shear" for r in records], sizes)
+        directions = np.array([DRIVEN.get(r.mode, (0.0, 0.0, 0.0)) for r in records])
+        stretches = np.exp(np.log(np.where(sheared, 1.0, s))[:, None] * np.repeat(directions, sizes, axis=0))
+        F = np.zeros((s.size, 3, 3))
+        axis = np.arange(3)
+        F[:, axis, axis] = stretches
+        F[sheared, 0, 2] = s[sheared] - 1.0
+        specimens = np.repeat([r.specimen for r in records], sizes)
+        return cls(
+            law=law,
+            F=F,
+            free=stretches[:, 2],
+            driven=stretches[:, 0],
+            sheared=sheared,
+            stress=np.concatenate([r.stress for r in records]),
+            sd=np.concatenate([r.sd for r in records]),
+            owners={n: specimens == n for n in dict.fromkeys(r.specimen for r in records)},
+        )
+
+    def scales(self, u: Array) -> dict[str, float]:
+        """Of each specimen, the factor on the law's stress that fits it best."""
+        own = self._own(u)
+        found = {}
+        for name, mine in self.owners.items():
+            q = own[mine] / self.sd[mine]
+            found[name] = float(q @ (self.stress[mine] / self.sd[mine]) / (q @ q))
+        return found
+
+    def residuals(self, u: Array) -> Array:
+        """Whitened, shape (n,); NaN where the law has no stress, or would need a negative modulus."""
+        with np.errstate(all="ignore"):
+            try:
+                own, scales = self._own(u), self.scales(u)
+            except ValueError:  # outside the law's domain
+                return np.full(self.stress.size, np.nan)
+            factor = np.zeros(self.stress.size)
+            for name, mine in self.owners.items():
+                factor[mine] = scales[name] if scales[name] > 0.0 else np.nan
+            return np.asarray((factor * own - self.stress) / self.sd)
+
+    def _own(self, u: Array) -> Array:
+        """Nominal stress of the law [Pa], the free side without traction."""
+        material = self.law.material(u)
+        P = evaluate(material.law, material.parameters, self.F)[1]
+        pulled = P[:, 0, 0] - P[:, 2, 2] * self.free / self.driven
+        return np.asarray(np.where(self.sheared, P[:, 0, 2], pulled))
+
+
+def _cost(z: Array) -> float:
+    total = float(z @ z)
+    return total if np.isfinite(total) else np.inf
+
+
+def start_of(baseline: Baseline, records: Sequence[Record]) -> Array:
+    """Coordinates u of a baseline that fit best, of each material by itself. ValueError where the law has no
+    answer."""
+    moduli: dict[str, float] = {}
+    laws: dict[str, Array] = {}
+    for m in baseline.materials:
+        found = law_start(baseline.law, [r for r in records if r.material == m])
+        if found is None:
+            raise ValueError(f"{baseline.law.label}: no stress at the stretches of {m}")
+        moduli |= found[0]
+        laws[m] = found[1]
+    return np.concatenate(
+        [
+            [np.log(moduli[s]) for s in baseline.specimens],
+            *(laws[m][list(baseline.free)] for m in baseline.materials),
+            [e.centre for e in baseline.extras],
+        ]
+    )

@@ -1,0 +1,275 @@
+"""Material cards as models: a law and its parts, with the uncertainty that the card states.
+
+`factory.materials` reads cards for datasets, in full; a prediction needs the law, the parts and how well they
+are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from calibration.errors import InputError
+from calibration.parameters import Parametrisation, PartCoordinates, ProtocolWindow
+from calibration.parameters._coordinates import Coordinate, Parameters, shear_modulus
+from calibration.prediction._interval import WIDTH
+from calibration.study.cards import PART_UNITS
+from tisim import laws, parts
+from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony
+
+Array = NDArray[np.float64]
+
+BASE = "neo-hookean"  # the law of cards that name none
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+FIELDS: dict[str, Any] = {
+    "viscosity": parts.Viscosity,
+    "softening": parts.Softening,
+    "fibres": parts.Fibres,
+}
+OPTIONS = {"viscosity": "time", "softening": "damage", "fibres": "fibres"}  # of a fit, by field
+# what a relative change of an effect's amplitude changes of its part, and whether it grows with it
+SCALED: dict[type[Part], tuple[str, int]] = {
+    Prony: ("fractions", 1),
+    OgdenRoxburgh: ("r", -1),
+    HolzapfelGasserOgden: ("k1", 1),
+}
+
+
+class _Lenient(BaseModel):
+    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
+
+
+class _Amplitude(_Lenient):
+    value: float
+    sd: NotNegative
+
+
+class _Effect(_Lenient):
+    effect: str
+    parameters: dict[str, _Amplitude]
+    applies_to: Literal["material", "shape"] = "material"
+    scope: str = "all"
+    becomes: Literal["viscosity", "softening", "fibres", "law"] | None = None
+
+
+class _Uncertainty(_Lenient):
+    shear_modulus_high: NotNegative | None = None
+
+
+class _Baseline(_Lenient):
+    law: str
+    shear_modulus: Positive
+    shear_modulus_sd: NotNegative
+    bulk_modulus: Positive
+    model_error: NotNegative = 0.0
+
+
+class CardFile(BaseModel):
+    """A material card; keys that a prediction does not need are known, and not looked at."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    material: str
+    mixture: Any = None
+    derived: Any = None
+    provenance: Any = None
+    stiffness: Any = None
+    uncertainty: _Uncertainty = Field(default_factory=_Uncertainty)
+    density: Positive = 1000.0
+    law: str | None = None
+    laws: dict[str, dict[str, float | tuple[float, ...]]]
+    model_error: NotNegative | None = None
+    baseline: _Baseline | None = None
+    effects: tuple[_Effect, ...] = ()
+    viscosity: dict[str, Any] | None = None
+    softening: dict[str, Any] | None = None
+    fibres: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CardModel:
+    """A material as a card has it.
+
+    Attributes
+    ----------
+    law : in search coordinates: its shear modulus, and the relative size of each part whose sd is known.
+    u : the card's point.
+    covariance : of u.
+    model_error : relative, of the modulus.
+    notes : what the card does not state, a sentence each.
+    """
+
+    label: str
+    law: Parametrisation
+    u: Array
+    covariance: Array
+    model_error: float
+    notes: tuple[str, ...] = ()
+
+
+def read_cards(path: Path) -> dict[str, CardFile]:
+    """Cards of a folder (or one file) by material; YAML files that are no cards do not count.
+
+    InputError, in one sentence, for a card that cannot be used, or where there is none.
+    """
+    if not path.exists():
+        raise InputError(f"{path}: expected a folder of material cards, or a card")
+    files = [path] if path.is_file() else sorted(path.glob("*.yaml"))
+    found: dict[str, CardFile] = {}
+    for file in files:
+        try:
+            content = yaml.safe_load(file.read_text(encoding="utf-8"))
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise InputError(f"{file}: expected YAML: {' '.join(str(error).split())}") from None
+        if not (isinstance(content, dict) and {"material", "laws"} <= set(content)):
+            continue
+        try:
+            card = CardFile.model_validate(content)
+        except ValidationError as error:
+            first = error.errors()[0]
+            key = ".".join(str(x) for x in first["loc"])
+            raise InputError(f"{file}: key {key}: {first['msg']}") from None
+        found[card.material] = card
+        try:
+            extended_model(card)
+        except ValueError as error:
+            raise InputError(f"{file}: {' '.join(str(error).split())}") from None
+    if not found:
+        raise InputError(f"{path}: expected a material card (keys material and laws)")
+    return found
+
+
+def extended_model(card: CardFile) -> CardModel:
+    """The card's material with its parts. ValueError for a law or a part that is none."""
+    name = card.law or BASE
+    if name not in card.laws:
+        raise ValueError(f"key law: expected one of {', '.join(card.laws)}, got {name}")
+    parameters: Parameters = dict(card.laws[name])
+    laws.get(name).check(parameters)
+    notes = []
+    high = card.uncertainty.shear_modulus_high
+    if high is None:
+        notes.append(f"the card of {card.material} does not state how well its modulus is known")
+    if card.model_error is None:
+        notes.append(f"the card of {card.material} states no model error")
+    left_out = [e.effect for e in card.effects if not e.becomes]
+    if left_out:
+        notes.append(
+            f"not predicted with, since the card of {card.material} has no part for it: {', '.join(left_out)}"
+        )
+    sds = [(high or 0.0) / WIDTH]
+    law = scaled_law(name, parameters)
+    own = []
+    for field in FIELDS:
+        entry = getattr(card, field)
+        if entry is None:
+            continue
+        known = _relative_sd(card, field)
+        own.append(part_coordinates(field, part_of(field, entry), free=known is not None))
+        sds += [] if known is None else [known]
+    law = law.with_parts(own) if own else law
+    labels = [e.effect for e in card.effects if e.becomes]
+    return CardModel(
+        label=" + ".join(labels) or law.label.replace("+", " + "),
+        law=law,
+        u=np.array([np.log(laws.get(name).moduli(parameters).shear_modulus), *np.zeros(len(sds) - 1)]),
+        covariance=np.diag(np.square(sds)),
+        model_error=card.model_error or 0.0,
+        notes=tuple(notes),
+    )
+
+
+def baseline_model(card: CardFile) -> CardModel | None:
+    """The material without what a diagnosis found; None for a card that does not state it."""
+    b = card.baseline
+    if b is None:
+        return None
+    return CardModel(
+        label="baseline",
+        law=scaled_law(b.law, laws.get(b.law).from_moduli(b.shear_modulus, b.bulk_modulus)),
+        u=np.array([np.log(b.shear_modulus)]),
+        covariance=np.array([[(b.shear_modulus_sd / b.shear_modulus) ** 2]]),
+        model_error=b.model_error,
+    )
+
+
+def scaled_law(name: str, parameters: Parameters) -> Parametrisation:
+    """A law whose moduli are one multiple of those given; what has no unit (an exponent) stays."""
+    law = laws.get(name)
+    reference = law.moduli(parameters).shear_modulus
+    stiff = [n for n, (unit, _) in law.parameters.items() if unit == "Pa"]
+
+    def assemble(v: dict[str, float]) -> Parameters:
+        factor = v["shear_modulus"] / reference
+        return {n: _times(x, factor) if n in stiff else x for n, x in parameters.items()}
+
+    return Parametrisation(law=name, label=name, coordinates=(shear_modulus(),), assemble=assemble)
+
+
+def part_coordinates(field: str, part: Part, *, free: bool) -> PartCoordinates:
+    """A part as it is; free : with its relative size as a coordinate."""
+    name = f"{field}_scale"
+    scaled = SCALED.get(type(part)) if free else None
+    coordinate = Coordinate(name=name, unit="-", log=True, low=0.05, high=20.0, spread=0.1, start=1.0)
+
+    def assemble(values: dict[str, float]) -> Part:
+        if scaled is None:
+            return part
+        key, power = scaled
+        value = _times(getattr(part, key), values[name] ** power)
+        if key == "r":
+            value = max(float(value), 1.0)  # type: ignore[arg-type]
+        return replace(part, **{key: value})
+
+    return PartCoordinates(
+        spec=part.name,
+        label=part.name,
+        field=field,
+        window=ProtocolWindow(first=0.0, last=0.0, peaks=0),
+        coordinates=(coordinate,) if free else (),
+        assemble=assemble,
+        describe=lambda *_: [],
+    )
+
+
+def part_of(field: str, entry: dict[str, Any]) -> Part:
+    """A part as a card states it, with or without units behind its keys. ValueError for one that is none."""
+    kinds = [n for n in parts.names() if issubclass(parts.get(n), FIELDS[field])]
+    if entry.get("kind") not in kinds:
+        raise ValueError(f"key {field}.kind: expected one of {', '.join(kinds)}, got {entry.get('kind')!r}")
+    kind = parts.get(entry["kind"])
+    known = {f.name for f in fields(kind) if f.init}
+    values: dict[str, Any] = {}
+    for key, value in entry.items():
+        if key == "kind":
+            continue
+        name = next((n for n in known if key == n or key in {f"{n}_{unit}" for unit in PART_UNITS}), None)
+        if name is None:
+            raise ValueError(f"key {field}.{key}: expected {', '.join(sorted(known))}")
+        values[name] = tuple(value) if isinstance(value, list) else value
+    try:
+        found = kind(**values)
+        found.check()
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"key {field}: {error}") from None
+    return found
+
+
+def _relative_sd(card: CardFile, field: str) -> float | None:
+    """Of a part's size, from the effect that it was."""
+    for e in card.effects:
+        if e.becomes == field:
+            amplitude = next(iter(e.parameters.values()))
+            return abs(amplitude.sd / amplitude.value) if amplitude.value else None
+    return None
+
+
+def _times(x: float | tuple[float, ...], factor: float) -> float | tuple[float, ...]:
+    return tuple(v * factor for v in x) if isinstance(x, tuple) else x * factor

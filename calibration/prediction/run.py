@@ -1,0 +1,256 @@
+"""A prediction, and how cards make one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.errors import InputError
+from calibration.experiment.model import Experiment
+from calibration.measurements._baseline import SCATTER, Baseline
+from calibration.measurements._kinds import Kind, compared
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._state import State
+from calibration.prediction._cards import (
+    OPTIONS,
+    CardFile,
+    CardModel,
+    baseline_model,
+    extended_model,
+    read_cards,
+)
+from calibration.prediction._interval import WIDTH, Calibrated, Record, predict_records
+
+Array = NDArray[np.float64]
+Say = Callable[[str], None]
+
+Name = Literal["baseline", "extended"]
+BASELINE: Final = "baseline"
+EXTENDED: Final = "extended"
+NAMES: tuple[Name, ...] = (BASELINE, EXTENDED)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Prediction:
+    """Measured against predicted for trials that no model was fitted to.
+
+    Attributes
+    ----------
+    experiment : whose trials were predicted.
+    source : what predicts, for people ("cards in DIR", "a fit to a, b").
+    labels : of the models that predict, by name: baseline and extended, or one of them.
+    model_errors : relative, by model and material.
+    shear_moduli : [Pa], by model and material.
+    records : measured and predicted.
+    notes : what a reader must know, a sentence each.
+    seconds : that it took.
+    """
+
+    experiment: Experiment
+    source: str
+    labels: Mapping[Name, str]
+    model_errors: Mapping[str, Mapping[str, float]]
+    shear_moduli: Mapping[str, Mapping[str, float]]
+    records: Sequence[Record]
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+    @property
+    def models(self) -> tuple[Name, ...]:
+        return tuple(self.labels)
+
+    def of_kind(self) -> dict[str, list[Record]]:
+        """Records by kind of measurement: units differ between kinds."""
+        found: dict[str, list[Record]] = {}
+        for r in self.records:
+            found.setdefault(r.kind, []).append(r)
+        return found
+
+    def rms(self, records: Sequence[Record], model: str) -> float:
+        """Of predicted less measured over the records' points [SI]."""
+        return _rms(np.concatenate([r.error(model) for r in records]))
+
+    def noise(self, records: Sequence[Record]) -> float:
+        """What `rms` would be of noise alone [SI]."""
+        return _rms(np.concatenate([r.sd(self.models[-1], "noise") for r in records]))
+
+    def skill(self, records: Sequence[Record]) -> float | None:
+        """(rms_base^2 - rms_ext^2) / (rms_base^2 - rms_noise^2): the fraction of what the baseline gets wrong
+        beyond noise that the extension takes away. None without both, or where there is nothing to take."""
+        if set(self.models) != {BASELINE, EXTENDED}:
+            return None
+        base, ext = self.rms(records, BASELINE), self.rms(records, EXTENDED)
+        explainable = base**2 - self.noise(records) ** 2
+        return (base**2 - ext**2) / explainable if explainable > 0.0 else None
+
+    def coverage(self, records: Sequence[Record], model: str) -> float:
+        """Fraction of the points that lie within their 95 % intervals."""
+        inside = [np.abs(r.error(model)) <= WIDTH * r.sd(model) for r in records]
+        return float(np.mean(np.concatenate(inside)))
+
+    def sentence(self) -> str:
+        """What came out, for people: of each kind of measurement."""
+        said = []
+        for kind, mine in self.of_kind().items():
+            unit, per_si = mine[0].shown.unit
+            trials = len({r.trial for r in mine})
+            each = ", ".join(
+                f"{m}{_named(m, self.labels[m])} {per_si * self.rms(mine, m):.3g} {unit}" for m in self.models
+            )
+            text = (
+                f"{trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, rms of predicted"
+                f" less measured: {each}, noise alone {per_si * self.noise(mine):.3g} {unit}"
+            )
+            skill = self.skill(mine)
+            text += "" if skill is None else f"; skill {skill:.2f}"
+            inside = self.coverage(mine, self.models[-1])
+            said.append(f"{text}; {inside:.0%} of the points within the 95 % intervals.")
+        return " ".join(said)
+
+
+def _named(model: str, label: str) -> str:
+    return "" if label == model else f" ({label})"
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2)))
+
+
+def from_cards(
+    cards: Path,
+    experiment: Experiment,
+    *,
+    baseline: Path | None = None,
+    domain: str | None = None,
+    specimen_scatter: float | None = None,
+    workers: int | None = None,
+    source: str = "",
+    say: Say = lambda _: None,
+) -> Prediction:
+    """All trials of an experiment whose material has a card, predicted from the cards.
+
+    Parameters
+    ----------
+    cards : folder of cards, or one.
+    baseline : cards that stand beside them in place of the baseline that they state.
+    domain : the kind of measurement, where not all are wanted.
+    specimen_scatter : sd of ln G of a specimen that is named; that of a careful lab where left out.
+    source : what predicts, for people.
+
+    Raises
+    ------
+    InputError : a card, or a trial, cannot be used.
+    """
+    begun = time.monotonic()
+    known = read_cards(cards)
+    yardstick = read_cards(baseline) if baseline is not None else {}
+    scatter = SCATTER if specimen_scatter is None else specimen_scatter
+    wanted = [m for m in dict.fromkeys(t.material for t in experiment.trials) if m in known]
+    if not wanted:
+        used = ", ".join(dict.fromkeys(t.material for t in experiment.trials))
+        raise InputError(f"{cards}: expected a card of {used}, found {', '.join(known)}")
+    notes = [
+        f"no card of {m}: its trials are not predicted"
+        for m in dict.fromkeys(t.material for t in experiment.trials)
+        if m not in known
+    ]
+    records: list[Record] = []
+    labels: dict[Name, str] = {}
+    errors: dict[str, dict[str, float]] = {}
+    moduli: dict[str, dict[str, float]] = {}
+    for material in wanted:
+        models = _of_card(known[material], yardstick.get(material))
+        for name, m in models.items():
+            old = labels.get(name, m.label)
+            labels[name] = m.label if old in (m.label, BASELINE) else f"{old}, {m.label}"
+            errors.setdefault(name, {})[material] = m.model_error
+            moduli.setdefault(name, {})[material] = m.law.moduli(m.u).shear_modulus
+            notes += m.notes
+        mine = replace(experiment, trials=tuple(t for t in experiment.trials if t.material == material))
+        for kind, own in compared(mine):
+            if domain not in (None, kind.name, kind.old_name):
+                continue
+            say(f"predicting {kind.name} of {material}")
+            records += _by_cards(kind, own, models, scatter, workers)
+    if not records:
+        raise InputError(
+            f"{experiment.folder / 'experiment.yaml'}: trials: expected some that can be compared"
+            + ("" if domain is None else f" as {domain}")
+        )
+    if len({frozenset(r.predicted) for r in records}) > 1:
+        raise InputError(f"{cards}: expected a baseline in all cards, or in none")
+    return Prediction(
+        experiment=experiment,
+        source=source or f"cards in {cards}",
+        labels={n: labels[n] for n in NAMES if n in labels},
+        model_errors=errors,
+        shear_moduli=moduli,
+        records=records,
+        notes=tuple(dict.fromkeys(notes)),
+        seconds=time.monotonic() - begun,
+    )
+
+
+def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[Name, CardModel]:
+    """The models that a card has; a card without effects and parts is its own baseline."""
+    extended = extended_model(card)
+    base = baseline_model(card) if yardstick is None else replace(extended_model(yardstick), label=BASELINE)
+    if base is None:
+        return {EXTENDED: extended}
+    plain = yardstick is None and not card.effects and not extended.law.parts
+    return {BASELINE: base} if plain else {BASELINE: base, EXTENDED: extended}
+
+
+def _by_cards(
+    kind: Kind,
+    own: Experiment,
+    models: Mapping[Name, CardModel],
+    scatter: float,
+    workers: int | None,
+) -> list[Record]:
+    made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
+    options: dict[str, Any] = {"workers": workers} if "workers" in kind.takes else {}
+    try:
+        for name, m in models.items():
+            _check_parts(kind, own, m)
+            model = kind.load()(own, baseline=Baseline.of_law(own.trials, m.law), **options)
+            made[name] = (model, _from_card(model, m, scatter))
+        test = next(iter(made.values()))[0]
+        return predict_records(test, made)
+    except ValueError as error:
+        ids = ", ".join(t.id for t in own.trials)
+        raise InputError(f"trials {ids}: the cards predict nothing of them: {error}") from error
+
+
+def _from_card(model: MeasurementModel, card: CardModel, scatter: float) -> Calibrated:
+    """Coordinates of the measurement model beside the card's have their prior."""
+    extras = model.baseline.extras
+    size = len(model.names)
+    law = slice(0, size - len(extras))
+    covariance = np.zeros((size, size))
+    covariance[law, law] = card.covariance
+    covariance[range(law.stop, size), range(law.stop, size)] = [e.sd**2 for e in extras]
+    return Calibrated(
+        label=card.label,
+        state=State(u=np.concatenate([card.u, [e.centre for e in extras]])),
+        parameters=covariance,
+        specimens=np.zeros_like(covariance),
+        model_error=card.model_error,
+        unseen_scatter=scatter,
+    )
+
+
+def _check_parts(kind: Kind, own: Experiment, card: CardModel) -> None:
+    """InputError where a kind of measurement does not follow what a material has beside its law."""
+    follows = None if kind.over_time is None else kind.over_time()
+    for part in card.law.parts:
+        option = OPTIONS[part.field]
+        if follows is None or option not in follows.options:
+            why = "which do not follow it yet" if follows is None else follows.why_not
+            raise InputError(f"trial {own.trials[0].id}: {part.field}: expected no {kind.name}, {why}")

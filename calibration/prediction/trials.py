@@ -1,0 +1,274 @@
+"""A prediction of some trials of an experiment from a fit to others."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis._card_numbers import model_error
+from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.errors import InputError, OptionError
+from calibration.experiment.model import Experiment, Trial
+from calibration.measurements._effect import Candidate
+from calibration.measurements._kinds import Kind, kind_of
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._state import State
+from calibration.prediction._interval import Calibrated, all_moduli, of_unseen, predict_records
+from calibration.prediction.run import BASELINE, EXTENDED, Name, Prediction, Say, from_cards
+
+Rows = NDArray[np.bool_]
+Make = Callable[..., MeasurementModel]
+
+
+def from_trials(
+    experiment: Experiment,
+    fitted: Sequence[Trial],
+    wanted: Sequence[Trial],
+    *,
+    domain: str | None = None,
+    law: str = "auto",
+    extend: Sequence[str] = (),
+    seed: int = 0,
+    workers: int | None = None,
+    say: Say = lambda _: None,
+) -> Prediction:
+    """Trials of an experiment, predicted from a diagnosis of others: its baseline, and the causes that it
+    names. Trials of another kind of measurement are predicted from the cards that it would write.
+
+    Parameters
+    ----------
+    fitted, wanted : its trials to fit, and those to predict.
+    domain : the kind of measurement of the fit, where it is not plain.
+    law : of the diagnosis' baseline, as `calibration.diagnose` takes it.
+    extend : effects of the extension, in place of a search for them.
+
+    Raises
+    ------
+    InputError : trials cannot be fitted or predicted.
+    """
+    begun = time.monotonic()
+    ours = replace(experiment, trials=tuple(fitted))
+    theirs = replace(experiment, trials=tuple(wanted))
+    kind = kind_of(ours, domain)
+    source = f"a fit to {', '.join(t.id for t in fitted)}"
+    for t in wanted:
+        if t.material not in {f.material for f in fitted}:
+            raise InputError(f"trial {t.id}: material {t.material}: expected one of the trials to fit")
+    if _same_kind(kind, theirs):
+        found = _within(
+            kind, experiment, fitted, wanted, law=law, extend=extend, seed=seed, workers=workers, say=say
+        )
+        return replace(found, source=source, seconds=time.monotonic() - begun)
+    if extend:
+        raise OptionError("extend", ", ".join(extend), "expected trials of one kind of measurement")
+    from calibration.api import diagnose
+    from calibration.diagnosis.card import write_cards
+
+    result = diagnose(
+        ours,
+        domain=kind.name,
+        law=law,
+        gain=False,
+        seed=seed,
+        workers=workers,
+        on_progress=lambda p: say(str(p)),
+    )
+    with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
+        write_cards(Path(folder), result.diagnosis, ours)
+        found = from_cards(Path(folder), theirs, workers=workers, source=source, say=say)
+    notes = (result.sentence, *found.notes)
+    return replace(found, notes=notes, seconds=time.monotonic() - begun)
+
+
+def _same_kind(kind: Kind, wanted: Experiment) -> bool:
+    try:
+        return kind_of(wanted, kind.name) is kind
+    except InputError:
+        return False
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Fitted:
+    """Fits to the trials that are fitted, by name; the model's options; what was found, for people."""
+
+    model: MeasurementModel
+    options: dict[str, Any]
+    fits: dict[Name, Fit]
+    sentence: str
+
+
+def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
+    """By a diagnosis."""
+    from calibration.diagnosis import Rules
+    from calibration.diagnosis.laws import diagnose_with_law
+
+    asked: dict[int, dict[str, Any]] = {}
+
+    def noted(**options: Any) -> MeasurementModel:
+        made = make(**options)
+        asked[id(made)] = options
+        return made
+
+    found, model = diagnose_with_law(noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=say)
+    fits: dict[Name, Fit] = {BASELINE: found.finding.baseline}
+    if found.chosen is not None:
+        fits[EXTENDED] = found.chosen.fit
+    return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence())
+
+
+def _stated(make: Make, *, law: str, effects: Sequence[str], say: Say) -> _Fitted:
+    """With the effects that are asked for, each in all trials that can have it, in its best variant."""
+    from calibration.diagnosis.catalogue import true_name
+    from calibration.diagnosis.laws import AUTO, law_of
+
+    options: dict[str, Any] = {} if law == AUTO else dict(zip(("law", "terms"), law_of(law), strict=True))
+    model = make(**options)
+    say("fitting the baseline")
+    start = State(u=model.start())
+    model.update_nuisances(start)
+    base = best = fit(model, start)
+    for name in (true_name(model.kind, n) for n in effects):
+        say(f"fitting {name}")
+        forms = [
+            c for c in model.candidates if c.effect == name and c.at == "all" and model.visible.get(c, True)
+        ]
+        tried = [f for c in forms if (f := _with(model, best, c)) is not None]
+        if not tried:
+            known = ", ".join(dict.fromkeys(c.effect for c in model.candidates if c.at == "all"))
+            raise OptionError("extend", name, f"expected effects that these trials can show, of {known}")
+        best = min(tried, key=lambda f: f.chi2)
+    return _Fitted(
+        model=model,
+        options=options,
+        fits={BASELINE: base, EXTENDED: best},
+        sentence=f"The extension was asked for, not found: {best.label}.",
+    )
+
+
+STARTS = (0.0, 0.03, 0.3)  # of the way to a bound: a fit may end in the wrong valley from one of them
+
+
+def _with(model: MeasurementModel, before: Fit, candidate: Candidate) -> Fit | None:
+    """The best fit with one effect more; None where it has no answer."""
+    tried = []
+    for amplitude in dict.fromkeys(
+        part * end for end in model.effects[candidate.effect].bounds for part in STARTS
+    ):
+        start = replace(before.state, amplitudes={**before.state.amplitudes, candidate: amplitude})
+        try:
+            tried.append(fit(model, start, (*before.candidates, candidate)))
+        except ValueError:
+            continue
+    return min(tried, key=lambda f: f.chi2, default=None)
+
+
+def _within(
+    kind: Kind,
+    experiment: Experiment,
+    fitted: Sequence[Trial],
+    wanted: Sequence[Trial],
+    *,
+    law: str,
+    extend: Sequence[str],
+    seed: int,
+    workers: int | None,
+    say: Say,
+) -> Prediction:
+    """The diagnosis' model once more, of all these trials, of which a part is fitted: coordinates and effects
+    are the same."""
+    from calibration.diagnosis import model_of
+
+    def make(**options: Any) -> MeasurementModel:
+        own = replace(experiment, trials=tuple(fitted))
+        return model_of(own, kind=kind.name, workers=workers, **options)
+
+    ids = {t.id for t in wanted}
+    some = ids | {t.id for t in fitted}
+    together = replace(experiment, trials=tuple(t for t in experiment.trials if t.id in some))
+    notes = []
+    try:
+        if extend:
+            found = _stated(make, law=law, effects=extend, say=say)
+        else:
+            found = _searched(make, law=law, seed=seed, say=say)
+        model = model_of(together, kind=kind.name, workers=workers, **found.options)
+        fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
+        train = model.subset(fold, others=True)
+        say("predicting")
+        made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
+        for name, old in found.fits.items():
+            known = dict(zip(found.model.names, old.state.u, strict=True))
+            u = np.array([known.get(n, x) for n, x in zip(model.names, model.start(), strict=True)])
+            start = replace(old.state, u=u)
+            train.update_nuisances(start)
+            again = fit(train, start, old.candidates)
+            if not again.converged:
+                notes.append(f"the fit of the {name} did not converge: {again.message}")
+            made[name] = (model.subset(fold, others=False), _calibrated(model, fold, again, name))
+        records = predict_records(model.subset(fold, others=False), made)
+    except ValueError as error:
+        raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error
+    materials = model.baseline.materials
+    return Prediction(
+        experiment=replace(experiment, trials=tuple(wanted)),
+        source="",
+        labels={name: known.label for name, (_, known) in made.items()},
+        model_errors={n: dict.fromkeys(materials, known.model_error) for n, (_, known) in made.items()},
+        shear_moduli={n: model.shear_moduli(known.state.u) for n, (_, known) in made.items()},
+        records=records,
+        notes=(found.sentence, *notes, *_extrapolations(model, fold)),
+    )
+
+
+BEYOND = 0.02  # of a range that was fitted: a prediction further outside is said
+
+
+def _extrapolations(model: MeasurementModel, fold: Rows) -> list[str]:
+    """In what the predicted records are unlike those that were fitted, a sentence each: there the model's
+    error may be larger than the fit shows."""
+    ahead = set(np.unique(model.row_record[fold]).tolist())
+    wanted = [r for k, r in enumerate(model.records) if k in ahead]
+    fitted = [r for k, r in enumerate(model.records) if k not in ahead]
+    found: dict[str, None] = {}
+    for r in wanted:
+        for level, label in r.groups.items():
+            if level in ("material", "specimen", "trial"):
+                continue
+            if label not in {f.groups.get(level) for f in fitted}:
+                found[f"{level} {label}"] = None
+    for name in dict.fromkeys(n for r in wanted for n in r.ranges):
+        seen = [x for f in fitted for x in f.ranges.get(name, ())]
+        here = [x for r in wanted for x in r.ranges.get(name, ())]
+        slack = BEYOND * (max(seen) - min(seen)) if seen else 0.0
+        if not seen or min(here) < min(seen) - slack or max(here) > max(seen) + slack:
+            found[f"{name} {min(here):.3g} to {max(here):.3g}"] = None
+    if not found:
+        return []
+    return [
+        f"not among the trials that were fitted: {', '.join(found)}; there the model's error may be larger"
+        " than the intervals know"
+    ]
+
+
+def _calibrated(model: MeasurementModel, fold: Rows, found: Fit, name: str) -> Calibrated:
+    """What a fit to all rows but a fold's knows. Where it leaves more than noise, its covariance is wider by
+    the reduced chi-square; what specimens of a material may differ by is not."""
+    jacobian = found.jacobian
+    specimens = of_unseen(model, fold, jacobian)
+    used = int(np.count_nonzero(np.linalg.norm(jacobian, axis=0)))
+    reduced = found.chi2 / max(len(found.z) - used, 1)
+    return Calibrated(
+        label=found.label if found.candidates else name,
+        state=found.state,
+        candidates=found.candidates,
+        parameters=(found.covariance() - specimens) * max(reduced, 1.0),
+        specimens=specimens,
+        model_error=model_error(found, all_moduli(model, found.state.u)),
+    )

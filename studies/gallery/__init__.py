@@ -1,0 +1,1 @@
+"""Real measurements, diagnosed: one table."""

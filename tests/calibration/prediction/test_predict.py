@@ -1,0 +1,190 @@
+"""`calibration.predict`: cards against records they were not fitted to, and some trials against others."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from _folders import coupon_entry, write_experiment
+from typer.testing import CliRunner
+
+import calibration
+from benchmarks.blind.timed.coupons import respond
+from benchmarks.blind.timed.course import Course
+from benchmarks.blind.timed.material import Prony, Solid
+from calibration.errors import InputError
+from calibration.predict import app
+from calibration.prediction._cards import extended_model, read_cards
+from calibration.prediction.schema import PredictionFile
+
+G, BULK = 3e4, 9e7
+FRACTIONS, TIMES = (0.06,) * 6, tuple(10.0 ** (k / 2) for k in range(-1, 5))
+SOLID = Solid(mu=(G,), alpha=(2.0,), prony=Prony(fractions=FRACTIONS, times=TIMES))
+NOISE = 0.005  # of the largest stress
+COURSES = {
+    "slow": Course(start=1.0, samples=25).ramp(1.3, 0.01),
+    "held": Course(start=1.0, samples=25).ramp(1.2, 0.1).hold(60.0),
+}
+
+
+def content(**more: Any) -> dict[str, Any]:
+    """A card of the truth, its baseline 20 % stiffer than in the long run."""
+    return {
+        "material": "S0",
+        "uncertainty": {"shear_modulus_high": 0.02, "shear_modulus_low": -0.02, "text": ""},
+        "density": 1000.0,
+        "law": "neo-hookean",
+        "laws": {"neo-hookean": {"mu": G, "lam": BULK}},
+        "model_error": 0.0,
+        "baseline": {
+            "law": "neo-hookean",
+            "shear_modulus": 1.2 * G,
+            "shear_modulus_sd": 300.0,
+            "bulk_modulus": BULK,
+            "model_error": 0.05,
+        },
+        "viscosity": {"kind": "prony", "fractions": list(FRACTIONS), "times_s": list(TIMES)},
+        **more,
+    }
+
+
+def card(folder: Path, **more: Any) -> Path:
+    folder.mkdir(exist_ok=True)
+    (folder / "S0.yaml").write_text(yaml.safe_dump(content(**more)), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two records of a viscous coupon, by the blind laboratory's own integration."""
+    rng = np.random.default_rng(1)
+    tables, trials = {}, []
+    for name, course in COURSES.items():
+        made = respond(SOLID, "uniaxial", course, tolerance=1e-5)
+        sd = NOISE * float(made.stress.max())
+        stress = made.stress + sd * rng.standard_normal(made.stress.size)
+        tables[f"{name}.csv"] = {
+            "time_s": made.time,
+            "stretch": made.stretch,
+            "nominal_stress_kPa": 1e-3 * stress,
+        }
+        trials.append(coupon_entry(name, f"{name}.csv", stretch_sd=0.0, stress_sd_kPa=1e-3 * sd))
+    return write_experiment(tmp_path_factory.mktemp("measured") / "viscous", trials, tables=tables)
+
+
+def test_a_card_predicts_what_it_was_not_fitted_to(measured: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, [str(card(tmp_path / "cards")), str(measured), "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    assert (out / "report.html").stat().st_size > 20_000
+    assert (out / "prediction.png").exists()
+    found = PredictionFile.model_validate_json((out / "prediction.json").read_text(encoding="utf-8"))
+    assert [r.record for r in found.records] == ["slow", "held"]
+    whole = found.kinds["homogeneous"]
+    assert whole.skill is not None
+    assert whole.skill > 0.95
+    assert whole.models["extended"].rms == pytest.approx(whole.rms_noise, rel=0.25)
+    assert whole.models["extended"].coverage > 0.9
+    assert whole.models["baseline"].rms > 3.0 * whole.rms_noise
+    # sources of the interval, in kPa: 2 % of a modulus at 95 %, noise as stated
+    sd = whole.models["extended"].sd
+    measured_rms = float(np.sqrt(np.mean(np.concatenate([r.measured for r in found.records]) ** 2)))
+    assert sd["parameters"] == pytest.approx(0.02 / 1.96 * measured_rms, rel=0.05)
+    assert (sd["specimens"], sd["model error"]) == (0.0, 0.0)
+    assert whole.models["baseline"].sd["model error"] > 4.0 * sd["parameters"]
+    curve = found.records[1].curves["extended"]
+    assert all(low < p < high for low, p, high in zip(curve.low, curve.predicted, curve.high, strict=True))
+
+
+def test_a_named_specimen_widens_the_interval(measured: Path, tmp_path: Path) -> None:
+    data = calibration.read_experiment(measured)
+    named = replace(data, trials=tuple(replace(t, specimen="piece") for t in data.trials))
+    cards = card(tmp_path / "cards")
+    found = calibration.predict(named, cards, specimen_scatter=0.1, workers=1).prediction
+    records = found.records
+    sd = np.concatenate([r.sd("extended", "specimens") for r in records])
+    stress = np.concatenate([r.predicted["extended"].value[r.used] for r in records])
+    np.testing.assert_allclose(sd, 0.1 * np.abs(stress), rtol=1e-3, atol=1e-3)
+
+
+def test_cards_scale_their_parts_by_how_well_they_are_known(tmp_path: Path) -> None:
+    effect = {
+        "effect": "relaxation",
+        "parameters": {"fraction_of_modulus": {"value": 0.2, "sd": 0.02}},
+        "becomes": "viscosity",
+    }
+    (known,) = read_cards(card(tmp_path / "cards", effects=[effect])).values()
+    model = extended_model(known)
+    assert model.label == "relaxation"
+    np.testing.assert_allclose(np.sqrt(np.diag(model.covariance)), [0.02 / 1.959964, 0.1], rtol=1e-5)
+    more = model.law.material(model.u + np.array([0.0, np.log(1.1)]))
+    assert more.viscosity is not None
+    assert more.viscosity.spectrum().strengths == pytest.approx([0.066] * 6)
+
+
+def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
+    """A fit to the hold, of the diagnosis' own models, predicts the slow ramp."""
+    found = calibration.predict(measured, calibrate="held", predict="slow", law="neo-hookean", workers=1)
+    assert [r.trial for r in found.prediction.records] == ["slow"]
+    assert found.prediction.models == ("baseline", "extended")
+    skill = found.skill["homogeneous"]
+    assert skill is not None
+    assert skill > 0.5
+    found.write(tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "prediction.json").read_text(encoding="utf-8"))
+    assert told["source"] == "a fit to held"
+    assert "relax" in told["sentence"] or "rate" in told["sentence"]
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        ({"viscosity": {"kind": "prony", "fractions": [0.3]}}, "key viscosity"),
+        ({"viscosity": {"kind": "kelvin"}}, "key viscosity.kind: expected one of prony"),
+        ({"law": "ogden"}, "key law: expected one of neo-hookean, got ogden"),
+        ({"viscosty": None}, "key viscosty: Extra inputs are not permitted"),
+        ({"material": "S9"}, "expected a card of S0, found S9"),
+    ],
+)
+def test_bad_cards_are_one_sentence(
+    more: dict[str, Any], sentence: str, measured: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        calibration.predict(measured, card(tmp_path / "cards", **more), workers=1)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ([], "expected CARDS EXPERIMENT, or EXPERIMENT with --calibrate and --predict"),
+        (["--calibrate", "held"], "--predict: expected the trials to predict, beside --calibrate"),
+        (["--calibrate", "held", "--predict", "he*"], "expected trials that are not fitted to, got held"),
+        (["--calibrate", "held", "--predict", "fast"], "fast: no trial has that id: expected some of slow,"),
+        (["--calibrate", "held", "--predict", "age=3"], "expected ids of trials, or material=..."),
+        (["--calibrate", "held", "--predict", "slow", "--law", "jelly"], "--law jelly"),
+    ],
+)
+def test_bad_options_are_one_sentence(
+    options: list[str], sentence: str, measured: Path, tmp_path: Path
+) -> None:
+    done = CliRunner().invoke(app, [str(measured), *options, "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2
+    assert sentence in done.output
+    assert len(done.output.strip().splitlines()) == 1
+
+
+def test_a_kind_that_does_not_follow_a_part_says_so(measured: Path, tmp_path: Path) -> None:
+    data = calibration.read_experiment(measured)
+    pressed = replace(data.trials[0], stretch=2.0 - data.trials[0].stretch)  # type: ignore[union-attr, call-arg]
+    fibres = {"kind": "holzapfel-gasser-ogden", "direction": [1, 0, 0], "k1_Pa": 1e3}
+    with pytest.raises(InputError, match="trial slow: fibres: expected no compression"):
+        calibration.predict(
+            replace(data, trials=(pressed,)),
+            card(tmp_path / "cards", fibres=fibres),
+            workers=1,
+        )

@@ -1,0 +1,29 @@
+"""Meat, indented and held, where it is at hand: see studies/indentation/meat.md."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from studies.indentation.meat import fit, predicted, read, rms
+
+ROOT = Path(__file__).resolve().parents[3]
+MEASURED = Path(os.environ.get("TISIM_MEASURED") or ROOT.parent / "shared" / "measured")
+RECORDS = MEASURED / "real" / "meat-indentation-relaxation" / "records"
+
+pytestmark = pytest.mark.skipif(
+    not RECORDS.is_dir(), reason="no measured meat: set TISIM_MEASURED to the folder that holds real/"
+)
+
+
+def test_a_hold_is_predicted_from_the_relaxation_of_another_place() -> None:
+    """The force falls to half; fitted to half a per cent, predicted to two from the same piece."""
+    here, there = (read(RECORDS / f"RDG2-1{place}.csv") for place in "CE")
+    own = fit(here)
+    assert rms(here, own.force) < 0.007
+    elastic = predicted(here, np.zeros(len(own.fractions)))
+    assert rms(here, elastic) > 0.3
+    assert rms(here, predicted(here, fit(there).fractions)) < 0.04
