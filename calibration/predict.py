@@ -30,7 +30,7 @@ The cards of a diagnosis against another experiment: report.html, prediction.png
 
 Fit to some trials of one experiment, predict the others (by id, material=, specimen=, length= or mode=):
 
-  python -m calibration.predict datasets/measured/coupons --calibrate mode=uniaxial --predict mode=planar
+  python -m calibration.predict datasets/measured/bench/creeps --calibrate "S1-c*" --predict "S1-b*"
 
 Exit codes: 0 predicted, 2 bad input, 130 stopped.
 """
@@ -137,8 +137,8 @@ def _show(found: PredictionResult, report: Path, console: Console) -> None:
     for note in found.prediction.notes:
         console.print(note, markup=False, highlight=False, soft_wrap=True)
     table = Table(box=SIMPLE, pad_edge=False, collapse_padding=True)
-    for heading in found.head():
-        table.add_column(heading)
+    for k, heading in enumerate(found.head()):
+        table.add_column(heading, min_width=18 if k == 0 else None)
     for row in found.rows():
         table.add_row(*map(escape, row))
     console.print(table)

@@ -8,31 +8,58 @@ from typing import Any
 
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._effect import Candidate, HandedOn
+from tisim.parts import Prony
 
 
 def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedOn]:
     """Parts and law of a material by the effects of the chosen explanation that state them, in its order.
 
-    A material has one part of each field: of two effects that ask for the same, the first has it.
+    A material has one part of each field. Two relaxation spectra are one: what they relax adds up. Of other
+    two effects that ask for the same field, the first has it.
     """
     found: dict[Candidate, HandedOn] = {}
-    taken: dict[str, str] = {}
+    taken: dict[str, Candidate] = {}
     for c in diagnosis.fit.candidates:
         part = diagnosis.subject.handed_on.get(c, {}).get(material)
         if part is None:
             continue
         if part.made and part.field in taken:
-            said = f"not handed on: the card's {part.field} is that of {taken[part.field]}"
-            part = replace(part, part=None, law=None, modulus_ratio=1.0, remarks=(said,))
+            first = taken[part.field]
+            whole = _together(found[first], part)
+            if whole is not None:
+                # the first entry carries the sum, so that moduli and parts count once
+                found[first] = whole
+                part = replace(part, part=None, modulus_ratio=1.0, shared=True)
+            else:
+                said = f"not handed on: the card's {part.field} is that of {first.label}"
+                part = replace(part, part=None, law=None, modulus_ratio=1.0, remarks=(said,))
         elif part.made:
-            taken[part.field] = c.label
+            taken[part.field] = c
         found[c] = part
     return found
 
 
+def _together(a: HandedOn, b: HandedOn) -> HandedOn | None:
+    """Two Prony series as one, over the modulus of the fit: R = R_a + R_b - 1. None for other parts, and
+    where nothing is left in the long run."""
+    if not (isinstance(a.part, Prony) and isinstance(b.part, Prony)):
+        return None
+    left = a.modulus_ratio + b.modulus_ratio - 1.0
+    if not left > 0.0:
+        return None
+    terms: dict[float, float] = {}
+    for one in (a, b):
+        assert isinstance(one.part, Prony)
+        for fraction, time in zip(one.part.fractions, one.part.times, strict=True):
+            terms[time] = terms.get(time, 0.0) + fraction * one.modulus_ratio
+    times = tuple(sorted(terms))
+    part = Prony(fractions=tuple(terms[t] / left for t in times), times=times)
+    return replace(a, part=part, modulus_ratio=left)
+
+
 def becomes(part: HandedOn | None) -> dict[str, Any]:
     """What an effect's entry in a card says of its part."""
-    return {} if part is None or not part.made else {"becomes": part.field}
+    return {} if part is None or not (part.made or part.shared) else {"becomes": part.field}
 
 
 def law_of(

@@ -194,6 +194,8 @@ def _provenance(
                 f"{c.label} is the card's {h.field} ({h.part.title}); the laws' modulus is {h.states},"
                 f" {h.modulus_ratio:.4g} times that beside the effect."
             )
+        elif h.shared:
+            lines.append(f"{c.label} is in the card's {h.field} too.")
         elif h.law is not None:
             lines.append(f"{c.label} is the card's law, {h.law(1.0, 1.0)[0]}.")
         lines += [f"{c.label}: {remark}." for remark in h.remarks]

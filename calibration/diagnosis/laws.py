@@ -145,7 +145,9 @@ def diagnose_with_law(
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
         again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-        better = _simpler(again, found, rules or Rules()) if explained else _says(again) >= _says(found)
+        # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
+        fairer = "richer" in options or _says(again) >= _says(found)
+        better = _simpler(again, found, rules or Rules()) if explained else fairer
         if better:
             model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)

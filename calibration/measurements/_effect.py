@@ -77,6 +77,7 @@ class HandedOn:
     modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
     states : which modulus that is, for people.
     remarks : what the measurement did not see, and what differs from the effect, a sentence each.
+    shared : it is in the part of another effect.
     """
 
     field: Literal["viscosity", "softening", "fibres", "law"]
@@ -85,6 +86,7 @@ class HandedOn:
     modulus_ratio: float = 1.0
     states: str = ""
     remarks: tuple[str, ...] = ()
+    shared: bool = False
 
     @property
     def made(self) -> bool:

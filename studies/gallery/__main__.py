@@ -138,6 +138,8 @@ def diagnosed(one: Set, out: Path, minutes: float) -> dict[str, Any]:
     there = out / one.folder.replace("/", "-")
     path = there / "diagnosis.json"
     spent = there.with_suffix(".seconds")
+    if not path.exists() and minutes <= 0.0:
+        return {"missing": "not made yet"}
     if not path.exists():
         command = [sys.executable, "-m", "calibration.diagnose", str(real(*one.folder.split("/")))]
         command += ["--out", str(there), "--workers", "1", "--leave-out-rows", "--overwrite"]
@@ -210,7 +212,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="folder that keeps the diagnoses")
     parser.add_argument("--only", action="append", help="part of a folder's name (several times)")
-    parser.add_argument("--minutes", type=float, default=MINUTES)
+    parser.add_argument("--minutes", type=float, default=MINUTES, help="of each; 0: only what --out holds")
     asked = parser.parse_args(arguments)
     rows = []
     for one in SETS:

@@ -1,9 +1,9 @@
 """The clamped Dragon Skin bar over time: one card (modulus, relaxation spectrum, density as stated) fitted to
 all four runs; prints the tables of over_time.md.
 
-    python -m studies.release.over_time               (half a core-minute: the least squares)
+    python -m studies.release.over_time               (some 20 core-seconds: the least squares)
     python -m studies.release.over_time --height 0    (as the file has it)
-    python -m studies.release.over_time --cards DIR   (some 3 core-minutes: error bars, and the card)
+    python -m studies.release.over_time --cards DIR   (a core-minute: error bars, and the card)
 
 The measurements are real/clamped-beam-dragonskin10/experiment of the folder that TISIM_MEASURED names. What
 that file leaves out and its source says: the 52 g hang on the top edge of the free face, 15 mm over the axis.

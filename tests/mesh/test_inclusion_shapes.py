@@ -269,7 +269,7 @@ class Nowhere(SphereInclusion):
 
 
 def test_what_is_no_shape_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"tisim.inclusions.SphereInclusion is the shape 'sphere' already"):
+    with pytest.raises(ValueError, match=r"tisim.inclusions.sphere.SphereInclusion is the shape 'sphere'"):
         inclusions.register(Ball)
     with pytest.raises(TypeError, match="expected a frozen dataclass that derives from Inclusion"):
         inclusions.register(Path)  # type: ignore[type-var]

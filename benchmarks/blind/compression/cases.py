@@ -115,7 +115,7 @@ def _tested_again(
         a, b = rng.standard_normal(2)
         stress = bonded()(strain_of(strain, k)) * factor_of(k)
         scatter = np.exp(0.001 * a + 0.001 * b * (4.0 * strain - 1.0))
-        found.append(measured(f"A{k}", stress * scatter, strain=strain, seed=seed + k, noise=0.002))
+        found.append(measured(f"A{k}", stress * scatter, strain=strain, seed=seed + k, noise=0.0002))
     return tuple(found)
 
 

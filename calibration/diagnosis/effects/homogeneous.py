@@ -193,13 +193,20 @@ def _extra_anisotropy(s: Array, amplitude: float, record: Record) -> Array:
 
 
 def _identifiable_anisotropy(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Two modes of a material, or a specimen to compare with that was not cut alike."""
+    """Two modes of a material, or a specimen of the same mode to compare with that was not cut alike. Fibres
+    in the one specimen of a mode, and none in those of other modes, are no anisotropy of the material."""
     for material in {r.material for r in reached}:
         mine = [r for r in reached if r.material == material]
         others = [r for r in everything if r.material == material and r not in mine]
-        if len({r.mode for r in mine}) > 1 or others:
+        modes = {r.mode for r in mine}
+        if len(modes) > 1 or any(r.mode in modes for r in others):
             return True
     return False
+
+
+def _compared(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Some other record of the same material."""
+    return any(r.material == q.material and r not in reached for q in reached for r in everything)
 
 
 def _fibres_anisotropy(found: Occurrence) -> HandedOn:
@@ -582,7 +589,7 @@ GAUGE_LENGTH = HomogeneousEffect(
     prior_scale=0.1,
     shift=_shift_gauge_length,
     applies_to=lambda record: record.mode == "uniaxial" and bool(record.stretch.max() > 2.0 - PRESSED),
-    identifiable=_identifiable_anisotropy,
+    identifiable=_compared,
     further=True,
     scopes=("material", "trial"),
 )

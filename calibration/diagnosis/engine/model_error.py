@@ -53,7 +53,7 @@ def model_error_of(
     sds = {}
     for material in model.shear_moduli(fit.state.u):
         weights = model.baseline.modulus_weights(material, fit.state.u)
-        formal = float(np.sqrt(max(weights @ covariance @ weights, 0.0)))
+        formal = float(np.sqrt(max(float(weights @ covariance @ weights), 0.0)))
         seen = moves @ weights
         low, high = np.quantile(seen, (0.159, 0.841)) if len(seen) > 1 else (0.0, 0.0)
         spread = 0.5 * float(high - low)

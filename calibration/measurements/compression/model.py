@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,7 @@ class CompressionModel(HomogeneousModel):
     """
 
     kind = "compression"
+    laws: ClassVar[Sequence[tuple[str, int]]] = ()  # a law's form and platens that hold look alike
 
     def __init__(
         self,

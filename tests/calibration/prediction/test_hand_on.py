@@ -14,6 +14,7 @@ import tisim
 from benchmarks.blind.timed.coupons import respond
 from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony, Solid
+from calibration.diagnosis._handed_on import _together
 from calibration.diagnosis.catalogue import effects_of, true_parameter
 from calibration.diagnosis.effects._material_parts import branches, one_time, softening_of, viscosity_of
 from calibration.diagnosis.effects.release import CREEP_TIMES
@@ -49,6 +50,16 @@ def test_one_time_is_a_fraction_of_the_instantaneous_modulus() -> None:
     np.testing.assert_allclose(relaxation(part, at), 1.0 - 0.3 * (1.0 - np.exp(-at / 5.0)), rtol=1e-12)
     said = one_time(0.3, 500.0, first=0.1, last=60.0).remarks
     assert any("outside" in text and "500" in text for text in said)
+
+
+def test_two_spectra_of_a_material_add_up() -> None:
+    a = one_time(0.2, 5.0, first=0.1, last=60.0)
+    b = viscosity_of(lambda t: 1.0 - 0.05 * np.log10(t / 0.1), first=0.1, last=60.0)
+    whole = _together(a, b)
+    assert whole is not None
+    at = np.geomspace(0.1, 60.0, 9)
+    np.testing.assert_allclose(relaxation(whole, at), relaxation(a, at) + relaxation(b, at) - 1.0, rtol=1e-9)
+    assert _together(one_time(0.6, 1.0, first=0.1, last=9.0), one_time(0.5, 2.0, first=0.1, last=9.0)) is None
 
 
 def test_a_vibrations_branches_keep_its_storage_modulus() -> None:

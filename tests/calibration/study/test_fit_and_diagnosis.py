@@ -41,12 +41,12 @@ def test_they_agree_to_a_tenth_of_a_standard_deviation(folder: str, kind: str, m
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("material", ["S0", "S1"])
+@pytest.mark.parametrize("material", ["S0", "S0.5"])
 def test_photographs_agree_at_the_same_bulk_modulus(material: str) -> None:
     """What `calibration.fit --model neo-hookean` and `calibration.diagnose` print for a material of the clean
-    bench: K/G is held at 300 in both. They differ in how their laws take volume (neo-Hookean couples it to
-    shear, the baseline of a diagnosis does not): on the softest beams by 0.18 of an error bar that knows K/G,
-    by less than 0.1 of the one that the fit states. With K/G free they were 0.26 apart."""
+    bench: K/G is held at 300 in both; 0.03 and 0.08 of an error bar that knows K/G. The softest material, S1,
+    is bent to strains of 0.7, where neo-Hookean, which couples volume to shear, is another law than the
+    baseline of a diagnosis, which does not: 0.18 (`test_agreement` compares that law with itself: 0.01)."""
     whole = read(MEASURED / "bench" / "clean")
     experiment = replace(whole, trials=tuple(t for t in whole.trials if t.material == material))
     model = model_of(experiment, kind="outlines", workers=1)

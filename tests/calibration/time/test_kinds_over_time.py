@@ -13,6 +13,7 @@ from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony, Solid
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, MaterialBelief, PokeRecord, PokeTrial, Trial
+from calibration.inference import FINE_LADDER, Problem, guess, identify, polish
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._kinds import compared
 from calibration.measurements._state import State
@@ -21,6 +22,7 @@ from calibration.measurements.indentation._record import records_of
 from calibration.measurements.indentation.over_time import OVER_TIME
 from calibration.parameters import parametrisation
 from calibration.study import parts
+from calibration.study.measurements import measurements
 from tisim import Block
 
 VISCOUS = replace(SOLID, softening=None)
@@ -87,6 +89,21 @@ def test_a_cylinder_is_that_of_the_blind_laboratory(
     assert record.course is not None
     assert record.course.pushes
     assert np.abs(stress - record.stress).max() < 1e-3 * np.abs(record.stress).max()
+
+
+def test_a_fit_of_a_cylinder_finds_the_truth() -> None:
+    own = experiment(trial("c", "uniaxial", HELD, solid=VISCOUS, noise=0.005, seed=2))
+    law = parts.with_parts(parametrisation("ogden"), ("prony:2",), own, "M").holding("bulk_ratio")
+    problem = Problem(parametrisation=law, objectives=measurements(own, "M", law, workers=1).objectives)
+    start = guess(problem)
+    assert start is not None
+    end = polish(problem, start, max_steps=60, ladder=FINE_LADDER)
+    assert end.converged
+    chi2 = float(end.residuals @ end.residuals) / problem.points
+    found = {e.name: e for e in identify(law, end.u, end.jacobian, reduced_chi2=chi2).estimates}
+    fitted = [n for n in TRUTH if n in found]
+    assert len(fitted) == 6
+    assert all(found[n].low <= TRUTH[n] <= found[n].high for n in fitted)
 
 
 def test_the_window_is_that_of_all_tests_together() -> None:
