@@ -156,8 +156,8 @@ class SolutionCache:
 
 
 def at_time(result: Result | None, time: float) -> Result | None:
-    """A beam that hangs as it is at a time [s] of one of its frames; one at rest as it is at all times."""
-    if result is None or result.time is None:
+    """A beam with a course as it is at a time [s] of one of its frames; one without is the same at all times."""
+    if result is None or result.time is None or getattr(result.scene, "course", None) is None:
         return result
     k = int(np.argmin(np.abs(result.time - time)))
     return replace(result, positions=result.positions[k][None])

@@ -217,10 +217,13 @@ def test_where_effects_may_sit(two: OutlineModel) -> None:
     bent = {c.at: c.alternatives for c in found if c.effect == "residual-curvature"}
     assert bent == {"all": 1, "S0": 2, "S1": 2}
     voids = [c for c in found if c.effect == "void"]
+    places = EFFECTS["void"].positions
     assert {(c.at, c.position) for c in voids} == {
-        (t.id, place) for t in trials for place in EFFECTS["void"].positions
+        (at, place) for at in (*(t.id for t in trials), "S0", "S1") for place in places
     }
-    assert {c.alternatives for c in voids} == {4 * len(EFFECTS["void"].positions)}
+    of_a_batch = {c.alternatives for c in voids if c.at in ("S0", "S1")}
+    assert of_a_batch == {2 * len(places)}
+    assert {c.alternatives for c in voids if c.at not in ("S0", "S1")} == {4 * len(places)}
     assert {c.at for c in found if c.effect == "added-mass"} == {t.id for t in trials}
     assert not any(c.effect == "clamp-gap" for c in found)  # there is no bridge
 

@@ -33,7 +33,7 @@ def _no_diagnosis(monkeypatch: pytest.MonkeyPatch) -> None:
     def stop(*_: object, **__: object) -> None:
         raise AssertionError("the search began with input that cannot be used")
 
-    monkeypatch.setattr("calibration.diagnosis.engine.run.diagnose", stop)
+    monkeypatch.setattr("calibration.diagnosis.laws.diagnose", stop)
 
 
 def refused(done: Result, *said: str) -> None:
@@ -117,7 +117,7 @@ def test_a_baseline_that_cannot_be_calibrated(
     def nowhere(*_: object, **__: object) -> None:
         raise ValueError("no shear modulus gives an equilibrium")
 
-    monkeypatch.setattr("calibration.diagnosis.engine.run.diagnose", nowhere)
+    monkeypatch.setattr("calibration.diagnosis.laws.diagnose", nowhere)
     refused(diagnose(beam, "--out", tmp_path / "out"), "no shear modulus")
     assert not (tmp_path / "out").exists()
 

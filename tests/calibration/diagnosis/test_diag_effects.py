@@ -166,7 +166,7 @@ def test_a_step_moves_the_outlines_that_it_may_and_no_others(
             continue
         for i, t in enumerate(model.trials):
             rows = np.concatenate([np.full(p.basis.shape[1], p.beam == i) for p in model.records])
-            may = effect.applies_to(t) and c.at in ("all", t.id)
+            may = effect.applies_to(t) and c.at in ("all", t.material, t.id)
             size = np.linalg.norm(linear.columns[rows, k]) if rows.any() else 0.0
             # whitening mixes photographs through what they share only: none here, all is known exactly
             assert (size > 1e-6) == may, (c.label, t.id, size)

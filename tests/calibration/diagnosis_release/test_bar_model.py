@@ -58,7 +58,7 @@ def test_the_elastica_under_an_end_load() -> None:
 
 
 def test_zero_is_the_baseline_and_more_is_not(tmp_path: Path) -> None:
-    model = bar_model(read(write_bars(tmp_path / "e", Truth())), fem=False)
+    model = bar_model(read(write_bars(tmp_path / "e", Truth())), fem=False, further=True)
     state = State(u=model.start())
     model.update_nuisances(state)
     base = model.residuals([state])[0]
