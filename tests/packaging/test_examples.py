@@ -46,8 +46,8 @@ def test_each_is_a_valid_experiment_with_its_truth_beside_it(folder: Path) -> No
 
 @pytest.mark.parametrize("name", list(make_examples.EXAMPLES))
 def test_the_command_makes_the_files_that_are_shipped(name: str, tmp_path: Path) -> None:
-    """But for the photographs, whose compression belongs to the version of OpenCV, and the last digits of numbers,
-    which belong to the processor's vector instructions."""
+    """But for the photographs, whose compression belongs to the version of OpenCV, and the last digits of
+    numbers, which belong to the processor's vector instructions."""
     make_examples.EXAMPLES[name](tmp_path / name)
     made = {p.relative_to(tmp_path): p for p in tmp_path.rglob("*") if p.is_file()}
     kept = {p.relative_to(MEASURED) for p in (MEASURED / name).rglob("*") if p.is_file()}

@@ -156,7 +156,7 @@ class SolutionCache:
 
 
 def at_time(result: Result | None, time: float) -> Result | None:
-    """A beam with a course as it is at a time [s] of one of its frames; one without is the same at all times."""
+    """A beam with a course as it is at a time [s] of one of its frames; one without is always the same."""
     if result is None or result.time is None or getattr(result.scene, "course", None) is None:
         return result
     k = int(np.argmin(np.abs(result.time - time)))
