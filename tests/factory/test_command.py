@@ -65,23 +65,21 @@ HEAVY = (
 @pytest.mark.parametrize("option", ["--help", "--version"])
 def test_help_and_version_wait_for_nothing_heavy(command: str, option: str) -> None:
     code = (
-        "import resource, runpy, sys\n"
+        "import runpy, sys\n"
         f"sys.argv = [{command!r}, {option!r}]\n"
         "try:\n"
         f"    runpy.run_module({command!r}, run_name='__main__', alter_sys=True)\n"
         "except SystemExit as end:\n"
         "    assert not end.code, end.code\n"
-        "used = resource.getrusage(resource.RUSAGE_SELF)\n"
         "print()\n"
-        f"print(*[name for name in {HEAVY!r} if name in sys.modules], used.ru_utime + used.ru_stime)\n"
+        f"print(*[name for name in {HEAVY!r} if name in sys.modules])\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, env=environment(), check=False
     )
     assert done.returncode == 0, done.stderr
     *text, last = done.stdout.splitlines()
-    assert len(last.split()) == 1, f"imported for {option}: {last}"
-    assert float(last) < 1.5  # s of CPU; within 1 on an idle machine
+    assert not last, f"imported for {option}: {last}"
     if option == "--version":
         assert text[0].startswith("tisim ")
     else:

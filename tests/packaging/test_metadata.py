@@ -70,11 +70,11 @@ def test_what_only_an_extra_needs_is_in_the_extra() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     assert not names(PROJECT["project"]["dependencies"]) & OPTIONAL
     assert set().union(*(names(requirements) for requirements in extras.values())) >= OPTIONAL
-    assert set(extras["all"]) == {"tisim[mesh,photo,learn,export,cluster,xarray]"}
+    assert set(extras["all"]) == {"tisim[mesh,photo,learn,export,cluster,xarray,fetch]"}
 
 
 @pytest.mark.parametrize(
-    "extra", ["mesh", "photo", "learn", "export", "cluster", "xarray", "all", "test", "bench"]
+    "extra", ["mesh", "photo", "learn", "export", "cluster", "xarray", "fetch", "all", "test", "bench"]
 )
 def test_each_extra_is_documented(extra: str) -> None:
     assert extra in PROJECT["project"]["optional-dependencies"]
