@@ -155,7 +155,7 @@ def test_real_kills_with_two_workers(
     target = tmp_path / "target.zarr"
     log = tmp_path / "log"
     arguments = ("--model", "ogden", "--recipe", "quick", "--out", str(target), "--workers", "2")
-    variables = {"STANDIN_SECONDS": "0.15", "STANDIN_LOG": str(log)}
+    variables = {"STANDIN_SECONDS": "0.4", "STANDIN_LOG": str(log)}
     moments = random.Random(5)
     kills = 0
     for _ in range(2):
@@ -171,7 +171,7 @@ def test_real_kills_with_two_workers(
     assert kills == 2
     assert Staging(target).finished()
     process = command(*arguments, **variables)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=600)
     assert process.returncode == 0, errors
     assert digest(target) == digest(quick_store)
     data = open_dataset(target)
@@ -287,17 +287,17 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
 ) -> None:
     target = tmp_path / "a.zarr"
     arguments = ("--model", "ogden", "--recipe", "quick", "--out", str(target), "--workers", "2")
-    process = command(*arguments, STANDIN_SECONDS="0.2")
+    process = command(*arguments, STANDIN_SECONDS="0.5")
     while not Staging(target).finished():
         assert process.poll() is None
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the whole group gets it
-    _, errors = process.communicate(timeout=20)
+    _, errors = process.communicate(timeout=600)
     assert process.returncode == 130
     kept = len(Staging(target).finished())
     assert f"Stopped. {kept} finished pokes are kept; the same command" in errors
     assert "Traceback" not in errors
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 120
     while left := _alive_in_group(process.pid):  # no worker is left behind
         assert time.monotonic() < deadline, left
         time.sleep(0.05)
@@ -323,7 +323,7 @@ def test_no_worker_sees_ctrl_c_not_even_the_first(tmp_path: Path) -> None:
     script = tmp_path / "first_worker.py"  # in a process of its own: only a first start is in danger
     script.write_text(_FIRST_WORKER)
     run = subprocess.run(
-        [sys.executable, str(script)], capture_output=True, text=True, timeout=60, env=environment()
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=600, env=environment()
     )
     assert run.stdout.split() == ["1", "1"], run.stderr
 
@@ -360,7 +360,7 @@ def test_cluster_with_a_worker_killed(
         STANDIN_KILL=str(trigger),
         STANDIN_SECONDS="0.1",
     )
-    _, errors = process.communicate(timeout=90)
+    _, errors = process.communicate(timeout=600)
     assert process.returncode == 0, errors
     assert not trigger.exists()
     assert digest(target) == digest(quick_store)

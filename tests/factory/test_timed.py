@@ -223,7 +223,7 @@ def test_a_part_from_outside_is_read_and_built_by_its_name(
     )
     with_part = {"TISIM_EXTENSIONS": str(tmp_path / "log_time.py")}
     build = command(*map(str, words), **with_part)
-    _, errors = build.communicate(timeout=60)
+    _, errors = build.communicate(timeout=600)
     assert build.returncode == 0, errors
     data = factory.open_dataset(own)
     assert data.attributes["identity"]["materials"]["S1"]["viscosity"] == {

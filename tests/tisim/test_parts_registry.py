@@ -159,7 +159,7 @@ def test_parts_from_a_file_reach_other_processes(mine: ModuleType, tmp_path: Pat
         env={**os.environ, "PYTHONPATH": path},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     assert run.stdout.strip() == "True", run.stderr
 

@@ -46,7 +46,7 @@ def _start(body: str, options: str = "") -> subprocess.Popen[str]:
 )
 def test_ends(body: str, code: int, sentence: str) -> None:
     process = _start(body)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=600)
     assert (process.returncode, err) == (code, sentence)
     assert out == ("fine\n" if code == 0 else "")
 
@@ -57,13 +57,13 @@ def test_ctrl_c_ends_in_a_sentence(number: signal.Signals) -> None:
     assert process.stdout is not None
     assert process.stdout.readline() == "on\n"
     os.kill(process.pid, number)
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=600)
     assert (process.returncode, err) == (130, "Stopped early.\n")
 
 
 def test_faults_of_the_program_are_not_dressed_up() -> None:
     process = _start("raise ZeroDivisionError('ours')")
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=600)
     assert process.returncode == 1
     assert "ZeroDivisionError: ours" in err
 

@@ -38,7 +38,7 @@ def strip(folder: Path) -> Path:
 
 def test_the_package_lists_its_verbs() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "calibration"], capture_output=True, text=True, check=False, timeout=120
+        [sys.executable, "-m", "calibration"], capture_output=True, text=True, check=False, timeout=600
     )
     assert done.returncode == 0, done.stderr
     for verb in VERBS:

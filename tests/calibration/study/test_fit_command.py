@@ -143,14 +143,14 @@ def _interrupt(arguments: list[str], history: Path, how: signal.Signals, *, afte
         stderr=subprocess.STDOUT,
         text=True,
     )
-    deadline = time.monotonic() + 240
+    deadline = time.monotonic() + 600
     while time.monotonic() < deadline and process.poll() is None:
         if history.exists() and len(history.read_text().splitlines()) > after:
             break
         time.sleep(0.05)
     assert process.poll() is None, process.communicate()[0]
     process.send_signal(how)
-    return process.communicate(timeout=240)[0]
+    return process.communicate(timeout=600)[0]
 
 
 def test_coupons_alone_hold_the_bulk_modulus(tmp_path: Path) -> None:
