@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm, t
+from scipy.stats import linregress, norm, t
 
 from calibration.measurements.compression._record import is_compressed
 from calibration.measurements.homogeneous._record import Record
@@ -20,6 +20,7 @@ FIRST = 0.02  # strain from which repeats are compared: before, a record is most
 BEND = 4  # highest degree in the strain
 TERMS = ("zero of the strain", "scale", *(f"bend {k}" for k in range(1, BEND + 1)))
 GRID = 60
+STEEP = 0.05  # probability that noise makes a line over the number of the test so steep
 ROUNDS = 200  # of expectation and maximisation
 TINY = 1e-16  # variance, of a logarithm
 LEAST = 0.001  # of a bend: that some repeats agree better than this may be luck
@@ -28,14 +29,26 @@ _SURE = 0.995  # few repeats tell their scatter badly: as much wider as Student'
 _NORMAL = 1.4826  # standard deviations in a median absolute deviation
 
 
+@dataclass(frozen=True, kw_only=True)
+class Drift:
+    """What goes on from test to test. per_test : of the logarithm of the stress at a strain; correlation : with
+    the number of the test."""
+
+    material: str
+    strain: float
+    per_test: float
+    correlation: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Repeatability:
     """sds : of the terms of `basis` up to the strain `last`, shape (len(TERMS),); zero without repeats.
-    repeats : names of the tests that show it."""
+    repeats : names of the tests that show it. drifts : of materials whose tests' number clearly counts."""
 
     last: float
     sds: Array
     repeats: tuple[str, ...]
+    drifts: tuple[Drift, ...] = ()
 
 
 def bends(strain: Array, last: float, degree: int = BEND) -> Array:
@@ -55,6 +68,7 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
     does not count: each has its modulus."""
     last = min(last, max((_reach(r) for r in records if is_compressed(r)), default=last))
     squares, weights, names = [], [], []
+    drifts: list[Drift] = []
     for group in _repeats(records, last):
         square, known = _variances(group, last)
         own_scale = len({r.specimen for r in group}) > 1
@@ -62,13 +76,34 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
         squares.append(np.where(told, square, 0.0))
         weights.append(np.where(told, known, 0.0))
         names += [r.name for r in group]
+        drifts += _drift(group)
     if not squares:
         return Repeatability(last=last, sds=np.zeros(len(TERMS)), repeats=())
     freedom = np.maximum(np.sum(weights, axis=0), 1.0)
     pooled = np.sqrt(np.sum(np.multiply(squares, weights), axis=0) / freedom)
     bent = np.arange(len(TERMS)) >= TERMS.index("scale")
     sds = np.maximum(pooled * t.ppf(_SURE, freedom) / norm.ppf(_SURE), np.where(bent, LEAST, 0.0))
-    return Repeatability(last=last, sds=np.where(np.any(weights, axis=0), sds, 0.0), repeats=tuple(names))
+    sds = np.where(np.any(weights, axis=0), sds, 0.0)
+    return Repeatability(last=last, sds=sds, repeats=tuple(names), drifts=tuple(drifts))
+
+
+def _drift(group: Sequence[Record]) -> list[Drift]:
+    """Of the stress at the largest strain that all reach; none where noise would make as much of it."""
+    order = np.array([r.earlier for r in group], dtype=float)
+    if np.ptp(order) == 0.0:
+        return []
+    strain = min(_reach(r) for r in group)
+    line = linregress(order, [float(np.log(_loading(r, np.array([strain]))[0])) for r in group])
+    if not line.pvalue < STEEP:
+        return []
+    return [
+        Drift(
+            material=group[0].material,
+            strain=strain,
+            per_test=float(line.slope),
+            correlation=float(line.rvalue),
+        )
+    ]
 
 
 def _variances(group: Sequence[Record], last: float) -> tuple[Array, int]:
