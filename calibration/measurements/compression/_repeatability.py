@@ -31,8 +31,8 @@ _NORMAL = 1.4826  # standard deviations in a median absolute deviation
 
 @dataclass(frozen=True, kw_only=True)
 class Drift:
-    """What goes on from test to test. per_test : of the logarithm of the stress at a strain; correlation : with
-    the number of the test."""
+    """What goes on from test to test. per_test : of the logarithm of the stress at a strain. correlation :
+    with the number of the test."""
 
     material: str
     strain: float
