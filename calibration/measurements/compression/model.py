@@ -164,8 +164,8 @@ class CompressionModel(HomogeneousModel):
             )
             found += [
                 f"{d.material}: from each test to the next the stress at a strain of {d.strain:.2g} changes"
-                f" by {100.0 * d.per_test:+.2g} % (correlation with the number of the test {d.correlation:.2f}),"
-                " which is not counted as scatter"
+                f" by {100.0 * d.per_test:+.2g} % (correlation with its number {d.correlation:.2f}), which"
+                " is not counted as scatter"
                 for d in scatter.drifts
             ]
         else:
