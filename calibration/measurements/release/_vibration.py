@@ -65,8 +65,8 @@ class FreeVibration:
         return self.equilibrium + (y + self.offset) @ self.modes.T
 
     def _left_by_friction(self, t: Array) -> Array:
-        """Of the first mode's swing, beside what decays anyway, shape (t,): its amplitude A follows dA/dt = -d
-        A - 4 f r, with d its damping, f its frequency and r what friction holds."""
+        """Of the first mode's swing, beside what decays anyway, shape (t,). Its amplitude A follows
+        dA/dt = -d A - 4 f r, with d its damping, f its frequency and r what friction holds."""
         first = self.rates[0][np.argmax(np.abs(self.rates[0].imag))]
         damping, frequency = -float(first.real), abs(float(first.imag)) / (2.0 * np.pi)
         grown = np.expm1(damping * t) / damping if damping > 0.0 else t
