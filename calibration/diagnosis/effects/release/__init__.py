@@ -20,9 +20,11 @@ from calibration.diagnosis.effects.release.rig import (
     CLOCK_RATE,
     GRAVITY_TILT,
     GRIP_LENGTH,
+    HELD_POSE,
     IMAGE_SCALE,
     LOAD_HEIGHT,
     LOOSE_LOAD,
+    RUBBING_LOAD,
 )
 from calibration.measurements.release._effect import ReleaseEffect
 
@@ -44,6 +46,8 @@ EFFECTS: dict[str, ReleaseEffect] = {
         ADDED_MASS,
         LOAD_HEIGHT,
         LOOSE_LOAD,
+        RUBBING_LOAD,
+        HELD_POSE,
         IMAGE_SCALE,
         CAMERA_ROLL,
         CLOCK_RATE,

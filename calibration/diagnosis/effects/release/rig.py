@@ -169,6 +169,47 @@ LOOSE_LOAD = ReleaseEffect(
 )
 
 
+# -- rubbing-load --
+# What hangs on the beam rubs where it is fixed (Coulomb): beside its damping the swing loses the same
+# amplitude in each quarter of a period, four of what friction holds a period, until it stops.
+
+
+def _alter_rubbing_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, rubbing=s.rubbing + amplitude)
+
+
+RUBBING_LOAD = ReleaseEffect(
+    effect=catalogue.RUBBING_LOAD,
+    step=1e-07,
+    bounds=(0.0, 2e-3),
+    prior_scale=2e-4,
+    alter=_alter_rubbing_load,
+    applies_to=hung,
+    further=True,
+    scopes=("load", "trial"),
+)
+
+
+# -- held-pose --
+# The beam is held above or below straight before it is let go, in the shape of its equilibrium: displacements
+# are counted from there, so that it comes down less (positive) or more.
+
+
+def _alter_held_pose(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, held_below=s.held_below + amplitude)
+
+
+HELD_POSE = ReleaseEffect(
+    effect=catalogue.HELD_POSE,
+    step=1e-07,
+    bounds=(-2e-3, 2e-3),
+    prior_scale=3e-4,
+    alter=_alter_held_pose,
+    further=True,
+    scopes=("load", "trial"),
+)
+
+
 # -- image-scale --
 # The cameras show displacements too large (positive) or too small.
 
