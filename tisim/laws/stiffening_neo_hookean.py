@@ -3,7 +3,7 @@
     Psi = mu/2 (I1 - 3) - mu ln J + lam/2 (ln J)^2 + mu/2 stiffening (I1bar - 3)^2
 
 with I1bar = J^(-2/3) I1. mu, lam [Pa]; stiffening [-] is not negative. Without stiffening it is the law
-`neo-hookean`, in volume too, where `yeoh` is another: a diagnosis nests its stiffening in the law of a fit. Small
+`neo-hookean`, in volume too, where `yeoh` is another: a diagnosis nests stiffening in the law of a fit. Small
 strain: G = mu, K = lam + 2 mu/3, whatever the stiffening. Stress-free at rest. Not among the paper's laws.
 """
 
