@@ -120,10 +120,10 @@ def test_killed_and_stopped_it_goes_on_to_the_same_answer(fitted: Path, tmp_path
     history = out / "fits" / "S0-neo-hookean.jsonl"
     arguments = [str(experiment), "--model", "neo-hookean", "--out", str(out), "--workers", "1"]
     arguments.append("--no-held-out")
-    _interrupt(arguments, history, signal.SIGKILL, after=4)
+    _interrupt(arguments, history, signal.SIGKILL, after=2)
     with history.open("a") as file:
-        file.write('{"restart": 0, "index": 4, "cand')  # a line that a kill cut short
-    stopped = _interrupt(arguments, history, signal.SIGTERM, after=8)
+        file.write('{"restart": 0, "index": 2, "cand')  # a line that a kill cut short
+    stopped = _interrupt(arguments, history, signal.SIGTERM, after=4)
     assert "best so far" in stopped
     assert (out / "report.html").exists()
     assert not (out / "cards").exists()  # a stopped search's parameters are not a fit
