@@ -152,7 +152,8 @@ def search(
 ) -> Found:
     """Minimise the problem's cost by CMA-ES, or along one coordinate by sections, inside its bounds.
 
-    Held coordinates stay at `start`. A search whose whole first three generations have no answer ends with reason "no equilibrium".
+    Held coordinates stay at `start`. A search whose whole first three generations have no answer ends with
+    reason "no equilibrium".
 
     Parameters
     ----------

@@ -210,7 +210,7 @@ def test_a_malformed_folder_writes_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no SIGKILL on this system")
 def test_workers_of_a_killed_fit_write_no_more(fitted: Path, tmp_path: Path) -> None:
-    """Two fits in two processes; the parent is killed, its workers must not go on with the files: they end."""
+    """Two fits in two processes; the parent is killed, its workers end and do not go on with the files."""
     out = tmp_path / "out"
     arguments = [str(fitted / "experiment"), "--model", "neo-hookean,mooney-rivlin", "--out", str(out)]
     history = out / "fits" / "S0-mooney-rivlin.jsonl"
