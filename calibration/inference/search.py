@@ -53,6 +53,7 @@ def guess(problem: Problem) -> Array | None:
 
 
 NO_ANSWER = 1e12  # cost given to a candidate without equilibrium: worse than any that has one
+PATIENCE = 10  # generations in which a point that is known to be a minimum may be beaten
 
 
 class HistoryError(ValueError):
@@ -145,11 +146,13 @@ def search(
     spread: Array,
     options: CmaOptions | None = None,
     history: Sequence[Generation] = (),
+    known: float = np.inf,
     on_progress: OnProgress = lambda _: None,
 ) -> Found:
     """Minimise the problem's cost by CMA-ES, inside its bounds.
 
-    A search whose whole first three generations have no answer ends with reason "no equilibrium".
+    A search whose whole first three generations have no answer ends with reason "no equilibrium". One that
+    sets out from a minimum looks for another, lower one; it ends where `PATIENCE` generations found none.
 
     Parameters
     ----------
@@ -159,6 +162,8 @@ def search(
     options : CmaOptions
     history : sequence of Generation
         Of an earlier run of the same search; it is replayed without a simulation.
+    known : float
+        Cost of a minimum that a descent found; infinite without one.
     on_progress : callable
         Called after each generation; an exception from it (KeyboardInterrupt) ends the search there.
 
@@ -196,7 +201,7 @@ def search(
                     restart=restart, index=index, candidates=candidates, costs=costs, replayed=replayed
                 )
             )
-            reason = _ended(strategy, best, index)
+            reason = _ended(strategy, best, index, known)
             if reason:
                 break
         else:
@@ -238,8 +243,10 @@ def _strategy(problem: Problem, start: Array, spread: Array, options: CmaOptions
     )
 
 
-def _ended(strategy: Any, best: float, index: int) -> str:
+def _ended(strategy: Any, best: float, index: int, known: float) -> str:
+    if np.isfinite(known) and best >= known and index + 1 >= PATIENCE:
+        return f"converged: no candidate of {PATIENCE} generations is below the minimum known"
     if np.isinf(best):
-        return "no equilibrium" if index >= 2 else ""
+        return "no equilibrium" if index >= 2 and np.isinf(known) else ""
     stop = strategy.stop()
     return "converged: " + ", ".join(sorted(stop)) if stop else ""
