@@ -53,7 +53,7 @@ def guess(problem: Problem) -> Array | None:
 
 
 NO_ANSWER = 1e12  # cost given to a candidate without equilibrium: worse than any that has one
-PATIENCE = 10  # generations in which a point that is known to be a minimum may be beaten
+PATIENCE = 10  # generations in which the end of a descent may be beaten
 
 
 class HistoryError(ValueError):
@@ -152,7 +152,8 @@ def search(
     """Minimise the problem's cost by CMA-ES, inside its bounds.
 
     A search whose whole first three generations have no answer ends with reason "no equilibrium". One that
-    sets out from a minimum looks for another, lower one; it ends where `PATIENCE` generations found none.
+    sets out from where a descent ended looks for a lower valley; it ends where `PATIENCE` generations found
+    none.
 
     Parameters
     ----------
@@ -163,7 +164,7 @@ def search(
     history : sequence of Generation
         Of an earlier run of the same search; it is replayed without a simulation.
     known : float
-        Cost of a minimum that a descent found; infinite without one.
+        Cost of the point where a descent ended; infinite without one.
     on_progress : callable
         Called after each generation; an exception from it (KeyboardInterrupt) ends the search there.
 
@@ -245,7 +246,7 @@ def _strategy(problem: Problem, start: Array, spread: Array, options: CmaOptions
 
 def _ended(strategy: Any, best: float, index: int, known: float) -> str:
     if np.isfinite(known) and best >= known and index + 1 >= PATIENCE:
-        return f"converged: no candidate of {PATIENCE} generations is below the minimum known"
+        return f"converged: no candidate of {PATIENCE} generations is below where the descent ended"
     if np.isinf(best):
         return "no equilibrium" if index >= 2 and np.isinf(known) else ""
     stop = strategy.stop()

@@ -151,7 +151,7 @@ def calibrate(
         spread=parametrisation.spread,
         options=options.cma,
         history=history,
-        known=descent.cost if descent is not None and descent.converged else np.inf,
+        known=np.inf if descent is None else descent.cost,
         on_progress=on_progress,
     )
     searched = _core_seconds()

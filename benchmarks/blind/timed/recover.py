@@ -118,7 +118,7 @@ def recover(
     material = yaml.safe_load(truth_path.read_text(encoding="utf-8"))["materials"][MATERIAL]
     law = "ogden" if material["alpha"] != [2.0] else "neo-hookean"
     parts_of_it = [part for part in PARTS if part in material]
-    options = [word for part in parts_of_it for word in OPTIONS[part]]
+    options = [*(word for part in parts_of_it for word in OPTIONS[part]), "--no-held-out"]  # for its time
     fitted = out / f"{kind}-{seed}.fit"
     try:
         if not score_only:
