@@ -38,6 +38,7 @@ from tisim.parallel.pool import cores
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
     from calibration.study import Task
+    from calibration.study.parts import CardParts
 
 
 def read_experiment(folder: str | Path, *, leave_out_rows: bool = False) -> Experiment:
@@ -76,6 +77,7 @@ def fit(
     objective: str = "likelihood",
     free_bulk_ratio: bool = False,
     rig: str | Path | None = None,
+    start: str | Path | None = None,
     out: str | Path | None = None,
     seed: int = 1,
     population: int | None = None,
@@ -114,6 +116,9 @@ def fit(
         and the other constants' intervals have their part of its uncertainty.
     rig : path, optional
         rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
+    start : path, optional
+        A material card, or a folder of cards by material: viscosity, softening and fibres that the fit holds
+        as they are, or begins its search at where `time`, `damage` or `fibres` asks for them.
     out : path, optional
         Folder that keeps the fits, so that the same call goes on after an interruption; in memory where
         left out. `Fits.write_report` and `Fits.write_cards` write what people and the factory read.
@@ -151,6 +156,7 @@ def fit(
             objective=objective,
             free_bulk_ratio=free_bulk_ratio,
             rig=rig,
+            start=start,
             out=out if out is not None else memory,
             seed=seed,
             population=population,
@@ -211,6 +217,7 @@ def plan_fit(
     objective: str,
     free_bulk_ratio: bool,
     rig: str | Path | None,
+    start: str | Path | None,
     out: str | Path,
     seed: int,
     population: int | None,
@@ -239,7 +246,8 @@ def plan_fit(
             specs[0],
             "expected --objective likelihood, overlaps of bodies have no time",
         )
-    parts.check(data, wanted, specs)
+    cards = _starts(start, wanted, objective)
+    parts.check(data, wanted, specs, cards)
     setup = _rig(rig, data, objective, wanted)
     folder = Path(out)
     options = FitOptions(
@@ -260,6 +268,7 @@ def plan_fit(
         setup=setup,
         specs=specs,
         free_bulk_ratio=free_bulk_ratio,
+        cards=cards,
     )
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
@@ -539,6 +548,34 @@ def _rig(path: str | Path | None, data: Experiment, objective: str, materials: l
     from calibration.diagnosis.rig import read_rig
 
     return read_rig(Path(path)).on(data)
+
+
+def _starts(path: str | Path | None, materials: list[str], objective: str) -> dict[str, CardParts]:
+    """Parts of cards, by the material that takes them: one card goes to the one material that is fitted,
+    cards of a folder by their names."""
+    if path is None:
+        return {}
+    if objective != "likelihood":
+        raise OptionError("start", path, "expected --objective likelihood, overlaps of bodies have no time")
+    from calibration.parameters import FIELDS, part_of
+    from calibration.prediction._cards import read_cards
+    from calibration.study.parts import CardParts
+
+    known = read_cards(Path(path))
+    if len(known) == 1 == len(materials):
+        known = {materials[0]: next(iter(known.values()))}
+    found = {}
+    for material in materials:
+        if material not in known:
+            raise OptionError("start", path, f"expected a card of {material}, found {', '.join(known)}")
+        card = known[material]
+        own = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+        if not own:
+            raise OptionError(
+                "start", path, f"expected viscosity, softening or fibres in the card of {card.material}"
+            )
+        found[material] = CardParts(f"the card of {card.material}", own)
+    return found
 
 
 def _check_folder(folder: Path, overwrite: bool) -> None:

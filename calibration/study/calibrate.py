@@ -31,7 +31,7 @@ from calibration.inference import (
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.dice import DiceObjective
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.parameters import Parametrisation
+from calibration.parameters import Parametrisation, part_entry
 from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
 from calibration.study.calibration import Calibration, HeldOut, Status
 from calibration.study.measurements import Measurements
@@ -323,7 +323,12 @@ def _parts(p: Parametrisation) -> dict[str, Any]:
     """Attributes of a `Calibration` that say what the material has beside the law."""
     if not p.parts:
         return {}
-    return {"parts": tuple(part.spec for part in p.parts), "protocol": asdict(p.parts[0].window)}
+    values: dict[str, float] = {}
+    return {
+        "parts": tuple(part.spec for part in p.parts if part.spec),
+        "held": {part.field: part_entry(part.assembled(values)) for part in p.parts if not part.spec},
+        "protocol": asdict(p.parts[0].window),
+    }
 
 
 def _is_dice(objective: Objective) -> bool:
