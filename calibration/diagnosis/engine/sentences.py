@@ -74,7 +74,10 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
             f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
     left = diagnosis.remainder
-    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+    if left is not None:
+        text += f" {what_remains(left, diagnosis.unit)}"
+    doubt = diagnosis.finding.doubt
+    return f"{text} It is not called found, since {doubt}." if doubt else text
 
 
 def _or(names: Sequence[str]) -> str:
