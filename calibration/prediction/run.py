@@ -110,8 +110,8 @@ class Prediction:
             text = (
                 f"In {trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, {best} rms"
                 f"{''.join(f', {o}' for o in others)}, and noise alone would be"
-                f" {per_si * self.noise(mine):.3g} {unit}{quality}. {inside:.0%} of the points lie within the 95"
-                " % intervals"
+                f" {per_si * self.noise(mine):.3g} {unit}{quality}. {inside:.0%} of the points lie within the"
+                " 95 % intervals"
             )
             said.append(f"{text}{', which are too narrow there' if inside < NARROW else ''}.")
         return " ".join(said)
