@@ -69,6 +69,7 @@ def fit(
     objective: str = "likelihood",
     free_bulk_ratio: bool = False,
     rig: str | Path | None = None,
+    start: str | Path | None = None,
     out: str | Path | None = None,
     seed: int = 1,
     population: int | None = None,
@@ -107,6 +108,9 @@ def fit(
         and the other constants' intervals have their part of its uncertainty.
     rig : path, optional
         rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for.
+    start : path, optional
+        A material card, or a folder of cards by material: viscosity, softening and fibres that the fit holds
+        as they are, or begins its search at where `time`, `damage` or `fibres` asks for them.
     out : path, optional
         Folder that keeps the fits, so that the same call goes on after an interruption; in memory where
         left out. `Fits.write_report` and `Fits.write_cards` write what people and the factory read.
@@ -144,6 +148,7 @@ def fit(
             objective=objective,
             free_bulk_ratio=free_bulk_ratio,
             rig=rig,
+            start=start,
             out=out if out is not None else memory,
             seed=seed,
             population=population,

@@ -21,6 +21,7 @@ from tisim.parallel.pool import cores
 if TYPE_CHECKING:
     from calibration.diagnosis.rig import Rig
     from calibration.study import Task
+    from calibration.study.parts import CardParts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +70,7 @@ def plan_fit(
     objective: str,
     free_bulk_ratio: bool,
     rig: str | Path | None,
+    start: str | Path | None,
     out: str | Path,
     seed: int,
     population: int | None,
@@ -97,7 +99,8 @@ def plan_fit(
             specs[0],
             "expected --objective likelihood, overlaps of bodies have no time",
         )
-    parts.check(data, wanted, specs)
+    cards = _starts(start, wanted, objective)
+    parts.check(data, wanted, specs, cards)
     setup = _rig(rig, data, objective, wanted)
     folder = Path(out)
     options = FitOptions(
@@ -118,6 +121,7 @@ def plan_fit(
         setup=setup,
         specs=specs,
         free_bulk_ratio=free_bulk_ratio,
+        cards=cards,
     )
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
@@ -177,6 +181,34 @@ def _rig(path: str | Path | None, data: Experiment, objective: str, materials: l
     from calibration.diagnosis.rig import read_rig
 
     return read_rig(Path(path)).on(data)
+
+
+def _starts(path: str | Path | None, materials: list[str], objective: str) -> dict[str, CardParts]:
+    """Parts of cards, by the material that takes them: one card goes to the one material that is fitted,
+    cards of a folder by their names."""
+    if path is None:
+        return {}
+    if objective != "likelihood":
+        raise OptionError("start", path, "expected --objective likelihood, overlaps of bodies have no time")
+    from calibration.parameters import FIELDS, part_of
+    from calibration.prediction._cards import read_cards
+    from calibration.study.parts import CardParts
+
+    known = read_cards(Path(path))
+    if len(known) == 1 == len(materials):
+        known = {materials[0]: next(iter(known.values()))}
+    found = {}
+    for material in materials:
+        if material not in known:
+            raise OptionError("start", path, f"expected a card of {material}, found {', '.join(known)}")
+        card = known[material]
+        own = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+        if not own:
+            raise OptionError(
+                "start", path, f"expected viscosity, softening or fibres in the card of {card.material}"
+            )
+        found[material] = CardParts(f"the card of {card.material}", own)
+    return found
 
 
 def _check_folder(folder: Path, overwrite: bool) -> None:

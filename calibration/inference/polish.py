@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 LADDER = (0.0, 1.0, 30.0, 1000.0, 3e4)
 # goes down too where full steps fail again and again: curved valleys of relaxation times and fractions
 FINE_LADDER = (0.0, 0.03, 1.0, 30.0, 1000.0)
+STALLED = 10  # steps that together may gain less than a tenth of what counts as settled, before it ends
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
 
 
@@ -57,7 +58,8 @@ def polish(
     """Minimise the problem's cost by damped Gauss-Newton steps.
 
     Nuisances are taken at the start, and again at the end point. A coordinate at its bound stays there while
-    the cost falls beyond it.
+    the cost falls beyond it. Along a valley without an end (terms that are too much alike) steps gain next to
+    nothing: after `STALLED` of them it ends, not converged.
 
     Parameters
     ----------
@@ -81,6 +83,7 @@ def polish(
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
     damping, fresh = 1e-3, True
+    costs_before: list[float] = []
     if not problem.linearise(u):
         raise ValueError("no equilibrium at the start of the polish")
     for step in range(1, max_steps + 1):
@@ -93,7 +96,12 @@ def polish(
         )
         promise = _promise(gradient[free], curvature[np.ix_(free, free)])
         message = ""
-        if promise >= tolerance:
+        costs_before.append(cost)
+        gained = max(costs_before[-STALLED - 1 :]) - cost
+        stalled = len(costs_before) > STALLED and gained < 0.1 * settled
+        if stalled and promise >= tolerance:
+            message = f"{STALLED} steps lowered chi-square by {gained:.2g}, though {promise:.2g} was promised"
+        elif promise >= tolerance:
             # several lengths of damping at once: they are one batch of scenes
             tries = damping * np.array(ladder)
             moves = np.array([_move(u, gradient, curvature, free, d, bounds) for d in tries])
