@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 LADDER = (0.0, 1.0, 30.0, 1000.0, 3e4)
 # goes down too where full steps fail again and again: curved valleys of relaxation times and fractions
 FINE_LADDER = (0.0, 0.03, 1.0, 30.0, 1000.0)
+NEAR = 0.02  # of a coordinate's spread, 0.6 % of a modulus: so near, nuisances are as they were taken, ...
+NEARER = 1.0  # ... if the data do not tell the points apart either: as many standard deviations
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
 
 
@@ -56,8 +58,8 @@ def polish(
 ) -> Polished:
     """Minimise the problem's cost by damped Gauss-Newton steps.
 
-    Nuisances are taken at the start, and again at the end point. A coordinate at its bound stays there while
-    the cost falls beyond it.
+    Nuisances are taken at the start, and again at the end point unless that is near. A coordinate at its
+    bound stays there while the cost falls beyond it.
 
     Parameters
     ----------
@@ -80,7 +82,7 @@ def polish(
     """
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
-    damping, fresh = 1e-3, True
+    damping, taken = 1e-3, u
     if not problem.linearise(u):
         raise ValueError("no equilibrium at the start of the polish")
     for step in range(1, max_steps + 1):
@@ -101,10 +103,13 @@ def polish(
             best = int(costs.argmin())
             if costs[best] < cost - 0.1 * tolerance:
                 damping = max(1e-6, tries[best] if best else damping / 30.0)
-                u, fresh = moves[best], False
+                u = moves[best]
                 continue
             message = f"no step lowers chi-square, though {promise:.2g} was promised"
         done = promise < settled
+        moved = u - taken
+        fresh = bool((np.abs(moved) <= NEAR * problem.parametrisation.spread).all())
+        fresh = fresh and float(moved @ curvature @ moved) <= NEARER**2
         if fresh or not done or not problem.linearise(u):
             return Polished(
                 u=u,
@@ -115,7 +120,7 @@ def polish(
                 message="" if done else message,
                 steps=step,
             )
-        fresh = True
+        taken = u
     residuals, jacobian = _linearised(problem, u, difference)
     return Polished(
         u=u,
