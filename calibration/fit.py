@@ -46,6 +46,10 @@ Relaxation and softening beside the law, from ramps, holds and cycles of homogen
 
   python -m calibration.fit EXPERIMENT --model ogden --time prony --damage mullins
 
+The relaxation that was found in coupons, held in a fit to beams:
+
+  python -m calibration.fit BEAMS --model neo-hookean --start fitted/cards/M1.yaml
+
 Corrected for what a diagnosis found in rig and camera:
 
   python -m calibration.fit datasets/measured/bench/grips-short --rig diagnosed/cards/rig.yaml
@@ -105,6 +109,13 @@ def main(
             help="rig.yaml of a diagnosis of photographed beams: faults of rig and camera to correct for."
         ),
     ] = None,
+    start: Annotated[
+        Path | None,
+        typer.Option(
+            help="Material card, or folder of cards, with viscosity, softening or fibres: held in the fit as"
+            " they are, or where --time, --damage or --fibres asks for them, the start of its search."
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
     ] = None,
@@ -124,7 +135,7 @@ def main(
     """Fit constitutive laws to all measurements of an experiment; writes fits, cards and report.html."""
     console = Console()
     with plain_ends():
-        from calibration.api import plan_fit
+        from calibration.fit_plan import plan_fit
 
         plan = plan_fit(
             experiment,
@@ -137,6 +148,7 @@ def main(
             objective=objective,
             free_bulk_ratio=free_bulk_ratio,
             rig=rig,
+            start=start,
             out=out or Path("calibrations") / experiment.resolve().name,
             seed=seed,
             population=population,

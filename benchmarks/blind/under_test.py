@@ -5,6 +5,8 @@ It imports it when it is called, on an experiment's folder that holds no truth.
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import math
 import subprocess
@@ -212,7 +214,7 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
     }
     if chosen is None:
         return found
-    for c in chosen.candidates:
+    for c, said in zip(chosen.candidates, content["causes"], strict=True):
         effect = model.effects[c.effect]
         value, sd = chosen.fit.amplitude(c)
         causes.append(
@@ -222,6 +224,7 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
                 "parameters": {effect.parameter: {"value": effect.in_file(value), "sd": effect.in_file(sd)}},
                 "scope": c.at,
                 "confidence": finding.confidence,
+                "share": said["share"],
             }
         )
     found["extended"] = {"shear_modulus_Pa": model.shear_moduli(chosen.fit.state.u)}
@@ -331,6 +334,18 @@ def fit_command(
     if ended.returncode not in (0, 1):  # 1: a fit with a status that is not "converged", which is written
         problem = (ended.stderr or ended.stdout).strip()[-400:]
         raise NotFittedError(f"exit code {ended.returncode}: {problem}")
+
+
+def fit_in_process(folder: Path, out: Path, law: str, options: Iterable[str] = ()) -> None:
+    """As `fit_command`, in this process: what it has simulated and compiled is there for the next fit."""
+    from calibration.fit import app
+
+    said = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+        words = [str(folder), "--model", law, *options, "--workers", "1", "--out", str(out)]
+        code = app(words, standalone_mode=False)
+    if code not in (0, 1):
+        raise NotFittedError(f"exit code {code}: {said.getvalue().strip()[-400:]}")
 
 
 def estimates_of(out: Path, material: str, law: str) -> dict[str, dict[str, float]]:

@@ -30,8 +30,9 @@ from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.measurements._effect import Candidate, HandedOn
+from calibration.parameters import part_entry
 from calibration.study import Calibration
-from calibration.study.cards import card, part_entry, save
+from calibration.study.cards import card, save
 from tisim import laws
 
 RIG = "rig.yaml"

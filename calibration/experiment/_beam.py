@@ -283,7 +283,7 @@ def _markers(entry: BeamEntry, files: Files, where: str) -> tuple[Marker, ...]:
             raise files.error(
                 f"{where}.marker_positions_mm.{name}", f"expected rows of this marker in {entry.markers}"
             )
-        table.need_growing("time_s", own, of=f" s of marker {name}")
+        table.need_clock(own, of=f" of marker {name}")
         markers.append(
             Marker(
                 name=name,

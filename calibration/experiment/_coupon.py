@@ -38,7 +38,7 @@ def read_coupon(entry: CouponEntry, files: Files, where: str) -> CouponTrial:
     )
     table.need_rows(3)
     if "time_s" in table:
-        table = table.growing("time_s", files)
+        table = table.clock(files)
     stretch = table.numbers["stretch"]
     bad = np.flatnonzero(stretch <= 0)
     if bad.size and entry.mode != "simple-shear":  # there it is 1 + gamma, of any sign

@@ -125,17 +125,28 @@ class Table:
         if len(self) < least:
             raise InputError(f"{self.path}: expected at least {least} rows below the header, got {len(self)}")
 
-    def need_growing(self, name: str, rows: list[int] | None = None, of: str = "") -> None:
-        """Refuses a column that does not grow from row to row (of `rows`, where given)."""
+    def need_clock(self, rows: list[int] | None = None, of: str = "") -> None:
+        """Refuses a column time_s that does not grow from row to row (of `rows`, where given), or has a time
+        before 0."""
         chosen = list(range(len(self))) if rows is None else rows
-        values = self.numbers[name][chosen]
+        self._need_times_from_0(chosen)
+        values = self.numbers["time_s"][chosen]
         bad = np.flatnonzero(np.diff(values) <= 0)
         if bad.size:
             at = int(bad[0]) + 1
             raise self.error(
                 chosen[at],
-                f"column {name}: expected more than {values[at - 1]:g}{of} before it, got {values[at]:g}"
+                f"column time_s: expected more than {values[at - 1]:g} s{of} before it, got {values[at]:g}"
                 + self._also([chosen[int(k) + 1] for k in bad[1:]]),
+            )
+
+    def _need_times_from_0(self, rows: list[int]) -> None:
+        # a test's course begins at 0 or later: what a lab recorded before is no part of it
+        values = self.numbers["time_s"]
+        bad = [r for r in rows if values[r] < 0.0]
+        if bad:
+            raise self.error(
+                bad[0], f"column time_s: expected 0 s or more, got {values[bad[0]]:g}{self._also(bad[1:])}"
             )
 
     def _also(self, rows: list[int]) -> str:
@@ -146,24 +157,25 @@ class Table:
         more = f" and {len(rows) - MOST_LINES} more" if len(rows) > MOST_LINES else ""
         return f"; the same in line{'s' if len(rows) > 1 else ''} {first}{more}"
 
-    def growing(self, name: str, files: Files) -> Table:
-        """The rows in which a column grows: all, or else those of the longest run through the table that
-        does, where `files` may leave rows out. InputError otherwise, and where more than MOST_LOST of them
-        would go."""
-        kept = longest_growing(self.numbers[name])
+    def clock(self, files: Files) -> Table:
+        """The rows in which the column time_s grows: all, or else those of the longest run through the table
+        that does, where `files` may leave rows out. InputError otherwise, where more than MOST_LOST of them
+        would go, and for a time before 0."""
+        self._need_times_from_0(list(range(len(self))))
+        kept = longest_growing(self.numbers["time_s"])
         lost = sorted(set(range(len(self))) - set(kept))
         if not lost:
             return self
         if not files.leave_out_rows:
-            self.need_growing(name, of=" s")
+            self.need_clock()
         if len(lost) > MOST_LOST * len(self):
             raise InputError(
-                f"{self.path}: column {name}: expected that it grows from row to row, but {len(lost)} of"
+                f"{self.path}: column time_s: expected that it grows from row to row, but {len(lost)} of"
                 f" {len(self)} rows stand against it"
             )
         lines = ", ".join(str(self.lines[r]) for r in lost[:MOST_LINES])
         more = f" and {len(lost) - MOST_LINES} more" if len(lost) > MOST_LINES else ""
-        files.left_out.append(f"{self.path.name}: {name} does not grow in lines {lines}{more}, left out")
+        files.left_out.append(f"{self.path.name}: time_s does not grow in lines {lines}{more}, left out")
         return Table(
             path=self.path,
             numbers={n: values[kept] for n, values in self.numbers.items()},

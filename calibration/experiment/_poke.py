@@ -194,7 +194,7 @@ def _record(entry: PokeEntry, files: Files, where: str) -> PokeRecord:
         optional=_COMPONENTS,
     )
     table.need_rows(3)
-    table.need_growing("time_s", of=" s")
+    table.need_clock()
     _need_near(table, ("depth_mm",), entry)
     deepest = float(table.numbers["depth_mm"].max())
     if 0.0 < deepest < min(_SHALLOW * entry.rod.radius_mm, _FLAT * entry.block_mm[2]):

@@ -17,6 +17,7 @@ LADDER = (0.0, 1.0, 30.0, 1000.0, 3e4)
 FINE_LADDER = (0.0, 0.03, 1.0, 30.0, 1000.0)
 NEAR = 0.02  # of a coordinate's spread, 0.6 % of a modulus: so near, nuisances are as they were taken, ...
 NEARER = 1.0  # ... if the data do not tell the points apart either: as many standard deviations
+STALLED = 10  # steps that together may gain less than a tenth of what counts as settled, before it ends
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
 
 
@@ -59,7 +60,8 @@ def polish(
     """Minimise the problem's cost by damped Gauss-Newton steps.
 
     Nuisances are taken at the start, and again at the end point unless that is near. A coordinate at its
-    bound stays there while the cost falls beyond it.
+    bound stays there while the cost falls beyond it. Along a valley without an end (terms that are too much
+    alike) steps gain next to nothing: after `STALLED` of them it ends, not converged.
 
     Parameters
     ----------
@@ -83,6 +85,7 @@ def polish(
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
     damping, taken = 1e-3, u
+    costs_before: list[float] = []
     if not problem.linearise(u):
         raise ValueError("no equilibrium at the start of the polish")
     for step in range(1, max_steps + 1):
@@ -95,7 +98,12 @@ def polish(
         )
         promise = _promise(gradient[free], curvature[np.ix_(free, free)])
         message = ""
-        if promise >= tolerance:
+        costs_before.append(cost)
+        gained = max(costs_before[-STALLED - 1 :]) - cost
+        stalled = len(costs_before) > STALLED and gained < 0.1 * settled
+        if stalled and promise >= tolerance:
+            message = f"{STALLED} steps lowered chi-square by {gained:.2g}, though {promise:.2g} was promised"
+        elif promise >= tolerance:
             # several lengths of damping at once: they are one batch of scenes
             tries = damping * np.array(ladder)
             moves = np.array([_move(u, gradient, curvature, free, d, bounds) for d in tries])

@@ -56,6 +56,7 @@ def guess(problem: Problem) -> Array | None:
 
 
 NO_ANSWER = 1e12  # cost given to a candidate without equilibrium: worse than any that has one
+PATIENCE = 10  # generations in which the end of a descent may be beaten
 
 
 class HistoryError(ValueError):
@@ -148,12 +149,14 @@ def search(
     spread: Array,
     options: CmaOptions | None = None,
     history: Sequence[Generation] = (),
+    known: float = np.inf,
     on_progress: OnProgress = lambda _: None,
 ) -> Found:
     """Minimise the problem's cost by CMA-ES, or along one coordinate by sections, inside its bounds.
 
     Held coordinates stay at `start`. A search whose whole first three generations have no answer ends with
-    reason "no equilibrium".
+    reason "no equilibrium". One that sets out from where a descent ended looks for a lower valley; it ends
+    where `PATIENCE` generations found none.
 
     Parameters
     ----------
@@ -163,6 +166,8 @@ def search(
     options : CmaOptions
     history : sequence of Generation
         Of an earlier run of the same search; it is replayed without a simulation.
+    known : float
+        Cost of the point where a descent ended; infinite without one.
     on_progress : callable
         Called after each generation; an exception from it (KeyboardInterrupt) ends the search there.
 
@@ -206,7 +211,7 @@ def search(
                     restart=restart, index=index, candidates=candidates, costs=costs, replayed=replayed
                 )
             )
-            reason = _ended(strategy, best, index)
+            reason = _ended(strategy, best, index, known)
             if reason:
                 break
         else:
@@ -255,8 +260,10 @@ def _strategy(start: Array, spread: Array, bounds: Array, options: CmaOptions, r
     )
 
 
-def _ended(strategy: Any, best: float, index: int) -> str:
+def _ended(strategy: Any, best: float, index: int, known: float) -> str:
+    if np.isfinite(known) and best >= known and index + 1 >= PATIENCE:
+        return f"converged: no candidate of {PATIENCE} generations is below where the descent ended"
     if np.isinf(best):
-        return "no equilibrium" if index >= 2 else ""
+        return "no equilibrium" if index >= 2 and np.isinf(known) else ""
     stop = strategy.stop()
     return "converged: " + ", ".join(sorted(stop)) if stop else ""

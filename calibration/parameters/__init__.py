@@ -31,6 +31,7 @@ from calibration.parameters._parts import (
     part_kinds,
     register_part,
 )
+from calibration.parameters._stated import FIELDS, OPTIONS, held_part, part_entry, part_of
 from tisim import laws
 
 _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
@@ -74,6 +75,8 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
 
 
 __all__ = [
+    "FIELDS",
+    "OPTIONS",
     "Coordinate",
     "Option",
     "Parameters",
@@ -82,11 +85,14 @@ __all__ = [
     "PartKind",
     "ProtocolWindow",
     "bulk_ratio",
+    "held_part",
     "parametrisation",
     "part_alternatives",
     "part_coordinates",
+    "part_entry",
     "part_kind",
     "part_kinds",
+    "part_of",
     "register",
     "register_part",
     "shear_modulus",

@@ -6,7 +6,7 @@ A part is named in one word, with an argument after a colon where it takes one (
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from calibration.parameters._coordinates import Coordinate
@@ -42,7 +42,7 @@ class PartCoordinates:
     Attributes
     ----------
     spec : str
-        As it is asked for ("prony:2").
+        As it is asked for ("prony:2"); empty where it is held.
     label : str
         In tables and file names ("prony-2").
     field : str
@@ -54,6 +54,8 @@ class PartCoordinates:
         Values by coordinate name -> the part; ValueError where it refuses them.
     describe : callable
         Values, and the law's small-strain moduli -> sentences for `Parametrisation.remarks`.
+    take_apart : callable, optional
+        The inverse of `assemble`: a part -> values; ValueError for one of another form.
     """
 
     spec: str
@@ -63,6 +65,18 @@ class PartCoordinates:
     coordinates: tuple[Coordinate, ...]
     assemble: Callable[[Values], Part]
     describe: Callable[[Values, laws.Moduli], list[str]]
+    take_apart: Callable[[Part], Values] | None = None
+
+    def starting_at(self, part: Part) -> PartCoordinates:
+        """The same, searched from a part on; ValueError for one that these coordinates do not describe."""
+        if self.take_apart is None:
+            raise ValueError(f"{self.spec} does not begin at a {part.name}")
+        values = self.take_apart(part)
+        begun = tuple(
+            replace(c, start=min(max(values[c.name], c.low), c.high), start_per_shear=None)
+            for c in self.coordinates
+        )
+        return replace(self, coordinates=begun)
 
     def assembled(self, values: Values) -> Part:
         """The part at these values; ValueError where they make none."""
@@ -112,6 +126,7 @@ def one_form(
     coordinates: tuple[Coordinate, ...],
     assemble: Callable[[Values], Part],
     describe: Callable[[Values, ProtocolWindow], list[str]],
+    take_apart: Callable[[Part], Values] | None = None,
 ) -> PartKind:
     """A part that takes no argument, with the same coordinates whatever the tests show.
 
@@ -119,7 +134,7 @@ def one_form(
     ----------
     name, option
         As in `PartKind`; the name is the spec, the label and the usage.
-    field, coordinates, assemble
+    field, coordinates, assemble, take_apart
         As in `PartCoordinates`.
     describe : callable
         Values, and what the tests show -> sentences for a reader.
@@ -136,6 +151,7 @@ def one_form(
             coordinates=coordinates,
             assemble=assemble,
             describe=lambda values, _: describe(values, window),
+            take_apart=take_apart,
         )
 
     return PartKind(name=name, option=option, usage=name, make=make)

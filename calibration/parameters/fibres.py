@@ -11,6 +11,7 @@ import math
 from calibration.parameters._coordinates import Coordinate
 from calibration.parameters._parts import ProtocolWindow, Values, one_form, register_part
 from tisim import HolzapfelGasserOgden
+from tisim.parts import Part
 
 ALONG = 5.0  # an angle so near to an axis is not known to better [deg]
 
@@ -47,6 +48,16 @@ def assemble(v: Values) -> HolzapfelGasserOgden:
     )
 
 
+def take_apart(part: Part) -> Values:
+    """Values of fibres of this form. ValueError where they leave the plane of axes 1 and 2."""
+    if not isinstance(part, HolzapfelGasserOgden) or part.direction[2] != 0.0:
+        raise ValueError(
+            f"fibres: expected holzapfel-gasser-ogden in the plane of axes 1 and 2, got {part!r}"
+        )
+    angle = math.degrees(math.atan2(abs(part.direction[1]), abs(part.direction[0])))
+    return {"fibres_k1": part.k1, "fibres_k2": part.k2, "fibres_angle_deg": angle}
+
+
 def describe(values: Values, window: ProtocolWindow) -> list[str]:
     """What a reader must know of the fibres."""
     del window
@@ -64,5 +75,6 @@ register_part(
         coordinates=(K1, K2, ANGLE),
         assemble=assemble,
         describe=describe,
+        take_apart=take_apart,
     )
 )

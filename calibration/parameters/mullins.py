@@ -5,6 +5,7 @@ from __future__ import annotations
 from calibration.parameters._coordinates import Coordinate
 from calibration.parameters._parts import ProtocolWindow, Values, one_form, register_part
 from tisim import OgdenRoxburgh
+from tisim.parts import Part
 
 R = Coordinate(
     name="mullins_r",
@@ -45,6 +46,13 @@ def assemble(v: Values) -> OgdenRoxburgh:
     return OgdenRoxburgh(r=v["mullins_r"], m=v["mullins_m"], beta=v["mullins_beta"])
 
 
+def take_apart(part: Part) -> Values:
+    """Values of a softening of this form."""
+    if not isinstance(part, OgdenRoxburgh):
+        raise ValueError(f"mullins: expected an ogden-roxburgh softening, got {part.name}")
+    return {"mullins_r": part.r, "mullins_m": part.m, "mullins_beta": part.beta}
+
+
 def describe(values: Values, window: ProtocolWindow) -> list[str]:
     """What the tests cannot show of it."""
     del values
@@ -66,5 +74,6 @@ register_part(
         coordinates=(R, M, BETA),
         assemble=assemble,
         describe=describe,
+        take_apart=take_apart,
     )
 )

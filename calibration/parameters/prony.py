@@ -15,6 +15,7 @@ import numpy as np
 from calibration.parameters._coordinates import Coordinate
 from calibration.parameters._parts import PartCoordinates, PartKind, ProtocolWindow, Values, register_part
 from tisim import Prony, laws
+from tisim.parts import Part
 
 MOST = 3  # terms with free times: more cannot be told apart by a few decades of time
 FRACTION, FRACTION_LOG_SD = 0.2, 2.0  # prior of a term's fraction
@@ -62,7 +63,17 @@ def prony(argument: str, window: ProtocolWindow) -> PartCoordinates:
             raise ValueError("times: expected relaxation times that rise from term to term")
         return Prony(fractions=_fractions(v, terms), times=times)
 
-    return _part(f"prony:{terms}", window, coordinates, assemble)
+    def take_apart(part: Part) -> Values:
+        if not isinstance(part, Prony) or len(part.times) != terms:
+            raise ValueError(f"prony:{terms}: expected a Prony series of so many terms, got {part!r}")
+        spectrum = part.spectrum()
+        found = {}
+        for i, k in enumerate(np.argsort(spectrum.times)):
+            found[f"prony_fraction_{i + 1}"] = float(spectrum.strengths[k] / spectrum.equilibrium)
+            found[f"prony_time_{i + 1}"] = float(spectrum.times[k])
+        return found
+
+    return _part(f"prony:{terms}", window, coordinates, assemble, take_apart)
 
 
 def _spectrum(window: ProtocolWindow) -> PartCoordinates:
@@ -91,7 +102,11 @@ def _spectrum(window: ProtocolWindow) -> PartCoordinates:
 
 
 def _part(
-    spec: str, window: ProtocolWindow, coordinates: list[Coordinate], assemble: Callable[[Values], Prony]
+    spec: str,
+    window: ProtocolWindow,
+    coordinates: list[Coordinate],
+    assemble: Callable[[Values], Prony],
+    take_apart: Callable[[Part], Values] | None = None,
 ) -> PartCoordinates:
     def describe(values: Values, moduli: laws.Moduli) -> list[str]:
         return _remarks(assemble(values), moduli, window, stated=spec == "prony:spectrum")
@@ -104,6 +119,7 @@ def _part(
         coordinates=tuple(coordinates),
         assemble=assemble,
         describe=describe,
+        take_apart=take_apart,
     )
 
 

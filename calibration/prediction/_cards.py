@@ -6,7 +6,7 @@ are known.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
-from calibration.parameters import Parametrisation, PartCoordinates, ProtocolWindow
+from calibration.parameters import FIELDS, Parametrisation, PartCoordinates, ProtocolWindow, part_of
 from calibration.parameters._coordinates import Coordinate, Parameters, shear_modulus
 from calibration.prediction._interval import WIDTH
-from calibration.study.cards import PART_UNITS
-from tisim import laws, parts
+from tisim import laws
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony
 
 Array = NDArray[np.float64]
@@ -28,12 +27,6 @@ Array = NDArray[np.float64]
 BASE = "neo-hookean"  # the law of cards that name none
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
-FIELDS: dict[str, Any] = {
-    "viscosity": parts.Viscosity,
-    "softening": parts.Softening,
-    "fibres": parts.Fibres,
-}
-OPTIONS = {"viscosity": "time", "softening": "damage", "fibres": "fibres"}  # of a fit, by field
 # what a relative change of an effect's amplitude changes of its part, and whether it grows with it
 SCALED: dict[type[Part], tuple[str, int]] = {
     Prony: ("fractions", 1),
@@ -237,29 +230,6 @@ def part_coordinates(field: str, part: Part, *, free: bool) -> PartCoordinates:
         assemble=assemble,
         describe=lambda *_: [],
     )
-
-
-def part_of(field: str, entry: dict[str, Any]) -> Part:
-    """A part as a card states it, with or without units behind its keys. ValueError for one that is none."""
-    kinds = [n for n in parts.names() if issubclass(parts.get(n), FIELDS[field])]
-    if entry.get("kind") not in kinds:
-        raise ValueError(f"key {field}.kind: expected one of {', '.join(kinds)}, got {entry.get('kind')!r}")
-    kind = parts.get(entry["kind"])
-    known = {f.name for f in fields(kind) if f.init}
-    values: dict[str, Any] = {}
-    for key, value in entry.items():
-        if key == "kind":
-            continue
-        name = next((n for n in known if key == n or key in {f"{n}_{unit}" for unit in PART_UNITS}), None)
-        if name is None:
-            raise ValueError(f"key {field}.{key}: expected {', '.join(sorted(known))}")
-        values[name] = tuple(value) if isinstance(value, list) else value
-    try:
-        found = kind(**values)
-        found.check()
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"key {field}: {error}") from None
-    return found
 
 
 def _relative_sd(card: CardFile, field: str) -> float | None:

@@ -17,8 +17,8 @@ from calibration.measurements._baseline import SCATTER, Baseline
 from calibration.measurements._kinds import Kind, compared
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
+from calibration.parameters import OPTIONS
 from calibration.prediction._cards import (
-    OPTIONS,
     CardFile,
     CardModel,
     baseline_model,

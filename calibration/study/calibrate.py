@@ -31,7 +31,7 @@ from calibration.inference import (
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.dice import DiceObjective
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.parameters import Parametrisation
+from calibration.parameters import Parametrisation, part_entry
 from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
 from calibration.study.calibration import Calibration, HeldOut, Status
 from calibration.study.measurements import Measurements
@@ -144,14 +144,14 @@ def calibrate(
     start = guess(problem)
     if start is None or not problem.linearise(start):
         return replace(none, wall_seconds=time.perf_counter() - wall, search_seconds=_core_seconds() - begun)
-    if parametrisation.parts:
-        start = _descended(problem, start)
+    descent = _descended(problem, start) if parametrisation.parts else None
     found = search(
         problem,
-        start=start,
+        start=start if descent is None else descent.u,
         spread=parametrisation.spread,
         options=options.cma,
         history=history,
+        known=np.inf if descent is None else descent.cost,
         on_progress=on_progress,
     )
     searched = _core_seconds()
@@ -162,6 +162,10 @@ def calibrate(
         "search_reason": found.reason,
         "search_seconds": searched - begun,
     }
+    if descent is not None and descent.cost <= found.cost:
+        found = replace(found, u=descent.u, cost=descent.cost)
+    else:
+        descent = None
     if not np.isfinite(found.cost):
         return replace(
             none,
@@ -172,11 +176,10 @@ def calibrate(
     status: Status = "converged" if found.reason.startswith("converged") else "not converged"
     message = "" if status == "converged" else f"CMA-ES ended after {found.reason}"
     u = found.u
-    if parametrisation.parts and problem.costs(start[None])[0] < found.cost:
-        u = start
     best = _point(problem, data, u, status=status, message=message)
     if options.gauss_newton:
-        best = _polished(problem, data, u, best, options)
+        done = descent if descent is not None and descent.converged else None
+        best = _polished(problem, data, u, best, options, done)
     else:
         bounds = at_bounds(parametrisation, u)
         best = replace(best, unsettled=tuple(bounds)).assessed(constants_lacking(parametrisation, u))
@@ -210,20 +213,26 @@ def _searched(data: Measurements) -> Parametrisation:
     return data.law if data.free_bulk_ratio and data.outlines is not None else data.law.holding(BULK)
 
 
-def _descended(problem: Problem, start: Array) -> Array:
-    """Where Gauss-Newton leads from a start; the start where it fails. Relaxation times and fractions make
-    long curved valleys, along which a short random search gets nowhere."""
+def _descended(problem: Problem, start: Array) -> Polished | None:
+    """Where Gauss-Newton leads from a start; None where it fails. Relaxation times and fractions make long
+    curved valleys, along which a random search gets nowhere."""
     try:
-        return polish(problem, start, **_VALLEYS).u
+        return polish(problem, start, **_VALLEYS)
     except ValueError:
-        return start
+        return None
 
 
 def _polished(
-    problem: Problem, data: Measurements, u: Array, best: Calibration, options: FitOptions
+    problem: Problem,
+    data: Measurements,
+    u: Array,
+    best: Calibration,
+    options: FitOptions,
+    done: Polished | None,
 ) -> Calibration:
+    """With error bars, from u on. done : a polish that ended there already."""
     try:
-        end = polish(problem, u, **(_VALLEYS if problem.parametrisation.parts else {}))
+        end = done or polish(problem, u, **(_VALLEYS if problem.parametrisation.parts else {}))
     except ValueError as error:
         return replace(best, status="not converged", message=f"polish: {error}")
     free = problem.parametrisation
@@ -314,7 +323,12 @@ def _parts(p: Parametrisation) -> dict[str, Any]:
     """Attributes of a `Calibration` that say what the material has beside the law."""
     if not p.parts:
         return {}
-    return {"parts": tuple(part.spec for part in p.parts), "protocol": asdict(p.parts[0].window)}
+    values: dict[str, float] = {}
+    return {
+        "parts": tuple(part.spec for part in p.parts if part.spec),
+        "held": {part.field: part_entry(part.assembled(values)) for part in p.parts if not part.spec},
+        "protocol": asdict(p.parts[0].window),
+    }
 
 
 def _is_dice(objective: Objective) -> bool:

@@ -8,7 +8,14 @@ from typing import Any, Literal
 
 from calibration.inference import Estimate
 from calibration.measurements.outlines.dice import SCALE
-from calibration.parameters import Parametrisation, ProtocolWindow, parametrisation, part_coordinates
+from calibration.parameters import (
+    Parametrisation,
+    ProtocolWindow,
+    held_part,
+    parametrisation,
+    part_coordinates,
+    part_of,
+)
 from calibration.study.assessment import misfit_lacking, sentence
 from tisim import Material
 from tisim.parts import Part
@@ -90,6 +97,9 @@ class Calibration:
     parts : tuple of str
         What the material has beside the law ("prony:2", "mullins"); moduli are then long-time ones, those of
         the first loading.
+    held : mapping
+        What it has beside the law and the fit did not search, by the field of `tisim.Material`, as a card
+        states it.
     protocol : mapping
         `calibration.parameters.ProtocolWindow` of the tests that these were fitted to.
     """
@@ -127,6 +137,7 @@ class Calibration:
     unsettled: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
     protocol: Mapping[str, float] = field(default_factory=dict)
+    held: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
     def mean_dice(self) -> float | None:
@@ -139,18 +150,22 @@ class Calibration:
         own = self.label.partition("+")[0]
         terms = 1 if own == self.law else int(own.removeprefix(f"{self.law}-"))
         law = parametrisation(self.law, terms=terms)
-        if not self.parts:
+        if not self.parts and not self.held:
             return law
         window = ProtocolWindow(
             first=self.protocol["first"], last=self.protocol["last"], peaks=int(self.protocol["peaks"])
         )
-        return law.with_parts([part_coordinates(spec, window) for spec in self.parts])
+        held = [held_part(name, part_of(name, entry), window) for name, entry in self.held.items()]
+        return law.with_parts([*(part_coordinates(spec, window) for spec in self.parts), *held])
 
     @property
     def material_parts(self) -> dict[str, Part]:
         """What the material has beside its law, by the field of `tisim.Material`."""
-        values = self.parametrisation.values(self.u) if self.parts else {}
-        return {p.field: p.assembled(values) for p in self.parametrisation.parts} if values else {}
+        if not self.u or not (self.parts or self.held):
+            return {}
+        law = self.parametrisation
+        values = law.values(self.u)
+        return {p.field: p.assembled(values) for p in law.parts}
 
     def simulated(self, *, density: float = 1000.0) -> Material:
         """The material as `tisim` takes it; density [kg/m3] where the lab states none."""

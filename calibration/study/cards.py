@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +16,9 @@ import yaml
 
 from calibration.errors import InputError
 from calibration.experiment import Experiment
-from calibration.parameters import parametrisation
+from calibration.parameters import parametrisation, part_entry
 from calibration.study.calibration import Calibration
 from tisim import laws
-from tisim.parts import Part
-
-PART_UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key of a part may end with
 
 # How a mixture is given to a surrogate: 0.8 for no softener, 0.4 for half, 0 for all (the paper's labels).
 _STIFFEST, _PER_RATIO = 0.8, 0.8
@@ -117,14 +113,6 @@ def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
     return {name: part_entry(part) for name, part in chosen.material_parts.items()}
 
 
-def part_entry(part: Part) -> dict[str, Any]:
-    """A part of `tisim.parts` as a card states it: its kind, and its parameters."""
-    values = {f.name: getattr(part, f.name) for f in fields(part)}
-    words = {k: v for k, v in values.items() if isinstance(v, str)}
-    numbers = _plain({k: v for k, v in values.items() if k not in words})
-    return {"kind": part.name, **words, **numbers}
-
-
 def _provenance(
     results: Sequence[Calibration], chosen: Calibration, filled: Sequence[str], experiment: Experiment
 ) -> str:
@@ -143,6 +131,8 @@ def _provenance(
         lines.append(
             f"Parts ({', '.join(chosen.parts)}) were fitted beside {chosen.law}; moduli are long-time ones."
         )
+    if chosen.held:
+        lines.append(f"Held beside {chosen.law}, as another card states them: {', '.join(chosen.held)}.")
     if chosen.note:
         lines.append(f"Note: {chosen.note}.")
     if filled:

@@ -9,9 +9,10 @@ where records have hundreds of points.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -20,16 +21,81 @@ from calibration.experiment.model import Experiment
 from calibration.measurements._kinds import compared
 from calibration.measurements._over_time import union
 from calibration.parameters import (
+    OPTIONS,
     Parametrisation,
+    PartCoordinates,
     ProtocolWindow,
+    held_part,
     part_alternatives,
     part_coordinates,
+    part_entry,
     part_kind,
     part_kinds,
 )
 from calibration.study.calibration import Calibration
+from tisim.parts import Part
 
 _ANY = ProtocolWindow(first=1.0, last=100.0, peaks=1)  # for the check of a spec alone
+
+
+@dataclass(frozen=True)
+class CardParts:
+    """What a material card has beside its law, for a fit: a part is held as it is, or where the fit searches
+    one of its field, the search begins there.
+
+    Attributes
+    ----------
+    name : str
+        Of the card, for sentences.
+    parts : mapping
+        By the field of `tisim.Material`.
+    """
+
+    name: str
+    parts: Mapping[str, Part]
+
+    @property
+    def content(self) -> dict[str, dict[str, Any]]:
+        """As a card states them."""
+        return {field: part_entry(part) for field, part in self.parts.items()}
+
+    def held(self, specs: Sequence[str]) -> dict[str, Part]:
+        """Those of which the fit searches none itself."""
+        searched = {option_of(s) for s in specs}
+        return {field: part for field, part in self.parts.items() if OPTIONS[field] not in searched}
+
+    def begun(self, part: PartCoordinates) -> PartCoordinates:
+        """The coordinates searched from the card's part on; as they are where it is of another form."""
+        own = self.parts.get(part.field)
+        if own is None:
+            return part
+        try:
+            return part.starting_at(own)
+        except ValueError:
+            return part
+
+    def sentence(self, specs: Sequence[str]) -> str:
+        """What became of its parts."""
+        held = self.held(specs)
+        said = [
+            f"{field} ({_in_words(part)}) is held as {self.name} states it" for field, part in held.items()
+        ]
+        for spec in specs:
+            part = part_coordinates(spec, _ANY)
+            if part.field in self.parts:
+                begins = "began" if self.begun(part) is not part else "did not begin, for its other form,"
+                said.append(f"the search of {part.label} {begins} at the {part.field} of {self.name}")
+        if held:
+            said.append("no error bar has the error of what is held")
+        return "; ".join(said)
+
+
+def _in_words(part: Part) -> str:
+    """prony, fractions 0.3 and 0.2, times 1 and 20."""
+    entry = part_entry(part)
+    kind = str(entry.pop("kind"))
+    numbers = {k: v if isinstance(v, list) else [v] for k, v in entry.items()}
+    return ", ".join([kind, *(f"{k} {' and '.join(str(x) for x in v)}" for k, v in numbers.items())])
 
 
 def asked(**options: str | None) -> tuple[str, ...]:
@@ -66,9 +132,27 @@ def _one_of(usage: str) -> str:
     return f"one of {usage}" if "," in usage else usage
 
 
-def check(experiment: Experiment, materials: Sequence[str], specs: Sequence[str]) -> None:
-    """InputError, in one sentence, where a material's tests cannot be fitted with these parts."""
-    for material in materials if specs else ():
+def check(
+    experiment: Experiment,
+    materials: Sequence[str],
+    specs: Sequence[str],
+    cards: Mapping[str, CardParts] | None = None,
+) -> None:
+    """InputError, in one sentence, where a material's tests cannot be fitted with these parts, or not with
+    those of its card."""
+    for material in materials:
+        _check(experiment, material, specs)
+        card = (cards or {}).get(material)
+        if card is None:
+            continue
+        try:
+            _check(experiment, material, [part_kinds(OPTIONS[f])[0].name for f in card.held(specs)])
+        except InputError as error:
+            raise InputError(f"{card.name}: {error}") from None
+
+
+def _check(experiment: Experiment, material: str, specs: Sequence[str]) -> None:
+    if specs:
         for kind, own in compared(_of(experiment, material)):
             follows = None if kind.over_time is None else kind.over_time()
             for part in map(part_kind, specs):
@@ -82,26 +166,39 @@ def check(experiment: Experiment, materials: Sequence[str], specs: Sequence[str]
 
 
 def with_parts(
-    law: Parametrisation, specs: Sequence[str], experiment: Experiment, material: str
+    law: Parametrisation,
+    specs: Sequence[str],
+    experiment: Experiment,
+    material: str,
+    card: CardParts | None = None,
 ) -> Parametrisation:
-    """The law with parts that are fitted to a material's tests of all kinds; each spec says all."""
-    if not specs:
+    """The law with parts that are fitted to a material's tests of all kinds; each spec says all.
+
+    card : of the material, whose parts are held, or begin the search.
+    """
+    held = {} if card is None else card.held(specs)
+    if not specs and not held:
         return law
     window = union(
         [kind.over_time().window(own) for kind, own in compared(_of(experiment, material)) if kind.over_time]
     )
     if any(part_kind(s).needs_time for s in specs) and not window.last > 0.0:
         raise InputError(f"material {material}: expected records that last longer than 0 s")
-    return law.with_parts([part_coordinates(s, window) for s in specs])
+    searched = [part_coordinates(s, window) for s in specs]
+    if card is not None:
+        searched = [card.begun(p) for p in searched]
+    return law.with_parts([*searched, *(held_part(field, part, window) for field, part in held.items())])
 
 
 def _of(experiment: Experiment, material: str) -> Experiment:
     return replace(experiment, trials=tuple(t for t in experiment.trials if t.material == material))
 
 
-def label(law: str, specs: Sequence[str]) -> str:
+def label(law: str, specs: Sequence[str], card: CardParts | None = None) -> str:
     """Of a fit, before its data are read."""
-    return "+".join([law, *(s.replace(":", "-") for s in specs)])
+    held = {} if card is None else card.held(specs)
+    own = [held_part(field, part, _ANY).label for field, part in held.items()]
+    return "+".join([law, *(s.replace(":", "-") for s in specs), *own])
 
 
 def alternatives(specs: Sequence[str]) -> list[tuple[str, ...]]:

@@ -7,7 +7,7 @@ import logging
 import multiprocessing
 import os
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
 from multiprocessing import connection
@@ -27,12 +27,13 @@ from calibration.study._store import FitStore, locked
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
+from calibration.study.parts import CardParts
 from tisim import laws
 
 log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 4
+FORMAT = 5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +60,8 @@ class Task:
         What the material has beside the law (`calibration.study.parts`).
     free_bulk_ratio : bool
         K/G is found by photographs, and not held.
+    card : CardParts, optional
+        Of the material: parts that are held, or begin the search.
     """
 
     experiment: Path
@@ -72,10 +75,11 @@ class Task:
     setup: Setup | None = None
     parts: tuple[str, ...] = ()
     free_bulk_ratio: bool = False
+    card: CardParts | None = None
 
     @property
     def label(self) -> str:
-        return parts.label(parametrisation(self.law, terms=self.terms).label, self.parts)
+        return parts.label(parametrisation(self.law, terms=self.terms).label, self.parts, self.card)
 
     @property
     def alternatives(self) -> list[Task]:
@@ -89,7 +93,7 @@ class Task:
     def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
         """What of the experiment it fits."""
         law = parts.with_parts(
-            parametrisation(self.law, terms=self.terms), self.parts, experiment, self.material
+            parametrisation(self.law, terms=self.terms), self.parts, experiment, self.material, self.card
         )
         return measurements(
             experiment,
@@ -117,6 +121,8 @@ class Task:
         }
         if self.parts:
             header["parts"] = list(self.parts)
+        if self.card is not None:
+            header["card"] = self.card.content
         if self.free_bulk_ratio:
             header["free_bulk_ratio"] = True
         return FitStore(self.folder, self.name, header)
@@ -134,8 +140,10 @@ def tasks_for(
     setup: Setup | None = None,
     specs: Sequence[str] = (),
     free_bulk_ratio: bool = False,
+    cards: Mapping[str, parts.CardParts] | None = None,
 ) -> list[Task]:
-    """Every law for every material, law by law, in the order given; specs : of parts beside each law."""
+    """Every law for every material, law by law, in the order given; specs : of parts beside each law; cards :
+    by material, whose parts are held or begin the search."""
     return [
         Task(
             experiment=experiment.folder.resolve(),
@@ -149,6 +157,7 @@ def tasks_for(
             setup=setup,
             parts=tuple(specs),
             free_bulk_ratio=free_bulk_ratio,
+            card=(cards or {}).get(material),
         )
         for law in law_names
         for material in materials
@@ -300,10 +309,10 @@ def fit_task(
 
 
 def _with_setup(result: Calibration, task: Task) -> Calibration:
-    """The result with a note on the rig that it was corrected for."""
-    if task.setup is None:
-        return result
-    return replace(result, note="; ".join(n for n in (task.setup.sentence, result.note) if n))
+    """The result with a note on the rig that it was corrected for, and the card that it took parts from."""
+    rig = "" if task.setup is None else task.setup.sentence
+    card = "" if task.card is None else task.card.sentence(task.parts)
+    return replace(result, note="; ".join(n for n in (rig, card, result.note) if n))
 
 
 def _end_with_parent() -> None:

@@ -16,7 +16,7 @@ from benchmarks.blind.timed.cases import draw_beams, draw_coupons, draw_indentat
 from benchmarks.blind.timed.coupons import respond
 from benchmarks.blind.timed.indentation import LAYERS, load
 from benchmarks.blind.timed.make import main as make
-from benchmarks.blind.under_test import NotFittedError, estimates_of, fit_command
+from benchmarks.blind.under_test import NotFittedError, estimates_of, fit_command, fit_in_process
 
 PARAMETERS = [
     "shear_modulus",
@@ -162,7 +162,7 @@ def test_the_driver_counts_the_intervals_that_hold_the_truth(
     monkeypatch.setattr(recover, "fit_command", fitted)
     arguments = ["coupons", "--parts", "prony", "--seeds", "2", "--out", str(tmp_path)]
     assert recover.main([*arguments, "--goal", "0.9"]) == 0
-    assert asked == [("ogden", "--time", "prony")] * 2
+    assert asked == [("ogden", "--time", "prony", "--no-held-out")] * 2
     printed = capsys.readouterr().out
     assert "prony.time.2         1 of   2" in printed
     assert "11 of  12: 92%" in printed
@@ -177,6 +177,8 @@ def test_a_fit_that_fails_is_a_miss_with_its_message(
     stop = "import sys; sys.stderr.write('no such thing'); sys.exit(2)"
     with pytest.raises(NotFittedError, match=r"exit code 2.*no such thing"):
         fit_command(tmp_path, tmp_path / "f", "ogden", command=(sys.executable, "-c", stop))
+    with pytest.raises(NotFittedError, match=r"exit code 2: error: \S+: expected a folder that holds"):
+        fit_in_process(tmp_path / "none", tmp_path / "f", "ogden")
     with pytest.raises(NotFittedError, match="expected a fit"):
         estimates_of(tmp_path, "M", "ogden")
     arguments = ["coupons", "--parts", "mullins", "--seeds", "1", "--score", "--out", str(tmp_path)]

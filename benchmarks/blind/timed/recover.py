@@ -9,7 +9,8 @@
 Each seed's experiment is made in DIR/KIND-SEED, unless it is there, its truth is put beside it
 (DIR/KIND-SEED.truth.yaml: the fit's folder holds none), and `python -m calibration.fit DIR/KIND-SEED --model
 LAW --time prony ...` is run into DIR/KIND-SEED.fit. Its estimates are read from
-DIR/KIND-SEED.fit/fits/M-LAW+PARTS.json ("M-ogden+prony+mullins.json"): those with the names of NAMES. A fit
+DIR/KIND-SEED.fit/fits/M-LAW+PARTS.json ("M-ogden+prony+mullins.json"): those with the names of NAMES. With
+`--in-process` the command is called in this process, which keeps what it has compiled and simulated. A fit
 that fails counts as a miss of all its parameters, and its message is printed. `--score` runs no fit and
 scores the folders that are there. Results: DIR/KIND.json. Exit code 1 where a fit failed or fewer than --goal
 of the intervals hold.
@@ -29,7 +30,7 @@ import yaml
 
 from benchmarks.blind.timed.cases import KINDS, MATERIAL, PARTS, write
 from benchmarks.blind.timed.make import drawn
-from benchmarks.blind.under_test import NotFittedError, estimates_of, fit_command
+from benchmarks.blind.under_test import NotFittedError, estimates_of, fit_command, fit_in_process
 
 GOAL = 0.9
 OPTIONS = {"prony": ("--time", "prony"), "mullins": ("--damage", "mullins"), "fibres": ("--fibres",)}
@@ -107,7 +108,13 @@ def scored(seed: int, material: dict[str, Any], estimates: dict[str, dict[str, f
 
 
 def recover(
-    kind: str, seed: int, out: Path, parts: Sequence[str] | None, *, score_only: bool = False
+    kind: str,
+    seed: int,
+    out: Path,
+    parts: Sequence[str] | None,
+    *,
+    score_only: bool = False,
+    in_process: bool = False,
 ) -> list[Interval]:
     """Make, fit and score one seed."""
     folder = out / f"{kind}-{seed}"
@@ -118,11 +125,12 @@ def recover(
     material = yaml.safe_load(truth_path.read_text(encoding="utf-8"))["materials"][MATERIAL]
     law = "ogden" if material["alpha"] != [2.0] else "neo-hookean"
     parts_of_it = [part for part in PARTS if part in material]
-    options = [word for part in parts_of_it for word in OPTIONS[part]]
+    options = [*(word for part in parts_of_it for word in OPTIONS[part]), "--no-held-out"]  # for its time
     fitted = out / f"{kind}-{seed}.fit"
     try:
         if not score_only:
-            fit_command(folder, fitted, law, options)
+            run = fit_in_process if in_process else fit_command
+            run(folder, fitted, law, options)
         estimates = estimates_of(fitted, MATERIAL, "+".join([law, *parts_of_it]))
     except NotFittedError as error:
         print(f"{kind} {seed}: {error}", flush=True)
@@ -159,6 +167,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--parts", nargs="*", choices=PARTS, help="of coupons: default prony mullins")
     parser.add_argument("--score", action="store_true", help="run no fit, score those that are there")
+    parser.add_argument("--in-process", action="store_true", help="fits in this process, one core")
     parser.add_argument("--goal", type=float, default=GOAL)
     given = parser.parse_args(argv)
     if given.parts is not None and given.kind != "coupons":
@@ -168,7 +177,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     intervals: list[Interval] = []
     for seed in range(given.first, given.first + given.seeds):
-        intervals += recover(given.kind, seed, given.out, given.parts, score_only=given.score)
+        intervals += recover(
+            given.kind,
+            seed,
+            given.out,
+            given.parts,
+            score_only=given.score,
+            in_process=given.in_process,
+        )
         text = json.dumps([asdict(i) | {"holds": i.holds} for i in intervals], indent=1)
         (given.out / f"{given.kind}.json").write_text(text + "\n", encoding="utf-8")
     print("\n".join(summary(intervals)))

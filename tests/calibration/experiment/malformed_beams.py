@@ -223,10 +223,16 @@ CASES: dict[str, Case] = {
         "expected one of marker_positions_mm (tip1), got 'base'",
     ),
     "marker's time back": (
-        cell(MARKERS, "time_s", 4, -1.0),
+        cell(MARKERS, "time_s", 4, 0.0),
         MARKERS,
         "line 6: column time_s:",
         "expected more than 0 s of marker base",
+    ),
+    "marker's time before 0": (
+        cell(MARKERS, "time_s", 4, -1.0),
+        MARKERS,
+        "line 6: column time_s:",
+        "expected 0 s or more, got -1",
     ),
     "marker far off": (
         cell(MARKERS, "uz_mm", 1, -900.0),

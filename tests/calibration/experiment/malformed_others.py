@@ -85,6 +85,12 @@ CASES: dict[str, Case] = {
         "expected keys and values",
     ),
     # pokes
+    "poke's time before 0": (
+        cell(RECORD, "time_s", 0, -0.5),
+        RECORD,
+        "line 2: column time_s:",
+        "expected 0 s or more, got -0.5",
+    ),
     "poke's time stands": (
         cell(RECORD, "time_s", 2, 1.0),
         RECORD,
@@ -214,6 +220,12 @@ CASES: dict[str, Case] = {
         "expected more than 0",
     ),
     "coupon of two rows": (rows(PULL, [0, 1]), PULL, "", "expected at least 3 rows below the header, got 2"),
+    "coupon's time before 0": (
+        cell(PULL, "time_s", 0, -1.0),
+        PULL,
+        "line 2: column time_s:",
+        "expected 0 s or more, got -1",
+    ),
     "coupon's time back": (
         cell(PULL, "time_s", 2, 0.5),
         PULL,

@@ -14,6 +14,7 @@ from calibration.inference import (
     polish,
     search,
 )
+from calibration.inference.search import PATIENCE
 from calibration.parameters import parametrisation
 from tisim import Material
 
@@ -239,3 +240,24 @@ def test_nuisances_are_taken_again_where_a_polish_ends_far_from_its_start(begin:
     assert curve.taken[0] == pytest.approx(begin)
     assert len(curve.taken) == times
     assert times == 1 or curve.taken[1] == pytest.approx(2e4, rel=1e-3)
+
+
+def test_a_search_from_a_known_minimum_ends_soon_unless_it_finds_a_lower_one() -> None:
+    """Its end costs the same whether its generations are computed or replayed."""
+    p = parametrisation("mooney-rivlin")
+    problem = mooney_problem(noisy(0))
+    best, _ = run(CmaOptions(seed=3, tolerance=1e-6, max_generations=150))
+    lowest: float = best.cost  # type: ignore[attr-defined]
+    seen: list[Generation] = []
+    options = CmaOptions(seed=3, tolerance=1e-6, max_generations=150)
+    start, spread = p.start(shear=5e3), p.spread
+    found = search(
+        problem, start=start, spread=spread, options=options, known=0.5 * lowest, on_progress=seen.append
+    )
+    assert found.generations == PATIENCE
+    assert found.reason.startswith("converged: no candidate of")
+    again = search(problem, start=start, spread=spread, options=options, history=seen, known=0.5 * lowest)
+    assert (again.generations, again.cost) == (found.generations, found.cost)
+    beaten = search(problem, start=start, spread=spread, options=options, known=1e3 * lowest)
+    assert beaten.generations > PATIENCE
+    assert beaten.cost == pytest.approx(lowest, rel=1e-6)

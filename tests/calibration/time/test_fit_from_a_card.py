@@ -1,0 +1,142 @@
+"""`calibration.fit --start`: parts of a material card held in a fit, or where its search begins."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from timed_coupons import CYCLES, RELAXATION, SOLID, trial, write
+
+import calibration
+from calibration.errors import InputError
+from calibration.parameters import ProtocolWindow, part_coordinates
+from calibration.study import parts
+from calibration.study.calibration import Calibration
+from factory.materials import load_card
+from tisim import HolzapfelGasserOgden, OgdenRoxburgh, Prony
+
+PRONY = {"kind": "prony", "fractions": [0.3, 0.2], "times": [2.0, 60.0]}
+MULLINS = {"kind": "ogden-roxburgh", "r": 1.8, "m": 1500.0, "beta": 0.15}
+FAST: dict[str, Any] = {"generations": 2, "workers": 1, "seed": 1, "model": "ogden"}
+
+
+def card(folder: Path, name: str = "found", **beside: object) -> Path:
+    content = {
+        "material": name,
+        "laws": {"ogden": {"mu": [1.0], "alpha": [2.0], "bulk": 1e5}},
+        "law": "ogden",
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.yaml"
+    path.write_text(yaml.safe_dump({**content, **beside}))
+    return path
+
+
+@pytest.fixture(scope="module")
+def experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = [
+        trial("relaxation", "uniaxial", RELAXATION, noise=0.01, seed=1),
+        trial("cycles", "uniaxial", CYCLES, noise=0.01, seed=2),
+    ]
+    return write(tmp_path_factory.mktemp("held") / "experiment", made)
+
+
+def test_parts_of_a_card_are_held(experiment: Path, tmp_path: Path) -> None:
+    path = card(tmp_path / "cards", viscosity=PRONY, softening=MULLINS)
+    (found,) = calibration.fit(experiment, start=path, out=tmp_path / "out", **FAST)
+    assert found.label == "ogden+prony-held+ogden-roxburgh-held"
+    assert found.status == "converged"
+    assert found.parts == ()
+    assert found.shear_modulus == pytest.approx(SOLID.shear_modulus, rel=0.01)
+    assert {e.name for e in found.estimates} == {"shear_modulus", "alpha", "bulk_ratio"}
+    assert "viscosity (prony, fractions 0.3 and 0.2, times 2.0 and 60.0" in found.note
+    assert "no error bar has the error of what is held" in found.note
+    again = Calibration.from_json(found.to_json())
+    assert again.held["softening"] == MULLINS
+    made = again.simulated()
+    assert made.viscosity == Prony(fractions=(0.3, 0.2), times=(2.0, 60.0))
+    assert made.softening == OgdenRoxburgh(r=1.8, m=1500.0, beta=0.15)
+    # what is held stands in the new card, which a dataset and a further fit take
+    fits = calibration.fit(experiment, start=path, out=tmp_path / "out", **FAST)
+    (written,) = fits.write_cards(tmp_path / "new")
+    assert load_card(written.stem, written.parent).for_law("ogden").viscosity == made.viscosity
+    assert "Held beside ogden" in written.read_text()
+
+
+def test_a_search_begins_at_the_card(experiment: Path, tmp_path: Path) -> None:
+    path = card(tmp_path / "cards", viscosity=PRONY, softening=MULLINS)
+    (found,) = calibration.fit(experiment, start=path, time="prony:2", **FAST)
+    assert found.label == "ogden+prony-2+ogden-roxburgh-held"
+    assert found.parts == ("prony:2",)
+    assert "the search of prony-2 began at the viscosity of the card of found" in found.note
+    near = {e.name: e.value for e in found.estimates}
+    assert near["prony_time_2"] == pytest.approx(60.0, rel=0.2)
+
+
+def test_parts_are_taken_apart_and_put_together() -> None:
+    window = ProtocolWindow(first=0.1, last=1000.0, peaks=2)
+    at_once = Prony(fractions=(0.1, 0.3), times=(50.0, 1.0), modulus="instantaneous")
+    for spec, part in (
+        ("prony:2", at_once),
+        ("mullins", OgdenRoxburgh(r=1.8, m=1500.0, beta=0.15)),
+        ("fibres", HolzapfelGasserOgden(direction=(0.8, 0.6, 0.0), k1=1e4, k2=0.5)),
+    ):
+        begun = part_coordinates(spec, window).starting_at(part)
+        again = begun.assembled({c.name: float(c.start or 0.0) for c in begun.coordinates})
+        if isinstance(again, Prony):
+            assert again.times == (1.0, 50.0)
+            assert again.fractions == pytest.approx((0.5, 1 / 6))
+        elif isinstance(again, HolzapfelGasserOgden):
+            assert again.direction == pytest.approx((0.8, 0.6, 0.0))
+        else:
+            assert again == part
+    with pytest.raises(ValueError, match="of so many terms"):
+        part_coordinates("prony:1", window).starting_at(at_once)
+    own = parts.CardParts("the card of M", {"viscosity": at_once})
+    assert "the search of prony-1 did not begin, for its other form" in own.sentence(["prony:1"])
+
+
+@pytest.mark.parametrize(
+    ("cards", "expected"),
+    [
+        ({"found": {}}, "start .*: expected viscosity, softening or fibres in the card of found"),
+        (
+            {"A": {"viscosity": PRONY}, "B": {"viscosity": PRONY}},
+            "start .*: expected a card of M, found A, B",
+        ),
+        ({"M": {"viscosity": {**PRONY, "times": [1.0, 1.0]}}}, "of which no two are alike"),
+        (
+            {"M": {"viscosity": {**PRONY, "modulus": "instantaneous", "fractions": [0.7, 0.4]}}},
+            "sum to less than 1",
+        ),
+        ({"M": {"softening": {**MULLINS, "r": 0.5}}}, "key softening: r"),
+        (
+            {"M": {"fibres": {"kind": "holzapfel-gasser-ogden", "direction": [0, 0, 0], "k1": 1.0}}},
+            "direction",
+        ),
+    ],
+)
+def test_cards_that_cannot_be_used(
+    experiment: Path, tmp_path: Path, cards: dict[str, Any], expected: str
+) -> None:
+    for name, beside in cards.items():
+        card(tmp_path / "cards", name, **beside)
+    with pytest.raises(InputError, match=expected):
+        calibration.fit(experiment, start=tmp_path / "cards", **FAST)
+
+
+def test_a_card_that_the_tests_cannot_follow(tmp_path: Path) -> None:
+    folder = write(tmp_path / "x", [trial("relaxation", "uniaxial", RELAXATION)], clock=False)
+    path = card(tmp_path / "cards", viscosity=PRONY)
+    words = [sys.executable, "-m", "calibration.fit", str(folder), "--model", "ogden", "--start", str(path)]
+    ended = subprocess.run(
+        [*words, "--out", str(tmp_path / "out")], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 2
+    assert "the card of found: trial relaxation: --time prony: expected a column time_s" in " ".join(
+        ended.stderr.split()
+    )
