@@ -135,7 +135,7 @@ def main(
     """Fit constitutive laws to all measurements of an experiment; writes fits, cards and report.html."""
     console = Console()
     with plain_ends():
-        from calibration.api import plan_fit
+        from calibration.fit_plan import plan_fit
 
         plan = plan_fit(
             experiment,

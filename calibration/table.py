@@ -56,7 +56,8 @@ def main(
     with plain_ends():
         from rich.progress import track
 
-        from calibration.api import law_names, processes, read_experiment
+        from calibration.api import read_experiment
+        from calibration.fit_plan import law_names, processes
         from calibration.study.paper_table import fits_folder, measured, read_fit, row
 
         data = read_experiment(experiment)

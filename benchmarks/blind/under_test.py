@@ -214,7 +214,7 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
     }
     if chosen is None:
         return found
-    for c in chosen.candidates:
+    for c, said in zip(chosen.candidates, content["causes"], strict=True):
         effect = model.effects[c.effect]
         value, sd = chosen.fit.amplitude(c)
         causes.append(
@@ -224,6 +224,7 @@ def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:
                 "parameters": {effect.parameter: {"value": effect.in_file(value), "sd": effect.in_file(sd)}},
                 "scope": c.at,
                 "confidence": finding.confidence,
+                "share": said["share"],
             }
         )
     found["extended"] = {"shear_modulus_Pa": model.shear_moduli(chosen.fit.state.u)}

@@ -3,7 +3,8 @@
 Where the first round leaves the data unexplained, laws are compared by how well they predict what their fit
 has not seen. The best one enters the second round as a cause of its own (the effect whose `richer` is set),
 so that what else is wrong is asked beside it; causes that are rare, or free in their form (`further`), enter
-with it. They are asked, too, where the first round needs several causes, and taken if fewer explain the data.
+with it. They are asked, too, where the first round needs several causes, and taken if fewer explain the data,
+or as many clearly better.
 """
 
 from __future__ import annotations
@@ -182,11 +183,13 @@ def _says(found: Diagnosis) -> int:
 
 
 def _simpler(again: Diagnosis, found: Diagnosis, rules: Rules) -> bool:
-    """Whether fewer causes explain the data about as well; constants that they bring count in the score."""
+    """Whether fewer causes explain the data about as well, or as many clearly better; constants that they
+    bring count in the score."""
     if again.chosen is None or found.chosen is None or again.finding.verdict not in EXPLAINED:
         return False
-    fewer = _causes(again) < _causes(found)
-    return fewer and again.chosen.score <= found.chosen.score + rules.score_tolerance
+    better = found.chosen.score - again.chosen.score
+    fewer = _causes(found) - _causes(again)
+    return better >= (-rules.score_tolerance if fewer > 0 else rules.score_tolerance) and fewer >= 0
 
 
 def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: None) -> LawChoice:

@@ -1,5 +1,7 @@
 """Global search: a scan of the shear modulus for a start, then CMA-ES, a population as one batch of scenes.
 
+A coordinate that is held is not searched: its prior would draw each candidate back to the same value. Where
+one is left, the generations are sections of a line, not random (`calibration.inference._section`).
 The search is seeded, resumable and stoppable. Resuming replays: the strategy is made anew from its seed and
 given the recorded costs, so a resumed search takes the very steps of an uninterrupted one.
 """
@@ -14,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import OptionError
+from calibration.inference._section import Section
 from calibration.inference.problem import Problem, Suggesting
 
 Array = NDArray[np.float64]
@@ -149,11 +152,11 @@ def search(
     known: float = np.inf,
     on_progress: OnProgress = lambda _: None,
 ) -> Found:
-    """Minimise the problem's cost by CMA-ES, inside its bounds.
+    """Minimise the problem's cost by CMA-ES, or along one coordinate by sections, inside its bounds.
 
-    A search whose whole first three generations have no answer ends with reason "no equilibrium". One that
-    sets out from where a descent ended looks for a lower valley; it ends where `PATIENCE` generations found
-    none.
+    Held coordinates stay at `start`. A search whose whole first three generations have no answer ends with
+    reason "no equilibrium". One that sets out from where a descent ended looks for a lower valley; it ends
+    where `PATIENCE` generations found none.
 
     Parameters
     ----------
@@ -175,13 +178,17 @@ def search(
     """
     options = options or CmaOptions()
     recorded = list(history)
+    bounds = problem.parametrisation.bounds
+    begin = np.array(start, dtype=float)
+    searched = np.array([not c.held for c in problem.parametrisation.coordinates])
     best_u, best = np.array(start, dtype=float), np.inf
     evaluations = failed = generations = 0
     reason = ""
     for restart in range(options.restarts + 1):
-        strategy = _strategy(problem, start, spread, options, restart)
+        strategy = _strategy(begin[searched], spread[searched], bounds[searched], options, restart)
         for index in range(options.max_generations):
-            candidates = np.array(strategy.ask())
+            candidates = np.tile(begin, (strategy.popsize, 1))
+            candidates[:, searched] = np.array(strategy.ask())
             replayed = bool(recorded)
             if replayed:
                 past = recorded.pop(0)
@@ -192,7 +199,9 @@ def search(
                 costs = past.costs
             else:
                 costs = problem.costs(candidates)
-            strategy.tell(list(candidates), np.where(np.isfinite(costs), costs, NO_ANSWER).tolist())
+            strategy.tell(
+                list(candidates[:, searched]), np.where(np.isfinite(costs), costs, NO_ANSWER).tolist()
+            )
             generations, evaluations = generations + 1, evaluations + len(costs)
             failed += int(np.isinf(costs).sum())
             if costs.min() < best:
@@ -219,19 +228,26 @@ def search(
     )
 
 
-def _strategy(problem: Problem, start: Array, spread: Array, options: CmaOptions, restart: int) -> Any:
+def _strategy(start: Array, spread: Array, bounds: Array, options: CmaOptions, restart: int) -> Any:
+    population = (options.population or 4 + int(3 * np.log(len(start)))) * 2**restart
+    if len(start) == 1:
+        return Section(
+            float(start[0]),
+            float(spread[0]),
+            bounds=(float(bounds[0, 0]), float(bounds[0, 1])),
+            popsize=population,
+            tolerance=options.tolerance,
+        )
     import cma  # imported when needed: it takes a second with the plotting it brings along
 
-    bounds = problem.parametrisation.bounds
     rng = np.random.default_rng([options.seed, restart])
-    population = options.population or 4 + int(3 * np.log(len(start)))
     return cma.CMAEvolutionStrategy(
-        np.asarray(start, dtype=float).tolist(),
+        start.tolist(),
         1.0,
         {
             "bounds": [bounds[:, 0].tolist(), bounds[:, 1].tolist()],
-            "CMA_stds": np.asarray(spread, dtype=float).tolist(),
-            "popsize": population * 2**restart,
+            "CMA_stds": spread.tolist(),
+            "popsize": population,
             # cma would otherwise draw from NumPy's global generator, which a caller's code may move
             "randn": lambda *shape: rng.standard_normal(shape),
             "seed": np.nan,

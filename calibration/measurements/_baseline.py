@@ -39,11 +39,12 @@ class OfSpecimen(Protocol):
 @dataclass(frozen=True, kw_only=True)
 class Extra:
     """A further coordinate of a kind of measurement (a release time, a test's own deviation), with its normal
-    prior: centre and sd."""
+    prior: centre and sd; bounds : it is clipped to these where it is used."""
 
     name: str
     sd: float
     centre: float = 0.0
+    bounds: tuple[float, float] = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,6 +118,17 @@ class Baseline:
     def first_extra(self) -> int:
         """Where the extras begin in u."""
         return len(self.names) - len(self.extras)
+
+    @cached_property
+    def bounds(self) -> Array:
+        """Beyond which a coordinate changes nothing, shape (n, 2)."""
+        found = np.tile([-np.inf, np.inf], (len(self.names), 1))
+        if not self.whole:
+            for m in self.materials:
+                begin = self._begin(m)
+                found[begin : begin + len(self.free)] = self.law.bounds[list(self.free)]
+        found[self.first_extra :] = np.reshape([e.bounds for e in self.extras], (-1, 2))
+        return found
 
     @cached_property
     def held(self) -> int:

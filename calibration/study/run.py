@@ -27,12 +27,13 @@ from calibration.study._store import FitStore, locked
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
+from calibration.study.parts import CardParts
 from tisim import laws
 
 log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 4
+FORMAT = 5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +75,7 @@ class Task:
     setup: Setup | None = None
     parts: tuple[str, ...] = ()
     free_bulk_ratio: bool = False
-    card: parts.CardParts | None = None
+    card: CardParts | None = None
 
     @property
     def label(self) -> str:

@@ -23,6 +23,7 @@ LAWS = (
     "arruda-boyce",
     "yeoh",
     "eight-chain",
+    "stiffening-neo-hookean",
 )
 AB = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 _shear = st.floats(1e3, 1e5)
@@ -47,6 +48,8 @@ def materials(draw: st.DrawFn, law: str) -> Material:
         parameters = {"mu": G, "locking": draw(st.floats(1.5, 6.0)), "bulk": ratio * G}
     elif law == "yeoh":
         parameters = {"mu": G, "stiffening": draw(st.floats(0.0, 1.5)), "bulk": ratio * G}
+    elif law == "stiffening-neo-hookean":
+        parameters = {"mu": G, "stiffening": draw(st.floats(0.0, 1.5)), "lam": (ratio - 2 / 3) * G}
     elif law == "eight-chain":
         parameters = {"mu": G, "locking": draw(st.floats(2.5, 8.0)), "bulk": ratio * G}
     else:
@@ -114,6 +117,11 @@ def energy(material: Material, F: np.ndarray, *, printed: bool = False) -> np.nd
         ),
         "yeoh": lambda: (
             p["mu"] / 2 * ((i1 - 3) + p["stiffening"] * (i1 - 3) ** 2) + p["bulk"] / 2 * np.log(J) ** 2
+        ),
+        "stiffening-neo-hookean": lambda: (
+            p["mu"] / 2 * ((I1 - 3) + p["stiffening"] * (i1 - 3) ** 2)
+            - p["mu"] * np.log(J)
+            + p["lam"] / 2 * np.log(J) ** 2
         ),
         "eight-chain": lambda: (
             p["mu"] * langevin_chains(i1, float(p["locking"])) + p["bulk"] / 2 * np.log(J) ** 2

@@ -53,7 +53,10 @@ def _init() -> None:
         default_fp=ti.f64,
         default_ip=ti.i32,
         fast_math=False,  # a reassociated sum would make results depend on the compiler's mood
-        offline_cache=True,
+        offline_cache=True,  # written when a process ends: others that run meanwhile compile for themselves
+        # Half of the time of compiling, for kernels that LLVM makes as fast without it. Taichi's other passes
+        # (advanced_optimization) are worth theirs: 20 % of the kernels' speed.
+        cfg_optimization=False,
         log_level=ti.WARN,
         verbose=False,
     )

@@ -42,6 +42,7 @@ from tisim.laws import (
     ogden,
     st_venant_kirchhoff,
     stable_neo_hookean,
+    stiffening_neo_hookean,
     yeoh,
 )
 from tisim.laws._check import LawReport, check_law, evaluate
@@ -57,7 +58,9 @@ _PAPER = (
     ogden.LAW,
     arruda_boyce.LAW,
 )
-_BUILT_IN: dict[str, Law] = {law.name: law for law in (*_PAPER, yeoh.LAW, eight_chain.LAW)}
+_BUILT_IN: dict[str, Law] = {
+    law.name: law for law in (*_PAPER, yeoh.LAW, eight_chain.LAW, stiffening_neo_hookean.LAW)
+}
 _ADDED: dict[str, Law] = {}
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
 

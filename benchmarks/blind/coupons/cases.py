@@ -88,7 +88,7 @@ def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = 
         wanted = target or float(np.exp(rng.uniform(np.log(4.0), np.log(40.0))))
         if kind in SEVERAL:
             wanted = max(wanted, 8.0)
-        hidden = tuple(_hidden(rng, n, protocols, wanted) for n in names)
+        hidden = tuple(hide(rng, n, protocols, wanted) for n in names)
         if all(h.sigma > 0.8 * wanted for h in hidden) and apart(sigmas, protocols, hidden):
             moduli: dict[str, list[float]] = {}
             for p in {q.specimen or q.material: q for q in protocols}.values():
@@ -178,7 +178,7 @@ def _top(mode: str, reach: float, far: bool) -> float:
     )
 
 
-def _hidden(rng: np.random.Generator, name: str, protocols: tuple[Protocol, ...], target: float) -> Hidden:
+def hide(rng: np.random.Generator, name: str, protocols: tuple[Protocol, ...], target: float) -> Hidden:
     where = "all"
     materials = sorted({p.material for p in protocols})
     if name in ("strain-offset", "machine-compliance", "platen-friction"):

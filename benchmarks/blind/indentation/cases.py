@@ -5,6 +5,7 @@ the files of the experiment.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -64,6 +65,22 @@ def _root(trials: tuple[Trial, ...]) -> Array:
     return np.asarray(np.linalg.cholesky(total))
 
 
+def whitened(trials: tuple[Trial, ...], hidden: Sequence[Hidden]) -> Array:
+    """Forces without noise over their errors, which are made independent of each other."""
+    found = np.concatenate([force(t, tuple(hidden)) for t in trials])
+    return np.asarray(solve_triangular(_root(trials), found, lower=True))
+
+
+def free(trials: tuple[Trial, ...], hidden: Sequence[Hidden] = ()) -> Array:
+    """Columns of a modulus a material beside these causes, whitened alike."""
+    base = [force(t, tuple(hidden)) for t in trials]
+    columns = [
+        np.concatenate([b * (t.material == m) for t, b in zip(trials, base, strict=True)])
+        for m in sorted({t.material for t in trials})
+    ]
+    return np.asarray(solve_triangular(_root(trials), np.column_stack(columns), lower=True))
+
+
 def _unique(depth: Array, f: Array) -> tuple[Array, Array]:
     """Depths of the first stroke with the slope of its force."""
     last = int(np.argmax(depth)) + 1
@@ -73,16 +90,9 @@ def _unique(depth: Array, f: Array) -> tuple[Array, Array]:
 
 def sigmas(trials: tuple[Trial, ...], hidden: Hidden, others: tuple[Hidden, ...] = ()) -> float:
     """Size of a cause in standard deviations, a modulus a material projected out."""
-    base = [force(t, others) for t in trials]
-    root = _root(trials)
-    change = np.concatenate([force(t, (*others, hidden)) - b for t, b in zip(trials, base, strict=True)])
-    columns = []
-    for m in sorted({t.material for t in trials}):
-        columns.append(np.concatenate([b * (t.material == m) for t, b in zip(trials, base, strict=True)]))
-    z = solve_triangular(root, np.column_stack([change, *columns]), lower=True)
-    q, _ = np.linalg.qr(z[:, 1:])
-    left = z[:, 0] - q @ (q.T @ z[:, 0])
-    return float(np.linalg.norm(left))
+    z = whitened(trials, (*others, hidden)) - whitened(trials, others)
+    q, _ = np.linalg.qr(free(trials, others))
+    return float(np.linalg.norm(z - q @ (q.T @ z)))
 
 
 def sized(trials: tuple[Trial, ...], hidden: Hidden, target: float) -> Hidden:
@@ -126,7 +136,7 @@ def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = No
         if kind == "trap":
             trap = Hidden(name="force-gain", amplitude=float(rng.uniform(-0.3, 0.3)))
             return Case(seed=seed, kind=kind, trials=trials, hidden=(trap,), moduli=moduli)
-        hidden = tuple(_hidden(rng, n, trials, wanted) for n in names)
+        hidden = tuple(hide(rng, n, trials, wanted) for n in names)
         if all(h.sigma > (4.0 if h.table else 0.8 * wanted) for h in hidden) and apart(
             sigmas, trials, hidden
         ):
@@ -185,7 +195,7 @@ def _trials(rng: np.random.Generator, names: list[str]) -> tuple[Trial, ...]:
     return tuple(found)
 
 
-def _hidden(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], target: float) -> Hidden:
+def hide(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], target: float) -> Hidden:
     where = "all"
     ending = ""
     if name in TABLED:

@@ -50,6 +50,7 @@ from calibration.diagnosis.catalogue.rig import (
     GRAVITY_TILT,
     GRIP_LENGTH,
     GRIP_SQUEEZE,
+    HELD_POSE,
     LOAD_HEIGHT,
     LOOSE_LOAD,
     MACHINE_COMPLIANCE,
@@ -58,6 +59,7 @@ from calibration.diagnosis.catalogue.rig import (
     PLATEN_SLIP,
     PLATEN_TILT,
     ROD_ANGLE,
+    RUBBING_LOAD,
     STRAIN_OFFSET,
 )
 from calibration.diagnosis.catalogue.simulator import (
@@ -109,6 +111,7 @@ __all__ = [
     "GRAVITY_TILT",
     "GRIP_LENGTH",
     "GRIP_SQUEEZE",
+    "HELD_POSE",
     "HYSTERESIS",
     "IMAGE_SCALE",
     "INCLUSION_DEBONDED",
@@ -132,6 +135,7 @@ __all__ = [
     "RELAXATION",
     "RESIDUAL_CURVATURE",
     "ROD_ANGLE",
+    "RUBBING_LOAD",
     "SECOND_INVARIANT",
     "SECTION_SCALE",
     "SET_BETWEEN_TESTS",

@@ -94,6 +94,24 @@ LOOSE_LOAD = Effect(
     remedy="clamp or glue the mass to the end face, and repeat",
 )
 
+HELD_POSE = Effect(
+    name="held-pose",
+    parameter="below_straight_mm",
+    per_unit=1e3,
+    belongs_to="rig",
+    sentence="the beam was not held straight before it was let go",
+    remedy="hold it against a straight edge, or photograph it as it is held",
+)
+
+RUBBING_LOAD = Effect(
+    name="rubbing-load",
+    parameter="held_by_friction_mm",
+    per_unit=1e3,
+    belongs_to="rig",
+    sentence="what hangs on the beam rubs where it is fixed (dry friction), and damps the beam",
+    remedy="glue the mass to the end face, or let the beam vibrate with a mass that is cast in",
+)
+
 AIR_DRAG = Effect(
     name="air-drag",
     parameter="rate_per_s",

@@ -27,12 +27,14 @@ class Explanation:
     ----------
     cost : chi-square that the number of amplitudes and the choice among alternatives cost (Bayes' information
         criterion, and twice the logarithm of the number of alternatives).
+    constants_cost : the part of it that is of constants which causes bring beside their amplitudes (a law's).
     lack_of_fit : test of what the fit leaves.
     """
 
     fit: Fit
     cost: float
     lack_of_fit: LackOfFit
+    constants_cost: float = 0.0
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -77,20 +79,27 @@ def explain(
             continue
         if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:
             continue  # lost, so far out
-        constants = [1 + model.brings(c) for c in found.candidates]
-        cost = np.log(len(found.z)) * sum(constants) + sum(map(multiplicity_penalty, found.candidates))
+        each = float(np.log(len(found.z)))
+        constants = each * sum(map(model.brings, found.candidates))
+        cost = each * len(found.candidates) + sum(map(multiplicity_penalty, found.candidates))
         left = null.lack_of_fit(found.z, found.jacobian)
-        return Explanation(fit=found, cost=float(cost), lack_of_fit=left)
+        return Explanation(fit=found, cost=cost + constants, lack_of_fit=left, constants_cost=constants)
     return None
 
 
 def equivalent_explanations(explanations: Sequence[Explanation], tolerance: float) -> tuple[Names, ...]:
     """Distinct sets of effects whose score is within this of the best, best first. A set that only adds to a
-    better one explains nothing of its own."""
+    better one explains nothing of its own.
+
+    Where several causes are needed, the constants of a richer law in the place of one of them cost nothing:
+    they make a set less simple, which is no evidence against it, and several causes are not simple either.
+    """
     ordered = sorted(explanations, key=lambda e: e.score)
     found: list[Names] = []
     for e in ordered:
-        if e.score > ordered[0].score + tolerance or e.names in found:
+        as_many = 1 < len(e.names) <= len(ordered[0].names)
+        score = e.score - (e.constants_cost if as_many else 0.0)
+        if score > ordered[0].score + tolerance or e.names in found:
             continue
         if not any(set(better) < set(e.names) for better in found):
             found.append(e.names)

@@ -16,6 +16,11 @@ Array = NDArray[np.float64]
 
 TOLERANCE = 0.05  # of chi-square: a twentieth of what one standard deviation of one parameter makes
 LONGEST = 0.7  # of a coordinate u in one step; coordinates are logarithms of moduli
+# Levenberg's damping where a plain step fails, over the squared length of a column: where coordinates nearly
+# hide each other (terms of a series law) the plain step leaves what the derivatives are good for
+DAMPINGS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+FALLING = 0.1  # of chi-square: a step that takes more is no step towards an end, and is not counted
+MOST = 5  # times the steps that count, that a fit may take
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -69,21 +74,25 @@ def fit(
 ) -> Fit:
     """Minimise the squared sum of residuals over u and the amplitudes of `candidates`, from `start`.
 
-    A step that does not lower it is shortened, up to 6 times. ValueError where the start has no answer.
+    A step that does not lower it is shortened, up to 6 times, then damped. `max_steps` counts those that take
+    less than a tenth of it. ValueError where the start has no answer.
     """
     wanted = tuple(candidates)
-    state = _clipped(model, start.u, [start.amplitudes.get(c, 0.0) for c in wanted], wanted)
+    state = _inside(model, np.r_[start.u, [start.amplitudes.get(c, 0.0) for c in wanted]], wanted)
     linear = model.linearise(state, wanted)
-    for _ in range(max_steps):
+    slow = taken = 0
+    while slow < max_steps and taken < MOST * max_steps:
         jacobian = np.column_stack([linear.by_u, linear.columns])
         move, promise = _step(model, linear, jacobian, wanted)
         if promise < TOLERANCE:
             return Fit(linear=linear, converged=True)
         now = float(linear.z @ linear.z)
         found = _shortened(model, state, move, wanted, now)
+        if found is None and promise < 20.0 * TOLERANCE:
+            return Fit(linear=linear, converged=True)
         if found is None:
-            if promise < 20.0 * TOLERANCE:
-                return Fit(linear=linear, converged=True)
+            found = _damped(model, linear, jacobian, wanted)
+        if found is None:
             return Fit(
                 linear=linear,
                 converged=False,
@@ -91,29 +100,32 @@ def fit(
             )
         state = found
         linear = model.linearise(state, wanted)
-    return Fit(linear=linear, converged=False, message=f"not converged in {max_steps} steps")
+        taken += 1
+        slow += float(linear.z @ linear.z) > (1.0 - FALLING) * now
+    return Fit(linear=linear, converged=False, message=f"not converged in {taken} steps")
 
 
 def _step(
-    model: MeasurementModel, linear: Linearisation, jacobian: Array, wanted: tuple[Candidate, ...]
+    model: MeasurementModel,
+    linear: Linearisation,
+    jacobian: Array,
+    wanted: tuple[Candidate, ...],
+    damping: float = 0.0,
 ) -> tuple[Array, float]:
     """Gauss-Newton step and what it promises; amplitudes at a bound that are pushed beyond it stay."""
     n = len(linear.state.u)
-    free = np.ones(jacobian.shape[1], dtype=bool)
-    gradient = jacobian.T @ linear.z
-    for k, c in enumerate(wanted):
-        effect, a = model.effects[c.effect], linear.state.amplitudes[c]
-        low, high = effect.bounds
-        pushed = (a <= low and gradient[n + k] > 0) or (a >= high and gradient[n + k] < 0)
-        free[n + k] = not (effect.switch or pushed)
-    for _ in range(len(wanted) + 1):
+    low, high = _bounds(model, wanted)
+    here, gradient = _point(linear.state, wanted), jacobian.T @ linear.z
+    free = ~((here <= low) & (gradient > 0.0)) & ~((here >= high) & (gradient < 0.0))
+    free[n:] &= ~np.array([model.effects[c.effect].switch for c in wanted], dtype=bool)
+    for _ in range(len(free) + 1):
         move = np.zeros(jacobian.shape[1])
         # columns differ by orders of magnitude in scale: bring them to one before the rank is judged
         size = np.linalg.norm(jacobian[:, free], axis=0)
         size[size == 0.0] = 1.0
-        move[free] = -np.linalg.lstsq(jacobian[:, free] / size, linear.z, rcond=1e-6)[0] / size
+        move[free] = -_least_squares(jacobian[:, free] / size, linear.z, damping) / size
         # the step may lead beyond a bound though the gradient does not
-        blocked = _beyond(model, linear, move, wanted)
+        blocked = ((here <= low) & (move < 0.0)) | ((here >= high) & (move > 0.0))
         if not blocked.any():
             break
         free &= ~blocked
@@ -122,25 +134,57 @@ def _step(
     return move * min(1.0, LONGEST / largest if largest > 0 else 1.0), promise
 
 
-def _beyond(
-    model: MeasurementModel, linear: Linearisation, move: Array, wanted: tuple[Candidate, ...]
-) -> NDArray[np.bool_]:
-    """Coordinates at a bound that a step would take beyond it."""
-    found = np.zeros(move.size, dtype=bool)
-    for k, c in enumerate(wanted, start=len(linear.state.u)):
-        low, high = model.effects[c.effect].bounds
-        a = linear.state.amplitudes[c]
-        found[k] = (a <= low and move[k] < 0.0) or (a >= high and move[k] > 0.0)
-    return found
+def _least_squares(columns: Array, z: Array, damping: float) -> Array:
+    """Of columns (m, n) of unit length, to z (m,)."""
+    if damping == 0.0:
+        return np.asarray(np.linalg.lstsq(columns, z, rcond=1e-6)[0])
+    rows = np.sqrt(damping) * np.eye(columns.shape[1])
+    return np.asarray(
+        np.linalg.lstsq(np.vstack([columns, rows]), np.r_[z, np.zeros(len(rows))], rcond=None)[0]
+    )
+
+
+def _point(state: State, wanted: tuple[Candidate, ...]) -> Array:
+    """Coordinates u, then amplitudes."""
+    return np.concatenate([state.u, [state.amplitudes[c] for c in wanted]])
+
+
+def _bounds(model: MeasurementModel, wanted: tuple[Candidate, ...]) -> tuple[Array, Array]:
+    """Of u, then of the amplitudes, shape (n + c,) each. A coordinate stays a step inside of its upper end,
+    where a difference still sees which way it goes."""
+    own = [model.effects[c.effect].bounds for c in wanted]
+    low, high = np.vstack([model.baseline.bounds, np.reshape(own, (-1, 2))]).T
+    high[: len(model.baseline.bounds)] -= model.coordinate_step
+    return low, high
+
+
+def _damped(
+    model: MeasurementModel, linear: Linearisation, jacobian: Array, wanted: tuple[Candidate, ...]
+) -> State | None:
+    """After the first of the damped steps that lowers chi-square by a part of what it promises."""
+    now = float(linear.z @ linear.z)
+    for damping in DAMPINGS:
+        move, promise = _step(model, linear, jacobian, wanted, damping)
+        if promise < TOLERANCE:
+            return None
+        found = _moved(model, linear.state, move, wanted, 1.0)
+        z = model.residuals([found])[0]
+        if float(z @ z) < now - 0.1 * TOLERANCE:
+            return found
+    return None
+
+
+def _moved(
+    model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], part: float
+) -> State:
+    return _inside(model, _point(state, wanted) + part * move, wanted)
 
 
 def _shortened(
     model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], now: float
 ) -> State | None:
-    n = len(state.u)
     for part in 0.5 ** np.arange(6):
-        amplitudes = [state.amplitudes[c] + part * move[n + k] for k, c in enumerate(wanted)]
-        trial = _clipped(model, state.u + part * move[:n], amplitudes, wanted)
+        trial = _moved(model, state, move, wanted, part)
         z = model.residuals([trial])[0]
         cost = float(z @ z)
         if np.isfinite(cost) and cost < now - 0.1 * TOLERANCE:
@@ -148,10 +192,8 @@ def _shortened(
     return None
 
 
-def _clipped(
-    model: MeasurementModel, u: Array, amplitudes: Sequence[float], wanted: tuple[Candidate, ...]
-) -> State:
-    inside = {
-        c: float(np.clip(a, *model.effects[c.effect].bounds)) for c, a in zip(wanted, amplitudes, strict=True)
-    }
-    return State(u=np.asarray(u, dtype=float), amplitudes=inside)
+def _inside(model: MeasurementModel, point: Array, wanted: tuple[Candidate, ...]) -> State:
+    """Of coordinates u and amplitudes, clipped to their bounds."""
+    found = np.clip(point, *_bounds(model, wanted))
+    n = len(found) - len(wanted)
+    return State(u=found[:n], amplitudes=dict(zip(wanted, found[n:].tolist(), strict=True)))

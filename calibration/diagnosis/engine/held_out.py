@@ -32,7 +32,8 @@ class HeldOut:
     Attributes
     ----------
     held_out : name of the set of folds; "" where none keeps the effects identifiable.
-    kept : least fraction of the information on an amplitude in a training set.
+    kept : least fraction of the information on an amplitude in a training set; of a cause that is there or
+        not, of what the baseline misses in a fold, least part that its training would predict for certain.
     rms_before, rms_after, rms_noise : of the held-out residuals, by the baseline, by the extension, and of
         noise alone [SI].
     log_likelihood : improvement on the held-out measurements.
@@ -78,7 +79,7 @@ class HeldOut:
 def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:
     """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold of the
     set that `_choice` takes."""
-    choice = _choice(model, chosen)
+    choice = _choice(model, baseline, chosen)
     if not choice.folds:
         return _nothing(choice.kept, "no fold leaves enough of the effect in training")
     name, folds = choice.name, choice.folds
@@ -151,12 +152,12 @@ class _Choice:
     note: str = ""
 
 
-def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
+def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
     """The first set of folds of which each leaves at least KEPT of the information in training; else the set
     that leaves most. Else the first of which two or more folds that show the effect leave enough: the others
     are not predicted, since that would be extrapolated. Else the first in which the amplitudes are still seen
     well."""
-    sets = [(n, f, _kept(model, f, chosen)) for n, f in model.folds().items() if len(f) > 1]
+    sets = [(n, f, _kept(model, f, baseline, chosen)) for n, f in model.folds().items() if len(f) > 1]
     for name, folds, kept in sets:
         if kept.min() >= KEPT:
             return _Choice(name=name, folds=folds, kept=float(kept.min()))
@@ -183,12 +184,35 @@ def _choice(model: MeasurementModel, chosen: Fit) -> _Choice:
     return _Choice(kept=float(worst.min()))
 
 
-def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], chosen: Fit) -> Array:
-    """Least fraction of any amplitude's information that is left without each fold, shape (folds,)."""
+def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], baseline: Fit, chosen: Fit) -> Array:
+    """What is left without each fold, shape (folds,): the least fraction of any amplitude's information. The
+    amplitude of a cause that is there or not (`switch`) is not estimated; there it is the part of what the
+    baseline misses in the fold that the coordinates, as the others tell them, leave no doubt about."""
+    switches = np.array([model.effects[c.effect].switch for c in chosen.candidates])
+    n = len(chosen.state.u)
     everything = _information(chosen, np.ones(len(chosen.z), dtype=bool))
-    return np.array(
-        [float(np.min(_information(chosen, ~model.rows(fold)) / everything)) for _, fold in folds]
-    )
+    found = []
+    for _, fold in folds:
+        left = model.rows(fold)
+        own = (_information(chosen, ~left) / everything)[~switches]
+        if switches.any():
+            estimated = np.r_[np.ones(n, dtype=bool), ~switches]
+            own = np.r_[own, _certain(baseline, chosen, left, estimated)]
+        found.append(float(own.min()))
+    return np.array(found)
+
+
+def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
+    """One less the variance of a fold's prediction from the other rows over the baseline's squares there. A
+    fit that misses by more than noise is less sure than noise alone would make it (Birge's ratio)."""
+    jacobian = chosen.jacobian[:, estimated]
+    size = np.linalg.norm(jacobian, axis=0)
+    scaled = jacobian / np.where(size > 0.0, size, 1.0)
+    trained = np.linalg.pinv(scaled[~left].T @ scaled[~left], hermitian=True)
+    spread = float(np.einsum("ij,jk,ik->", scaled[left], trained, scaled[left]))
+    ratio = max(chosen.chi2 / max(len(chosen.z) - int(estimated.sum()), 1), 1.0)
+    missed = float(np.sum(baseline.z[left] ** 2))
+    return 1.0 - ratio * spread / missed if missed > 0.0 else 0.0
 
 
 def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:

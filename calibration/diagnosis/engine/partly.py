@@ -4,7 +4,8 @@ No real bench passes a test for "nothing but noise is left". What is named then 
 that takes most of the explainable misfit, if
 
 1. it takes at least half of it, in 95 % of the replicates over specimens, tests or stretches of records;
-2. it predicts every part of the measurements that its fit has not seen better than the baseline does;
+2. it predicts every part of the measurements that its fit has not seen better than the baseline does, and
+   all of them together by at least half of what noise leaves to explain;
 3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
 4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
 
@@ -168,8 +169,11 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
                 f"{len(worse)} of {len(held_out.parts)} parts, held out, are predicted no better than without"
                 " it"
             )
-    if not held_out.skill > 0.0 and not np.isnan(held_out.skill):
-        found.append("held-out measurements are predicted no better with it")
+    if held_out.skill < rules.least_skill:
+        least = f"{100.0 * rules.least_skill:.0f} %"
+        found.append(
+            f"it predicts less than {least} of what noise leaves to explain in held-out measurements"
+        )
     for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
         value, sd = explanation.fit.amplitude(c)
         allowed = max(rules.same_amplitude * abs(value), rules.same_sds * sd)

@@ -22,6 +22,7 @@ Repeats = Literal["everywhere", "within a material", "within a specimen", "nowhe
 
 BINS = 12  # along a record, in which the remainder of two records is compared
 ALIKE = 0.5  # mean cosine from which on it repeats
+ZERO = 1e-3  # of a range: nearer to zero than that is zero
 MOST = 0.5  # of the squares: where a third of the records' range, or some of the records, hold so much
 
 
@@ -180,4 +181,5 @@ def _place(model: MeasurementModel, left: Sequence[Array]) -> str:
     best = int(np.argmax(held))
     if held[best] < MOST * float(value.sum()):
         return ""
-    return f"{name} {edges[best]:.3g} to {edges[best + 1]:.3g}"
+    low, high = (0.0 if abs(x) < ZERO * abs(edges[-1] - edges[0]) else x for x in edges[best : best + 2])
+    return f"{name} {low:.3g} to {high:.3g}"

@@ -55,7 +55,7 @@ def groups_of(model: MeasurementModel) -> Groups:
     """Specimens, or tests where these are few; stretches of the records (fifths) where tests are few too."""
     record = model.row_record[model.noise.used]
     prior = np.full(len(model.baseline.prior), -1)
-    tests = [_test(r) for r in model.records]
+    tests = [test_of(r) for r in model.records]
     specimens = [f"{r.material} {r.specimen}" for r in model.records]
     for over, labels in (("specimens", specimens), ("tests", tests)):
         there = list(dict.fromkeys(labels[k] for k in np.unique(record)))
@@ -77,7 +77,8 @@ def groups_of(model: MeasurementModel) -> Groups:
     return Groups(over="fifths of each record", of_row=rows, names=tuple(names))
 
 
-def _test(record: object) -> str:
+def test_of(record: object) -> str:
+    """The test that a record is of."""
     groups = getattr(record, "groups", {})
     return str(groups.get("trial", getattr(record, "name", "")))
 

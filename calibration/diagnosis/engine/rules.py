@@ -26,6 +26,7 @@ class Rules:
     draws : replicates of the bootstrap over specimens, tests or stretches of records.
     least_share : of the explainable misfit that causes must take to be named where more than noise is left.
     sure : part of the replicates in which they must.
+    least_skill : of what noise leaves to explain in held-out measurements, that they must predict.
     least_share_within : the same where measurements can only be held out from within a test: what all of one
         test shares, a smooth error that nobody stated among it, is then in the training as well.
     further_share : that one cause more must take.
@@ -51,6 +52,7 @@ class Rules:
     draws: int = 400
     least_share: float = 0.5
     sure: float = 0.95
+    least_skill: float = 0.5
     least_share_within: float = 0.75
     further_share: float = 0.1
     as_good: float = 0.05

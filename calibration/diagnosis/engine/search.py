@@ -50,6 +50,7 @@ class Finding:
     confidence : probability that the chosen set would be ranked first again with other noise; of one that
         explains in part, the part of the replicates in which no other set of as many causes takes more.
     dominant : what is named where the data are explained in part.
+    doubt : why what explains the data wholly is called partly explained.
     """
 
     verdict: Verdict
@@ -62,6 +63,7 @@ class Finding:
     equivalent: tuple[Names, ...] = field(default=())
     confidence: float = 0.0
     dominant: Explanation | None = None
+    doubt: str = ""
 
     @property
     def chosen(self) -> Explanation | None:

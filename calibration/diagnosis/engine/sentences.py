@@ -25,7 +25,11 @@ def sentence(diagnosis: Diagnosis) -> str:
     assert chosen is not None
     named, short = _named(diagnosis, chosen), " + ".join(chosen.names)
     if finding.verdict == "found":
-        return f"Found: {named} ({short})."
+        them = "it" if len(chosen.candidates) == 1 else "them"
+        return (
+            f"Found: {named} ({short}). With {them} the simulation agrees with the measurements to within"
+            f" their noise{_skill(diagnosis.held_out, 'it takes ')}."
+        )
     if finding.verdict == "partly explained":
         return _partly(diagnosis, chosen)
     sets = finding.equivalent
@@ -70,7 +74,10 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
             f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
     left = diagnosis.remainder
-    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+    if left is not None:
+        text += f" {what_remains(left, diagnosis.unit)}"
+    doubt = diagnosis.finding.doubt
+    return f"{text} It is not called found, since {doubt}." if doubt else text
 
 
 def _or(names: Sequence[str]) -> str:
@@ -79,13 +86,16 @@ def _or(names: Sequence[str]) -> str:
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
-    text = "The measurements depart from the simulation, and no effect of the catalogue explains most of how."
+    text = (
+        "The measurements differ from the simulation by more than noise, and no cause in the library explains"
+        " most of the difference."
+    )
     nearest = diagnosis.nearest
     if nearest is None:
         return f"{text} Look at the residuals."
     names = " + ".join(nearest.explanation.names)
     skill = _skill(nearest.held_out)
-    why = f" It is not named: {'; '.join(nearest.against)}." if nearest.against else ""
+    why = f" It is not named, because {'; and '.join(nearest.against)}." if nearest.against else ""
     return (
         f"{text} Nearest comes {names}, which would take {percent(nearest.share)} of what noise leaves to"
         f" explain{skill}.{why}"
@@ -127,12 +137,15 @@ def percent(share: Interval) -> str:
     return f"{part(share.value)} % [{part(share.low)}, {part(share.high)}]"
 
 
-def _skill(held_out: HeldOut | None) -> str:
+def _skill(held_out: HeldOut | None, takes: str = "") -> str:
+    """The held-out skill, at the end of a sentence that says what is taken, or that goes on with `takes`."""
     if held_out is None or not held_out.held_out or not math.isfinite(held_out.skill):
         return ""
     if held_out.skill <= 0.0:
-        return ", and nothing of measurements that its fit has not seen"
-    return f", and {100.0 * min(held_out.skill, 1.0):.0f} % on measurements that its fit has not seen"
+        return f", and {takes}nothing on measurements that its fit has not seen"
+    whole = " of what noise leaves to explain" if takes else ""
+    part = f"{100.0 * min(held_out.skill, 1.0):.0f} %{whole}"
+    return f", and {takes}{part} on measurements that its fit has not seen"
 
 
 def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:

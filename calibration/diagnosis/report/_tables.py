@@ -46,12 +46,13 @@ def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
     part = (
         _one_less(share) if share is not None else "all" if nearest is None else _one_less(nearest["share"])
     )
-    place = "; ".join(x for x in (left.place, listed(list(left.records)) if left.records else "") if x)
+    where = "; ".join(x for x in (left.place, listed(list(left.records)) if left.records else "") if x)
+    place = (where or "all measurements") if left.rms else NOTHING
     rows.append(
         [
             Cell(text="not modelled"),
             Cell(text="what the causes above leave beside noise" if rows else "what the baseline leaves"),
-            Cell(text=place or "all measurements"),
+            Cell(text=place),
             Cell(text=f"{significant(per_si * left.rms, 2)} {unit} rms", value=per_si * left.rms),
             Cell(text=part),
             Cell(text="not known" if left.rms else NOTHING),
@@ -82,6 +83,8 @@ def _cause_row(
     """Several parameters of one cause stand in one cell each under the other."""
     effect = diagnosis.effects[cause["effect"]]
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
+    if effect.switch:  # it is there or not, and has no size
+        values = [(cause.get("kind") or "there", values[0][1])]
     share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
     evidence = _evidence(cause, told["gain"])
     return [

@@ -21,20 +21,34 @@ BEND = 4  # highest degree in the strain
 TERMS = ("zero of the strain", "scale", *(f"bend {k}" for k in range(1, BEND + 1)))
 GRID = 60
 STEEP = 0.05  # probability that noise makes a line over the number of the test so steep
+ROUNDS = 200  # of expectation and maximisation
+TINY = 1e-16  # variance, of a logarithm
 LEAST = 0.001  # of a bend: that some repeats agree better than this may be luck
 ALIKE = 1.3  # ratio of the times of two loadings at one speed, at most
-_SURE = 0.995  # few repeats tell their own scatter badly: as much wider as Student's t is here
+_SURE = 0.995  # few repeats tell their scatter badly: as much wider as Student's t is here
 _NORMAL = 1.4826  # standard deviations in a median absolute deviation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drift:
+    """What goes on from test to test. per_test : of the logarithm of the stress at a strain. correlation :
+    with the number of the test."""
+
+    material: str
+    strain: float
+    per_test: float
+    correlation: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Repeatability:
     """sds : of the terms of `basis` up to the strain `last`, shape (len(TERMS),); zero without repeats.
-    repeats : names of the tests that show it."""
+    repeats : names of the tests that show it. drifts : of materials whose tests' number clearly counts."""
 
     last: float
     sds: Array
     repeats: tuple[str, ...]
+    drifts: tuple[Drift, ...] = ()
 
 
 def bends(strain: Array, last: float, degree: int = BEND) -> Array:
@@ -50,41 +64,76 @@ def basis(strain: Array, last: float) -> Array:
 
 
 def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
-    """From the first strokes of tests of one material. The scale of unlike specimens does not count: each has
-    its modulus."""
+    """From the first strokes of tests of one material, all materials together. The scale of unlike specimens
+    does not count: each has its modulus."""
     last = min(last, max((_reach(r) for r in records if is_compressed(r)), default=last))
-    squares, names = [], []
+    squares, weights, names = [], [], []
+    drifts: list[Drift] = []
     for group in _repeats(records, last):
-        reached = min(_reach(r) for r in group)
-        grid = np.linspace(FIRST, reached, GRID)
-        logs = np.array([np.log(_loading(r, grid)) for r in group])
-        terms = np.linalg.lstsq(basis(grid, last), (logs - np.median(logs, axis=0)).T, rcond=None)[0]
-        terms, known = _without_order(terms, np.array([r.earlier for r in group], dtype=float))
-        spread = _NORMAL * np.median(np.abs(terms - np.median(terms, axis=1)[:, None]), axis=1)
-        spread *= np.sqrt((len(group) - 1) / known) * t.ppf(_SURE, known) / norm.ppf(_SURE)
-        spread[TERMS.index("scale") :] = np.maximum(spread[TERMS.index("scale") :], LEAST)
-        if len({r.specimen for r in group}) > 1:
-            spread[TERMS.index("scale")] = 0.0
-        squares.append(spread**2)
+        square, known = _variances(group, last)
+        own_scale = len({r.specimen for r in group}) > 1
+        told = np.array([not (own_scale and name == "scale") for name in TERMS])
+        squares.append(np.where(told, square, 0.0))
+        weights.append(np.where(told, known, 0.0))
         names += [r.name for r in group]
-    sds = np.sqrt(np.mean(squares, axis=0)) if squares else np.zeros(len(TERMS))
-    return Repeatability(last=last, sds=sds, repeats=tuple(names))
+        drifts += _drift(group)
+    if not squares:
+        return Repeatability(last=last, sds=np.zeros(len(TERMS)), repeats=())
+    freedom = np.maximum(np.sum(weights, axis=0), 1.0)
+    pooled = np.sqrt(np.sum(np.multiply(squares, weights), axis=0) / freedom)
+    bent = np.arange(len(TERMS)) >= TERMS.index("scale")
+    sds = np.maximum(pooled * t.ppf(_SURE, freedom) / norm.ppf(_SURE), np.where(bent, LEAST, 0.0))
+    sds = np.where(np.any(weights, axis=0), sds, 0.0)
+    return Repeatability(last=last, sds=sds, repeats=tuple(names), drifts=tuple(drifts))
 
 
-def _without_order(terms: Array, order: Array) -> tuple[Array, Array]:
-    """Terms (k, n) of n tests less what goes on from test to test, and the degrees of freedom left (k,). A
-    line over their number is taken out of a term where noise would not make one so steep; what it says is a
-    cause (set between tests, their order), and no scatter."""
-    known = np.full(len(terms), len(order) - 1.0)
+def _drift(group: Sequence[Record]) -> list[Drift]:
+    """Of the stress at the largest strain that all reach; none where noise would make as much of it."""
+    order = np.array([r.earlier for r in group], dtype=float)
     if np.ptp(order) == 0.0:
-        return terms, known
-    left = terms.copy()
-    for k, own in enumerate(terms):
-        line = linregress(order, own)
-        if line.pvalue < STEEP:
-            left[k] = own - line.slope * (order - order.mean())
-            known[k] -= 1.0
-    return left, known
+        return []
+    strain = min(_reach(r) for r in group)
+    line = linregress(order, [float(np.log(_loading(r, np.array([strain]))[0])) for r in group])
+    if not line.pvalue < STEEP:
+        return []
+    return [
+        Drift(
+            material=group[0].material,
+            strain=strain,
+            per_test=float(line.slope),
+            correlation=float(line.rvalue),
+        )
+    ]
+
+
+def _variances(group: Sequence[Record], last: float) -> tuple[Array, int]:
+    """Of the terms by which n repeats differ (k,), and the degrees of freedom that tell of them.
+
+    What goes on from test to test is a cause (set between tests, their order), and no scatter: a line over
+    the number of the test is taken out. Terms are random effects beside the noise of single points, by
+    expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977) with a median in the
+    maximisation, so that one odd test does not count; terms that hide each other are not all blamed.
+    """
+    grid = np.linspace(FIRST, min(_reach(r) for r in group), GRID)
+    own = np.array([_loading(r, grid) for r in group])
+    order = np.array([r.earlier for r in group], dtype=float)
+    there = np.column_stack([np.ones(len(group)), order - order.mean()][: 1 + int(np.ptp(order) > 0.0)])
+    known = len(group) - there.shape[1]
+    # small stresses are the noisier part of a logarithm
+    weight = np.median(own, axis=0)
+    logs = np.log(own)
+    wanted = weight[:, None] * (logs - there @ np.linalg.lstsq(there, logs, rcond=None)[0]).T
+    columns = weight[:, None] * basis(grid, last)
+    terms = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+    square, white = np.mean(terms**2, axis=1), np.mean((wanted - columns @ terms) ** 2)
+    for _ in range(ROUNDS):
+        white, square = max(white, TINY), np.maximum(square, TINY)
+        spread = np.linalg.inv(columns.T @ columns / white + np.diag(1.0 / square))
+        terms = spread @ columns.T @ wanted / white
+        square = (_NORMAL * np.median(np.abs(terms), axis=1)) ** 2 + np.diag(spread)
+        left = np.sum((wanted - columns @ terms) ** 2) / len(group)
+        white = (left + np.trace(columns @ spread @ columns.T)) / GRID
+    return square * len(group) / known, known
 
 
 def _repeats(records: Sequence[Record], last: float) -> list[list[Record]]:

@@ -162,6 +162,12 @@ class CompressionModel(HomogeneousModel):
                 f"{len(scatter.repeats)} repeats differ from each other smoothly ({known}): each record may"
                 " deviate so much"
             )
+            found += [
+                f"{d.material}: from each test to the next the stress at a strain of {d.strain:.2g} changes"
+                f" by {100.0 * d.per_test:+.2g} % (correlation with its number {d.correlation:.2f}), which"
+                " is not counted as scatter"
+                for d in scatter.drifts
+            ]
         else:
             found.append(
                 "too few repeats to tell how much one test differs from the next: no such scatter allowed"

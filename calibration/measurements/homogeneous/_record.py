@@ -304,3 +304,10 @@ def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
         found[b.points] = here
         begun, travelled = start, travel
     return found
+
+
+def protocol(r: Record) -> tuple[str, int, float, float]:
+    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    rates = r.rate[np.isfinite(r.rate)]
+    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
+    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0

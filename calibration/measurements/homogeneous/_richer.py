@@ -55,6 +55,7 @@ class RicherLaw:
                 name=f"{m} {self.law.label} {self.law.coordinates[k].name}",
                 sd=float(WIDE * np.ptp(bounds[k])),
                 centre=float(own[k]),
+                bounds=(float(bounds[k][0]), float(bounds[k][1])),
             )
             for m, own in self.centres.items()
             for k in self.free

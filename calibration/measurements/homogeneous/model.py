@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.measurements._baseline import Baseline
-from calibration.measurements._basis import Columns, legendre
 from calibration.measurements._effect import Candidate
 from calibration.measurements._folds import fifths
 from calibration.measurements._memory import Memory
@@ -26,6 +25,7 @@ from calibration.measurements._model import MeasurementModel, Shown
 from calibration.measurements._noise import Noise
 from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
+from calibration.measurements.homogeneous._discrepancies import discrepancies
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._forward import (
     Acting,
@@ -34,7 +34,7 @@ from calibration.measurements.homogeneous._forward import (
     with_effects,
     yielding,
 )
-from calibration.measurements.homogeneous._record import Record, records_of
+from calibration.measurements.homogeneous._record import Record, protocol, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
@@ -58,7 +58,6 @@ LAWS = (
     ("ogden", 3),
 )
 ALIKE = 0.15  # of range and rate: of two repeats of one test
-BEND, JUMPS = 4, 8  # of a discrepancy basis: highest degree, and parts of a record that steps lie between
 
 
 class HomogeneousModel(MeasurementModel):
@@ -327,40 +326,7 @@ class HomogeneousModel(MeasurementModel):
         return found
 
     def _discrepancies(self) -> Mapping[str, Array]:
-        """Smooth in the strain, shared in several ways; one standard deviation of each point [Pa].
-
-        trial bends : of each trial, degrees up to BEND in the strain. mode bends : the same for trials of one
-        mode and material. loops : as trial bends, opposite in loading and unloading. drifts : of each trial
-        that turns, in its time (in the order of its points, where it has none). cycles : one shift a branch.
-        jumps : steps of each trial, between JUMPS parts of its record.
-        """
-        records = self.records
-        columns = Columns([r.points for r in records])
-        for k, r in enumerate(records):
-            back = np.where(np.isfinite(r.turn), -1.0, 1.0)
-            turns = np.unique(r.branch)
-            for degree in range(BEND + 1):
-                bend = legendre(np.log(r.stretch) if (r.stretch > 0).all() else r.stretch, degree)
-                columns.add("trial bends", [(k, bend)])
-                if r.unloads:
-                    columns.add("loops", [(k, back * bend)])
-                if turns.size > 1:
-                    columns.add("drifts", [(k, legendre(_clock(r), degree))])
-            for part in range(1, JUMPS):
-                columns.add("jumps", [(k, (np.arange(r.points) >= part * r.points / JUMPS).astype(float))])
-            for b in turns if turns.size > 1 else []:
-                columns.add("cycles", [(k, (r.branch == b).astype(float))])
-        kinds = dict.fromkeys((r.mode, r.material) for r in records)
-        if len(kinds) < len(records):
-            for kind in kinds:
-                alike = [k for k, r in enumerate(records) if (r.mode, r.material) == kind]
-                strains = np.concatenate([records[k].stretch for k in alike])
-                for degree in range(BEND + 1):
-                    values = legendre(strains, degree)
-                    ends = np.cumsum([records[k].points for k in alike])[:-1]
-                    columns.add("mode bends", list(zip(alike, np.split(values, ends), strict=True)))
-        sd = self.noise.sd[:, None]
-        return {name: sd * raw for name, raw in columns.by_name().items()}
+        return discrepancies(self.records, self.noise.sd)
 
     def remarks(self) -> list[str]:
         """Where the errors come from, what one loop cannot separate, what order was taken for granted."""
@@ -390,9 +356,9 @@ class HomogeneousModel(MeasurementModel):
 
     def repeat_of(self, k: int) -> Hashable | None:
         """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
-        own = _protocol(self.records[k])
+        own = protocol(self.records[k])
         for j, other in enumerate(self.records):
-            there = _protocol(other)
+            there = protocol(other)
             if there[:2] == own[:2] and np.allclose(there[2:], own[2:], rtol=ALIKE):
                 return j
         raise AssertionError("a record is a repeat of itself")
@@ -430,14 +396,3 @@ class HomogeneousModel(MeasurementModel):
         from calibration.measurements.homogeneous.pictures import pictures
 
         return pictures(self, diagnosis)
-
-
-def _protocol(r: Record) -> tuple[str, int, float, float]:
-    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
-    rates = r.rate[np.isfinite(r.rate)]
-    far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
-    return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0
-
-
-def _clock(r: Record) -> Array:
-    return r.time if np.isfinite(r.time).all() else np.arange(float(r.points))

@@ -204,3 +204,12 @@ class LawCurves:
                 name = self.law.coordinates[self._free[i]].name
                 reached, short = other.reached, f" ({name} moved): {other.status}"
         return ShapeCurve(base=base, derivatives=derivatives, reached=reached, short=short)
+
+
+def nearest_modulus(material: str, records: Sequence[Record], curves: Sequence[Curve]) -> float:
+    """Shear modulus [Pa] whose forces are nearest to those of a material's records; 100 Pa at least. curves :
+    of each record, over the shear modulus."""
+    mine = [(r, c.at(r.depth)) for r, c in zip(records, curves, strict=True) if r.material == material]
+    top = sum(float(unit @ r.force) for r, unit in mine)
+    bottom = sum(float(unit @ unit) for _, unit in mine)
+    return max(top / bottom, 100.0)

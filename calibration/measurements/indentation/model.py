@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, PokeTrial
 from calibration.measurements._baseline import Baseline
-from calibration.measurements._basis import Columns, legendre
 from calibration.measurements._effect import Candidate, reaches
 from calibration.measurements._folds import fifths
 from calibration.measurements._model import MeasurementModel, Shown
@@ -28,6 +27,7 @@ from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
+from calibration.measurements.indentation._discrepancies import discrepancies
 from calibration.measurements.indentation._effect import IndentationEffect
 from calibration.measurements.indentation._forward import (
     ForwardMap,
@@ -36,7 +36,7 @@ from calibration.measurements.indentation._forward import (
     difference_step,
     reached,
 )
-from calibration.measurements.indentation._law_curves import LawCurves
+from calibration.measurements.indentation._law_curves import LawCurves, nearest_modulus
 from calibration.measurements.indentation._memory_force import spectrum_of
 from calibration.measurements.indentation._noise import TOUCH, noise_of
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
@@ -47,7 +47,6 @@ from tisim.parts import Spectrum
 Array = NDArray[np.float64]
 
 LEAST = 3  # points of a record that a law must reach
-BEND = 4  # highest degree of a discrepancy basis
 
 
 class IndentationModel(MeasurementModel):
@@ -243,7 +242,7 @@ class IndentationModel(MeasurementModel):
         for r, curve in zip(self.records, curves, strict=True):
             shear_modulus = self.baseline.shear_modulus(r.specimen, state.u)
             if rough and self.baseline.whole:
-                shear_modulus = self._nearest_modulus(r.material, curves)
+                shear_modulus = nearest_modulus(r.material, self.records, curves)
             over = max(TOUCH * r.depth_sd, 1e-6)
             spectrum = self._spectrum(r, state.u)
             relaxing.append(0.0 if spectrum is None else 1.0 - spectrum.equilibrium / spectrum.instantaneous)
@@ -267,15 +266,6 @@ class IndentationModel(MeasurementModel):
         ]
         used = np.concatenate([*simulated, *across])
         self.noise = replace(noise, sd=np.where(used, noise.sd, np.inf), kept=self.noise.kept)
-
-    def _nearest_modulus(self, material: str, curves: Sequence[Curve]) -> float:
-        """Shear modulus [Pa] whose forces are nearest to those of a material's records; 100 Pa at least."""
-        mine = [
-            (r, c.at(r.depth)) for r, c in zip(self.records, curves, strict=True) if r.material == material
-        ]
-        top = sum(float(unit @ r.force) for r, unit in mine)
-        bottom = sum(float(unit @ unit) for _, unit in mine)
-        return max(top / bottom, 100.0)
 
     def _simulated(self) -> list[NDArray[np.bool_]]:
         """Points of each record that the simulations of its law reached."""
@@ -339,40 +329,9 @@ class IndentationModel(MeasurementModel):
         return found
 
     def _discrepancies(self) -> Mapping[str, Array]:
-        """Smooth in depth and in time, in proportion to the simulated force [N]; the noise of measured forces
-        would be fitted again.
-
-        trial bends : of each trial, degrees up to BEND in the depth. phase bends : the same of each phase, in
-        a hold in time. drifts : of each trial in time. shared bends : as trial bends, common to all trials of
-        a specimen.
-        """
-        records, forces = self.records, self._elastic
-        columns = Columns([r.points for r in records])
-        for k, r in enumerate(records):
-            largest = float(np.abs(forces[k]).max(initial=0.0))
-            size = np.abs(forces[k]) + 0.02 * largest
-            phases = np.unique(r.phase)
-            for degree in range(BEND + 1):
-                columns.add("trial bends", [(k, size * legendre(r.depth, degree))])
-                columns.add("drifts", [(k, largest * legendre(r.time, degree))])
-                for p in phases if phases.size > 1 and degree < BEND else []:
-                    mine = r.phase == p
-                    x = r.time if not r.direction[mine].any() else r.depth
-                    bend = legendre(x, degree, (float(x[mine].min()), float(x[mine].max())))
-                    columns.add("phase bends", [(k, np.where(mine, size * bend, 0.0))])
-        specimens = dict.fromkeys(r.specimen for r in records)
-        for s in specimens if len(specimens) < len(records) else []:
-            alike = [k for k, r in enumerate(records) if r.specimen == s]
-            low = min(float(records[k].depth.min()) for k in alike)
-            high = max(float(records[k].depth.max()) for k in alike)
-            for degree in range(BEND + 1):
-                shared = [np.abs(forces[k]) * legendre(records[k].depth, degree, (low, high)) for k in alike]
-                columns.add("shared bends", list(zip(alike, shared, strict=True)))
-        across = len(self.row_record) - sum(r.points for r in records)
-        return {
-            name: np.vstack([raw, np.zeros((across, raw.shape[1]))])
-            for name, raw in columns.by_name().items()
-        }
+        across = len(self.row_record) - sum(r.points for r in self.records)
+        along = discrepancies(self.records, self._elastic)
+        return {name: np.vstack([raw, np.zeros((across, raw.shape[1]))]) for name, raw in along.items()}
 
     def registered(self, state: State) -> list[Array]:
         """As in the base, along the indenter only."""
@@ -403,10 +362,8 @@ class IndentationModel(MeasurementModel):
             )
         again = [r for r in self.records if r.unloaded[0] > 0.0]
         if again:
-            found.append(
-                f"{listed(again)}: taken to follow the indentations of the same specimen that the file lists"
-                " before"
-            )
+            text = "taken to follow the indentations of the same specimen that the file lists before"
+            found.append(f"{listed(again)}: {text}")
         found.append(
             "the catalogue of indentation has no stiffer skin and no base that slips: they are not simulated"
             " yet"

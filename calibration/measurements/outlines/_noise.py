@@ -8,6 +8,7 @@ clean beams of a bench that another solver made are most likely, and have a redu
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,3 +84,26 @@ class Nuisances:
         residuals under the covariance I + columns columns^T."""
         b = self.estimate(whitened)
         return np.concatenate([whitened - b @ self.columns.T, b], axis=-1)
+
+
+def sentence(outlines: Sequence[TracedOutline], uncorrected: str) -> str:
+    """What the noise consists of, for people. uncorrected : why the mesh's error is not; "" where it is."""
+    from calibration.report import significant
+
+    def span(values: list[float]) -> str:
+        low, high = significant(min(values), 2), significant(max(values), 2)
+        return low if low == high else f"{low} to {high}"
+
+    sd, correlation = (span([1e3 * getattr(o, name) for o in outlines]) for name in ("sd", "correlation"))
+    registration = [o.registration for o in outlines]
+    shift = span([1e3 * r.shift for r in registration])
+    roll = span([float(np.degrees(r.roll)) for r in registration])
+    scale = span([100.0 * r.scale for r in registration])
+    text = (
+        f"{len(outlines)} photographs; the contour's error {sd} mm, correlated over {correlation} mm; the"
+        f" position of each photograph: {shift} mm, {roll}°, {scale} % of scale; section, free length and"
+        " density as the lab states them with a standard deviation."
+    )
+    if uncorrected:
+        return f"{text} The mesh's error is not corrected: {uncorrected}."
+    return f"{text} The mesh's error is corrected by a finer mesh; part of the correction is left as noise."

@@ -26,6 +26,7 @@ from calibration.measurements.outlines._creep import CreepCurves, settled_by_mod
 from calibration.measurements.outlines._discrepancies import discrepancies
 from calibration.measurements.outlines._edges import edges
 from calibration.measurements.outlines._effect import OutlineEffect
+from calibration.measurements.outlines._noise import sentence
 from calibration.measurements.outlines._nuisances import beliefs, corners, doubts, registrations
 from calibration.measurements.outlines._photographs import (
     Image,
@@ -368,28 +369,7 @@ class OutlineModel(MeasurementModel):
         return [f"the mesh's error is not corrected: {self.uncorrected}"] if self.uncorrected else []
 
     def noise_sentence(self) -> str:
-        from calibration.report import significant
-
-        def span(values: list[float]) -> str:
-            low, high = significant(min(values), 2), significant(max(values), 2)
-            return low if low == high else f"{low} to {high}"
-
-        outlines = [p.outline for p in self.records]
-        sd, correlation = (span([1e3 * getattr(o, name) for o in outlines]) for name in ("sd", "correlation"))
-        registration = [o.registration for o in outlines]
-        shift = span([1e3 * r.shift for r in registration])
-        roll = span([float(np.degrees(r.roll)) for r in registration])
-        scale = span([100.0 * r.scale for r in registration])
-        text = (
-            f"{len(outlines)} photographs; the contour's error {sd} mm, correlated over {correlation} mm; the"
-            f" position of each photograph: {shift} mm, {roll}°, {scale} % of scale; section, free length and"
-            " density as the lab states them with a standard deviation."
-        )
-        if self.uncorrected:
-            return f"{text} The mesh's error is not corrected: {self.uncorrected}."
-        return (
-            f"{text} The mesh's error is corrected by a finer mesh; part of the correction is left as noise."
-        )
+        return sentence([p.outline for p in self.records], self.uncorrected)
 
     def shown(self, k: int) -> Shown:
         p = self.records[k]

@@ -53,6 +53,9 @@ class BeamParameters:
     image_scale : relative excess of the displacements that the cameras show.
     camera_roll : rotation of their frame [rad].
     clock_rate : relative excess of the time that has passed over the time that they show.
+    held_below : drop of the tip, in the shape of its equilibrium, at which it was held [m]; displacements are
+        counted from there.
+    rubbing : deflection of the tip that dry friction of what hangs would hold [m].
     """
 
     section: Circle | Rectangle
@@ -78,6 +81,8 @@ class BeamParameters:
     image_scale: float = 0.0
     camera_roll: float = 0.0
     clock_rate: float = 0.0
+    held_below: float = 0.0
+    rubbing: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -278,6 +278,8 @@ class ForwardMap:
         r, correction = self.records[k], self.corrections[k]
         time = since * (1.0 + parameters.clock_rate)
         motion = free_vibration(parameters, start=own.start)
+        if parameters.rubbing:
+            motion = replace(motion, rubbed=parameters.rubbing / correction.drop)
         q = motion.coordinates(time)
         moved = beam_markers(parameters, q, r.positions).displacement
         drop = -moved[r.outer, :, 1].mean(axis=0)
@@ -286,6 +288,10 @@ class ForwardMap:
             clamped = clamp_markers(parameters, q, r.positions).displacement
             fraction = np.where(r.behind_face, 1.0, own.with_clamp)[:, None, None]
             moved[r.near_clamp] += (fraction * (clamped - moved))[r.near_clamp]
+        if parameters.held_below:
+            rest = beam_markers(parameters, motion.equilibrium[None, :], r.positions).displacement
+            held = rest + correction.markers[:, None, :]
+            moved = moved - parameters.held_below / correction.drop * held * ~r.behind_face[:, None, None]
         moved = moved * (time > 0.0)[None, :, None]
         slip = abs(motion.frequencies[0] * (1.0 + parameters.clock_rate) * r.period - 1.0) * LAST
         if self.changed is unchanged and slip > OUT_OF_PHASE:

@@ -41,6 +41,8 @@ class FreeVibration:
     amplitudes : shape (k, j).
     offset : of the modes, by relaxation, shape (k,).
     frequencies : of the undamped modes [Hz], shape (k,).
+    rubbed : part of the first mode's first amplitude by which dry friction holds the beam; it takes as much
+        from its swing in each quarter of a period.
     """
 
     parameters: BeamParameters
@@ -50,12 +52,25 @@ class FreeVibration:
     amplitudes: NDArray[np.complex128]
     offset: Array
     frequencies: Array
+    rubbed: float = 0.0
 
     def coordinates(self, time: Array) -> Array:
         """Coordinates (t, k) at times since the release [s]."""
         t = np.maximum(np.asarray(time, dtype=float), 0.0)
-        y = np.einsum("ij,tij->ti", self.amplitudes, np.exp(np.multiply.outer(t, self.rates))).real
+        parts = self.amplitudes * np.exp(np.multiply.outer(t, self.rates))
+        if self.rubbed:
+            swings = np.abs(self.rates[0].imag) > 0.0
+            parts[:, 0, swings] *= self._left_by_friction(t)[:, None]
+        y = parts.sum(axis=2).real
         return self.equilibrium + (y + self.offset) @ self.modes.T
+
+    def _left_by_friction(self, t: Array) -> Array:
+        """Of the first mode's swing, beside what decays anyway, shape (t,). Its amplitude A follows
+        dA/dt = -d A - 4 f r, with d its damping, f its frequency and r what friction holds."""
+        first = self.rates[0][np.argmax(np.abs(self.rates[0].imag))]
+        damping, frequency = -float(first.real), abs(float(first.imag)) / (2.0 * np.pi)
+        grown = np.expm1(damping * t) / damping if damping > 0.0 else t
+        return np.asarray(np.maximum(1.0 - 4.0 * frequency * self.rubbed * grown, 0.0))
 
 
 def free_vibration(parameters: BeamParameters, *, start: float = 0.0) -> FreeVibration:

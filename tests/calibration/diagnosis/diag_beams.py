@@ -55,7 +55,9 @@ def tiny(
             identifier = f"{name}-{'bridge' if bridge else 'cantilever'}-{length:.0f}"
             supports = "clamped-clamped" if bridge else "clamped-free"
             beam = tisim.Beam(
-                material=tisim.material_from_moduli("yeoh", shear_modulus=shear, bulk_modulus=300.0 * shear),
+                material=tisim.material_from_moduli(
+                    "neo-hookean", shear_modulus=shear, bulk_modulus=300.0 * shear
+                ),
                 length=length / 1e3,
                 supports=supports,  # type: ignore[arg-type]
                 element=COARSE.element,  # type: ignore[arg-type]

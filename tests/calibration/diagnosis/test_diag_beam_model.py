@@ -27,7 +27,7 @@ from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.simulators import OURS
 
 BARE = replace(OURS, reference=None)  # what made the data: there is no mesh error to correct
-FIRM = tisim.material_from_moduli("yeoh", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
+FIRM = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
 STATE = State(u=np.array([np.log(SHEAR)]))
 TWO = State(u=np.log([SHEAR, 0.6 * SHEAR]))
 

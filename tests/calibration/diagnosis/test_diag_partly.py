@@ -16,6 +16,7 @@ from calibration.diagnosis.engine.explanation import explain
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.resampling import Groups, Resampled, groups_of
+from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.shares import Shares
@@ -154,7 +155,7 @@ def test_what_takes_little_is_not_named_but_said() -> None:
     assert data["nearest"]["not_named_because"]
     assert data["nearest"]["share"]["value"] < 0.5
     assert "Nearest comes" in found.sentence()
-    assert "It is not named: " in found.sentence()
+    assert "It is not named, because " in found.sentence()
     assert found.next_experiment
 
 
@@ -167,6 +168,18 @@ def test_what_helps_one_part_only_is_not_named() -> None:
     assert found.finding.verdict == "unexplained"
     assert found.nearest is not None
     assert any("held out" in reason or "amplitude" in reason for reason in found.nearest.against)
+
+
+def test_what_predicts_too_little_is_not_named() -> None:
+    """The same data as above, of a judge who asks for more skill than there is."""
+    model, named = partly()
+    assert named.held_out is not None
+    assert named.held_out.skill > Rules().least_skill
+    found = diagnose(model, rules=Rules(least_skill=named.held_out.skill + 0.05), gain=False)
+    assert found.finding.verdict == "unexplained"
+    assert found.nearest is not None
+    assert any("noise leaves to explain in held-out" in reason for reason in found.nearest.against)
+    assert found.nearest.explanation.names == ("bend",)
 
 
 def test_noise_alone_and_what_is_explained_wholly_stay_as_they_were() -> None:

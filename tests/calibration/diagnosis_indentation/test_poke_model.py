@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from poke_records import indentation_model, path, trial
 
-from calibration.diagnosis.effects.indentation import _faded
+from calibration.diagnosis.effects.indentation.specimen import _faded
 from calibration.diagnosis.engine import explanation
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.screening import screen

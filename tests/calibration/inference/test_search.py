@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 from toy_problems import mooney, mooney_problem, neo_problem
 
-from calibration.inference import CmaOptions, Generation, guess, identify, polish, search
+from calibration.inference import (
+    CmaOptions,
+    Generation,
+    OfMaterial,
+    Problem,
+    guess,
+    identify,
+    polish,
+    search,
+)
 from calibration.inference.search import PATIENCE
 from calibration.parameters import parametrisation
 from tisim import Material
@@ -76,6 +85,44 @@ def test_a_stopped_search_goes_on_to_the_same_end() -> None:
     assert sum(g.replayed for g in seen) == 18
     assert np.array_equal(resumed.u, whole.u)  # type: ignore[attr-defined]
     assert [g.costs.tolist() for g in seen] == [g.costs.tolist() for g in all_generations]
+
+
+@pytest.mark.parametrize("begin", [2.1e4, 1.2e4, 2e3])
+def test_what_is_held_is_not_searched_and_one_coordinate_takes_few_candidates(begin: float) -> None:
+    problem = held_problem(2e4)
+    p = problem.parametrisation
+    seen: list[Generation] = []
+    found = search(problem, start=p.start(shear=begin), spread=p.spread, on_progress=seen.append)
+    assert found.reason == "converged: tolfun"
+    assert problem.costs(found.u[None])[0] < CmaOptions().tolerance
+    assert found.evaluations <= (30 if begin > 1e4 else 60)  # CMA-ES in both coordinates: 190
+    candidates = np.concatenate([g.candidates for g in seen])
+    assert np.unique(candidates[:, 1]).tolist() == [np.log(300.0)]
+    assert len(np.unique(candidates[:, 0])) == found.evaluations
+
+
+def test_one_coordinate_whose_best_is_where_answers_end() -> None:
+    problem = held_problem(1e4, fails=lambda m: m.parameters["mu"] < 1.5e4)
+    p = problem.parametrisation
+    found = search(problem, start=p.start(shear=1.7e4), spread=p.spread)
+    assert found.reason == "converged: tolx"
+    assert p.moduli(found.u).shear_modulus == pytest.approx(1.5e4, rel=1e-4)
+
+
+def test_one_coordinate_whose_best_is_at_its_bound() -> None:
+    problem = held_problem(1e9)
+    p = problem.parametrisation
+    found = search(problem, start=p.start(shear=1e5), spread=p.spread)
+    assert found.reason.startswith("converged")
+    assert found.u[0] == p.bounds[0, 1]
+
+
+def held_problem(shear: float, **more: object) -> Problem:
+    """Ten readings of a shear modulus, K/G held."""
+    p = neo_problem(np.full(10, 100.0 * np.log(shear)), **more)  # type: ignore[arg-type]
+    law = p.parametrisation.holding("bulk_ratio")
+    curve = p.objectives[0].objective  # type: ignore[attr-defined]
+    return Problem(parametrisation=law, objectives=(OfMaterial(law, curve),))
 
 
 def test_a_history_of_another_seed_is_refused() -> None:

@@ -13,10 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _folders import coupon_entry, poke_entry, write_experiment
+from typer import Typer
 from typer.testing import CliRunner
 
+from calibration.diagnose import app as diagnose
 from calibration.diagnosis import kinds
 from calibration.fit import app as fit
+from calibration.predict import app as predict
 from calibration.study._store import FitStore, locked
 from calibration.table import app as table
 
@@ -116,6 +119,24 @@ def test_options_that_cannot_be_used(tmp_path: Path, words: list[str], sentence:
     assert done.exit_code == 2
     assert done.stderr.startswith(sentence)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("app", "folder", "kind", "split"),
+    [
+        (diagnose, "indentation", "indentation", ()),
+        (diagnose, "compression", "compression", ()),
+        (diagnose, "bench/clean", "outlines", ()),
+        (predict, "bench/clean", "outlines", ("--calibrate", "*-cantilever-*", "--predict", "*-bridge-*")),
+    ],
+)
+def test_a_law_for_a_kind_of_measurement_that_has_one(
+    tmp_path: Path, app: Typer, folder: str, kind: str, split: tuple[str, ...]
+) -> None:
+    words = [str(ROOT / "datasets" / "measured" / folder), *split, "--law", "ogden:2"]
+    done = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2, done.output
+    assert done.stderr == f"error: --law ogden: {kind} has one law only, expected auto\n"
 
 
 def test_a_second_fit_in_one_folder_waits_outside(tmp_path: Path) -> None:

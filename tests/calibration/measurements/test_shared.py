@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from calibration.diagnosis.catalogue import ALIASES, effects_of, true_name
+from calibration.errors import OptionError
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._folds import folds_of
 from calibration.measurements._kinds import kinds
@@ -17,6 +18,7 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._records import strokes
 from calibration.measurements._state import State
+from calibration.measurements.indentation.model import IndentationModel
 from calibration.parameters import parametrisation
 
 
@@ -206,3 +208,11 @@ def test_names_of_earlier_versions_are_understood() -> None:
             assert true_name(kind, old) == new
             assert new in effects_of(kind)
     assert true_name("outlines", "radius") == "radius"
+
+
+def test_a_model_of_one_law_refuses_another_in_a_sentence() -> None:
+    """Of a kind that takes `--law` and does not say how: commands print what is refused, exit code 2."""
+    model = IndentationModel.__new__(IndentationModel)
+    with pytest.raises(OptionError, match="indentation has one law only") as refused:
+        model.with_law("ogden", 2)
+    assert refused.value.option == "--law ogden:2: indentation has one law only, expected auto"

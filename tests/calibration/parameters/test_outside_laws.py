@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import calibration.parameters as parameters
-from calibration.api import law_names
+from calibration.fit_plan import law_names
 from calibration.parameters import Coordinate, Parametrisation, bulk_ratio, parametrisation, shear_modulus
 from tisim import laws
 

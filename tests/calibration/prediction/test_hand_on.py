@@ -17,7 +17,7 @@ from benchmarks.blind.timed.material import Prony, Solid
 from calibration.diagnosis._handed_on import _together
 from calibration.diagnosis.catalogue import effects_of, true_parameter
 from calibration.diagnosis.effects._material_parts import branches, one_time, softening_of, viscosity_of
-from calibration.diagnosis.effects.release import CREEP_TIMES
+from calibration.diagnosis.effects.release.material import CREEP_TIMES
 from calibration.diagnosis.engine.fitting import fit
 from calibration.experiment.model import CouponTrial
 from calibration.measurements._effect import HandedOn, Occurrence

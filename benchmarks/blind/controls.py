@@ -1,0 +1,181 @@
+"""Controls of verdicts, of every kind of made measurement: `python -m benchmarks.blind.controls coupons`.
+
+without: one cause of the library, taken out of the catalogue; a stand-in may be named in part, and said so.
+smooth: nothing is hidden, but each record has a smooth error that nobody states; nothing may be named.
+half: one cause of the library and one outside it, equally large; the one inside is to be named (or to come
+nearest), and the interval of its share is to hold the true one.
+one, two: causes of the library; the intervals of their shares are to hold the true ones.
+
+What the true share is, is said in `laboratory.py`. `--out FILE` keeps each case, one line of JSON each.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from benchmarks.blind.compression import laboratory as compression
+from benchmarks.blind.coupons import laboratory as coupons
+from benchmarks.blind.indentation import laboratory as indentation
+from benchmarks.blind.laboratory import Laboratory
+from benchmarks.blind.record_scores import named, named_set, part
+
+LABORATORIES: dict[str, Laboratory[Any]] = {
+    "coupons": coupons.LABORATORY,
+    "compression": compression.LABORATORY,
+    "indentation": indentation.LABORATORY,
+}
+CONTROLS = ("without", "smooth", "half", "one", "two")
+SIZE = 25.0  # standard deviations of a cause
+HALF = (0.4, 0.6)  # true share of the one inside, of two of that size
+UNNAMED = ("none", "unexplained")
+Row = dict[str, Any]
+
+
+def rows(kind: str, control: str, count: int, seed: int) -> Iterator[Row]:
+    """What was hidden, what was said, and the shares of both, a case each."""
+    lab = LABORATORIES[kind]
+    made = number = 0
+    while made < count:
+        number += 1
+        own = 1000 * seed + number
+        case = _case(lab, control, own)
+        if case is None:
+            continue
+        made += 1
+        hidden = tuple(h.name for h in lab.hidden(case))
+        with tempfile.TemporaryDirectory() as place:
+            folder = Path(place) / "experiment"
+            lab.write(case, folder)
+            if control == "smooth":
+                lab.smooth_error(folder, own)
+            began = time.process_time()
+            verdict = lab.diagnose(folder, without=hidden if control == "without" else ())
+            seconds = time.process_time() - began
+            excused = False
+            if control == "without" and verdict["verdict"] == "found":
+                # what the whole catalogue cannot tell from the truth is no stand-in
+                excused = named(verdict) in named_set(lab.diagnose(folder))
+        yield {
+            "seed": own,
+            "hidden": hidden,
+            "sigma": [round(h.sigma, 1) for h in lab.hidden(case)],
+            "scope": [h.where for h in lab.hidden(case)],
+            "excused": excused,
+            "seconds": seconds,
+            "true_shares": _true_shares(lab, control, case, verdict),
+            **{k: verdict[k] for k in ("verdict", "causes", "alternatives", "share", "nearest", "gain")},
+        }
+
+
+def _case(lab: Laboratory[Any], control: str, seed: int) -> Any:
+    if control == "smooth":
+        return lab.clean(seed)
+    if control != "half":
+        return (lab.two if control == "two" else lab.one)(seed, SIZE)
+    case = lab.half(seed, SIZE)
+    if case is None:
+        return None
+    # two that are nearly alike, or opposite, are not half and half of what is seen of both
+    inside = lab.hidden(case)[0].name
+    return case if HALF[0] <= lab.true_shares(case, [inside])[inside] <= HALF[1] else None
+
+
+def causes_of(verdict: Row) -> list[Row]:
+    """Named, or nearest where none is."""
+    nearest = verdict["nearest"]
+    return list(verdict["causes"] or (nearest["causes"] if nearest else []))
+
+
+def share_of(verdict: Row) -> Row | None:
+    """Of what is named, or nearest."""
+    nearest = verdict["nearest"]
+    found: Row | None = verdict["share"] if verdict["causes"] else (nearest["share"] if nearest else None)
+    return found
+
+
+def _true_shares(lab: Laboratory[Any], control: str, case: Any, verdict: Row) -> dict[str, float]:
+    """Of the causes that are named or nearest, where all of them are hidden ones of the library."""
+    names = {c["effect"] for c in causes_of(verdict)}
+    inside = {h.name for h in lab.hidden(case)[: 1 if control == "half" else None]}
+    if control == "without" or not names or not names <= inside:
+        return {}
+    return lab.true_shares(case, names)
+
+
+def covered(row: Row) -> list[bool]:
+    """Whether the interval holds the true share: of all that is named, and of each cause of several."""
+    true = row["true_shares"]
+    share = share_of(row)
+    pairs = [(share, sum(true.values()))] if true else []
+    if len(true) > 1:
+        pairs += [(c.get("share"), true[c["effect"]]) for c in row["causes"]]
+    return [s["low"] <= t <= s["high"] for s, t in pairs if s and s["low"] is not None]
+
+
+def line(row: Row) -> str:
+    """A case for people."""
+    hidden = " + ".join(f"{n} {s:g}" for n, s in zip(row["hidden"], row["sigma"], strict=True)) or "-"
+    found = " + ".join(c["effect"] for c in causes_of(row))
+    shown = found if row["causes"] else f"({found})"
+    also = "; or ".join(" + ".join(names) for names in row["alternatives"][1:])
+    share = share_of(row)
+    said = f"{share['value']:.2f} [{share['low']}, {share['high']}]" if share else "-"
+    true = f" true {sum(row['true_shares'].values()):.2f}" if row["true_shares"] else ""
+    return (
+        f"  {row['seed']} {hidden}: {row['verdict']} {shown}{'; or ' + also if also else ''}"
+        f"{' (excused)' if row['excused'] else ''} share {said}{true} {row['seconds']:.1f} core-s"
+    )
+
+
+def scores(control: str, done: list[Row]) -> Iterator[str]:
+    """Goals and what was reached."""
+    said = Counter(r["verdict"] for r in done)
+    yield f"{control}: {dict(said)}"
+    if control == "without":
+        alone = [r["verdict"] == "found" for r in done]
+        wrong = [a and not r["excused"] for a, r in zip(alone, done, strict=True)]
+        yield f"  explained in part by a stand-in: {part([r['verdict'] == 'partly explained' for r in done])}"
+        yield f"  another name, alone and without 'partly': goal at most 5 %, {part(wrong)}"
+        yield f"  the same with those that the whole catalogue lists beside the truth: {part(alone)}"
+        return
+    if control == "smooth":
+        yield f"  nothing named: goal 95 %, {part([r['verdict'] in UNNAMED for r in done])}"
+        return
+    inside = [r["hidden"][:1] if control == "half" else r["hidden"] for r in done]
+    here = [any(set(i) <= set(s) for s in named_set(r)) for i, r in zip(inside, done, strict=True)]
+    near = [set(i) <= {c["effect"] for c in causes_of(r)} for i, r in zip(inside, done, strict=True)]
+    yield f"  the truth in the named set: {part(here)}"
+    either = [a or b for a, b in zip(here, near, strict=True)]
+    yield f"  the same, or nearest: goal 90 %, {part(either)}"
+    yield f"  true share in its interval: goal 88 to 97 %, {part([c for r in done for c in covered(r)])}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("kind", choices=list(LABORATORIES))
+    parser.add_argument("--control", choices=CONTROLS, action="append", help="only this (several times)")
+    parser.add_argument("--cases", type=int, default=20, help="of each control")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, help="file to which each case is added, as a line of JSON")
+    given = parser.parse_args()
+    for control in given.control or CONTROLS:
+        done = []
+        for row in rows(given.kind, control, given.cases, given.seed):
+            print(line(row), flush=True)
+            done.append(row)
+            if given.out:
+                with given.out.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps({"kind": given.kind, "control": control, **row}) + "\n")
+        for text in scores(control, done):
+            print(text, flush=True)
+
+
+if __name__ == "__main__":
+    main()

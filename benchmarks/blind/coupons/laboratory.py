@@ -1,0 +1,60 @@
+"""Coupons, as the controls ask for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.blind.coupons.cases import hide, make_coupon, write
+from benchmarks.blind.coupons.model import LIBRARY, OUTSIDE, Case, Hidden, curve, errors
+from benchmarks.blind.laboratory import Laboratory
+from benchmarks.blind.under_test import diagnose_coupons
+
+Array = NDArray[np.float64]
+
+NEAR = (0.8, 1.25)  # of the size that is asked of a cause
+
+
+def half(seed: int, size: float) -> Case | None:
+    """One cause of each sort in one experiment; None where the protocols cannot show both so large."""
+    rng = np.random.default_rng([seed, 8])
+    case = make_coupon(seed, "one", str(rng.choice(LIBRARY)), target=size)
+    for name in rng.permutation(OUTSIDE):
+        other = hide(rng, str(name), case.protocols, size)
+        if NEAR[0] * size < other.sigma < NEAR[1] * size:
+            return replace(case, hidden=(*case.hidden, other))
+    return None
+
+
+def whitened(case: Case, hidden: Sequence[Hidden]) -> Array:
+    return np.concatenate([curve(p, tuple(hidden)) / errors(p) for p in case.protocols])
+
+
+def free(case: Case) -> Array:
+    """A modulus a specimen, or a material where specimens have no names."""
+    owners = [p.specimen or p.material for p in case.protocols]
+    base = [curve(p, ()) / errors(p) for p in case.protocols]
+    return np.column_stack(
+        [
+            np.concatenate([b * (o == owner) for b, o in zip(base, owners, strict=True)])
+            for owner in dict.fromkeys(owners)
+        ]
+    )
+
+
+LABORATORY = Laboratory(
+    clean=lambda seed: make_coupon(seed, "clean"),
+    one=lambda seed, size: make_coupon(seed, "one", target=size),
+    half=half,
+    two=lambda seed, size: make_coupon(seed, "two", target=size),
+    write=write,
+    hidden=lambda case: case.hidden,
+    whitened=whitened,
+    free=free,
+    diagnose=diagnose_coupons,
+    measured=1,
+    stated="stress_sd_kPa",
+)

@@ -1,0 +1,120 @@
+"""What the controls ask of a kind of measurement: its cases, their files, and the data without noise.
+
+The true share of causes, in a made case, is of the data without noise: moduli are fitted to them (a specimen,
+or a material, as the lab would), which leaves the explainable misfit; moduli and the amplitudes of these
+causes, in their true form, leave less. The share is the part that is gone. One of several causes has
+Shapley's mean of what it takes over all orders, so that shares add up. Squares are in units of the stated
+noise; moduli and amplitudes act to first order around the truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import factorial
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from benchmarks.blind.records import Put
+
+Array = NDArray[np.float64]
+C = TypeVar("C")
+
+SMOOTH = (0.003, 0.01)  # of full scale: rms of an error that nobody states
+WAVES = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Laboratory(Generic[C]):
+    """A kind of measurement.
+
+    Attributes
+    ----------
+    clean : a case with nothing hidden, by its seed.
+    one : with one cause of the library, by seed and size in standard deviations.
+    half : with one of the library and, second, one outside it, each of that size; None where its protocol
+        cannot show both so large.
+    two : with two causes of the library, each of that size or more.
+    write : the experiment's folder, without the truth.
+    hidden : the causes of a case.
+    whitened : the data without noise with these causes, over the standard deviation of the noise, shape (k,).
+    free : columns of the moduli, shape (k, moduli).
+    diagnose : the verdict on a folder, with effects left out of the catalogue.
+    measured, stated : column of the records that holds what is measured; key of a trial by which the lab
+        states its noise.
+    """
+
+    clean: Callable[[int], C]
+    one: Callable[[int, float], C]
+    half: Callable[[int, float], C | None]
+    two: Callable[[int, float], C]
+    write: Callable[[C, Path], None]
+    hidden: Callable[[C], Sequence[Put]]
+    whitened: Callable[[C, Sequence[Any]], Array]
+    free: Callable[[C], Array]
+    diagnose: Callable[..., dict[str, Any]]
+    measured: int
+    stated: str
+
+    def true_shares(self, case: C, names: Iterable[str]) -> dict[str, float]:
+        """Of the causes of these names, each; they add up to the share of all of them."""
+        base = self.whitened(case, ())
+        every = list(self.hidden(case))
+        departure = self.whitened(case, every) - base
+        columns = {h.name: self.whitened(case, (h,)) - base for h in every}
+        return shapley(departure, self.free(case), {n: columns[n] for n in sorted(set(names))})
+
+    def smooth_error(self, folder: Path, seed: int) -> None:
+        """Give each record of an experiment a smooth error of its own, and take the stated errors out."""
+        rng = np.random.default_rng([seed, 7])
+        size = float(np.exp(rng.uniform(*np.log(SMOOTH))))
+        path = folder / "experiment.yaml"
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        for trial in content["trials"]:
+            trial.pop(self.stated, None)
+            record = folder / trial["record"]
+            head, *rows = record.read_text(encoding="utf-8").splitlines()
+            table = np.array([[float(x) for x in row.split(",")] for row in rows])
+            x = np.linspace(0.0, 1.0, len(table))
+            wave = sum(
+                rng.standard_normal() * np.cos(np.pi * (k * x + rng.random())) for k in range(1, WAVES + 1)
+            )
+            own = table[:, self.measured]
+            own += wave * size * np.abs(own).max() / float(np.sqrt(np.mean(wave**2)))
+            lines = [head, *(",".join(f"{v:.9g}" for v in row) for row in table)]
+            record.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+
+
+def shapley(departure: Array, free: Array, columns: dict[str, Array]) -> dict[str, float]:
+    """Shares of the part of a departure (k,) that free columns (k, n) leave."""
+    names = list(columns)
+    whole = left(free, departure)
+    taken = {
+        some: 1.0 - left(np.column_stack([free, *(columns[n] for n in some)]), departure) / whole
+        for size in range(len(names) + 1)
+        for some in combinations(names, size)
+    }
+    shares = {}
+    for name in names:
+        others = [n for n in names if n != name]
+        shares[name] = sum(
+            factorial(size)
+            * factorial(len(others) - size)
+            / factorial(len(names))
+            * (taken[tuple(n for n in names if n in (*some, name))] - taken[some])
+            for size in range(len(names))
+            for some in combinations(others, size)
+        )
+    return shares
+
+
+def left(columns: Array, z: Array) -> float:
+    """Squares of z that columns leave."""
+    q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
+    return float(z @ z - (q.T @ z) @ (q.T @ z))

@@ -1,0 +1,215 @@
+"""How effects act on homogeneous material tests: the energy that the material stores."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import (
+    eight_chain,
+    fibres_along_the_load,
+    mooney_rivlin,
+    stiffening,
+)
+from calibration.diagnosis.effects.homogeneous._pressed import PRESSED
+from calibration.measurements._effect import HandedOn, Occurrence
+from calibration.measurements.homogeneous._effect import HomogeneousEffect
+from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
+
+Array = NDArray[np.float64]
+
+# -- anisotropy --
+# The material is stiffer along the direction that is pulled: W gets a term G k/8 (I4 - 1)^2, I4 the squared
+# stretch of that direction. The amplitude k is the excess of stress there, in shear moduli a unit of
+# strain.
+
+
+def _extra_anisotropy(s: Array, amplitude: float, record: Record) -> Array:
+    if record.mode == "simple-shear":
+        return np.zeros(s.size)
+    # equibiaxial: the stress is the mean over two directions, of which one has it
+    axes = 2.0 if record.mode == "equibiaxial" else 1.0
+    return np.asarray(0.5 * amplitude * s * (s**2 - 1.0) / axes)
+
+
+def _identifiable_anisotropy(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Two modes of a material, or a specimen of the same mode to compare with that was not cut alike. Fibres
+    in the one specimen of a mode, and none in those of other modes, are no anisotropy of the material."""
+    for material in {r.material for r in reached}:
+        mine = [r for r in reached if r.material == material]
+        others = [r for r in everything if r.material == material and r not in mine]
+        modes = {r.mode for r in mine}
+        if len(modes) > 1 or any(r.mode in modes for r in others):
+            return True
+    return False
+
+
+def _fibres_anisotropy(found: Occurrence) -> HandedOn:
+    return fibres_along_the_load(0.25 * found.shear_modulus * found.amplitude)
+
+
+ANISOTROPY = HomogeneousEffect(
+    effect=catalogue.ANISOTROPY,
+    step=1e-3,
+    bounds=(-1.5, 6.0),
+    prior_scale=0.6,
+    extra=_extra_anisotropy,
+    identifiable=_identifiable_anisotropy,
+    hands_on=_fibres_anisotropy,
+    scopes=("material", "specimen", "trial"),
+)
+
+
+# -- strain-stiffening --
+# The material stiffens with strain: W gets a term G/2 a (I1 - 3)^2 beside the baseline's (Yeoh's law in
+# `tisim`, which refuses a < 0: its energy would have no least value).
+
+
+def _extra_strain_stiffening(s: Array, amplitude: float, record: Record) -> Array:
+    return stress_of(record.mode, s, amplitude * first_excess(record.mode, s))
+
+
+STRAIN_STIFFENING = HomogeneousEffect(
+    effect=catalogue.STRAIN_STIFFENING,
+    step=1e-3,
+    bounds=(0.0, 4.0),
+    prior_scale=0.5,
+    extra=_extra_strain_stiffening,
+    action="pull to larger strain",
+    hands_on=stiffening,
+)
+
+
+# -- second-invariant --
+# The energy depends on the second invariant too (Mooney-Rivlin): the share C01 / (C10 + C01).
+
+
+def _extra_second_invariant(s: Array, amplitude: float, record: Record) -> Array:
+    return stress_of(record.mode, s, -0.5 * amplitude, 0.5 * amplitude)
+
+
+SECOND_INVARIANT = HomogeneousEffect(
+    effect=catalogue.SECOND_INVARIANT,
+    step=1e-3,
+    bounds=(-0.5, 1.5),
+    prior_scale=0.3,
+    extra=_extra_second_invariant,
+    hands_on=mooney_rivlin,
+)
+
+
+# -- limited-extensibility --
+# Chains run out of length (eight Langevin chains: Arruda and Boyce, J. Mech. Phys. Solids 41, 1993;
+# `tisim`'s law `eight-chain`): the amplitude is one over the squared locking stretch; the small-strain
+# modulus stays.
+#
+# Past ENDS of the chains' length the force goes on in a straight line, as in that law: a search may step
+# there.
+
+
+LONGEST_CHAIN = 0.995
+
+_NEWTON_STEPS = 5  # of Newton's method, from a Pade form that is right to 5 %
+
+_SHORT_CHAIN = 1e-4  # part of its length up to which a chain is Gaussian to rounding errors
+
+
+def _stiffening(x: Array) -> Array:
+    """Force of a chain at the part x of its length, over that of a Gaussian one (1 for short ones): the
+    inverse Langevin function over 3 x."""
+    inside = np.clip(x, _SHORT_CHAIN, LONGEST_CHAIN)
+    b = inside * (3.0 - inside**2) / (1.0 - inside**2)
+    for _ in range(_NEWTON_STEPS):
+        value, slope = _langevin(b)
+        b = b - (value - inside) / slope
+    past = np.maximum(x - LONGEST_CHAIN, 0.0) / _langevin(b)[1]
+    return np.asarray((b + past) / (3.0 * np.maximum(x, _SHORT_CHAIN)))
+
+
+def _langevin(b: Array) -> tuple[Array, Array]:
+    """coth b - 1/b, and its slope."""
+    e = np.exp(-2.0 * b)
+    return (1.0 + e) / (1.0 - e) - 1.0 / b, 1.0 / b**2 - 4.0 * e / (1.0 - e) ** 2
+
+
+def _extra_limited_extensibility(s: Array, amplitude: float, record: Record) -> Array:
+    i1 = first_excess(record.mode, s) + 3.0
+    part = _stiffening(np.sqrt(amplitude * i1 / 3.0)) / _stiffening(np.sqrt(np.array([amplitude])))
+    return stress_of(record.mode, s, 0.5 * (part - 1.0))
+
+
+LIMITED_EXTENSIBILITY = HomogeneousEffect(
+    effect=catalogue.LIMITED_EXTENSIBILITY,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    prior_scale=0.5,
+    extra=_extra_limited_extensibility,
+    hands_on=eight_chain,
+)
+
+
+# -- law-form --
+# Another law than the baseline's describes the material: the energy is (1 - a) W + a W', of one small-strain
+# modulus, and W' alone where it is named. Constants of W' are coordinates of the fit beside it. W' is the law
+# that predicts best what its fit has not seen (`calibration.diagnosis.laws`).
+
+
+def _several_modes(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Each material in two modes of loading, of which pulling and pressing are two."""
+    del everything
+    for material in {r.material for r in reached}:
+        mine = [r for r in reached if r.material == material]
+        if len({(r.mode, bool(r.stretch.min() < PRESSED)) for r in mine}) < 2:
+            return False
+    return True
+
+
+LAW_FORM = HomogeneousEffect(
+    effect=catalogue.LAW_FORM,
+    step=1e-3,
+    bounds=(0.0, 1.0),
+    physical_limits=(1.0,),
+    start_fraction=1.0,
+    prior_scale=1.0,
+    conclusive=_several_modes,
+    switch=True,
+    richer=True,
+    further=True,
+    scopes=("material",),
+)
+
+
+# -- tension-compression-asymmetry --
+# In compression the material is stiffer (softer, where negative) than in tension: its stress there is this
+# part higher, as of one of two moduli.
+
+
+def _factor_asymmetry(s: Array, amplitude: float, record: Record) -> Array:
+    pressed = (s < 1.0) & (record.mode == "uniaxial")
+    return np.where(pressed, 1.0 + amplitude, 1.0)
+
+
+def _both_signs(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
+    """Compression, and something else of the same material."""
+    for r in reached:
+        others = [q for q in everything if q.material == r.material]
+        pressed = [q.mode == "uniaxial" and float(q.stretch.min()) < PRESSED for q in others]
+        if any(pressed) and not all(pressed):
+            return True
+    return False
+
+
+TENSION_COMPRESSION_ASYMMETRY = HomogeneousEffect(
+    effect=catalogue.TENSION_COMPRESSION_ASYMMETRY,
+    step=1e-3,
+    bounds=(-0.9, 10.0),
+    prior_scale=0.5,
+    factor=_factor_asymmetry,
+    identifiable=_both_signs,
+    further=True,
+    scopes=("material",),
+)

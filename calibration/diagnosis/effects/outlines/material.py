@@ -1,0 +1,115 @@
+"""Effects of the material on photographed beams: they change the scene's law, moduli or density."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import stiffening, viscosity_of
+from calibration.measurements._effect import HandedOn, Occurrence
+from calibration.measurements.outlines._effect import (
+    OutlineEffect,
+    Situation,
+    with_moduli,
+)
+from tisim import Beam, laws
+
+Array = NDArray[np.float64]
+
+# -- density --
+# The specimen weighs more or less than the lab says: stiffness and weight enter by their ratio alone.
+
+
+def _bend_density(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    heavier = beam.material.density * (1.0 + amplitude)
+    return replace(beam, material=replace(beam.material, density=heavier))
+
+
+DENSITY = OutlineEffect(
+    effect=catalogue.DENSITY,
+    # the opposite of the baseline's own step in ln G: the two are one, and so must their differences be
+    step=-0.003,
+    bounds=(-0.3, 0.3),
+    prior_scale=0.05,
+    bend=_bend_density,
+)
+
+
+# -- strain-stiffening --
+# The material stiffens with strain: W gets a term mu/2 a (I1bar - 3)^2 beside the baseline's.
+
+
+def _bend_strain_stiffening(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    known = beam.material.parameters["stiffening"]  # the baseline's law has it, at zero
+    assert isinstance(known, float)
+    parameters = {**beam.material.parameters, "stiffening": known + amplitude}
+    return replace(beam, material=replace(beam.material, parameters=parameters))
+
+
+STRAIN_STIFFENING = OutlineEffect(
+    effect=catalogue.STRAIN_STIFFENING,
+    step=0.1,
+    bounds=(0.0, 4.0),
+    prior_scale=1.5,
+    bend=_bend_strain_stiffening,
+    hands_on=stiffening,
+)
+
+
+# -- compressibility --
+# The material gives way in volume: Poisson's ratio is lower than the baseline's by this much.
+
+
+def _bend_compressibility(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    moduli = laws.get(beam.material.law).moduli(beam.material.parameters)
+    g, k = moduli.shear_modulus, moduli.bulk_modulus
+    nu = (3.0 * k - 2.0 * g) / (6.0 * k + 2.0 * g) - amplitude
+    bulk = 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
+    return replace(beam, material=with_moduli(beam.material, shear=g, bulk=bulk))
+
+
+COMPRESSIBILITY = OutlineEffect(
+    effect=catalogue.COMPRESSIBILITY,
+    step=0.03,
+    bounds=(0.0, 0.3),
+    prior_scale=0.05,
+    bend=_bend_compressibility,
+)
+
+
+# -- creep --
+# The material creeps: its modulus falls by this part with each decade of time since release, from 1 s.
+
+
+def _bend_creep(beam: Beam, amplitude: float, situation: Situation) -> Beam:
+    moduli = laws.get(beam.material.law).moduli(beam.material.parameters)
+    part = 1.0 - amplitude * float(np.log10(situation.time))
+    softer = with_moduli(beam.material, shear=part * moduli.shear_modulus, bulk=part * moduli.bulk_modulus)
+    return replace(beam, material=softer)
+
+
+def _viscosity_creep(found: Occurrence) -> HandedOn:
+    """The modulus at each time taken for the relaxation function there: under a constant load the difference
+    is a fraction of (pi c / 2.3)^2 / 6 of it, for a fraction c a decade (0.3 % for 10 %)."""
+    times = [r.time for r in found.records if r.time > 0.0]
+    first, last = min(times), max(times)
+    if not last > first:
+        return HandedOn(field="viscosity", part=None, remarks=("no relaxation spectrum: one time only",))
+    if found.amplitude < 0.0:
+        text = "no relaxation spectrum: the beam stiffens with time"
+        return HandedOn(field="viscosity", part=None, remarks=(text,))
+    return viscosity_of(lambda t: 1.0 - found.amplitude * np.log10(t), first=first, last=last)
+
+
+CREEP = OutlineEffect(
+    effect=catalogue.CREEP,
+    step=0.01,
+    bounds=(-0.15, 0.25),
+    prior_scale=0.1,
+    bend=_bend_creep,
+    timed=True,
+    hands_on=_viscosity_creep,
+)

@@ -1,0 +1,189 @@
+"""Effects of the specimen on photographed beams: section, shape, and stiffness along and across it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.diagnosis import catalogue
+from calibration.measurements.outlines._effect import (
+    OutlineEffect,
+    Situation,
+    cantilever,
+)
+from tisim import Beam, Circle, Void
+
+Array = NDArray[np.float64]
+
+# -- radius --
+# The section is larger (positive) or smaller than stated, all along the beam; swelling looks the same.
+
+
+def _bend_radius(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    if isinstance(beam.section, Circle):
+        return replace(beam, section=Circle(radius=beam.section.radius + amplitude))
+    s = beam.section
+    return replace(
+        beam, section=replace(s, width=s.width + 2.0 * amplitude, height=s.height + 2.0 * amplitude)
+    )
+
+
+RADIUS = OutlineEffect(
+    effect=catalogue.RADIUS,
+    step=5e-5,
+    bounds=(-2e-3, 2e-3),
+    prior_scale=5e-4,
+    bend=_bend_radius,
+)
+
+
+# -- taper --
+# The section grows (positive) or shrinks along the beam, linearly, about the middle of its free length.
+
+
+def _bend_taper(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    return replace(
+        beam, imperfections=replace(beam.imperfections, taper=beam.imperfections.taper + amplitude)
+    )
+
+
+TAPER = OutlineEffect(
+    effect=catalogue.TAPER,
+    step=0.1,
+    bounds=(-1.5, 1.5),
+    prior_scale=0.5,
+    bend=_bend_taper,
+)
+
+
+# -- stiffness-gradient-axial --
+# The modulus changes linearly along the beam (a mixture that settled), about its free length's middle.
+
+
+def _bend_stiffness_gradient_axial(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    grown = beam.imperfections.axial_gradient + amplitude
+    return replace(beam, imperfections=replace(beam.imperfections, axial_gradient=grown))
+
+
+STIFFNESS_GRADIENT_AXIAL = OutlineEffect(
+    effect=catalogue.STIFFNESS_GRADIENT_AXIAL,
+    step=0.5,
+    bounds=(-9.0, 9.0),
+    prior_scale=4.0,
+    bend=_bend_stiffness_gradient_axial,
+)
+
+
+# -- stiffness-gradient-transverse --
+# The modulus changes linearly from the lower to the upper side (a filler that settled while curing).
+
+
+def _bend_stiffness_gradient_transverse(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    grown = beam.imperfections.transverse_gradient + amplitude
+    return replace(beam, imperfections=replace(beam.imperfections, transverse_gradient=grown))
+
+
+STIFFNESS_GRADIENT_TRANSVERSE = OutlineEffect(
+    effect=catalogue.STIFFNESS_GRADIENT_TRANSVERSE,
+    step=2.0,
+    bounds=(-80.0, 80.0),
+    prior_scale=40.0,
+    bend=_bend_stiffness_gradient_transverse,
+)
+
+
+# -- residual-curvature --
+# The beam was bent in its mould: free of stress it is an arc, upwards where positive.
+
+
+def _bend_residual_curvature(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    return replace(
+        beam, imperfections=replace(beam.imperfections, curvature=beam.imperfections.curvature + amplitude)
+    )
+
+
+RESIDUAL_CURVATURE = OutlineEffect(
+    effect=catalogue.RESIDUAL_CURVATURE,
+    step=0.1,
+    bounds=(-4.0, 4.0),
+    prior_scale=1.0,
+    bend=_bend_residual_curvature,
+)
+
+
+# -- void --
+# A bubble or a cut: over 15 mm of one beam part of its bending stiffness, and of its weight, is missing.
+#
+# The amplitude is that of a void with sharp ends. `tisim.Void` sets in over `edge`, since a mesh cannot
+# follow a jump; both bend the beam by the same angle where the flexibility that they add along it, the
+# integral of 1 / (1 - loss) - 1, is the same. That of a loss f over the length L is L f / (1 - f); that of
+# one of peak p, half a cosine over E at either end, is (L - E) (w^2 - 1) + 2 E (w - 1) with w = 1 / sqrt(1
+# - p).
+
+
+def hole(loss: float, *, position: float) -> Void:
+    """The void that bends a beam as much as a loss with sharp ends."""
+    flat = Void(position=position, fraction=0.0)
+    length, edge = flat.length, flat.edge
+    core = length - edge
+    w = (sqrt(edge**2 + core * (length + edge + length * loss / (1.0 - loss))) - edge) / core
+    return replace(flat, fraction=1.0 - w**-2.0)
+
+
+def _bend_void(beam: Beam, amplitude: float, situation: Situation) -> Beam:
+    assert situation.position is not None, "a void sits somewhere"
+    void = hole(amplitude, position=situation.position * situation.trial.free_length)
+    return replace(beam, imperfections=replace(beam.imperfections, void=void))
+
+
+VOID = OutlineEffect(
+    effect=catalogue.VOID,
+    step=0.1,
+    bounds=(0.0, 0.9),
+    prior_scale=0.5,
+    bend=_bend_void,
+    positions=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7),
+    scopes=("material", "trial"),  # one beam's, or its batch's
+    in_all=False,
+)
+
+
+# -- skin --
+# A layer of 1 mm at the surface is stiffer than the core by this part; locking elements look the same.
+
+
+def _bend_skin(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    return replace(beam, imperfections=replace(beam.imperfections, skin=beam.imperfections.skin + amplitude))
+
+
+SKIN = OutlineEffect(
+    effect=catalogue.SKIN,
+    step=0.1,
+    bounds=(-0.9, 3.0),
+    prior_scale=1.0,
+    bend=_bend_skin,
+)
+
+
+# -- added-mass --
+# Something hangs on the free end of one cantilever: a blob, a hook, a label.
+
+
+def _bend_added_mass(beam: Beam, amplitude: float, _: Situation) -> Beam:
+    force = np.asarray(beam.tip_force) + amplitude * np.asarray(beam.gravity)
+    return replace(beam, tip_force=(float(force[0]), float(force[1]), float(force[2])))
+
+
+ADDED_MASS = OutlineEffect(
+    effect=catalogue.ADDED_MASS,
+    step=2e-4,
+    bounds=(0.0, 2e-2),
+    prior_scale=2e-3,
+    bend=_bend_added_mass,
+    applies_to=cantilever,
+    scopes=("trial",),
+    in_all=False,
+)

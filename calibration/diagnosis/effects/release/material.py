@@ -1,0 +1,196 @@
+"""How effects act on a cantilever release: the material and the beam that is made of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._material_parts import branches, stiffening
+from calibration.measurements._effect import HandedOn, Occurrence
+from calibration.measurements.release._beam import BeamParameters
+from calibration.measurements.release._effect import ReleaseEffect
+from calibration.measurements.release._record import reference_time
+from tisim import Circle, Rectangle
+
+# -- creep --
+# The material creeps: of its modulus at 1 s this fraction goes with each decade of time, from a millisecond
+# to a quarter of an hour (two relaxation times a decade): the vibration loses energy by it too.
+
+
+BRANCHES_A_DECADE = 2
+
+CREEP_TIMES = tuple(
+    10.0 ** (k / BRANCHES_A_DECADE) for k in range(-3 * BRANCHES_A_DECADE, 3 * BRANCHES_A_DECADE + 1)
+)
+
+
+def _creep_branches(amplitude: float, reference: float) -> float:
+    """Each branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    times = np.array(CREEP_TIMES)
+    slow = (times / reference) ** 2
+    sunk = float(np.sum(slow / (1.0 + slow) - np.exp(-1.0 / times)))  # from the vibration to 1 s
+    return amplitude / (BRANCHES_A_DECADE + amplitude * sunk)
+
+
+def _alter_creep(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    if amplitude == 0.0:
+        return s
+    one = _creep_branches(amplitude, s.reference_time)
+    return replace(s, branches=s.branches + tuple((one, t) for t in CREEP_TIMES))
+
+
+def _viscosity_creep(found: Occurrence) -> HandedOn:
+    reference = reference_time(found.records)
+    one = _creep_branches(found.amplitude, reference)
+    return branches(
+        np.full(len(CREEP_TIMES), one),
+        np.array(CREEP_TIMES),
+        reference=reference,
+        first=reference,
+        last=max(float(np.ptp(r.time)) for r in found.records),
+    )
+
+
+CREEP = ReleaseEffect(
+    effect=catalogue.CREEP,
+    step=1e-05,
+    bounds=(0.0, 0.25),
+    prior_scale=0.1,
+    alter=_alter_creep,
+    action="record ten times as long",
+    hands_on=_viscosity_creep,
+)
+
+
+# -- relaxation --
+# The material has one more relaxation time: this fraction of the modulus before it goes with it.
+
+
+def _relaxing_branch(amplitude: float, time: float, reference: float) -> float:
+    """The branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    return amplitude / (1.0 - amplitude / (1.0 + (time / reference) ** 2))
+
+
+def _alter_relaxation(s: BeamParameters, amplitude: float, time: float | None) -> BeamParameters:
+    assert time is not None
+    if amplitude == 0.0:
+        return s
+    return replace(s, branches=(*s.branches, (_relaxing_branch(amplitude, time, s.reference_time), time)))
+
+
+def _viscosity_relaxation(found: Occurrence) -> HandedOn:
+    assert found.variant is not None
+    last = max(float(np.ptp(r.time)) for r in found.records)
+    reference = reference_time(found.records)
+    one = _relaxing_branch(found.amplitude, found.variant, reference)
+    return branches(
+        np.array([one]), np.array([found.variant]), reference=reference, first=reference, last=last
+    )
+
+
+RELAXATION = ReleaseEffect(
+    effect=catalogue.RELAXATION,
+    step=1e-05,
+    bounds=(0.0, 0.8),
+    prior_scale=0.2,
+    alter=_alter_relaxation,
+    variants=lambda _: (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0),
+    variant_label=lambda time: f"relaxation time {time:g} s",
+    action="release it with other masses, so that it vibrates at other frequencies",
+    hands_on=_viscosity_relaxation,
+)
+
+
+# -- strain-stiffening --
+# The material stiffens with strain (softens, where negative): W gets mu/2 a (I1 - 3)^2, in bending a term
+# in the cube of the curvature.
+
+
+def _alter_strain_stiffening(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, stiffening=s.stiffening + amplitude)
+
+
+STRAIN_STIFFENING = ReleaseEffect(
+    effect=catalogue.STRAIN_STIFFENING,
+    step=0.001,
+    bounds=(-6.0, 10.0),
+    prior_scale=1.5,
+    alter=_alter_strain_stiffening,
+    action="hang a larger mass; pull a coupon to large strain",
+    hands_on=stiffening,
+)
+
+
+# -- residual-curvature --
+# Residual curvature from casting: free of stress the beam is an arc, upwards where positive.
+
+
+def _alter_residual_curvature(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, curvature=s.curvature + amplitude)
+
+
+RESIDUAL_CURVATURE = ReleaseEffect(
+    effect=catalogue.RESIDUAL_CURVATURE,
+    step=0.0001,
+    bounds=(-2.0, 2.0),
+    prior_scale=0.5,
+    alter=_alter_residual_curvature,
+    action="turn the beam by 180 degrees about its axis",
+)
+
+
+# -- stiffness-gradient-axial --
+# The beam is stiffer towards its free end (positive) or its clamp.
+
+
+def _alter_stiffness_gradient_axial(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, axial_gradient=s.axial_gradient + amplitude)
+
+
+STIFFNESS_GRADIENT_AXIAL = ReleaseEffect(
+    effect=catalogue.STIFFNESS_GRADIENT_AXIAL,
+    step=0.001,
+    bounds=(-8.0, 8.0),
+    prior_scale=1.5,
+    alter=_alter_stiffness_gradient_axial,
+    action="swap the beam's ends",
+)
+
+
+# -- density --
+# The beam weighs more or less than stated. Beside a hung mass that is known, its weight is identified.
+
+
+def _alter_density(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    return replace(s, density=s.density * (1.0 + amplitude))
+
+
+DENSITY = ReleaseEffect(
+    effect=catalogue.DENSITY,
+    step=1e-05,
+    bounds=(-0.3, 0.3),
+    prior_scale=0.05,
+    alter=_alter_density,
+)
+
+
+# -- section-scale --
+# The section is larger (or smaller) than measured in all directions, by this fraction.
+
+
+def _alter_section_scale(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
+    grown = 1.0 + amplitude
+    if isinstance(s.section, Circle):
+        return replace(s, section=Circle(radius=grown * s.section.radius))
+    return replace(s, section=Rectangle(width=grown * s.section.width, height=grown * s.section.height))
+
+
+SECTION_SCALE = ReleaseEffect(
+    effect=catalogue.SECTION_SCALE,
+    step=1e-05,
+    bounds=(-0.2, 0.2),
+    prior_scale=0.02,
+    alter=_alter_section_scale,
+)

@@ -1,0 +1,224 @@
+"""A study of fits from its arguments: checked before anything is computed, then run or shown as stopped.
+
+`calibration.fit` and the command of that name have this plan.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calibration.errors import InputError, OptionError
+from calibration.experiment import BeamTrial, Experiment, read
+from calibration.progress import OnProgress
+from calibration.results import Fits
+from tisim import laws
+from tisim.parallel.pool import cores
+
+if TYPE_CHECKING:
+    from calibration.diagnosis.rig import Rig
+    from calibration.study import Task
+    from calibration.study.parts import CardParts
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitPlan:
+    """Fits that are asked for, checked and ready to run.
+
+    Attributes
+    ----------
+    tasks : list of Task
+    experiment : Experiment
+        With the rig's corrections where a rig was given.
+    folder : Path
+    workers : int
+    rig : Rig, optional
+    """
+
+    tasks: list[Task]
+    experiment: Experiment
+    folder: Path
+    workers: int
+    rig: Rig | None = None
+
+    def run(self, on_progress: OnProgress) -> Fits:
+        """Make the fits that are missing; an exception leaves what was found on disk."""
+        from calibration.study import run
+
+        found = run(self.tasks, workers=self.workers, on_progress=on_progress)
+        return Fits(tuple(found), self.experiment, self.folder)
+
+    def stopped(self) -> Fits:
+        """Finished fits, and the best candidate of each unfinished one."""
+        from calibration.study import stopped
+
+        return Fits(tuple(stopped(self.tasks, self.experiment)), self.experiment, self.folder)
+
+
+def plan_fit(
+    experiment: str | Path | Experiment,
+    *,
+    model: str | Sequence[str],
+    materials: Sequence[str] | None,
+    terms: int,
+    time: str | None,
+    damage: str | None,
+    fibres: bool,
+    objective: str,
+    free_bulk_ratio: bool,
+    rig: str | Path | None,
+    start: str | Path | None,
+    out: str | Path,
+    seed: int,
+    population: int | None,
+    generations: int,
+    restarts: int,
+    polish: bool,
+    held_out: bool,
+    workers: int | None,
+    overwrite: bool,
+) -> FitPlan:
+    """The plan of `fit`, with its parameters; nothing is computed."""
+    from calibration.inference import CmaOptions
+    from calibration.study import FitOptions, OnSetup, parts, tasks_for
+
+    data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    names = law_names(model)
+    if not 1 <= terms <= 3:
+        raise OptionError("terms", terms, "expected 1 to 3")
+    if objective not in ("likelihood", "dice"):
+        raise OptionError("objective", objective, "expected likelihood or dice")
+    wanted = _materials(materials, data)
+    specs = parts.asked(time=time, damage=damage, fibres="fibres" if fibres else None)
+    if specs and objective != "likelihood":
+        raise OptionError(
+            parts.option_of(specs[0]),
+            specs[0],
+            "expected --objective likelihood, overlaps of bodies have no time",
+        )
+    cards = _starts(start, wanted, objective)
+    parts.check(data, wanted, specs, cards)
+    setup = _rig(rig, data, objective, wanted)
+    folder = Path(out)
+    options = FitOptions(
+        cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
+        gauss_newton=polish and objective == "likelihood",  # Dice is not smooth where it is best
+        leave_one_out=held_out,
+    )
+    count = processes(workers)
+    _check_folder(folder, overwrite)
+    tasks = tasks_for(
+        data,
+        law_names=names,
+        materials=wanted,
+        folder=folder / "fits",
+        options=options,
+        terms=terms,
+        objective="likelihood" if objective == "likelihood" else "dice",
+        setup=setup,
+        specs=specs,
+        free_bulk_ratio=free_bulk_ratio,
+        cards=cards,
+    )
+    return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
+
+
+def law_names(model: str | Sequence[str]) -> list[str]:
+    """Names of laws, each once; "all" for every law, those that are useful soonest first.
+
+    Raises
+    ------
+    InputError
+        One is not known, or there is none.
+    """
+    from calibration.study import by_cost
+
+    if model == "all":
+        return by_cost(laws.names())
+    names = [n.strip() for n in model.split(",")] if isinstance(model, str) else list(model)
+    names = [n for n in names if n]
+    for name in names:
+        if name not in laws.names():
+            raise OptionError("model", name, f"expected all or some of {', '.join(laws.names())}")
+    if not names:
+        raise OptionError("model", None, "expected at least one law")
+    return list(dict.fromkeys(names))
+
+
+def processes(workers: int | None) -> int:
+    """The number of processes; InputError where it is less than 1."""
+    if workers is not None and workers < 1:
+        raise OptionError("workers", workers, "expected 1 or more")
+    return workers or cores()
+
+
+def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
+    used = {t.material for t in data.trials}
+    if wanted is None:
+        return [m for m in data.materials if m in used]
+    for name in wanted:
+        if name not in used:
+            raise OptionError("material", name, f"expected some of {', '.join(sorted(used))}")
+    return list(dict.fromkeys(wanted))
+
+
+def _rig(path: str | Path | None, data: Experiment, objective: str, materials: list[str]) -> Rig | None:
+    """The rig's corrections; InputError where these fits cannot be corrected by it."""
+    if path is None:
+        return None
+    if objective != "likelihood":
+        raise OptionError("rig", path, "expected --objective likelihood, overlaps of bodies know no rig")
+    marked = [t.id for t in data.trials if isinstance(t, BeamTrial) and t.material in materials and t.markers]
+    if marked:
+        raise OptionError(
+            "rig",
+            path,
+            f"corrects outlines, not markers: expected none, but trial {marked[0]} has some",
+        )
+    from calibration.diagnosis.rig import read_rig
+
+    return read_rig(Path(path)).on(data)
+
+
+def _starts(path: str | Path | None, materials: list[str], objective: str) -> dict[str, CardParts]:
+    """Parts of cards, by the material that takes them: one card goes to the one material that is fitted,
+    cards of a folder by their names."""
+    if path is None:
+        return {}
+    if objective != "likelihood":
+        raise OptionError("start", path, "expected --objective likelihood, overlaps of bodies have no time")
+    from calibration.parameters import FIELDS, part_of
+    from calibration.prediction._cards import read_cards
+    from calibration.study.parts import CardParts
+
+    known = read_cards(Path(path))
+    if len(known) == 1 == len(materials):
+        known = {materials[0]: next(iter(known.values()))}
+    found = {}
+    for material in materials:
+        if material not in known:
+            raise OptionError("start", path, f"expected a card of {material}, found {', '.join(known)}")
+        card = known[material]
+        own = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+        if not own:
+            raise OptionError(
+                "start", path, f"expected viscosity, softening or fibres in the card of {card.material}"
+            )
+        found[material] = CardParts(f"the card of {card.material}", own, str(Path(path).resolve()))
+    return found
+
+
+def _check_folder(folder: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds something else; with overwrite, remove our own fits only."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder to write to")
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"{folder}: expected a folder that can be written to")
+    if overwrite and (folder / "fits").is_dir():
+        from calibration.study import remove_fits
+
+        remove_fits(folder / "fits")

@@ -1,0 +1,110 @@
+"""Controls of verdicts: true shares, cases with one cause inside and one outside, scores."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from benchmarks.blind.controls import LABORATORIES, covered, scores
+from benchmarks.blind.laboratory import left, shapley
+
+RNG = np.random.default_rng(1)
+COLUMNS = {n: RNG.standard_normal(40) for n in "abc"}
+FREE = RNG.standard_normal((40, 2))
+
+
+def test_shares_add_up_whatever_the_order() -> None:
+    departure = COLUMNS["a"] + 0.5 * COLUMNS["b"] + COLUMNS["c"]
+    shares = shapley(departure, FREE, COLUMNS)
+    assert sum(shares.values()) == pytest.approx(1.0)
+    two = shapley(departure, FREE, {n: COLUMNS[n] for n in "ab"})
+    columns = np.column_stack([FREE, COLUMNS["a"], COLUMNS["b"]])
+    assert sum(two.values()) == pytest.approx(1.0 - left(columns, departure) / left(FREE, departure))
+    again = shapley(departure, FREE, {n: COLUMNS[n] for n in "ba"})
+    assert again == pytest.approx(two)
+
+
+def test_orthogonal_causes_have_the_shares_of_their_squares() -> None:
+    unit = np.eye(5)
+    shares = shapley(3.0 * unit[1] + unit[2] + 9.0 * unit[0], unit[:, :1], {"a": unit[1], "b": unit[2]})
+    assert shares == pytest.approx({"a": 0.9, "b": 0.1})
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("coupons", 7), ("compression", 8), ("indentation", 9)])
+def test_half_and_half(kind: str, seed: int) -> None:
+    """One inside, one outside, of one size."""
+    lab = LABORATORIES[kind]
+    case = next(c for k in range(20) if (c := lab.half(1000 * seed + k, 25.0)) is not None)
+    inside, outside = lab.hidden(case)
+    assert inside.sigma == pytest.approx(outside.sigma, rel=0.3)
+    share = lab.true_shares(case, [inside.name])[inside.name]
+    assert 0.0 < share < 1.0
+
+
+@pytest.mark.parametrize("kind", list(LABORATORIES))
+def test_one_cause_alone_has_all(kind: str) -> None:
+    lab = LABORATORIES[kind]
+    case = lab.one(3, 25.0)
+    (hidden,) = lab.hidden(case)
+    assert hidden.sigma == pytest.approx(25.0, rel=0.25)
+    assert lab.true_shares(case, [hidden.name]) == pytest.approx({hidden.name: 1.0})
+
+
+@pytest.mark.parametrize("kind", list(LABORATORIES))
+def test_a_smooth_error_is_small_and_not_stated(kind: str, tmp_path: Path) -> None:
+    lab = LABORATORIES[kind]
+    lab.write(lab.clean(5), tmp_path / "plain")
+    lab.write(lab.clean(5), tmp_path / "smooth")
+    lab.smooth_error(tmp_path / "smooth", 5)
+    trials = yaml.safe_load((tmp_path / "smooth" / "experiment.yaml").read_text(encoding="utf-8"))["trials"]
+    for trial in trials:
+        assert lab.stated not in trial
+        plain, smooth = (
+            np.loadtxt(tmp_path / which / trial["record"], delimiter=",", skiprows=1)
+            for which in ("plain", "smooth")
+        )
+        error = (smooth - plain)[:, lab.measured] / np.abs(plain[:, lab.measured]).max()
+        assert 0.002 < np.sqrt(np.mean(error**2)) < 0.011
+        assert np.abs(np.diff(error)).max() < 0.2 * np.ptp(error)  # no jumps: it is smooth
+        others = np.arange(plain.shape[1]) != lab.measured
+        assert smooth[:, others] == pytest.approx(plain[:, others])
+
+
+def row(verdict: str, named: tuple[str, ...] = (), **more: Any) -> dict[str, Any]:
+    share = {"value": 0.5, "low": 0.4, "high": 0.6}
+    causes = [{"effect": n, "share": share} for n in named]
+    nearest = {"causes": [{"effect": "b"}], "share": share} if verdict == "unexplained" else None
+    return {
+        "verdict": verdict,
+        "causes": causes,
+        "alternatives": [list(named)] if named else [],
+        "share": share if named else None,
+        "nearest": nearest,
+        "hidden": ("b", "slip"),
+        "excused": False,
+        "true_shares": {},
+        **more,
+    }
+
+
+def test_scores() -> None:
+    done = [
+        row("partly explained", ("b",), true_shares={"b": 0.55}),
+        row("unexplained", true_shares={"b": 0.7}),
+        row("found", ("a",)),
+    ]
+    assert covered(done[0]) == [True]
+    assert covered(done[1]) == [False]
+    half = list(scores("half", done))
+    assert "1 of 3" in half[1]
+    assert "2 of 3" in half[2]
+    assert "1 of 2" in half[3]
+    without = list(scores("without", [*done, row("found", ("c",), excused=True)]))
+    assert "1 of 4" in without[1]
+    assert "1 of 4" in without[2]
+    assert "2 of 4" in without[3]
+    assert "1 of 3" in list(scores("smooth", done))[1]

@@ -1,0 +1,67 @@
+"""Neo-Hookean that stiffens with stretch: Yeoh's second term beside the coupled neo-Hookean energy.
+
+    Psi = mu/2 (I1 - 3) - mu ln J + lam/2 (ln J)^2 + mu/2 stiffening (I1bar - 3)^2
+
+with I1bar = J^(-2/3) I1. mu, lam [Pa]; stiffening [-] is not negative. Without stiffening it is the law
+`neo-hookean`, in volume too, where `yeoh` is another: a diagnosis nests stiffening in the law of a fit. Small
+strain: G = mu, K = lam + 2 mu/3, whatever the stiffening. Stress-free at rest. Not among the paper's laws.
+"""
+
+# mypy: disable-error-code="no-untyped-def,valid-type"
+# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+
+from __future__ import annotations
+
+import numpy as np
+
+from tisim.laws._energy import by_invariants, first_isochoric, ti
+from tisim.laws._law import Law, Moduli, Parameters, scalar
+
+
+@ti.func
+def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
+    mu = prm[0]
+    stiffening = prm[1]
+    i1, a = first_isochoric(I1, J)
+    excess = i1 - 3.0
+    further = by_invariants(
+        0.5 * mu * stiffening * excess * excess, mu * stiffening * excess, mu * stiffening, i1, a, J
+    )
+    zero = 0.0 * mu
+    coupled = ti.Vector(
+        [
+            mu * (0.5 * (I1 - 3.0) - ti.log(J)),
+            0.5 * mu,
+            zero,
+            -mu / J,
+            zero,
+            zero,
+            mu / (J * J),
+            zero,
+            zero,
+            zero,
+        ]
+    )
+    return coupled + further
+
+
+def _fault(parameters: Parameters) -> str:
+    value = scalar(parameters, "stiffening")
+    return "" if value >= 0.0 else f"stiffening must not be negative, got {value:g}"
+
+
+LAW = Law(
+    name="stiffening-neo-hookean",
+    title="Neo-Hookean, stiffening",
+    parameters={"mu": ("Pa", "scalar"), "stiffening": ("-", "scalar"), "lam": ("Pa", "scalar")},
+    family="invariant",
+    theta="log",
+    energy=energy,
+    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "stiffening")]),
+    kappa=lambda p: scalar(p, "lam"),
+    moduli=lambda p: Moduli(
+        shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0
+    ),
+    from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "lam": bulk - 2.0 * shear / 3.0},
+    fault=_fault,
+)
