@@ -207,7 +207,7 @@ def _starts(path: str | Path | None, materials: list[str], objective: str) -> di
             raise OptionError(
                 "start", path, f"expected viscosity, softening or fibres in the card of {card.material}"
             )
-        found[material] = CardParts(f"the card of {card.material}", own)
+        found[material] = CardParts(f"the card of {card.material}", own, str(Path(path).resolve()))
     return found
 
 

@@ -344,6 +344,8 @@ def fit_in_process(folder: Path, out: Path, law: str, options: Iterable[str] = (
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
         words = [str(folder), "--model", law, *options, "--workers", "1", "--out", str(out)]
         code = app(words, standalone_mode=False)
+    if code == 130:
+        raise KeyboardInterrupt
     if code not in (0, 1):
         raise NotFittedError(f"exit code {code}: {said.getvalue().strip()[-400:]}")
 

@@ -42,7 +42,7 @@ def command(folder: Path, results: Sequence[Calibration], experiment: Experiment
         asks = part_kind(spec).option
         words += [f"--{asks}"] if asks == spec else [f"--{asks}", spec]
     header = _header(folder, results[0])
-    for option in ("seed", "population", "generations", "restarts"):
+    for option in ("start", "seed", "population", "generations", "restarts"):
         if header.get(option) is not None:
             words += [f"--{option}", str(header[option])]
     if header.get("polish") is False:

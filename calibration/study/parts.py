@@ -49,10 +49,13 @@ class CardParts:
         Of the card, for sentences.
     parts : mapping
         By the field of `tisim.Material`.
+    path : str
+        Where it was read, for the command that makes a fit again.
     """
 
     name: str
     parts: Mapping[str, Part]
+    path: str = ""
 
     @property
     def content(self) -> dict[str, dict[str, Any]]:

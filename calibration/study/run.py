@@ -122,6 +122,7 @@ class Task:
         if self.parts:
             header["parts"] = list(self.parts)
         if self.card is not None:
+            header["start"] = self.card.path
             header["card"] = self.card.content
         if self.free_bulk_ratio:
             header["free_bulk_ratio"] = True

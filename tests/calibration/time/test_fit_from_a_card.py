@@ -65,6 +65,7 @@ def test_parts_of_a_card_are_held(experiment: Path, tmp_path: Path) -> None:
     (written,) = fits.write_cards(tmp_path / "new")
     assert load_card(written.stem, written.parent).for_law("ogden").viscosity == made.viscosity
     assert "Held beside ogden" in written.read_text()
+    assert f"--start {path}" in fits.write_report(tmp_path / "out").read_text()
 
 
 def test_a_search_begins_at_the_card(experiment: Path, tmp_path: Path) -> None:

@@ -1,0 +1,49 @@
+"""A polish ends where its steps gain nothing."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from calibration.inference import polish
+from calibration.inference.polish import LADDER, STALLED
+
+Array = NDArray[np.float64]
+
+
+class Slope:
+    """One residual of 2, with a slope that promises to take it away; each step that is tried takes `gain` of
+    chi-square, and no more."""
+
+    parametrisation = SimpleNamespace(bounds=np.array([[-1e3, 1e3]]), spread=np.array([1.0]), names=("x",))
+
+    def __init__(self, gain: float) -> None:
+        self.chi2, self.gain = 4.0, gain
+
+    def linearise(self, u: Array, *, rough: bool = False) -> bool:
+        del u, rough
+        return True
+
+    def residuals(self, U: Array) -> Array:
+        return np.sqrt(self.chi2) - 0.1 * (U - U[0])
+
+    def costs(self, U: Array) -> Array:
+        assert len(U) == len(LADDER)
+        self.chi2 -= self.gain
+        return np.full(len(U), self.chi2)
+
+
+@pytest.mark.parametrize(("gain", "steps"), [(0.003, STALLED + 1), (0.03, 30)])
+def test_it_ends_where_ten_steps_gain_next_to_nothing(gain: float, steps: int) -> None:
+    problem: Any = Slope(gain)
+    end = polish(problem, np.zeros(1), max_steps=30)
+    assert not end.converged
+    assert end.steps == steps
+    said = (
+        f"{STALLED} steps lowered chi-square by 0.03, though" if steps < 30 else "not converged in 30 steps"
+    )
+    assert end.message.startswith(said)
