@@ -195,7 +195,7 @@ def test_unexplained() -> None:
     assert data["alternatives"] == []
     assert data["extended"] is None
     assert data["gain"] is None
-    assert "no effect of the catalogue" in diagnosis.sentence()
+    assert "no cause in the library" in diagnosis.sentence()
 
 
 def test_none_says_what_cannot_be_seen() -> None:
