@@ -52,14 +52,11 @@ def feet(points: Array, edge: Array) -> Feet:
     length = np.linalg.norm(pieces, axis=1)
     along = pieces / length[:, None]
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    # along each piece and across it: no array has more than points times pieces
-    t = points @ along.T - np.einsum("jk,jk->j", edge[:-1], along)
-    off = points @ across.T - np.einsum("jk,jk->j", edge[:-1], across)
+    t = np.einsum("ijk,jk->ij", points[:, None] - edge[None, :-1], along)
     high, low = length.copy(), np.zeros_like(length)
     high[-1], low[0] = np.inf, -np.inf
-    inside = np.clip(t, low, high)
-    beyond = t - inside
-    nearest = (off * off + beyond * beyond).argmin(axis=1)
-    at = edge[nearest] + inside[np.arange(len(points)), nearest, None] * along[nearest]
+    foot = edge[None, :-1] + np.clip(t, low, high)[..., None] * along
+    nearest = ((points[:, None] - foot) ** 2).sum(axis=2).argmin(axis=1)
+    at = foot[np.arange(len(points)), nearest]
     normal = across[nearest]
     return Feet(np.einsum("ik,ik->i", points - at, normal), normal, at)
