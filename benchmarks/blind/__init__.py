@@ -4,6 +4,7 @@
     python -m benchmarks.blind.coupons.run                 # homogeneous material tests
     python -m benchmarks.blind.indentation.run             # indentation
     python -m benchmarks.blind.compression.run             # compression between platens
+    python -m benchmarks.blind.controls KIND               # controls: a cause taken out, and others
     python -m benchmarks.blind.make_examples               # the examples in datasets/measured
 
 The laboratory shares no code with the packages under test, only the format of an experiment

@@ -60,8 +60,9 @@ def rows(kind: str, control: str, count: int, seed: int) -> Iterator[Row]:
             seconds = time.process_time() - began
             excused = False
             if control == "without" and verdict["verdict"] == "found":
-                # what the whole catalogue cannot tell from the truth is no stand-in
-                excused = named(verdict) in named_set(lab.diagnose(folder))
+                # another word for the truth, or what the whole catalogue cannot tell from it, is no stand-in
+                excused = set(hidden) <= {h for n in named(verdict) for h in lab.same.get(n, ())}
+                excused = excused or named(verdict) in named_set(lab.diagnose(folder))
         yield {
             "seed": own,
             "hidden": hidden,
@@ -143,7 +144,7 @@ def scores(control: str, done: list[Row]) -> Iterator[str]:
         wrong = [a and not r["excused"] for a, r in zip(alone, done, strict=True)]
         yield f"  explained in part by a stand-in: {part([r['verdict'] == 'partly explained' for r in done])}"
         yield f"  another name, alone and without 'partly': goal at most 5 %, {part(wrong)}"
-        yield f"  the same with those that the whole catalogue lists beside the truth: {part(alone)}"
+        yield f"  the same with other words for the truth and what is listed beside it: {part(alone)}"
         return
     if control == "smooth":
         yield f"  nothing named: goal 95 %, {part([r['verdict'] in UNNAMED for r in done])}"

@@ -9,8 +9,8 @@ noise; moduli and amplitudes act to first order around the truth.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import combinations
 from math import factorial
 from pathlib import Path
@@ -47,6 +47,7 @@ class Laboratory(Generic[C]):
     diagnose : the verdict on a folder, with effects left out of the catalogue.
     measured, stated : column of the records that holds what is measured; key of a trial by which the lab
         states its noise.
+    same : hidden causes that an effect of the catalogue is another word for.
     """
 
     clean: Callable[[int], C]
@@ -60,6 +61,7 @@ class Laboratory(Generic[C]):
     diagnose: Callable[..., dict[str, Any]]
     measured: int
     stated: str
+    same: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def true_shares(self, case: C, names: Iterable[str]) -> dict[str, float]:
         """Of the causes of these names, each; they add up to the share of all of them."""

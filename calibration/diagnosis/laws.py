@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.resampling import test_of
 from calibration.diagnosis.engine.rules import Progress, Rules
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
@@ -156,19 +157,38 @@ def diagnose_with_law(
 
 
 def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
-    """A cause that these records cannot tell from what is in no catalogue explains in part at most."""
+    """A cause that these records cannot tell from what is in no catalogue explains in part at most; and so do
+    several in one and the same test, of several: so many follow any smooth curve, and nothing but the points
+    that they were fitted to speaks for them."""
     if found.chosen is None or found.finding.verdict not in EXPLAINED:
         return found
+    doubts, said = [], []
     for c in found.chosen.candidates:
         effect = model.effects[c.effect]
         hit = [r for r, here in zip(model.records, model.reached(c), strict=True) if here]
         if not effect.conclusive(hit, model.records):
-            said = f"{c.label} may stand in for anything that is smooth along these records: {effect.remedy}"
-            finding = replace(
-                found.finding, verdict="partly explained", dominant=found.finding.explanations[0]
-            )
-            return replace(found, finding=finding, notes=(*found.notes, said))
-    return found
+            doubts.append(f"{c.label} may stand in for anything that is smooth along these records")
+            said.append(f"{doubts[-1]}: {effect.remedy}")
+    if only := _in_one_test(found, model):
+        doubts.append(f"all of it is in {only}, and no other test confirms it")
+    if not doubts:
+        return found
+    finding = replace(
+        found.finding,
+        verdict="partly explained",
+        dominant=found.finding.explanations[0],
+        doubt="; and ".join(doubts),
+    )
+    return replace(found, finding=finding, notes=(*found.notes, *said))
+
+
+def _in_one_test(found: Diagnosis, model: MeasurementModel) -> str:
+    """The one test, of several, that several causes are in, where nothing else explains the data; "" else."""
+    chosen, tests = found.chosen, [test_of(r) for r in model.records]
+    if chosen is None or len(chosen.names) < 2 or found.finding.verdict != "found":
+        return ""
+    reached = {tests[k] for c in chosen.candidates for k in np.flatnonzero(model.reached(c))}
+    return reached.pop() if len(reached) == 1 < len(set(tests)) else ""
 
 
 def _causes(found: Diagnosis) -> int:

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 LADDER = (0.0, 1.0, 30.0, 1000.0, 3e4)
 # goes down too where full steps fail again and again: curved valleys of relaxation times and fractions
 FINE_LADDER = (0.0, 0.03, 1.0, 30.0, 1000.0)
+NEAR = 0.02  # of a coordinate's spread, 0.6 % of a modulus: so near, nuisances are as they were taken, ...
+NEARER = 1.0  # ... if the data do not tell the points apart either: as many standard deviations
 STALLED = 10  # steps that together may gain less than a tenth of what counts as settled, before it ends
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
 
@@ -57,9 +59,9 @@ def polish(
 ) -> Polished:
     """Minimise the problem's cost by damped Gauss-Newton steps.
 
-    Nuisances are taken at the start, and again at the end point. A coordinate at its bound stays there while
-    the cost falls beyond it. Along a valley without an end (terms that are too much alike) steps gain next to
-    nothing: after `STALLED` of them it ends, not converged.
+    Nuisances are taken at the start, and again at the end point unless that is near. A coordinate at its
+    bound stays there while the cost falls beyond it. Along a valley without an end (terms that are too much
+    alike) steps gain next to nothing: after `STALLED` of them it ends, not converged.
 
     Parameters
     ----------
@@ -82,7 +84,7 @@ def polish(
     """
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
-    damping, fresh = 1e-3, True
+    damping, taken = 1e-3, u
     costs_before: list[float] = []
     if not problem.linearise(u):
         raise ValueError("no equilibrium at the start of the polish")
@@ -109,10 +111,13 @@ def polish(
             best = int(costs.argmin())
             if costs[best] < cost - 0.1 * tolerance:
                 damping = max(1e-6, tries[best] if best else damping / 30.0)
-                u, fresh = moves[best], False
+                u = moves[best]
                 continue
             message = f"no step lowers chi-square, though {promise:.2g} was promised"
         done = promise < settled
+        moved = u - taken
+        fresh = bool((np.abs(moved) <= NEAR * problem.parametrisation.spread).all())
+        fresh = fresh and float(moved @ curvature @ moved) <= NEARER**2
         if fresh or not done or not problem.linearise(u):
             return Polished(
                 u=u,
@@ -123,7 +128,7 @@ def polish(
                 message="" if done else message,
                 steps=step,
             )
-        fresh = True
+        taken = u
     residuals, jacobian = _linearised(problem, u, difference)
     return Polished(
         u=u,

@@ -34,6 +34,7 @@ Name = Literal["baseline", "extended"]
 BASELINE: Final = "baseline"
 EXTENDED: Final = "extended"
 NAMES: tuple[Name, ...] = (BASELINE, EXTENDED)
+NARROW = 0.8  # of the points in their 95 % intervals, below which these are said to be too narrow
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -100,17 +101,19 @@ class Prediction:
         for kind, mine in self.of_kind().items():
             unit, per_si = mine[0].shown.unit
             trials = len({r.trial for r in mine})
-            each = ", ".join(
-                f"{m}{_named(m, self.labels[m])} {per_si * self.rms(mine, m):.3g} {unit}" for m in self.models
+            *others, best = (
+                f"the {m} model{_named(m, self.labels[m])} is off by {per_si * self.rms(mine, m):.3g} {unit}"
+                for m in self.models
             )
+            skill, inside = self.skill(mine), self.coverage(mine, self.models[-1])
+            quality = "" if skill is None else f" (skill {skill:.2f})"
             text = (
-                f"{trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, rms of predicted"
-                f" less measured: {each}, noise alone {per_si * self.noise(mine):.3g} {unit}"
+                f"In {trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, {best} rms"
+                f"{''.join(f', {o}' for o in others)}, and noise alone would be"
+                f" {per_si * self.noise(mine):.3g} {unit}{quality}. {inside:.0%} of the points lie within the"
+                " 95 % intervals"
             )
-            skill = self.skill(mine)
-            text += "" if skill is None else f"; skill {skill:.2f}"
-            inside = self.coverage(mine, self.models[-1])
-            said.append(f"{text}; {inside:.0%} of the points within the 95 % intervals.")
+            said.append(f"{text}{', which are too narrow there' if inside < NARROW else ''}.")
         return " ".join(said)
 
 

@@ -57,4 +57,8 @@ LABORATORY = Laboratory(
     diagnose=diagnose_coupons,
     measured=1,
     stated="stress_sd_kPa",
+    same={
+        "law-form": frozenset({"strain-stiffening", "second-invariant", "limited-extensibility"}),
+        "relaxation": frozenset({"rate-dependence"}),
+    },
 )

@@ -91,13 +91,13 @@ def equivalent_explanations(explanations: Sequence[Explanation], tolerance: floa
     """Distinct sets of effects whose score is within this of the best, best first. A set that only adds to a
     better one explains nothing of its own.
 
-    Where several causes are needed, the constants of a richer law in the place of one of them cost nothing:
+    Where several causes are named, the constants of a richer law in the place of some of them cost nothing:
     they make a set less simple, which is no evidence against it, and several causes are not simple either.
     """
     ordered = sorted(explanations, key=lambda e: e.score)
     found: list[Names] = []
     for e in ordered:
-        as_many = 1 < len(e.names) <= len(ordered[0].names)
+        as_many = len(e.names) <= len(ordered[0].names) > 1
         score = e.score - (e.constants_cost if as_many else 0.0)
         if score > ordered[0].score + tolerance or e.names in found:
             continue

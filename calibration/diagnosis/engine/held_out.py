@@ -212,7 +212,7 @@ def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
     spread = float(np.einsum("ij,jk,ik->", scaled[left], trained, scaled[left]))
     ratio = max(chosen.chi2 / max(len(chosen.z) - int(estimated.sum()), 1), 1.0)
     missed = float(np.sum(baseline.z[left] ** 2))
-    return 1.0 - ratio * spread / missed if missed > 0.0 else 0.0
+    return max(1.0 - ratio * spread / missed, 0.0) if missed > 0.0 else 0.0
 
 
 def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:

@@ -70,9 +70,37 @@ def with_second(
         return []
     # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
     target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
-    return _pairs(
-        model, best.fit, screen(linear, model.effects), linear.columns, target, null, rules, on_progress
-    )
+    afresh = screen(linear, model.effects)
+    found = _pairs(model, best.fit, afresh, linear.columns, target, null, rules, on_progress)
+    if any(afresh.sizes[candidates.index(c)] == 0.0 for c in best.candidates if c in candidates):
+        # it brings coordinates that, to first order, hide it where it is: no pair sought afresh has it
+        found += _beside(model, best, beside, improvement, linear.z, null, rules, on_progress)
+    return found
+
+
+def _beside(
+    model: MeasurementModel,
+    best: Explanation,
+    beside: Screen,
+    improvement: Array,
+    z: Array,
+    null: Null,
+    rules: Rules,
+    on_progress: Progress,
+) -> list[Explanation]:
+    """The best cause with each of the effects that promise most beside it, confirmed."""
+    found = []
+    for k in _best_of_each(beside, improvement, rules.pairs):
+        other = beside.candidates[k]
+        if other.effect in best.names:
+            continue
+        both = (*best.candidates, other)
+        on_progress(f"confirming {best.fit.label} + {other.label}")
+        guess = [*best.fit.state.amplitudes.values(), float(beside.amplitudes(z)[k])]
+        pair = explain(model, best.fit, both, guess, null)
+        if pair is not None and inside_bounds(model, pair):
+            found.append(pair)
+    return found
 
 
 def hiding_each_other(

@@ -47,6 +47,7 @@ class Null:
 
     def __init__(self, size: int, basis: Mapping[str, Array], *, seed: int = 0) -> None:
         self.noise = np.random.default_rng(seed).standard_normal((DRAWS, size))
+        self._squares = np.einsum("ij,ij->i", self.noise, self.noise)
         self.basis = dict(basis)
 
     def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
@@ -59,18 +60,18 @@ class Null:
         free = basis_of(jacobian)
         scatter = self.basis.get(SPECIMENS)
         known = free if scatter is None else basis_of(np.hstack([jacobian, scatter]))
-        drawn = self.noise - (self.noise @ free) @ free.T
         smallest = np.ones(DRAWS)
         each: dict[str, float] = {}
         for name in (EVERYTHING, *self.basis):
             if name == EVERYTHING:
-                squares, here = (drawn**2).sum(axis=1), float(z @ z)
+                squares, here = self._squares - ((self.noise @ free) ** 2).sum(axis=1), float(z @ z)
             else:
                 columns, off = self.basis[name], free if name == SPECIMENS else known
                 left = columns - off @ (off.T @ columns)
                 own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
                 span = basis_of(left[:, own])
-                squares, here = ((drawn @ span) ** 2).sum(axis=1), float(((z @ span) ** 2).sum())
+                # orthogonal to what is fitted: it sees nothing of that in the noise either
+                squares, here = ((self.noise @ span) ** 2).sum(axis=1), float(((z @ span) ** 2).sum())
                 here *= ALLOWED.get(name, 1.0)
             order = np.sort(squares)
             smallest = np.minimum(smallest, _exceeding(squares, order))

@@ -5,8 +5,6 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-import numpy as np
-
 from calibration.diagnosis.engine.advice import advice
 from calibration.diagnosis.engine.explanation import Explanation, explain
 from calibration.diagnosis.engine.fitting import Fit, fit
@@ -15,7 +13,6 @@ from calibration.diagnosis.engine.model_error import model_error_of
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.partly import Assessed, assess
 from calibration.diagnosis.engine.remainder import about_remainder, remainder_of
-from calibration.diagnosis.engine.resampling import test_of
 from calibration.diagnosis.engine.search import Finding, Progress, Rules, search
 from calibration.diagnosis.engine.shares import Interval, Shares
 from calibration.diagnosis.engine.verdict import Diagnosis, Numbers, Subject, reduced, undetectable
@@ -62,8 +59,6 @@ def diagnose(
     nearest: Assessed | None = None
     if finding.verdict == "unexplained":
         finding, nearest = _in_degrees(model, finding, known, rules, on_progress)
-    elif finding.verdict == "found":
-        finding = _confirmed(model, finding)
     after: Numbers | None = None
     held_out: HeldOut | None = None
     refined: Explanation | None = None
@@ -151,19 +146,6 @@ def _in_degrees(
         confidence=nearest.confidence,
     )
     return named, nearest
-
-
-def _confirmed(model: MeasurementModel, finding: Finding) -> Finding:
-    """A finding of several causes in one and the same test, of several, explains in part: nothing but the
-    points that they were fitted to speaks for them, and so many causes follow any smooth curve."""
-    chosen = finding.explanations[0]
-    tests = [test_of(r) for r in model.records]
-    reached = {tests[k] for c in chosen.candidates for k in np.flatnonzero(model.reached(c))}
-    if len(chosen.names) < 2 or len(reached) > 1 or len(set(tests)) < 2:
-        return finding
-    (only,) = reached
-    doubt = f"all of it is in {only}, and no other test confirms it"
-    return replace(finding, verdict="partly explained", dominant=chosen, doubt=doubt)
 
 
 def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[Explanation, Fit, Null]:

@@ -73,11 +73,10 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
             f"Partly explained, by one of several causes that these data cannot tell apart: most likely"
             f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
-    left = diagnosis.remainder
-    if left is not None:
-        text += f" {what_remains(left, diagnosis.unit)}"
-    doubt = diagnosis.finding.doubt
-    return f"{text} It is not called found, since {doubt}." if doubt else text
+    left, doubt = diagnosis.remainder, diagnosis.finding.doubt
+    if doubt:
+        return f"{text} What remains is no more than noise, but it is not called found, since {doubt}."
+    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
 
 
 def _or(names: Sequence[str]) -> str:

@@ -41,6 +41,8 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
     if not finding.explanations or finding.p_value > RARE:
         return f"{text} No effect of the library improves χ² by more than noise alone would."
     best = finding.explanations[0]
+    if finding.doubt:
+        return f"{text} With {best.fit.label} no more than noise is left, but {finding.doubt}."
     return (
         f"{text} The best that the library offers ({best.fit.label}) improves χ² by"
         f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"

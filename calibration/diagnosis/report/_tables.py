@@ -47,7 +47,9 @@ def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
         _one_less(share) if share is not None else "all" if nearest is None else _one_less(nearest["share"])
     )
     where = "; ".join(x for x in (left.place, listed(list(left.records)) if left.records else "") if x)
-    place = (where or "all measurements") if left.rms else NOTHING
+    # what a whole explanation leaves passes for noise, though its rms may be a little above it by chance
+    real = left.rms > 0.0 and diagnosis.model_error is not None
+    place = (where or "all measurements") if real else NOTHING
     rows.append(
         [
             Cell(text="not modelled"),
@@ -55,9 +57,9 @@ def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
             Cell(text=place),
             Cell(text=f"{significant(per_si * left.rms, 2)} {unit} rms", value=per_si * left.rms),
             Cell(text=part),
-            Cell(text="not known" if left.rms else NOTHING),
-            Cell(text=_REPEATS[left.repeats] if left.rms else "no more than noise"),
-            Cell(text=about_remainder(left) or NOTHING),
+            Cell(text="not known" if real else NOTHING),
+            Cell(text=_REPEATS[left.repeats] if real else "no more than noise"),
+            Cell(text=(about_remainder(left) if real else "") or NOTHING),
         ]
     )
     return rows

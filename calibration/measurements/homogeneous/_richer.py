@@ -170,7 +170,9 @@ class _Curves:
 
     def scales(self, u: Array) -> dict[str, float]:
         """Of each specimen, the factor on the law's stress that fits it best."""
-        own = self._own(u)
+        return self._scales(self._own(u))
+
+    def _scales(self, own: Array) -> dict[str, float]:
         found = {}
         for name, mine in self.owners.items():
             q = own[mine] / self.sd[mine]
@@ -181,9 +183,10 @@ class _Curves:
         """Whitened, shape (n,); NaN where the law has no stress, or would need a negative modulus."""
         with np.errstate(all="ignore"):
             try:
-                own, scales = self._own(u), self.scales(u)
+                own = self._own(u)
             except ValueError:  # outside the law's domain
                 return np.full(self.stress.size, np.nan)
+            scales = self._scales(own)
             factor = np.zeros(self.stress.size)
             for name, mine in self.owners.items():
                 factor[mine] = scales[name] if scales[name] > 0.0 else np.nan

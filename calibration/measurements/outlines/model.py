@@ -148,15 +148,18 @@ class OutlineModel(MeasurementModel):
         soft, and no further than past the nearest: beams far too soft are dear, or have no equilibrium."""
         names = self.baseline.specimens
         best, found = dict.fromkeys(names, np.inf), dict.fromkeys(names, float(SCAN[0]))
+        left = set(names)  # specimens that the last modulus brought nearer
         for shear in SCAN:
             state = State(u=self.baseline.start(dict.fromkeys(names, float(shear))))
-            cost = dict.fromkeys(names, 0.0)
-            for p, r in zip(self.records, self.solutions.surrogate.solve([state])[0], strict=True):
+            cost = dict.fromkeys(left, 0.0)
+            seen = [p for p in self.records if p.specimen in left]
+            results = replace(self.solutions.surrogate, photographs=seen).solve([state])[0]
+            for p, r in zip(seen, results, strict=True):
                 cost[p.specimen] += np.inf if r is None else float(np.sum(distances(feet_of(p, r)) ** 2))
-            better = [n for n in names if cost[n] < best[n]]
-            for n in better:
+            left = {n for n in left if cost[n] < best[n]}
+            for n in left:
                 best[n], found[n] = cost[n], float(shear)
-            if not better:
+            if not left:
                 break
         if not all(np.isfinite(b) for b in best.values()):
             raise ValueError("no shear modulus from 3 to 300 kPa gives every beam an equilibrium")

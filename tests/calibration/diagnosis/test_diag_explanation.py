@@ -60,8 +60,9 @@ def test_a_guess_without_an_answer_is_tried_nearer_to_the_baseline() -> None:
     assert explain(never, baseline, (bend,), [12.0], Null(never.points, {})) is None
 
 
-def made(score: float, *names: str) -> Explanation:
-    return SimpleNamespace(score=score, names=tuple(sorted(names)))  # type: ignore[return-value]
+def made(score: float, *names: str, constants: float = 0.0) -> Explanation:
+    names = tuple(sorted(names))
+    return SimpleNamespace(score=score, names=names, constants_cost=constants)  # type: ignore[return-value]
 
 
 def test_rivals_are_what_comes_near_the_best() -> None:
@@ -83,6 +84,16 @@ def test_a_set_that_only_adds_to_a_better_one_is_none() -> None:
     )
     # but a part of the best set is one, and so is a superset of what is worse
     assert equivalent_explanations([made(10.0, "a", "b"), made(12.0, "a")], 6.0) == (("a", "b"), ("a",))
+
+
+def test_a_richer_law_is_a_rival_of_several_causes_though_it_is_less_simple() -> None:
+    pair, law = made(10.0, "a", "b"), made(40.0, "law", constants=27.0)
+    assert equivalent_explanations([pair, law], 6.0) == (("a", "b"), ("law",))
+    # it fits worse; one cause is simpler than it; it with one more than the others is
+    assert equivalent_explanations([pair, made(40.0, "law", constants=20.0)], 6.0) == (("a", "b"),)
+    assert equivalent_explanations([made(10.0, "a"), law], 6.0) == (("a",),)
+    more = made(40.0, "law", "c", "d", constants=27.0)
+    assert equivalent_explanations([pair, more], 6.0) == (("a", "b"),)
 
 
 def test_confidence_is_high_for_what_is_clear_and_even_for_what_is_not() -> None:

@@ -90,11 +90,12 @@ def test_where_the_derivatives_lie_the_fit_says_so() -> None:
 
 
 def test_too_few_steps_are_said() -> None:
+    """Steps that take a tenth of chi-square count a fifth: a fit that is still falling is not at its end."""
     model = FakeModel(truth=np.array([9.0, -9.0]))  # steps of u are no longer than 0.7
-    found = fit(model, start(model), max_steps=3)
+    found = fit(model, start(model), max_steps=2)
     assert not found.converged
-    assert found.message == "not converged in 3 steps"
-    assert np.abs(found.state.u).max() == pytest.approx(2.1)
+    assert found.message == "not converged in 10 steps"
+    assert np.abs(found.state.u).max() == pytest.approx(7.0)
     assert fit(model, start(model), max_steps=40).converged
 
 

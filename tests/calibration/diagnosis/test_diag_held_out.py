@@ -109,6 +109,7 @@ def test_only_what_the_training_does_not_tell_of_is_fitted_to_the_fold() -> None
     common = library()["slack"] + 0.3 * library()["slope"]
     model.by_u = np.column_stack([model.by_u, 3.0 * common])
     model.data = model.data + 3.0 * common
+    model.baseline.__dict__["bounds"] = np.tile([-np.inf, np.inf], (3, 1))  # of the third coordinate too
     baseline, chosen = both(model, Candidate(effect="slack"))
     gain = held_out_improvement(model, baseline, chosen)
     assert gain.held_out == "leave-one-material-out"

@@ -4,12 +4,13 @@ said."""
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fake_model import FakeModel, column, library, noise, sigmas, waves
+from fake_model import FakeModel, column, effect, library, noise, sigmas, waves
 
 import calibration
 from calibration.diagnosis.engine.explanation import explain
@@ -21,6 +22,7 @@ from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.shares import Shares
 from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.diagnosis.laws import diagnose_with_law
 from calibration.diagnosis.report import write_report
 from calibration.errors import InputError
 from calibration.measurements._effect import Candidate
@@ -180,6 +182,25 @@ def test_what_predicts_too_little_is_not_named() -> None:
     assert found.nearest is not None
     assert any("noise leaves to explain in held-out" in reason for reason in found.nearest.against)
     assert found.nearest.explanation.names == ("bend",)
+
+
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_several_causes_in_one_test_of_several_explain_in_part(elsewhere: bool) -> None:
+    """Nothing else confirms them. With one of them in the other tests as well, they are found."""
+    names = ("bend", "kink")
+    here = np.arange(72) < 12
+    shapes = {n: np.where(here | (elsewhere and n == "kink"), library()[n], 0.0) for n in names}
+    acts = {n: (lambda _: True) if elsewhere and n == "kink" else (lambda r: r.name == "S0 1") for n in names}
+    model = FakeModel(
+        shapes=shapes,
+        effects={n: replace(effect(n), applies_to=acts[n]) for n in names},
+        hidden=sum(15.0 * shapes[n] / sigmas(shapes[n], FakeModel()) for n in names),
+        drawn=noise(1),
+    )
+    found, _ = diagnose_with_law(lambda **_: model, gain=False)
+    assert found.finding.equivalent == (names,)
+    assert found.finding.verdict == ("found" if elsewhere else "partly explained"), found.sentence()
+    assert ("all of it is in S0 1, and no other test confirms it" in found.sentence()) != elsewhere
 
 
 def test_noise_alone_and_what_is_explained_wholly_stay_as_they_were() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +17,14 @@ from calibration.diagnosis import model_of
 from calibration.diagnosis.catalogue import effects_of
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.run import diagnose
+from calibration.diagnosis.engine.screening import screen
 from calibration.errors import InputError
-from calibration.experiment import CouponTrial
+from calibration.experiment import CouponTrial, Experiment
 from calibration.measurements._effect import Candidate
 from calibration.measurements._state import State
 from calibration.measurements.compression._bonded import USUAL, BondedRatio
+from calibration.measurements.compression._record import LAST
+from calibration.measurements.compression._repeatability import TERMS, repeatability_of
 from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.compression.model import CompressionModel
 from calibration.measurements.homogeneous._forward import Loading
@@ -241,3 +244,53 @@ def test_rubbing_platens_are_between_the_slab_and_bonded_ones() -> None:
     bonded_ones = stress("platen-bonding", 1.0)[pressed_in]
     assert stress("platen-slip", 2.0)[pressed_in] / bonded_ones == pytest.approx(1.0, abs=0.02)
     assert (stress("platen-slip", 0.3)[pressed_in] / free < bonded_ones / free).all()
+
+
+# -- from test to test --
+
+
+def again(strain_of: Callable[[Array, int], Array], grown: float, *, scatter: float = 0.0) -> Experiment:
+    """Six tests of one bonded cylinder; strain_of : what it feels; grown : of the stress, a test."""
+    rng = np.random.default_rng(5)
+    x = ramps(1)
+    factors = [(1.0 + grown * k) * np.exp(scatter * rng.standard_normal()) for k in range(6)]
+    return experiment(
+        *(
+            pressed(f"A{k}", f * bonded()(strain_of(x, k)), strain=x, seed=k, noise=0.002)
+            for k, f in enumerate(factors)
+        )
+    )
+
+
+def test_what_goes_on_from_test_to_test_is_no_scatter() -> None:
+    """Nor is the noise of single points, of which small strains have most in a logarithm."""
+    found = repeatability_of(press_model(again(lambda x, _: x, 0.01)).records, LAST)
+    assert found.sds.max() < 0.003
+    (drift,) = found.drifts
+    assert drift.per_test == pytest.approx(0.01, abs=0.002)
+    assert drift.correlation > 0.95
+    wide = repeatability_of(press_model(again(lambda x, _: x, 0.0, scatter=0.02)).records, LAST)
+    assert 0.01 < wide.sds[TERMS.index("scale")] < 0.08
+    assert wide.sds[TERMS.index("scale") + 1 :].max() < 0.005
+
+
+@pytest.mark.parametrize(
+    ("name", "amplitude", "strain_of", "grown"),
+    [
+        ("set-between-tests", 0.005, lambda x, k: x / (1.0 - 0.005 * k), 0.0),
+        ("test-order", 0.01, lambda x, _: x, 0.01),
+    ],
+)
+def test_set_and_order_of_tests_show_beside_platens_that_hold(
+    name: str, amplitude: float, strain_of: Callable[[Array, int], Array], grown: float
+) -> None:
+    made = again(strain_of, grown)
+    model = CompressionModel(made, effects=effects_of("compression"))  # type: ignore[arg-type]
+    platens = next(c for c in model.candidates if c.effect == "platen-bonding" and c.at == "all")
+    start = fit(model, State(u=model.start()))
+    held = fit(model, State(u=start.state.u, amplitudes={platens: 0.6}), (platens,))
+    linear = model.linearise(held.state, model.candidates)
+    beside = screen(linear, model.effects, held=held)
+    best = int(np.argmax(beside.penalised(linear.z)))
+    assert beside.candidates[best].label == name
+    assert beside.amplitudes(linear.z)[best] == pytest.approx(amplitude, rel=0.3)

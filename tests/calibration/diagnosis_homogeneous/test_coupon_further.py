@@ -15,6 +15,7 @@ from benchmarks.blind.coupons.model import FURTHER
 from calibration import api
 from calibration.diagnosis.catalogue import effects_of
 from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.held_out import held_out_improvement
 from calibration.diagnosis.engine.search import search
 from calibration.diagnosis.laws import LawChoice, LawScore, choose_law, law_of
 from calibration.errors import InputError
@@ -168,6 +169,43 @@ def test_the_law_that_the_data_bear_is_a_cause_of_its_own() -> None:
     assert found.state.amplitudes[form] == 1.0  # there or not, and no part of the way
     assert model.brings(form) == 3
     assert model.brings(Candidate(effect="second-invariant")) == 0
+
+
+def test_a_constant_ends_at_its_bound_and_the_fit_with_it() -> None:
+    """Ogden's exponent is searched down to -12; the material has -20."""
+    material = Material(law="ogden", parameters={"mu": (-3e3,), "alpha": (-20.0,), "bulk": 1e8})
+    made = experiment(
+        *(
+            trial(mode, mode, s, nominal_stress(material, mode, s), sd=200.0, seed=k)  # type: ignore[arg-type]
+            for k, (mode, s) in enumerate(
+                (("uniaxial", np.linspace(0.9, 1.3, 20)), ("simple-shear", np.linspace(1.0, 1.3, 20)))
+            )
+        )
+    )
+    model = HomogeneousModel(made, effects=effects_of("homogeneous"), richer=("ogden", 2))  # type: ignore[arg-type]
+    form = next(c for c in model.candidates if c.effect == "law-form" and c.at == "all")
+    found = fit(model, State(u=fit(model, State(u=model.start())).state.u, amplitudes={form: 1.0}), (form,))
+    assert found.converged, found.message
+    low, high = model.baseline.bounds.T
+    assert (low <= found.state.u).all()
+    assert (found.state.u <= high).all()
+
+
+def test_a_cause_that_is_there_or_not_is_held_out_where_the_others_foretell_it() -> None:
+    """A law's constants from two modes say little of the third; four fifths of the records say the last."""
+    made = experiment(
+        *(
+            trial(mode, mode, ramps(top, 1, 25), of_ogden(mode, ramps(top, 1, 25)), sd=1500.0, seed=k)  # type: ignore[arg-type]
+            for k, (mode, top) in enumerate((("equibiaxial", 2.0), ("planar", 2.5)))
+        )
+    )
+    model = HomogeneousModel(made, effects=effects_of("homogeneous"), richer=("ogden", 2))  # type: ignore[arg-type]
+    form = next(c for c in model.candidates if c.effect == "law-form" and c.at == "all")
+    plain = fit(model, State(u=model.start()))
+    found = fit(model, State(u=plain.state.u, amplitudes={form: 1.0}), (form,))
+    gain = held_out_improvement(model, plain, found)
+    assert gain.held_out == "leave-one-fifth-out"
+    assert gain.skill > 0.8
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 LENGTH, WIDTH, HEIGHT, DENSITY, GRAVITY = 0.1, 0.02, 0.02, 1000.0, 9.81
 ELEMENTS, MODES = 60, 3
+CREEPS = 1e-3  # speed below which what rubs moves on slowly [m/s]
 MARKERS = {  # x, y, z [mm]
     "top": (100.0, 0.0, 14.0),
     "left": (100.0, 12.0, -6.0),
@@ -28,13 +29,17 @@ MARKERS = {  # x, y, z [mm]
 @dataclass(frozen=True, kw_only=True)
 class Truth:
     """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm]. loose: part
-    of the hung mass that does not move with the bar. extra: a further height of the tip [m], by the time."""
+    of the hung mass that does not move with the bar. rub: dry friction against the tip of a bar with a hung
+    mass [N]. held: drop at which a bar without a hung mass is held, of where it settles. extra: a further
+    height of the tip [m], by the time."""
 
     shear: float = 6e5
     viscous: float = 4e-4
     branches: Sequence[tuple[float, float]] = ()
     clamp: float = 0.0
     loose: float = 0.0
+    rub: float = 0.0
+    held: float = 0.0
     extra: Callable[[Array], Array] | None = None
 
 
@@ -74,11 +79,17 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
     times = np.array([t for _, t in truth.branches])
     b = len(parts)
 
+    at_tip = shapes[-2, :MODES]
+    friction = truth.rub if hung else 0.0
+
     def rate(_: float, state: Array) -> Array:
         y, v, memory = state[:MODES], state[MODES : 2 * MODES], state[2 * MODES :].reshape(b, MODES)
         k = squares[:MODES]
         pull = y + truth.viscous * v + parts @ (y - memory)
-        return np.concatenate([v, k * (whole[:MODES] - pull), ((y - memory) / times[:, None]).ravel()])
+        rubs = friction * np.tanh(at_tip @ v / CREEPS)
+        return np.concatenate(
+            [v, k * (whole[:MODES] - pull) - rubs * at_tip, ((y - memory) / times[:, None]).ravel()]
+        )
 
     first = np.concatenate([start * whole[:MODES], np.zeros(MODES), np.tile(start * whole[:MODES], b)])
     after = time[time > 0.0]
@@ -87,7 +98,8 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
     )
     quick = rest - shapes[:, :MODES] @ whole[:MODES]  # higher modes follow at once
     nodes = np.zeros((len(time), len(rest) + 1))
-    nodes[time > 0.0, 1:] = found.y[:MODES].T @ shapes[:, :MODES].T + quick
+    below = 0.0 if hung else truth.held
+    nodes[time > 0.0, 1:] = found.y[:MODES].T @ shapes[:, :MODES].T + quick - below * rest
     return nodes.reshape(len(time), -1, 2)
 
 

@@ -14,7 +14,7 @@ import yaml
 from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 from matplotlib.image import imread
 from release_models import bar_model
-from release_records import Truth, write_bars
+from release_records import Truth, beam, write_bars
 from typer.testing import CliRunner
 
 from calibration.diagnosis.card import write_cards
@@ -161,11 +161,40 @@ def test_a_rig_of_bars_is_a_record_and_corrects_no_photograph(tmp_path: Path) ->
     assert not out.exists()
 
 
-def test_a_mass_that_is_tied_loosely_is_measured() -> None:
-    model = bar_model(made(Truth(loose=0.1)), workers=1, fem=False, further=True)
+def fitted(truth: Truth, name: str) -> tuple[float, float, float]:
+    """Amplitude, sd and gain in chi-square of a cause in all records that it applies to."""
+    model = bar_model(made(truth), workers=1, fem=False, further=True)
     baseline = fit_baseline(model)
-    loose = next(c for c in model.candidates if c.effect == "loose-load")
-    found = fit_causes(model, baseline.state, (loose,))
-    value, sd = found.amplitude(loose)
+    cause = next(c for c in model.candidates if c.effect == name)
+    found = fit_causes(model, baseline.state, (cause,))
+    return *found.amplitude(cause), baseline.chi2 - found.chi2
+
+
+def test_a_mass_that_is_tied_loosely_is_measured() -> None:
+    value, sd, gain = fitted(Truth(loose=0.1), "loose-load")
     assert value == pytest.approx(0.1, abs=max(4.0 * sd, 0.01))
+    assert gain > 30.0
+
+
+def test_a_mass_that_rubs_is_measured() -> None:
+    """Beside its other damping the swing loses four deflections by the friction a period."""
+    truth = Truth(rub=2e-3)
+    stiff, _, _ = beam(truth, 0.01)
+    load = np.zeros(len(stiff))
+    load[-2] = truth.rub
+    value, sd, gain = fitted(truth, "rubbing-load")
+    assert value == pytest.approx(np.linalg.solve(stiff, load)[-2], rel=0.15, abs=3.0 * sd)
+    assert gain > 30.0
+
+
+def test_the_pose_in_which_a_bar_is_held_is_measured() -> None:
+    truth = Truth(held=0.1)
+    stiff, _, load = beam(truth, 0.0)
+    below = -truth.held * np.linalg.solve(stiff, load)[-2]
+    model = bar_model(made(truth), workers=1, fem=False, further=True)
+    baseline = fit_baseline(model)
+    pose = next(c for c in model.candidates if c.effect == "held-pose" and c.at == "own weight")
+    found = fit_causes(model, baseline.state, (pose,))
+    value, sd = found.amplitude(pose)
+    assert value == pytest.approx(below, rel=0.15, abs=3.0 * sd)
     assert found.chi2 < baseline.chi2 - 30.0

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from toy_problems import mooney, mooney_problem, neo_problem
+from toy_problems import Curve, mooney, mooney_problem, neo, neo_problem, of_curve
 
 from calibration.inference import (
     CmaOptions,
@@ -216,6 +216,30 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     share = np.mean(inside, axis=0)
     assert 0.86 <= share[0] <= 1.0
     assert 0.86 <= share[2] <= 1.0
+
+
+class _Taken(Curve):
+    """A curve whose nuisances are taken somewhere."""
+
+    def __init__(self, *arguments: object) -> None:
+        super().__init__(*arguments)  # type: ignore[arg-type]
+        self.taken: list[float] = []
+
+    def linearise(self, material: Material) -> bool:
+        self.taken.append(float(material.parameters["mu"]))  # type: ignore[arg-type]
+        return True
+
+
+@pytest.mark.parametrize(("begin", "times"), [(2e4, 1), (1.9998e4, 1), (1.99e4, 2), (1.5e4, 2)])
+def test_nuisances_are_taken_again_where_a_polish_ends_far_from_its_start(begin: float, times: int) -> None:
+    """A standard deviation is 63 Pa."""
+    law = parametrisation("neo-hookean").holding("bulk_ratio")
+    curve = _Taken(neo, np.full(10, 100.0 * np.log(2e4)))
+    end = polish(of_curve(law, curve), law.start(shear=begin))
+    assert end.converged
+    assert curve.taken[0] == pytest.approx(begin)
+    assert len(curve.taken) == times
+    assert times == 1 or curve.taken[1] == pytest.approx(2e4, rel=1e-3)
 
 
 def test_a_search_from_a_known_minimum_ends_soon_unless_it_finds_a_lower_one() -> None:

@@ -44,9 +44,10 @@ def test_they_agree_to_a_tenth_of_a_standard_deviation(folder: str, kind: str, m
 
 def test_the_softest_photographs_agree_on_a_coarse_mesh() -> None:
     """S1 of the clean bench is bent to strains of 0.7, where laws that take volume in different ways have
-    different moduli (the baseline's, were it Yeoh's: 0.13 of the sd): both have the neo-Hookean law."""
+    different moduli (with Yeoh's as baseline 0.13 of the sd, by all three beams): both have the neo-Hookean
+    law. The longest cantilever alone."""
     whole = read(MEASURED / "bench" / "clean")
-    experiment = replace(whole, trials=tuple(t for t in whole.trials if t.material == "S1"))
+    experiment = replace(whole, trials=tuple(t for t in whole.trials if t.id == "S1-cantilever-100"))
     model = model_of(experiment, kind="outlines", simulator="coarse-mesh", workers=1)
     modulus = model.shear_moduli(fit_baseline(model).state.u)["S1"]
     law = parametrisation("neo-hookean").holding("bulk_ratio")
