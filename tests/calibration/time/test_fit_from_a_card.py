@@ -13,14 +13,17 @@ from timed_coupons import CYCLES, RELAXATION, SOLID, trial, write
 
 import calibration
 from calibration.errors import InputError
-from calibration.parameters import ProtocolWindow, part_coordinates
+from calibration.experiment import read
+from calibration.parameters import ProtocolWindow, parametrisation, part_coordinates
 from calibration.study import parts
 from calibration.study.calibration import Calibration
+from calibration.study.parts import CardParts
 from factory.materials import load_card
 from tisim import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 
 PRONY = {"kind": "prony", "fractions": [0.3, 0.2], "times": [2.0, 60.0]}
 MULLINS = {"kind": "ogden-roxburgh", "r": 1.8, "m": 1500.0, "beta": 0.15}
+WORN = OgdenRoxburgh(r=1.8, m=1500.0, beta=0.15)
 FAST: dict[str, Any] = {"generations": 2, "workers": 1, "seed": 1, "model": "ogden"}
 
 
@@ -45,6 +48,7 @@ def experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write(tmp_path_factory.mktemp("held") / "experiment", made)
 
 
+@pytest.mark.slow
 def test_parts_of_a_card_are_held(experiment: Path, tmp_path: Path) -> None:
     path = card(tmp_path / "cards", viscosity=PRONY, softening=MULLINS)
     (found,) = calibration.fit(experiment, start=path, out=tmp_path / "out", **FAST)
@@ -68,6 +72,7 @@ def test_parts_of_a_card_are_held(experiment: Path, tmp_path: Path) -> None:
     assert f"--start {path}" in fits.write_report(tmp_path / "out").read_text()
 
 
+@pytest.mark.slow
 def test_a_search_begins_at_the_card(experiment: Path, tmp_path: Path) -> None:
     path = card(tmp_path / "cards", viscosity=PRONY, softening=MULLINS)
     (found,) = calibration.fit(experiment, start=path, time="prony:2", **FAST)
@@ -76,6 +81,35 @@ def test_a_search_begins_at_the_card(experiment: Path, tmp_path: Path) -> None:
     assert "the search of prony-2 began at the viscosity of the card of found" in found.note
     near = {e.name: e.value for e in found.estimates}
     assert near["prony_time_2"] == pytest.approx(60.0, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("time", "label", "searched"),
+    [
+        (None, "ogden+prony-held+ogden-roxburgh-held", []),
+        (
+            "prony:2",
+            "ogden+prony-2+ogden-roxburgh-held",
+            ["prony_fraction_1", "prony_time_1", "prony_fraction_2", "prony_time_2"],
+        ),
+    ],
+)
+def test_what_a_fit_from_a_card_searches(
+    experiment: Path, time: str | None, label: str, searched: list[str]
+) -> None:
+    found = CardParts(
+        "the card", {"viscosity": Prony(fractions=(0.3, 0.2), times=(2.0, 60.0)), "softening": WORN}
+    )
+    assert sorted(found.content) == ["softening", "viscosity"]
+    own = parts.with_parts(
+        parametrisation("ogden"), [] if time is None else [time], read(experiment), "M", found
+    )
+    assert own.label == label
+    assert list(own.names) == ["shear_modulus", "bulk_ratio", "alpha", *searched]
+    made = own.material(own.start(shear=3e4))
+    assert made.softening == WORN
+    assert made.viscosity is not None
+    assert made.viscosity.spectrum().times == pytest.approx([2.0, 60.0])
 
 
 def test_parts_are_taken_apart_and_put_together() -> None:
