@@ -230,7 +230,7 @@ def test_an_effect_that_only_one_beam_has_says_so_in_scope_and_gain() -> None:
 def test_fits_that_did_not_converge_are_noted() -> None:
     class Slow(FakeModel):
         def start(self) -> np.ndarray:
-            return np.array([40.0, -40.0])
+            return np.array([400.0, -400.0])
 
     data = written(diagnose(Slow(drawn=noise(7)), gain=False))
     assert any(n.startswith("fit of baseline: not converged") for n in data["notes"])
