@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import runpy
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -17,10 +15,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from factory._input import InputError, read_yaml
-from factory.materials import LAWS, load_card
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe, recipe_names
-from tests.factory.conftest import ROOT, TINY
+from tests.factory.conftest import TINY
 from tisim.bodies import BoxInclusion, CylinderInclusion, SphereInclusion
 
 
@@ -116,38 +113,6 @@ def test_a_plan_is_a_function_of_the_recipe() -> None:
     other = load_recipe("paper").model_copy(update={"seed": 1})
     assert make_plan(other, "ogden").uuid != one.uuid
     assert make_plan(other, "ogden").pokes[0].scene.site != one.pokes[0].scene.site
-
-
-def _moduli(law: str, p: dict[str, Any]) -> tuple[float, float]:
-    """Small-strain shear and bulk modulus."""
-    if law == "mooney-rivlin":
-        return 2 * (p["c10"] + p["c01"]), p["bulk"]
-    if law == "ogden":
-        return sum(m * a for m, a in zip(p["mu"], p["alpha"], strict=True)) / 2, p["bulk"]
-    if law == "arruda-boyce":
-        c = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
-        series = sum(i * c[i - 1] * 3 ** (i - 1) / p["locking"] ** (2 * i - 2) for i in range(1, 6))
-        return 2 * p["mu"] * series, p["bulk"]
-    return p["mu"], p["lam"] + 2 * p["mu"] / 3
-
-
-@pytest.mark.parametrize(("name", "young"), [("S0", 91e3), ("S0.5", 44e3), ("S1", 27.2e3)])
-def test_cards_give_all_laws_the_modulus_of_the_papers_table(name: str, young: float) -> None:
-    card = load_card(name)
-    assert card.derived
-    for law in LAWS:
-        material = card.for_law(law)
-        shear, bulk = _moduli(law, dict(material.parameters))
-        assert 3 * shear == pytest.approx(young, rel=2e-3)
-        assert bulk / shear == pytest.approx(20, rel=1e-3)
-        assert material.law == law
-
-
-def test_cards_are_what_their_script_writes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "argv", ["derive.py", "--check"])
-    with pytest.raises(SystemExit) as end:
-        runpy.run_path(str(ROOT / "datasets" / "materials" / "derive.py"), run_name="__main__")
-    assert end.value.code == 0
 
 
 def _tiny() -> dict[str, Any]:
@@ -350,66 +315,3 @@ def test_recipes_by_name() -> None:
         load_recipe("papper")
     with pytest.raises(InputError, match=r"cannot read nowhere\.yaml: No such file"):
         load_recipe("nowhere.yaml")
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("material: S0", "material: S9", "key material: expected S0, as the file is called, got S9"),
-        ("stiffness: 0.8", "stiffness: 1.0", "key stiffness: "),
-        ("alpha: [3.0]", "alpha: [3.0, 2.0]", "expected as many mu as alpha, got 1 and 2"),
-        ("alpha: [3.0]", "alpha: [-3.0]", "mu and alpha of one sign"),
-        ("  ogden:", "  odgen:", "key laws.ogden: this key is missing"),
-        ("locking: 2.828427", "locking: 0.5", "key laws.arruda-boyce.locking: "),
-        ("mu: 30341.0, lam", "mu: -1.0, lam", "key laws.st-venant-kirchhoff.mu: "),
-    ],
-)
-def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
-    text = (ROOT / "datasets" / "materials" / "S0.yaml").read_text()
-    assert old in text
-    (tmp_path / "S0.yaml").write_text(text.replace(old, new))
-    with pytest.raises(InputError) as caught:
-        load_card("S0", tmp_path)
-    assert words in str(caught.value)
-    assert str(tmp_path / "S0.yaml") in str(caught.value)
-
-
-def _own_cards(folder: Path, *names: str) -> Path:
-    """Cards of materials of one's own, and a file of a rig beside them."""
-    folder.mkdir(parents=True)
-    text = (ROOT / "datasets" / "materials" / "S0.yaml").read_text()
-    for name in names:
-        (folder / f"{name}.yaml").write_text(text.replace("material: S0", f"material: {name}"))
-    (folder / "rig.yaml").write_text("clamp-tilt: {}\n")
-    return folder
-
-
-def test_cards_of_other_names_are_the_levels(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    folder = _own_cards(tmp_path / "my out" / "cards", "Eco", "Dragon")
-    caplog.set_level("INFO")
-    plan = make_plan(load_recipe("quick"), "neo-hookean", folder)
-    assert plan.recipe.levels == ("Dragon", "Eco")
-    assert [card.material for card in plan.cards] == ["Dragon", "Eco"]
-    assert plan.identity["recipe"]["softness"] == ["Dragon", "Eco"]
-    assert len(plan.pokes) == 2 * 2 * 2
-    assert "has no card of the recipe's material levels (S0, S0.5, S1): its own cards" in caplog.text
-    assert make_plan(load_recipe("quick"), "ogden", folder, levels=["Eco"]).recipe.levels == ("Eco",)
-
-
-def test_some_cards_missing_is_an_error_with_a_way_on(tmp_path: Path) -> None:
-    folder = _own_cards(tmp_path / "cards", "S0", "Eco")
-    with pytest.raises(
-        InputError, match=r"S0\.5\.yaml: no material card.*has Eco, S0: give --levels Eco,S0 "
-    ):
-        make_plan(load_recipe("quick"), "ogden", folder)
-    with pytest.raises(InputError, match=r"--levels Eco,Eco: expected different names"):
-        make_plan(load_recipe("quick"), "ogden", folder, levels=["Eco", "Eco"])
-    with pytest.raises(InputError, match=r"--levels \.\./Eco: expected different names"):
-        make_plan(load_recipe("quick"), "ogden", folder, levels=["../Eco"])
-    with pytest.raises(InputError, match=r"--levels : expected different names"):
-        make_plan(load_recipe("quick"), "ogden", folder, levels=[""])
-
-
-def test_a_missing_card(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"S0\.yaml: no material card for material level S0"):
-        make_plan(load_recipe("quick"), "ogden", tmp_path)

@@ -14,12 +14,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tisim.laws import yeoh
 from tisim.laws._energy import by_invariants, first_isochoric, ti
-from tisim.laws._law import Law, Moduli, Parameters, scalar
+from tisim.laws._law import Law, Moduli, scalar
+from tisim.laws.neo_hookean import energy as coupled
 
 
 @ti.func
-def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
+def energy(I1, I2, J, prm: ti.template()):
     mu = prm[0]
     stiffening = prm[1]
     i1, a = first_isochoric(I1, J)
@@ -27,27 +29,7 @@ def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for a
     further = by_invariants(
         0.5 * mu * stiffening * excess * excess, mu * stiffening * excess, mu * stiffening, i1, a, J
     )
-    zero = 0.0 * mu
-    coupled = ti.Vector(
-        [
-            mu * (0.5 * (I1 - 3.0) - ti.log(J)),
-            0.5 * mu,
-            zero,
-            -mu / J,
-            zero,
-            zero,
-            mu / (J * J),
-            zero,
-            zero,
-            zero,
-        ]
-    )
-    return coupled + further
-
-
-def _fault(parameters: Parameters) -> str:
-    value = scalar(parameters, "stiffening")
-    return "" if value >= 0.0 else f"stiffening must not be negative, got {value:g}"
+    return coupled(I1, I2, J, prm) + further
 
 
 LAW = Law(
@@ -63,5 +45,5 @@ LAW = Law(
         shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0
     ),
     from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "lam": bulk - 2.0 * shear / 3.0},
-    fault=_fault,
+    fault=yeoh.LAW.fault,
 )
