@@ -31,7 +31,7 @@ def test_a_law_alone_has_its_own_kernels_numbers_and_no_state(discretisation: Di
     body = DiscretisedBody(discretisation, SOFT)
     law = laws.get(SOFT.law)
     assert (body._energy, body._forces, body._stiffness, body._pressures) == element_kernels(
-        law, features=NONE, sparse=True
+        law, features=NONE
     )
     assert np.array_equal(body._prm, law.pack(SOFT.parameters))
     assert body.state is NO_STATE
@@ -49,6 +49,6 @@ def test_each_part_has_kernels_of_its_own(part: str, discretisation: Discretisat
     body = DiscretisedBody(discretisation, replace(SOFT, **{part: PARTS[part]}))  # type: ignore[arg-type]
     law = laws.get(SOFT.law)
     assert body.features.any
-    assert body._forces is not element_kernels(law, features=NONE, sparse=True)[1]
+    assert body._forces is not element_kernels(law, features=NONE)[1]
     assert len(body._prm) == len(law.pack(SOFT.parameters)) + body.features.tail_size
     assert (body.history is None) == (part == "fibres")

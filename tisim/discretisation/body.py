@@ -130,8 +130,9 @@ class DiscretisedBody:
         self.added_mass = np.zeros(discretisation.mesh.n_nodes) if added_mass is None else added_mass
         self.features = features_of(material)
         self._energy, self._forces, self._stiffness, self._pressures = element_kernels(
-            law, features=self.features, sparse=discretisation.mesh.kind == "hex8"
+            law, features=self.features
         )
+        self._sparse = int(discretisation.mesh.kind == "hex8")
         weights = discretisation.reference.weights
         self._weights = weights if discretisation.stiffness is None else weights * discretisation.stiffness
         self._prm = pack(material)
@@ -242,7 +243,9 @@ class DiscretisedBody:
         out = np.empty(2)
         f = np.zeros_like(x)
         blocks = np.zeros((p.n_blocks, 3, 3))
-        self._stiffness(*self._common(x), pressure, p.slot, self.discretisation._scratch, f, blocks, out)
+        self._stiffness(
+            *self._common(x), pressure, self._sparse, p.slot, self.discretisation._scratch, f, blocks, out
+        )
         return blocks, f, float(out[1])
 
 

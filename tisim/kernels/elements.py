@@ -109,13 +109,8 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
 
 
 @cache
-def element_kernels(
-    law: Law, *, features: Features = NONE, sparse: bool = False
-) -> tuple[Kernel, Kernel, Kernel, Kernel]:
-    """(energy, forces, stiffness, pressures) kernels of a material, compiled once for any mesh and values.
-
-    sparse: points that some of the element's nodes do not move (tetrahedra in a hexahedron) skip these.
-    """
+def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Kernel, Kernel, Kernel]:
+    """(energy, forces, stiffness, pressures) kernels of a material, compiled once for any mesh and values."""
     ensure_runtime()
     theta, psi_only, _, tangent, _ = make_response(law, features)
     mean_theta, add_forces = force_functions(law, features)
@@ -165,6 +160,7 @@ def element_kernels(
         kp: f64,
         kb: f64,
         pressure: _f1,
+        sparse: i32,
         slot: _i3,
         ke: _f2,
         f: _f2,
@@ -175,6 +171,7 @@ def element_kernels(
 
         pressure (m,) [Pa] takes the place of kb mean(theta) in the tangent's geometric part; the forces
         are exact whatever it is.
+        sparse: 1 where nodes that do not move a point are skipped (tetrahedra in a hexahedron), 0 elsewhere.
         slot (m, a, b), for a <= b: 4 * block + 0 (add), 1 (add transposed), 2 (both), or -1 (a fixed node).
         ke (a, a * 9) and its last row pair is scratch.
         """
@@ -211,9 +208,8 @@ def element_kernels(
                                         s += T[i, k] * grad[e, q, a, k]
                                     ke[a, 9 * na + i] = ke[a, 9 * na + i] + w * s
                         for b in range(na):
-                            if ti.static(sparse):  # noqa: SIM102 - compiled away where it is false
-                                if not takes_part(grad, e, q, b):
-                                    continue
+                            if sparse != 0 and not takes_part(grad, e, q, b):
+                                continue
                             g = ti.Vector([grad[e, q, b, 0], grad[e, q, b, 1], grad[e, q, b, 2]])
                             n = conn[e, b]
                             for i in ti.static(range(3)):
@@ -226,7 +222,7 @@ def element_kernels(
                                     )
                             for a in range(b + 1):
                                 takes = slot[e, a, b] >= 0
-                                if ti.static(sparse):
+                                if sparse != 0:
                                     takes = takes and takes_part(grad, e, q, a)
                                 if takes:
                                     for i in ti.static(range(3)):
