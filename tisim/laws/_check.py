@@ -135,7 +135,7 @@ def check_law(
         A registered law's name, or a law.
     parameters : sequence of mappings, optional
         Parameters to check at; by default those of a shear modulus of 30 kPa and bulk moduli of 5, 50 and
-        1000 times that.
+        1000 times that, and the law's `examples`.
     deformations : int
         Number of deformations.
     seed : int
@@ -152,7 +152,8 @@ def check_law(
         For an unknown law or unsound parameters.
     """
     law = _law(law)
-    chosen = [law.from_moduli(3e4, ratio * 3e4) for ratio in RATIOS] if parameters is None else parameters
+    plain = [law.from_moduli(3e4, ratio * 3e4) for ratio in RATIOS]
+    chosen = [*plain, *law.examples] if parameters is None else parameters
     rng = np.random.default_rng(seed)
     errors = dict.fromkeys(_LIMITS, 0.0)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -65,6 +65,9 @@ class Law:
         Parameters with these moduli [Pa]; other constants at a plain default.
     fault : callable (parameters) -> str
         What is wrong with the parameters beyond numbers and moduli, or "".
+    examples : sequence of mappings
+        Parameters at which `check_law` looks besides those of `from_moduli`: where the law has constants that a
+        plain default leaves at zero.
     """
 
     name: str
@@ -78,6 +81,7 @@ class Law:
     moduli: Callable[[Parameters], Moduli]
     from_moduli: Callable[[float, float], dict[str, float | tuple[float, ...]]]
     fault: Callable[[Parameters], str] = lambda _: ""
+    examples: Sequence[Parameters] = ()
 
     def check(self, parameters: Parameters) -> None:
         """Raise ValueError, in one sentence, unless names, shapes and small-strain moduli are sound."""

@@ -46,4 +46,5 @@ LAW = Law(
     ),
     from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "lam": bulk - 2.0 * shear / 3.0},
     fault=yeoh.LAW.fault,
+    examples=({"mu": 3e4, "stiffening": 0.05, "lam": 1.5e6},),
 )

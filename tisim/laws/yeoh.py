@@ -46,4 +46,5 @@ LAW = Law(
     moduli=lambda p: Moduli(shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "bulk")),
     from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "bulk": bulk},
     fault=_fault,
+    examples=({"mu": 3e4, "stiffening": 0.05, "bulk": 1.5e6},),
 )
