@@ -84,13 +84,19 @@ def _cause_row(
 ) -> list[Cell]:
     """Several parameters of one cause stand in one cell each under the other."""
     effect = diagnosis.effects[cause["effect"]]
+    told_apart = not named or cause["effect"] in diagnosis.finding.certain
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
     if effect.switch:  # it is there or not, and has no size
         values = [(cause.get("kind") or "there", values[0][1])]
     share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
     evidence = _evidence(cause, told["gain"])
     return [
-        Cell(text=cause["effect"] + ("" if named else " (not named)"), mark="chosen" if named else ""),
+        Cell(
+            text=cause["effect"]
+            + ("" if told_apart else " (or another)")
+            + ("" if named else " (not named)"),
+            mark="chosen" if named and told_apart else "",
+        ),
         Cell(text=effect.sentence),
         Cell(text=scope(cause["scope"])),
         Cell(text="; ".join(t for t, _ in values), value=values[0][1], mark="chosen" if named else ""),
