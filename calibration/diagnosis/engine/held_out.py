@@ -287,11 +287,30 @@ Predictions = dict[tuple[str, str], _Fold]  # by set of folds and fold
 
 
 def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]) -> _Fold:
-    trained = fit(model.subset(fold, others=True), full.state, candidates).state
+    others = model.subset(fold, others=True)
+    trained = fit(others, _nearer(model, others, fold, full), candidates).state
     test = model.subset(fold, others=False)
     state = _with_unseen(test, trained, model.unconstrained(fold))
     z = test.residuals([state])[0][: test.points]
     return _Fold(state=state, chi2=float(z @ z), rms=test.distance_rms(state), points=test.points)
+
+
+def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full: Fit) -> State:
+    """Where a fit to the others ends, to first order around the fit to all, which costs no linearisation;
+    the state of that fit where this step does not help."""
+    there = full.state
+    jacobian, z = full.jacobian[~model.rows(fold)], full.z[~model.rows(fold)]
+    switches = [model.effects[c.effect].switch for c in full.candidates]
+    size = np.linalg.norm(jacobian, axis=0)
+    free = (size > 0.0) & ~np.r_[np.zeros(len(there.u), dtype=bool), np.array(switches, dtype=bool)]
+    move = np.zeros(jacobian.shape[1])
+    move[free] = -np.linalg.lstsq(jacobian[:, free] / size[free], z, rcond=1e-6)[0] / size[free]
+    moved = np.array([*there.amplitudes.values()]) + move[len(there.u) :]
+    nearer = State(
+        u=there.u + move[: len(there.u)],
+        amplitudes=dict(zip(there.amplitudes, moved.tolist(), strict=True)),
+    )
+    return nearer if _squares(others, nearer) < _squares(others, there) else there
 
 
 def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:

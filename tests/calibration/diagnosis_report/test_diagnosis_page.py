@@ -169,16 +169,15 @@ def test_missing_pictures_are_said(tmp_path: Path) -> None:
     assert "pictures of shapes and residuals are missing: no equilibrium at this state" in words
 
 
-def test_fits_that_did_not_converge_are_counted() -> None:
+def test_a_fit_that_did_not_converge_is_said_where_the_verdict_stands_on_it() -> None:
+    """Those of causes that are not named are in the notes."""
     made, model = diagnosis("found")
     first, *others = made.finding.explanations
     lame = replace(first, fit=replace(first.fit, converged=False, message="not converged in 10 steps"))
-    made = replace(made, finding=replace(made.finding, explanations=(lame, *others)))
-    total = len(made.finding.explanations)
-    assert (
-        f"1 of {total} fits of causes did not converge: bend (not converged in 10 steps)."
-        in _page(made, model).text
-    )
+    other = replace(made, finding=replace(made.finding, explanations=(lame, *others)))
+    assert "did not converge" not in _page(other, model).text
+    named = replace(made, chosen=lame)
+    assert "The fit of bend did not converge: not converged in 10 steps." in _page(named, model).text
 
 
 def test_no_fold_is_said() -> None:
