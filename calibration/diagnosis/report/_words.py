@@ -19,8 +19,8 @@ MEANING: dict[Owner, str] = {
 }
 
 UNREAD = (
-    "a fault of the {}: the modulus beside it allows for it, later calibrations are not corrected by it"
-    " (rig.yaml is a record); it must not enter a simulated dataset"
+    "a fault of the {}: this calibration allows for it, later ones do not (rig.yaml is a record); it must not"
+    " enter a simulated dataset"
 )
 
 HEADLINE = {
