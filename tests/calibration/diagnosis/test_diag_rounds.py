@@ -54,7 +54,7 @@ def test_a_first_round_is_concluded_only_where_the_second_says_less(
     rare = replace(effect("ripple"), further=True)
     shapes = {n: library()[n] for n in ("bend", "ripple")}
     outside = 30.0 * waves(7)[:, 6] / np.linalg.norm(waves(7)[:, 6])
-    data = {"hidden": outside + hidden("ripple", 60.0 if named else 0.0), "drawn": noise(3)}
+    data = {"hidden": outside + hidden("ripple", 120.0 if named else 0.0), "drawn": noise(3)}
 
     def make(*, further: bool = True, **_: object) -> FakeModel:
         model = FakeModel(
