@@ -137,7 +137,7 @@ class DiagnosisResult:
 
     @property
     def verdict(self) -> str:
-        """ "found", "several", "unexplained" or "none"."""
+        """One of none, found, ambiguous, partly explained and unexplained."""
         return str(self.diagnosis.finding.verdict)
 
     @property

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calibration.diagnosis import Diagnosis, Finding, MeasurementModel
+    from calibration.diagnosis import Diagnosis, MeasurementModel
 
 Verdict = dict[str, Any]  # the content of diagnosis.json, or the part of it that is scored
 
@@ -146,7 +146,7 @@ def pose_of(name: str, trials: set[str]) -> Callable[[Any, Any], Any]:
 
 
 def diagnose_coupons(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
-    """As `_searched`; "next": the name of the advised experiment, None where the verdict is not ambiguous."""
+    """As `_scored`; "next": the name of the advised experiment, None where the verdict is not ambiguous."""
     import calibration
     from calibration.diagnosis.engine.advice import advise
 
@@ -162,14 +162,15 @@ def diagnose_coupons(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
 
 
 def diagnose_indentation(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
-    """As `_searched`; with the number of simulated indentations, and their time on a core [s]."""
-    from calibration.diagnosis import model_of
-    from calibration.experiment import read
+    """As `_scored`; with the number of simulated indentations, and their time on a core [s]."""
+    import calibration
     from calibration.measurements.indentation.model import IndentationModel
 
-    model = model_of(read(folder), kind="indentation", without=without, workers=1)
+    data = calibration.read_experiment(folder)
+    result = calibration.diagnose(data, domain="indentation", without=without, gain=False, workers=1)
+    model = result.model
     assert isinstance(model, IndentationModel)
-    _, found = _searched(model)
+    found = _scored(model, result.diagnosis)
     return found | {"simulated": model.curves.simulated, "core_seconds": model.curves.core_seconds}
 
 
@@ -179,14 +180,6 @@ def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
     data = calibration.read_experiment(folder)
     return calibration.diagnose(data, domain="compression", without=without, gain=False).diagnosis.to_json()
-
-
-def _searched(model: MeasurementModel) -> tuple[Finding, Verdict]:
-    """The diagnosis without its refinement, and what is scored of it."""
-    from calibration.diagnosis import diagnose
-
-    made = diagnose(model, gain=False)
-    return made.finding, _scored(model, made)
 
 
 def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:

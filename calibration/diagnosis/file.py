@@ -209,6 +209,12 @@ class DiagnosisFile(_Told):
         return self
 
     @property
+    def certain(self) -> tuple[str, ...]:
+        """Effects that every alternative has: what the data do tell, where they cannot tell all of it."""
+        named = dict.fromkeys(c.effect for c in self.causes)
+        return tuple(n for n in named if all(n in names for names in self.alternatives))
+
+    @property
     def shear_moduli(self) -> Mapping[str, float]:
         """By material [Pa], beside the named causes."""
         return (self.extended or self.baseline).shear_modulus_Pa

@@ -17,7 +17,8 @@ import numpy as np
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.resampling import test_of
 from calibration.diagnosis.engine.rules import Progress, Rules
-from calibration.diagnosis.engine.run import diagnose
+from calibration.diagnosis.engine.run import concluded, diagnose, searched
+from calibration.diagnosis.engine.search import Finding
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
 from calibration.measurements._model import MeasurementModel
@@ -134,23 +135,27 @@ def diagnose_with_law(
     if law != AUTO:
         options["law"], options["terms"] = law_of(law)
     model = make(further=False, **options)
-    found = diagnose(model, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-    explained = found.finding.verdict in EXPLAINED
-    if explained and _causes(found) < 2:
-        return found, model
+    first = searched(model, rules=rules, noise=noise, on_progress=on_progress)
+    explained = first.finding.verdict in EXPLAINED
+    if explained and _causes(first.finding) < 2:
+        return concluded(first, gain=gain, on_progress=on_progress), model
     choice = None
     if law == AUTO and model.laws:
         choice = choose_law(model, on_progress=on_progress)
     if choice is not None and choice.best is not choice.simplest:
         options["richer"] = choice.best.law, choice.best.terms
     fuller = make(**options)
+    again: Diagnosis | None = None
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
         again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-        # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
-        fairer = "richer" in options or _says(again) >= _says(found)
-        better = _simpler(again, found, rules or Rules()) if explained else fairer
-        if better:
+    # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
+    if again is not None and not explained and ("richer" in options or _says(again)):
+        model, found = fuller, again
+    else:
+        found = concluded(first, gain=gain, on_progress=on_progress)
+        better = _simpler(again, found, rules or Rules()) if again and explained else not _says(found)
+        if again is not None and better:
             model, found = fuller, again
     notes = () if choice is None else (choice.sentence(),)
     return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model
@@ -191,7 +196,7 @@ def _in_one_test(found: Diagnosis, model: MeasurementModel) -> str:
     return reached.pop() if len(reached) == 1 < len(set(tests)) else ""
 
 
-def _causes(found: Diagnosis) -> int:
+def _causes(found: Diagnosis | Finding) -> int:
     """How many are named together."""
     return 0 if found.chosen is None else len(found.chosen.candidates)
 

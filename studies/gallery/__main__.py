@@ -160,11 +160,18 @@ def row(one: Set, found: dict[str, Any]) -> list[str]:
     """Cells of the table."""
     if "missing" in found:
         return [one.name, one.source, found["missing"], "", "", "", "", one.expert, ""]
-    named = found["causes"]
+    sets = [set(names) for names in found["alternatives"]]
+    # of several sets of causes that cannot be told apart, what all of them have is what the data tell
+    told = [c for c in found["causes"] if all(c["effect"] in names for names in sets)]
+    named = sorted(told or found["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
+    sure = {c["effect"] for c in named}
+    others = [" + ".join(sorted(names - sure)) for names in sets if names - sure]
+    causes = "; ".join(cause(c, shares=len(named) > 1 or bool(others)) for c in named)
+    if others:
+        causes += f"; beside it {' or '.join(others)}" if told else f"; or {'; or '.join(others)}"
     nearest = found.get("nearest")
-    causes = "; ".join(map(cause, named))
     share, gain = found.get("share"), found.get("gain")
-    if not named and nearest:
+    if not found["causes"] and nearest:
         causes = "nearest: " + "; ".join(map(cause, nearest["causes"]))
         share, gain = nearest["share"], nearest["gain"]
     skill = gain.get("skill") if gain else None
@@ -177,16 +184,18 @@ def row(one: Set, found: dict[str, Any]) -> list[str]:
         "" if skill is None else f"{skill:.2f}",
         f"{found['seconds']:.0f}",
         one.expert,
-        agrees(one, {c["effect"] for c in named}),
+        agrees(one, sure) + ("" if told or not named else " (first of several)"),
     ]
 
 
-def cause(c: dict[str, Any]) -> str:
-    """Its name and amplitude."""
+def cause(c: dict[str, Any], *, shares: bool = False) -> str:
+    """Its name and amplitude, with its own share where that is asked for."""
+    own = c.get("share") if shares else None
+    part = f" ({interval(own)})" if own else ""
     kind = f" ({c['kind']})" if c.get("kind") else ""
     where = "" if c["scope"] == "all" else f" of {c['scope']}"
     values = ", ".join(f"{v['value']:.3g} {name}" for name, v in c["parameters"].items())
-    return f"{c['effect']}{kind}{where}: {values}"
+    return f"{c['effect']}{kind}{where}: {values}{part}"
 
 
 def interval(share: dict[str, Any] | None) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import binom
 
 from calibration.diagnosis.engine.fitting import LONGEST, TOLERANCE, Fit, fit
 from calibration.diagnosis.engine.skill import Prediction, skill, together
@@ -22,6 +23,7 @@ KEPT = 0.5  # fraction of an amplitude's information that every training set mus
 FALLBACK = 0.2  # below this, folds of a set are used only where
 VISIBLE = 5.0  # standard deviations by which an effect shows in a fold
 SEEN = 10.0  # standard deviations of every amplitude are left in every training set
+ROUNDING = 1e-7  # fraction of an amplitude's column that is rounding where coordinates hide the rest of it
 UNSEEN_STEPS = 10  # of Gauss-Newton, over the coordinates that only a fold tells of
 
 
@@ -72,13 +74,35 @@ class HeldOut:
     def worse(self) -> tuple[str, ...]:
         """Folds in which it acts, and that it predicts no better. An effect that shows in no fold alone (a
         law that brings constants of its own) acts in all."""
-        acts = self.acts if any(self.acts) else (True,) * len(self.parts)
-        return tuple(p.name for p, own in zip(self.parts, acts, strict=True) if own and not p.helps)
+        return tuple(p.name for p, own in zip(self.parts, self._acting, strict=True) if own and not p.helps)
+
+    def helps_mostly(self, *, least_skill: float, sure: float, draws: int, seed: int) -> bool:
+        """Whether the parts that it predicts better are more than chance would make them (sign test), and
+        together, with the parts drawn anew, its skill stays above `least_skill`; both as surely as `sure`."""
+        acting = sum(self._acting)
+        better = acting - len(self.worse)
+        if not acting or binom.sf(better - 1, acting, 0.5) > 1.0 - sure:
+            return False
+        count = len(self.parts)
+        times = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), size=draws)
+        points = times * np.array([p.points for p in self.parts])
+        before, after, noise = (
+            points @ np.array([getattr(p, f"rms_{which}") ** 2 for p in self.parts])
+            for which in ("before", "after", "noise")
+        )
+        return bool(np.quantile((before - after) / (before - noise), 1.0 - sure) >= least_skill)
+
+    @property
+    def _acting(self) -> tuple[bool, ...]:
+        return self.acts if any(self.acts) else (True,) * len(self.parts)
 
 
-def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) -> HeldOut:
+def held_out_improvement(
+    model: MeasurementModel, baseline: Fit, chosen: Fit, *, known: Predictions | None = None
+) -> HeldOut:
     """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold of the
-    set that `_choice` takes."""
+    set that `_choice` takes. known : the baseline's predictions of folds that were made before; it grows."""
+    known = {} if known is None else known
     choice = _choice(model, baseline, chosen)
     if not choice.folds:
         return _nothing(choice.kept, "no fold leaves enough of the effect in training")
@@ -86,7 +110,9 @@ def held_out_improvement(model: MeasurementModel, baseline: Fit, chosen: Fit) ->
     parts, amplitudes, better = [], [], 0.0
     for left_out, fold in folds:
         try:
-            before = _predicted(model, fold, baseline, ())
+            if (name, left_out) not in known:
+                known[name, left_out] = _predicted(model, fold, baseline, ())
+            before = known[name, left_out]
             after = _predicted(model, fold, chosen, chosen.candidates)
         except ValueError as problem:
             return _nothing(choice.kept, f"{name}: {left_out} cannot be predicted: {problem}")
@@ -157,10 +183,14 @@ def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
     that leaves most. Else the first of which two or more folds that show the effect leave enough: the others
     are not predicted, since that would be extrapolated. Else the first in which the amplitudes are still seen
     well."""
-    sets = [(n, f, _kept(model, f, baseline, chosen)) for n, f in model.folds().items() if len(f) > 1]
-    for name, folds, kept in sets:
+    sets = []
+    for name, folds in model.folds().items():
+        if len(folds) < 2:
+            continue
+        kept = _kept(model, folds, baseline, chosen)
         if kept.min() >= KEPT:
             return _Choice(name=name, folds=folds, kept=float(kept.min()))
+        sets.append((name, folds, kept))
     name, folds, worst = max(sets, key=lambda s: float(s[2].min()), default=("", [], np.zeros(1)))
     if worst.min() >= FALLBACK:
         return _Choice(name=name, folds=folds, kept=float(worst.min()))
@@ -224,14 +254,18 @@ def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
 def _information(chosen: Fit, rows: Rows) -> Array:
     """One over the variance of each amplitude, from some of the rows."""
     n = len(chosen.state.u)
-    found = []
     jacobian = chosen.jacobian[rows]
-    for k in range(n, jacobian.shape[1]):
-        others = np.delete(jacobian, k, axis=1)
-        size = np.linalg.norm(others, axis=0)
-        q, _ = np.linalg.qr(others[:, size > 0] / size[size > 0])
-        left = jacobian[:, k] - q @ (q.T @ jacobian[:, k])
-        found.append(float(left @ left))
+    others, own = jacobian[:, :n], jacobian[:, n:]
+    size = np.linalg.norm(others, axis=0)
+    q, _ = np.linalg.qr(others[:, size > 0] / size[size > 0])
+    left = own - q @ (q.T @ own)
+    seen = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(own, axis=0)
+    found = []
+    for k in range(left.shape[1]):
+        beside = left[:, seen & (np.arange(left.shape[1]) != k)]
+        q, _ = np.linalg.qr(beside / np.linalg.norm(beside, axis=0))
+        alone = left[:, k] - q @ (q.T @ left[:, k])
+        found.append(float(alone @ alone))
     return np.array(found)
 
 
@@ -249,12 +283,34 @@ class _Fold:
     points: int
 
 
+Predictions = dict[tuple[str, str], _Fold]  # by set of folds and fold
+
+
 def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple[Candidate, ...]) -> _Fold:
-    trained = fit(model.subset(fold, others=True), full.state, candidates).state
+    others = model.subset(fold, others=True)
+    trained = fit(others, _nearer(model, others, fold, full), candidates).state
     test = model.subset(fold, others=False)
     state = _with_unseen(test, trained, model.unconstrained(fold))
     z = test.residuals([state])[0][: test.points]
     return _Fold(state=state, chi2=float(z @ z), rms=test.distance_rms(state), points=test.points)
+
+
+def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full: Fit) -> State:
+    """Where a fit to the others ends, to first order around the fit to all, which costs no linearisation;
+    the state of that fit where this step does not help."""
+    there = full.state
+    jacobian, z = full.jacobian[~model.rows(fold)], full.z[~model.rows(fold)]
+    switches = [model.effects[c.effect].switch for c in full.candidates]
+    size = np.linalg.norm(jacobian, axis=0)
+    free = (size > 0.0) & ~np.r_[np.zeros(len(there.u), dtype=bool), np.array(switches, dtype=bool)]
+    move = np.zeros(jacobian.shape[1])
+    move[free] = -np.linalg.lstsq(jacobian[:, free] / size[free], z, rcond=1e-6)[0] / size[free]
+    moved = np.array([*there.amplitudes.values()]) + move[len(there.u) :]
+    nearer = State(
+        u=there.u + move[: len(there.u)],
+        amplitudes=dict(zip(there.amplitudes, moved.tolist(), strict=True)),
+    )
+    return nearer if _squares(others, nearer) < _squares(others, there) else there
 
 
 def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:

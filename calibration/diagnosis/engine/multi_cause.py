@@ -34,10 +34,23 @@ HOPELESS, FAR = (
 )  # a stand-in that promises less than this fraction, and so much less, is not fitted
 STAND_INS = 2  # of other effects that are fitted in the place of each of three
 ROUNDS = 3  # of stand-ins, each beside the best triple so far
+ONCE_MORE = 2.0  # times what is promised to first order: a simulator may keep more than that
+NOISE = 6.0  # standard deviations of chi-square that noise may leave
+
+
+def worth_fitting(baseline: Fit, now: float, promised: float, rules: Rules) -> bool:
+    """Whether causes that promise, to first order, to take this much off a chi-square may leave noise alone,
+    or take as much more of the misfit as one cause more has to (`Rules.further_share`). Others would not be
+    named, however well they fit."""
+    freedom = len(baseline.z) - len(baseline.state.u)
+    reach = ONCE_MORE * promised
+    noise = freedom + NOISE * np.sqrt(2.0 * freedom)
+    return bool(now - reach <= noise or reach >= rules.further_share * (baseline.chi2 - freedom))
 
 
 def with_second(
     model: MeasurementModel,
+    baseline: Fit,
     best: Explanation,
     screened: Screen,
     columns: Array,
@@ -71,7 +84,11 @@ def with_second(
     # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
     target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
     afresh = screen(linear, model.effects)
-    found = _pairs(model, best.fit, afresh, linear.columns, target, null, rules, on_progress)
+    # what ended at a bound is not named: a pair in its place need not be better
+    against = baseline if inside_bounds(model, best) else None
+    found = _pairs(
+        model, best.fit, afresh, linear.columns, target, null, rules, on_progress, baseline=against
+    )
     if any(afresh.sizes[candidates.index(c)] == 0.0 for c in best.candidates if c in candidates):
         # it brings coordinates that, to first order, hide it where it is: no pair sought afresh has it
         found += _beside(model, best, beside, improvement, linear.z, null, rules, on_progress)
@@ -127,19 +144,31 @@ def _pairs(
     null: Null,
     rules: Rules,
     on_progress: Progress,
+    *,
+    baseline: Fit | None = None,
 ) -> list[Explanation]:
-    """The pairs that promise most for the residuals `target`, confirmed."""
+    """The pairs that promise most for the residuals `target`, confirmed; beside a baseline, those that are
+    worth it."""
     found = []
     pairs = best_pairs(screened, target, count=rules.pairs)
     for n, (a, b) in enumerate(pairs):
         both = (screened.candidates[a], screened.candidates[b])
+        guess, squares = _linear_fit(screened, columns[:, [a, b]], target)
+        if baseline is not None and not worth_fitting(baseline, start.chi2, start.chi2 - squares, rules):
+            continue
         on_progress(f"confirming pair {n + 1} of {len(pairs)}: {both[0].label} + {both[1].label}")
-        left = columns[:, [a, b]] - screened.free @ (screened.free.T @ columns[:, [a, b]])
-        guess = [float(x) for x in -np.linalg.lstsq(left, target, rcond=None)[0]]
         pair = explain(model, start, both, guess, null)
         if pair is not None and inside_bounds(model, pair):
             found.append(pair)
     return found
+
+
+def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[float], float]:
+    """Amplitudes of columns (m, k) for residuals (m,), and the squares that are left, to first order."""
+    left = columns - screened.free @ (screened.free.T @ columns)
+    there = target - screened.free @ (screened.free.T @ target)
+    guess = -np.linalg.lstsq(left, target, rcond=None)[0]
+    return [float(x) for x in guess], float(np.sum((there + left @ guess) ** 2))
 
 
 def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
@@ -152,12 +181,17 @@ def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
 
 
 def with_third(
-    model: MeasurementModel, pairs: Sequence[Explanation], null: Null, rules: Rules, on_progress: Progress
+    model: MeasurementModel,
+    baseline: Fit,
+    pairs: Sequence[Explanation],
+    null: Null,
+    rules: Rules,
+    on_progress: Progress,
 ) -> list[Explanation]:
     """Sets of three of which all are needed: one more beside the best pairs, where it improves chi-square
     by more than noise would, or three others that promise more. Then others are tried in the place of each,
     so that an equivalent explanation is not left out."""
-    threes = _Triples(model, null, rules, on_progress)
+    threes = _Triples(model, baseline, null, rules, on_progress)
     beside: list[Names] = []
     for pair in sorted(pairs, key=lambda e: e.score):
         if pair.names not in beside and len(beside) < rules.triples[0]:
@@ -173,8 +207,11 @@ def with_third(
 class _Triples:
     """What has been tried of three causes, and what was found. found: sets of which all three are needed."""
 
-    def __init__(self, model: MeasurementModel, null: Null, rules: Rules, on_progress: Progress) -> None:
-        self.model, self.null, self.rules, self.on_progress = model, null, rules, on_progress
+    def __init__(
+        self, model: MeasurementModel, baseline: Fit, null: Null, rules: Rules, on_progress: Progress
+    ) -> None:
+        self.model, self.baseline = model, baseline
+        self.null, self.rules, self.on_progress = null, rules, on_progress
         self.found: list[Explanation] = []
         self._tried: set[frozenset[Candidate]] = set()
 
@@ -193,14 +230,16 @@ class _Triples:
             return
         guesses = beside.amplitudes(linear.z)
         for k in _best_of_each(beside, promises, self.rules.triples[1]):
+            if not worth_fitting(self.baseline, pair.fit.chi2, float(promises[k]), self.rules):
+                break
             self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
         # the best pair may be a mixture of three others: these are sought afresh, around where it leads
         alone = screen(linear, self.model.effects)
         target = linear.z - linear.columns[:, : len(pair.candidates)] @ _values(pair)
         for three in best_triples(alone, target, count=self.rules.triples[1]):
-            columns = linear.columns[:, three] - alone.free @ (alone.free.T @ linear.columns[:, three])
-            guess = -np.linalg.lstsq(columns, target, rcond=None)[0]
-            self._confirm(pair, {linear.candidates[k]: float(g) for k, g in zip(three, guess, strict=True)})
+            guess, squares = _linear_fit(alone, linear.columns[:, three], target)
+            if worth_fitting(self.baseline, pair.fit.chi2, pair.fit.chi2 - squares, self.rules):
+                self._confirm(pair, {linear.candidates[k]: g for k, g in zip(three, guess, strict=True)})
 
     def replace_in(self, three: Explanation) -> bool:
         """Others in the place of each of three causes, and the same elsewhere; whether one that had not been

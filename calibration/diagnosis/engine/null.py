@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 DRAWS = 4000
 EVERYTHING = "everything"
+BEYOND = 0.1  # of the least p-value that draws can show: below it no draw of all is expected to reach
 ROUNDING = 1e-7  # fraction of a column that is rounding where the rest of it is fitted
 
 
@@ -54,28 +55,39 @@ class Null:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).
 
         The tests are the whole squared sum, and the squared sum in each set of the basis. Their smallest
-        p-value is judged by its own distribution, which accounts for their number and for what they share.
-        Differences between the moduli of specimens are a set of their own, and part of no other.
+        p-value is judged by its own distribution, which accounts for their number and for what they share;
+        where it is beyond what the draws reach, by the number of tests alone, which costs no draw (each
+        square has a chi-square distribution). Differences between the moduli of specimens are a set of their
+        own, and part of no other.
         """
         free = basis_of(jacobian)
         scatter = self.basis.get(SPECIMENS)
         known = free if scatter is None else basis_of(np.hstack([jacobian, scatter]))
+        spans: dict[str, Array] = {}
+        for name, columns in self.basis.items():
+            off = free if name == SPECIMENS else known
+            left = columns - off @ (off.T @ columns)
+            own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
+            # orthogonal to what is fitted: it sees nothing of that in the noise either
+            spans[name] = basis_of(left[:, own])
+        here = {n: float(((z @ s) ** 2).sum()) * ALLOWED.get(n, 1.0) for n, s in spans.items()}
+        here = {EVERYTHING: float(z @ z), **here}
+        freedom = {EVERYTHING: len(z) - free.shape[1], **{n: s.shape[1] for n, s in spans.items()}}
+        each = {n: float(chi2.sf(here[n], freedom[n])) if freedom[n] else 1.0 for n in here}
+        least = 1.0 / (DRAWS + 1)
+        if min(each.values()) < BEYOND * least:
+            p_value = max(len(each) * min(each.values()), least)
+            each = {n: max(p, least) for n, p in each.items()}
+            return LackOfFit(p_value=p_value, each=each, worst=min(each, key=lambda n: each[n]))
         smallest = np.ones(DRAWS)
-        each: dict[str, float] = {}
-        for name in (EVERYTHING, *self.basis):
+        for name, square in here.items():
             if name == EVERYTHING:
-                squares, here = self._squares - ((self.noise @ free) ** 2).sum(axis=1), float(z @ z)
+                squares = self._squares - ((self.noise @ free) ** 2).sum(axis=1)
             else:
-                columns, off = self.basis[name], free if name == SPECIMENS else known
-                left = columns - off @ (off.T @ columns)
-                own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
-                span = basis_of(left[:, own])
-                # orthogonal to what is fitted: it sees nothing of that in the noise either
-                squares, here = ((self.noise @ span) ** 2).sum(axis=1), float(((z @ span) ** 2).sum())
-                here *= ALLOWED.get(name, 1.0)
+                squares = ((self.noise @ spans[name]) ** 2).sum(axis=1)
             order = np.sort(squares)
             smallest = np.minimum(smallest, _exceeding(squares, order))
-            each[name] = float(_exceeding(np.array([here]), order)[0])
+            each[name] = float(_exceeding(np.array([square]), order)[0])
         worst = min(each, key=lambda n: each[n])
         p = (np.count_nonzero(smallest <= each[worst]) + 1) / (DRAWS + 1)
         return LackOfFit(p_value=float(min(1.0, p)), each=each, worst=worst)

@@ -4,8 +4,9 @@ No real bench passes a test for "nothing but noise is left". What is named then 
 that takes most of the explainable misfit, if
 
 1. it takes at least half of it, in 95 % of the replicates over specimens, tests or stretches of records;
-2. it predicts every part of the measurements that its fit has not seen better than the baseline does, and
-   all of them together by at least half of what noise leaves to explain;
+2. it predicts every part of the measurements that its fit has not seen better than the baseline does, or of
+   many parts so many that chance would not, whichever of them were measured; and all of them together by at
+   least half of what noise leaves to explain;
 3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
 4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
 
@@ -21,12 +22,13 @@ import numpy as np
 
 from calibration.diagnosis.engine.explanation import Explanation, Names
 from calibration.diagnosis.engine.fitting import Fit
-from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.held_out import HeldOut, Predictions, held_out_improvement
 from calibration.diagnosis.engine.multi_cause import inside_bounds
 from calibration.diagnosis.engine.remainder import relative_rms
 from calibration.diagnosis.engine.rules import Progress, Rules
 from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise_known import NoiseKnown
 
 EACH = 2  # sets of as many causes that are tried
 
@@ -60,8 +62,8 @@ def assess(
     explanations: Sequence[Explanation],
     shares: Shares,
     rules: Rules,
+    noise: NoiseKnown,
     *,
-    noise_known: bool = True,
     on_progress: Progress = lambda _: None,
 ) -> Assessed | None:
     """The explanation that may be named, or the one that comes nearest (`against` says why it is not named);
@@ -75,12 +77,22 @@ def assess(
     sound = [(e, m) for e, m in found if inside_bounds(model, e)]
     ordered = _dominant(sound or found, shares, rules)
     first: Assessed | None = None
+    known: Predictions = {}
     for explanation, misfit in ordered[: rules.tries]:
-        judged = _judge(model, baseline, explanation, misfit, sound, shares, rules, noise_known, on_progress)
+        on_progress(f"predicting held-out measurements: {explanation.fit.label}")
+        held_out = held_out_improvement(model, baseline, explanation.fit, known=known)
+        judged = _judge(model, baseline, explanation, misfit, held_out, sound, shares, rules, noise)
         if not judged.against:
             return judged
         first = first or judged
     return first
+
+
+def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnown, rules: Rules) -> bool:
+    """Whether the baseline's departure is no larger than a smooth error that nobody stated may be. Never
+    where the noise is known."""
+    part = None if noise.known else relative_rms(model, baseline)
+    return part is not None and part < rules.smooth_error
 
 
 def _dominant(
@@ -109,11 +121,11 @@ def _judge(
     baseline: Fit,
     explanation: Explanation,
     misfit: Misfit,
+    held_out: HeldOut,
     sound: Sequence[tuple[Explanation, Misfit]],
     shares: Shares,
     rules: Rules,
-    noise_known: bool,
-    on_progress: Progress,
+    noise: NoiseKnown,
 ) -> Assessed:
     share = shares.share(misfit)
     drawn = shares.drawn(misfit)
@@ -130,14 +142,10 @@ def _judge(
         against.append(
             f"over {shares.groups.over} its share is not sure to be {100.0 * rules.least_share:.0f} % or more"
         )
-    part = relative_rms(model, baseline)
-    if not noise_known and part is not None and part < rules.smooth_error:
-        against.append(
-            f"the departure is {100.0 * part:.2g} % of full scale, which a smooth error that nobody stated"
-            " may have"
-        )
-    on_progress(f"predicting held-out measurements: {explanation.fit.label}")
-    held_out = held_out_improvement(model, baseline, explanation.fit)
+    if within_smooth_error(model, baseline, noise, rules):
+        part = relative_rms(model, baseline) or 0.0
+        size = f"{100.0 * part:.2g} % of full scale" if part > 0.0 else "no larger than the estimated noise"
+        against.append(f"the departure is {size}, which a smooth error that nobody stated may have")
     against += _held_out(held_out, explanation, at_least, rules)
     others = [
         shares.drawn(m)
@@ -160,7 +168,10 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
     if not held_out.held_out:
         return [held_out.note]
     found = []
-    if not held_out.helps_everywhere:
+    mostly = held_out.helps_mostly(
+        least_skill=rules.least_skill, sure=rules.sure, draws=rules.draws, seed=rules.seed
+    )
+    if not held_out.helps_everywhere and not mostly:
         worse = held_out.worse
         if len(worse) == 1:
             found.append(f"{worse[0]}, held out, is predicted no better than without it")

@@ -116,24 +116,102 @@ class Resampled:
         return grams, slopes, squares, np.array([float(np.count_nonzero(p)) for p in places])
 
     def replicates(self, drawn: Array) -> Replicates:
-        """drawn : how often each group counts, shape (b, groups)."""
+        """drawn : how often each group counts, shape (b, groups).
+
+        Coordinates that one group alone tells of (its modulus, its deviation) are eliminated in each group,
+        once for each number of times that it is drawn: what is solved in each replicate is as small as what
+        the groups share.
+        """
         grams, slopes, squares, rows = self._sums
-        weights = np.column_stack([drawn, np.ones(len(drawn))])
+        n = grams.shape[1]
         size = np.sqrt(np.einsum("gii->i", grams))
         size[size == 0.0] = 1.0
-        n = len(size)
-        if n == 0:
-            return Replicates(
-                chi2=weights @ squares, expected=weights @ rows, moves=np.zeros((len(drawn), 0))
+        grams, slopes = grams / np.outer(size, size), slopes / size
+        prior, owner = grams[-1], _owners(grams)
+        shared = np.flatnonzero(owner < 0)
+        whole = np.zeros((len(drawn), shared.size, shared.size)) + prior[np.ix_(shared, shared)]
+        twice = whole.copy()
+        whole += RIDGE * np.eye(shared.size)
+        slope = np.zeros((len(drawn), shared.size)) + slopes[-1, shared]
+        chi2 = drawn @ squares[:-1] + squares[-1]
+        taken = np.zeros(len(drawn))
+        local: list[tuple[NDArray[np.intp], Array, Array]] = []  # which, and their answers to the shared ones
+        for g in range(self._count):
+            own = np.flatnonzero(owner == g)
+            times, which = np.unique(drawn[:, g], return_inverse=True)
+            parts = [_eliminated(grams[g], slopes[g], prior, slopes[-1], own, shared, w) for w in times]
+            whole += np.array([p.whole for p in parts])[which]
+            twice += np.array([p.twice for p in parts])[which]
+            slope += np.array([p.slope for p in parts])[which]
+            chi2 -= np.array([p.chi2 for p in parts])[which]
+            taken += np.array([p.taken for p in parts])[which]
+            local.append(
+                (own, np.array([p.alone for p in parts])[which], np.array([p.beside for p in parts])[which])
             )
-        whole = np.einsum("bg,gij->bij", weights, grams) / np.outer(size, size) + RIDGE * np.eye(n)
-        twice = np.einsum("bg,gij->bij", weights**2, grams) / np.outer(size, size)
-        slope = weights @ slopes / size
+        moves = np.zeros((len(drawn), n))
         solved = np.linalg.solve(whole, np.concatenate([slope[:, :, None], twice], axis=2))
-        moves = -solved[:, :, 0]
-        taken = np.einsum("bii->b", solved[:, :, 1:])
+        moves[:, shared] = -solved[:, :, 0]
+        for own, alone, beside in local:
+            moves[:, own] = -alone - np.einsum("bls,bs->bl", beside, moves[:, shared])
         return Replicates(
-            chi2=weights @ squares + np.einsum("bi,bi->b", slope, moves),
-            expected=weights @ rows - taken,
+            chi2=chi2 + np.einsum("bi,bi->b", slope, moves[:, shared]),
+            expected=drawn @ rows[:-1] + rows[-1] - taken - np.einsum("bii->b", solved[:, :, 1:]),
             moves=moves / size,
         )
+
+
+def _owners(grams: Array) -> NDArray[np.intp]:
+    """The only group that tells of each coordinate, shape (n,); -1 where several do, or where the prior (the
+    last of the grams) couples it to others."""
+    told = np.einsum("gii->gi", grams[:-1]) > 0.0
+    coupled = np.count_nonzero(grams[-1] - np.diag(np.diag(grams[-1])), axis=0) > 0
+    return np.where((told.sum(axis=0) == 1) & ~coupled, told.argmax(axis=0), -1)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Eliminated:
+    """A group drawn some times, without its own coordinates.
+
+    Attributes
+    ----------
+    whole, slope : what is left of J^T J (s, s) and of J^T z (s,) for the shared coordinates.
+    twice : the same of the squared weights' J^T J, (s, s). taken : what the own ones take of it.
+    chi2 : that the own coordinates take.
+    alone, beside : minus their moves (l,) where the shared stay, and by each of these (l, s).
+    """
+
+    whole: Array
+    twice: Array
+    slope: Array
+    chi2: float
+    taken: float
+    alone: Array
+    beside: Array
+
+
+def _eliminated(
+    gram: Array,
+    slope: Array,
+    prior: Array,
+    prior_slope: Array,
+    own: NDArray[np.intp],
+    shared: NDArray[np.intp],
+    times: float,
+) -> _Eliminated:
+    """Block elimination of a group's own coordinates, the prior's part of them included."""
+    ll, ls, ss = np.ix_(own, own), np.ix_(own, shared), np.ix_(shared, shared)
+    inner = np.linalg.inv(times * gram[ll] + prior[ll] + RIDGE * np.eye(own.size))
+    across = times * gram[ls]
+    towards = times * slope[own] + prior_slope[own]
+    alone, beside = inner @ towards, inner @ across
+    mixed = times**2 * gram[ls].T @ beside
+    own_twice = times**2 * gram[ll] + prior[ll]
+    return _Eliminated(
+        whole=times * gram[ss] - across.T @ beside,
+        twice=times**2 * gram[ss] - mixed - mixed.T + beside.T @ own_twice @ beside,
+        slope=times * slope[shared] - across.T @ alone,
+        chi2=float(towards @ alone),
+        taken=float(np.sum(inner * own_twice)),
+        alone=alone,
+        beside=beside,
+    )

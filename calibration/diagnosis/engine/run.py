@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from calibration.diagnosis.engine.advice import advice
 from calibration.diagnosis.engine.explanation import Explanation, explain
@@ -11,7 +11,7 @@ from calibration.diagnosis.engine.fitting import Fit, fit
 from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
 from calibration.diagnosis.engine.model_error import model_error_of
 from calibration.diagnosis.engine.null import Null
-from calibration.diagnosis.engine.partly import Assessed, assess
+from calibration.diagnosis.engine.partly import Assessed, assess, within_smooth_error
 from calibration.diagnosis.engine.remainder import about_remainder, remainder_of
 from calibration.diagnosis.engine.search import Finding, Progress, Rules, search
 from calibration.diagnosis.engine.shares import Interval, Shares
@@ -25,6 +25,23 @@ from calibration.measurements._state import State
 # Nuisances and the mesh's error are taken at an explanation again as long as it moves by more than this
 # fraction of its standard deviation: effects next to a clamp act a third too strongly on the search's mesh.
 UPDATES, SETTLED = 4, 0.25
+SMALL = "the departure is so small that a smooth error which nobody stated may be all of it"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Searched:
+    """A search that is not concluded yet: neither predictions nor advice, which cost more than it did.
+
+    Attributes
+    ----------
+    noise : what is known of it. begun : on the monotonic clock [s].
+    """
+
+    model: MeasurementModel
+    finding: Finding
+    noise: NoiseKnown
+    rules: Rules
+    begun: float
 
 
 def diagnose(
@@ -49,11 +66,34 @@ def diagnose(
     ------
     ValueError : the baseline has no answer anywhere.
     """
+    found = searched(model, rules=rules, noise=noise, on_progress=on_progress)
+    return concluded(found, gain=gain, on_progress=on_progress)
+
+
+def searched(
+    model: MeasurementModel,
+    *,
+    rules: Rules | None = None,
+    noise: Source = "stated",
+    on_progress: Progress = lambda _: None,
+) -> Searched:
+    """The first part of `diagnose`."""
     begun = time.monotonic()
     rules = rules or Rules()
     known = model.with_noise_of_data() if noise == "data" else model.noise_known()
     model.noise_scale = known.scale
     finding = search(model, rules=rules, on_progress=on_progress)
+    if finding.verdict in ("found", "ambiguous") and within_smooth_error(
+        model, finding.baseline, known, rules
+    ):
+        # what a smooth error may have made is named neither wholly nor in part
+        finding = replace(finding, verdict="unexplained", equivalent=(), confidence=0.0, doubt=SMALL)
+    return Searched(model=model, finding=finding, noise=known, rules=rules, begun=begun)
+
+
+def concluded(found: Searched, *, gain: bool = True, on_progress: Progress = lambda _: None) -> Diagnosis:
+    """The second part of `diagnose`."""
+    model, finding, known, rules = found.model, found.finding, found.noise, found.rules
     baseline = finding.baseline
     before = _numbers(model, baseline, finding.lack_of_fit.p_value)
     nearest: Assessed | None = None
@@ -67,9 +107,12 @@ def diagnose(
     if finding.chosen is not None:
         on_progress("refining what was found")
         next_experiment = _advice(model, finding, on_progress)
+        noise_there = model.noise
         refined, baseline, null = _refined(model, finding, rules)
         after = _numbers(model, refined.fit, refined.lack_of_fit.p_value)
-        if gain:
+        if gain and nearest is not None and nearest.held_out is not None and model.noise is noise_there:
+            held_out = nearest.held_out  # no nuisance was taken anew: it would be the same
+        elif gain:
             on_progress("predicting held-out measurements")
             held_out = held_out_improvement(model, baseline, refined.fit)
             if not held_out.held_out and nearest is not None and nearest.held_out is not None:
@@ -97,7 +140,7 @@ def diagnose(
         next_experiment=next_experiment,
         undetectable=undetectable(model, finding),
         notes=tuple(_notes(model, finding, refined, rules, known)),
-        seconds=time.monotonic() - begun,
+        seconds=time.monotonic() - found.begun,
         share=shares.share(shares.misfit(refined.fit)) if shares and refined else None,
         shares=causes,
         resampled=shares.groups.over if shares else "",
@@ -133,7 +176,7 @@ def _in_degrees(
         finding.explanations,
         shares,
         rules,
-        noise_known=noise.known,
+        noise,
         on_progress=on_progress,
     )
     if nearest is None or nearest.against or finding.p_value > rules.false_alarm_rate:

@@ -50,7 +50,7 @@ class Finding:
     confidence : probability that the chosen set would be ranked first again with other noise; of one that
         explains in part, the part of the replicates in which no other set of as many causes takes more.
     dominant : what is named where the data are explained in part.
-    doubt : why what explains the data wholly is called partly explained.
+    doubt : why what explains the data wholly is called partly explained, or is not named.
     """
 
     verdict: Verdict
@@ -71,6 +71,12 @@ class Finding:
         if self.verdict == "partly explained":
             return self.dominant
         return self.explanations[0] if self.verdict in ("found", "ambiguous") else None
+
+    @property
+    def certain(self) -> Names:
+        """Effects that every set of equivalent ones has: what these data do tell."""
+        first = self.equivalent[0] if self.equivalent else ()
+        return tuple(name for name in first if all(name in names for names in self.equivalent))
 
 
 def search(
@@ -125,7 +131,7 @@ def search(
         pairs = []
     elif p_value <= rules.false_alarm_rate:
         on_progress(f"looking for a second cause beside {singles[0].fit.label}")
-        pairs = with_second(model, singles[0], screened, linear.columns, null, rules, on_progress)
+        pairs = with_second(model, baseline, singles[0], screened, linear.columns, null, rules, on_progress)
     else:
         on_progress("looking for two causes that hide each other")
         pairs = hiding_each_other(model, baseline, screened, linear, null, rules, on_progress)
@@ -133,7 +139,7 @@ def search(
     pairs, again = _positioned(model, pairs, _unpositioned(pairs, where)[:POSITIONED], null, on_progress)
     both = sorted(singles + pairs, key=lambda e: e.score)
     if most > 2 and pairs and both[0] in pairs:
-        three = with_third(model, pairs, null, rules, on_progress)
+        three = with_third(model, baseline, pairs, null, rules, on_progress)
         three, _ = _positioned(
             model, three, _unpositioned(three, where | set(again.values()))[:POSITIONED], null, on_progress
         )

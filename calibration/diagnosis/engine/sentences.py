@@ -32,8 +32,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         )
     if finding.verdict == "partly explained":
         return _partly(diagnosis, chosen)
-    sets = finding.equivalent
-    common = [n for n in chosen.names if all(n in s for s in sets)]
+    sets, common = finding.equivalent, finding.certain
     if common:
         first = " and ".join(diagnosis.effects[n].sentence for n in common)
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
@@ -56,7 +55,7 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
     sets = diagnosis.finding.equivalent
     share = "" if diagnosis.share is None else percent(diagnosis.share)
     takes = f"which takes {share} of what noise leaves to explain{_skill(diagnosis.held_out)}."
-    common = [n for n in chosen.names if all(n in s for s in sets)]
+    common = diagnosis.finding.certain
     if len(sets) == 1:
         text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
     elif common:
@@ -86,8 +85,8 @@ def _or(names: Sequence[str]) -> str:
 
 def _unexplained(diagnosis: Diagnosis) -> str:
     text = (
-        "The measurements differ from the simulation by more than noise, and no cause in the library explains"
-        " most of the difference."
+        "The measurements differ from the simulation by more than noise, and no cause in the library can be"
+        " named for it."
     )
     nearest = diagnosis.nearest
     if nearest is None:
@@ -144,7 +143,9 @@ def _skill(held_out: HeldOut | None, takes: str = "") -> str:
         return f", and {takes}nothing on measurements that its fit has not seen"
     whole = " of what noise leaves to explain" if takes else ""
     part = f"{100.0 * min(held_out.skill, 1.0):.0f} %{whole}"
-    return f", and {takes}{part} on measurements that its fit has not seen"
+    worse = len(held_out.worse)
+    but = f" (though {worse} of {len(held_out.parts)} parts no better)" if worse else ""
+    return f", and {takes}{part} on measurements that its fit has not seen{but}"
 
 
 def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:

@@ -59,17 +59,15 @@ def _failing(found: LackOfFit, kind: str) -> str:
 
 
 def troubles(diagnosis: Diagnosis) -> list[str]:
-    """Fits that did not converge, counted."""
+    """Fits without which the verdict does not stand, and that did not converge; all others are in its
+    notes."""
     finding = diagnosis.finding
     found = []
     if not finding.baseline.converged:
         found.append(f"The baseline's fit did not converge: {finding.baseline.message}.")
-    stopped = [e.fit for e in finding.explanations if not e.fit.converged]
-    if stopped:
-        named = "; ".join(f"{f.label} ({f.message})" for f in stopped)
-        found.append(
-            f"{len(stopped)} of {len(finding.explanations)} fits of causes did not converge: {named}."
-        )
+    chosen = diagnosis.chosen
+    if chosen is not None and not chosen.fit.converged:
+        found.append(f"The fit of {chosen.fit.label} did not converge: {chosen.fit.message}.")
     return found
 
 

@@ -25,6 +25,7 @@ BUDGET = (
     "what would settle it",
 )
 FOLDS = ("left out", "baseline", "extended", "noise alone", "skill")
+UNCHANGED = 1e-3  # of the baseline's error: a part predicted so alike is not changed
 ALTERNATIVES = ("set of causes", "what it is", "against the best", "belongs to")
 FITS = ("", "baseline", "extended", "change")
 TESTS = ("test of what is left", "baseline", "best explanation")
@@ -84,13 +85,19 @@ def _cause_row(
 ) -> list[Cell]:
     """Several parameters of one cause stand in one cell each under the other."""
     effect = diagnosis.effects[cause["effect"]]
+    told_apart = not named or cause["effect"] in diagnosis.finding.certain
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
     if effect.switch:  # it is there or not, and has no size
         values = [(cause.get("kind") or "there", values[0][1])]
     share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
     evidence = _evidence(cause, told["gain"])
     return [
-        Cell(text=cause["effect"] + ("" if named else " (not named)"), mark="chosen" if named else ""),
+        Cell(
+            text=cause["effect"]
+            + ("" if told_apart else " (or another)")
+            + ("" if named else " (not named)"),
+            mark="chosen" if named and told_apart else "",
+        ),
         Cell(text=effect.sentence),
         Cell(text=scope(cause["scope"])),
         Cell(text="; ".join(t for t, _ in values), value=values[0][1], mark="chosen" if named else ""),
@@ -125,11 +132,16 @@ def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None) -> str:
 
 
 def fold_rows(told: dict[str, Any], unit: str) -> Rows:
-    """What was left out, part by part, predicted from the rest."""
+    """What was left out, part by part, predicted from the rest. Parts that the causes do not change are
+    counted in a last row."""
     gain = told["gain"] or (told["nearest"] or {}).get("gain")
-    rows = []
+    rows: Rows = []
+    same = 0
     for part in gain["folds"] if gain is not None else []:
         figures = [part[f"rms_{unit}_{x}"] for x in ("before", "after", "noise")]
+        if abs(figures[1] - figures[0]) <= UNCHANGED * figures[0]:
+            same += 1
+            continue
         skill = part["skill"]
         rows.append(
             [
@@ -138,6 +150,9 @@ def fold_rows(told: dict[str, Any], unit: str) -> Rows:
                 Cell(text=NOTHING if skill is None else f"{skill:.2f}", value=skill),
             ]
         )
+    if same:
+        others = f"{same} other{'s' * (same > 1)}" if rows else f"all {same}"
+        rows.append([Cell(text=others), Cell(text="as without it"), *(Cell(text=NOTHING) for _ in range(3))])
     return rows
 
 

@@ -19,8 +19,8 @@ MEANING: dict[Owner, str] = {
 }
 
 UNREAD = (
-    "a fault of the {}: the modulus beside it allows for it, later calibrations are not corrected by it"
-    " (rig.yaml is a record); it must not enter a simulated dataset"
+    "a fault of the {}: this calibration allows for it, later ones do not (rig.yaml is a record); it must not"
+    " enter a simulated dataset"
 )
 
 HEADLINE = {
@@ -68,8 +68,7 @@ def pattern(name: str, kind: str) -> str:
 
 def headline(finding: Finding) -> str:
     """The verdict in a few words."""
-    sets = finding.equivalent
-    if finding.verdict == "ambiguous" and any(all(n in s for s in sets) for n in sets[0]):
+    if finding.verdict == "ambiguous" and finding.certain:
         return "A cause found, and one more that cannot be told"
     return HEADLINE[finding.verdict]
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BarycentricInterpolator, CubicSpline
 
 from calibration.errors import InputError
+from calibration.measurements._memory import Memory
 from calibration.measurements.compression._bonded_table import LAWS, REFERENCE, SLENDER, STRAINS
 from calibration.measurements.compression.curves import Cylinder
 
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 
 # A disc of 50 mm by 30 mm, the reference of the stored simulations.
 USUAL = Cylinder(radius=0.025, height=0.030)
+REMEMBERED = 512  # curves
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +27,9 @@ class BondedRatio:
     """Of one cylinder; InputError where it is flatter than the stored simulations."""
 
     cylinder: Cylinder
+    _memory: Memory[Hashable, Array] = field(
+        default_factory=lambda: Memory(REMEMBERED), init=False, compare=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         if not 0.0 < self.slender <= max(SLENDER):
@@ -44,12 +49,16 @@ class BondedRatio:
         Several effects add what each changes. At another diameter over height they change it by the same
         factor as at the reference.
         """
+        own = {n: a for n, a in law.items() if n in LAWS and a != 0.0}
+        key = stretch.shape, stretch.tobytes(), tuple(own.items())
+        return self._memory.fetch([key], lambda _: [self._log_ratio(stretch, own)])[0]
+
+    def _log_ratio(self, stretch: Array, law: Mapping[str, float]) -> Array:
         strain = np.maximum(1.0 - stretch, STRAINS[0])
         plain = _curve(("plain", REFERENCE), strain)
         change = np.zeros_like(plain)
         for name, amplitude in law.items():
-            if name in LAWS and amplitude != 0.0:
-                change += _between(name, amplitude, strain, plain) - plain
+            change += _between(name, amplitude, strain, plain) - plain
         return np.asarray(_by_slenderness(self.slender, strain) * (1.0 + change / plain))
 
 

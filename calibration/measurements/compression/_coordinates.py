@@ -3,13 +3,14 @@ cylinders."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._baseline import Baseline, Extra
+from calibration.measurements._memory import Memory
 from calibration.measurements.compression._record import LAST, is_compressed
 from calibration.measurements.compression._repeatability import TERMS, Repeatability, basis, bends
 from calibration.measurements.homogeneous._record import Record
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 # in ripples as long as a tenth of the height, since the side comes down node by node.
 MESH = 0.003
 MESH_BEND = 12
+REMEMBERED = 512  # bases: fits ask for those of the same strains again and again
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -32,12 +34,14 @@ class Coordinates:
     baseline : with these extras.
     last : strain up to which records are compared.
     scattered : records that have a deviation. terms : of `TERMS`, by index.
+    bases : of deviations by record, of mesh errors by strain.
     """
 
     baseline: Baseline
     last: float
     scattered: tuple[str, ...]
     terms: tuple[int, ...]
+    bases: Memory[Hashable, Array] = field(default_factory=lambda: Memory(REMEMBERED))
 
     @classmethod
     def of(cls, records: Sequence[Record], plain: Baseline, repeatability: Repeatability) -> Coordinates:
@@ -62,13 +66,14 @@ class Coordinates:
         if record.name not in self.scattered or not self.terms:
             return np.zeros(record.points)
         first = self._of_record(record)
-        return np.asarray(
-            basis(1.0 - record.stretch, self.last)[:, self.terms] @ u[first : first + len(self.terms)]
-        )
+        (own,) = self.bases.fetch([record], lambda _: [basis(1.0 - record.stretch, self.last)[:, self.terms]])
+        return np.asarray(own @ u[first : first + len(self.terms)])
 
     def mesh_error(self, strain: Array, mesh: Array) -> Array:
         """Of the logarithm of bonded over free force, shape of the strain; mesh : its terms."""
-        return np.asarray(bends(strain, LAST, MESH_BEND) @ mesh)
+        key = strain.shape, strain.tobytes()
+        (own,) = self.bases.fetch([key], lambda _: [bends(strain, LAST, MESH_BEND)])
+        return np.asarray(own @ mesh)
 
     def constrained_by(self, record: Record) -> NDArray[np.bool_]:
         """Coordinates (n,) that a record constrains."""

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from fake_model import LENGTHS, FakeModel, column, library, noise, of_length, of_material
 
 from calibration.diagnosis.engine.fitting import Fit, fit
-from calibration.diagnosis.engine.held_out import held_out_improvement
-from calibration.diagnosis.engine.skill import skill, together
+from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
+from calibration.diagnosis.engine.skill import Prediction, skill, together
 from calibration.measurements._effect import Candidate
 from calibration.measurements._state import State
 
@@ -133,6 +134,47 @@ def test_each_fold_has_its_skill_and_its_amplitudes() -> None:
     assert np.array(gain.amplitudes)[:, 0] == pytest.approx(12.0, abs=4.0)
     assert math.isnan(skill(1.0, 0.5, 1.0))  # nothing to gain
     assert skill(2.0, 3.0, 1.0) < 0.0
+
+
+def held(*skills: float, points: int = 10) -> HeldOut:
+    """Parts of this skill each, of a baseline that misses ten times as much as noise does."""
+    parts = tuple(
+        Prediction(
+            name=f"{k}",
+            points=points,
+            rms_before=10.0,
+            rms_after=float(np.sqrt(100.0 - 99.0 * s)),
+            rms_noise=1.0,
+        )
+        for k, s in enumerate(skills)
+    )
+    whole = together(parts)
+    return HeldOut(
+        held_out="x",
+        kept=1.0,
+        rms_before=whole.rms_before,
+        rms_after=whole.rms_after,
+        rms_noise=whole.rms_noise,
+        log_likelihood=0.0,
+        folds=len(parts),
+        parts=parts,
+    )
+
+
+@pytest.mark.parametrize(
+    ("skills", "mostly"),
+    [
+        ([0.9] * 17 + [-0.1] * 2, True),
+        ([0.9] * 12 + [-0.1] * 7, False),  # chance alone gains in so many of 19
+        ([0.9] * 17 + [-6.0] * 2, False),  # where it is worse, it is much worse
+        ([0.4] * 19, False),
+        ([0.9] * 3 + [-0.1], False),  # of few parts all have to gain
+        ([], False),
+    ],
+)
+def test_many_parts_may_hold_some_that_gain_nothing(skills: list[float], mostly: bool) -> None:
+    found = held(*skills) if skills else replace(held(0.5), parts=())
+    assert found.helps_mostly(least_skill=0.5, sure=0.95, draws=400, seed=0) == mostly
 
 
 def test_where_no_family_keeps_half_the_best_is_taken() -> None:

@@ -90,7 +90,7 @@ def beside(
     pair = explain(model, start, sits, [0.0, 0.0], null)
     assert pair is not None
     told: list[str] = []
-    return with_third(model, [pair], null, Rules(), told.append), told
+    return with_third(model, start, [pair], null, Rules(), told.append), told
 
 
 def test_a_third_without_which_the_pair_does_is_not_even_fitted() -> None:
@@ -130,6 +130,20 @@ def test_what_three_causes_leave_is_unexplained() -> None:
         found = search(FakeModel(shapes=shapes, hidden=together(*THREE) + more, drawn=noise(240)))
         assert found.verdict == "unexplained"
         assert found.chosen is None
+
+
+def test_causes_that_could_neither_leave_noise_nor_take_a_tenth_are_not_fitted() -> None:
+    """Beside what nothing explains, small causes are seen far above noise, and still change no verdict."""
+    odd = 60.0 * waves(7)[:, 5] / np.linalg.norm(waves(7)[:, 5])
+    fitted = {}
+    for size in (7.0, 40.0):
+        told: list[str] = []
+        small = at_sigmas("kink", size) + at_sigmas("slack", size)
+        hidden = at_sigmas("bend", 80.0) + small + odd
+        search(FakeModel(hidden=hidden, drawn=noise(241)), on_progress=told.append)
+        fitted[size] = [t for t in told if t.startswith("confirming") and "+" in t]
+    assert fitted[7.0] == []
+    assert any("kink" in t for t in fitted[40.0])
 
 
 def test_a_third_that_ends_at_a_bound_is_none_but_where_physics_ends() -> None:

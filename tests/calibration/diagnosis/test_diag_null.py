@@ -94,6 +94,19 @@ def test_p_is_never_zero(null: Null, jacobian: np.ndarray) -> None:
     assert 0.0 < found.p_value <= 2.0 / DRAWS
 
 
+def test_what_is_beyond_all_draws_costs_none(jacobian: np.ndarray) -> None:
+    """There the number of tests bounds the chance; nearer to noise the draws decide."""
+    null = Null(ROWS, {"waves": waves(7), "edges": np.eye(ROWS)[:, ::12]}, seed=3)
+    plain = null.lack_of_fit(fitted(noise(1), jacobian), jacobian)
+    null.noise[:] = np.nan
+    far = null.lack_of_fit(fitted(3.0 * noise(1), jacobian), jacobian)
+    assert 1.0 / (DRAWS + 1) <= far.p_value < 0.001 < plain.p_value
+    assert set(far.each) == set(plain.each)
+    assert min(far.each.values()) == 1.0 / (DRAWS + 1)  # as little as draws could show
+    with np.errstate(invalid="ignore"):
+        assert null.lack_of_fit(fitted(noise(1), jacobian), jacobian).p_value != plain.p_value
+
+
 def test_without_patterns_the_whole_sum_is_the_test(jacobian: np.ndarray) -> None:
     alone = Null(ROWS, {}, seed=0).lack_of_fit(fitted(noise(2), jacobian), jacobian)
     assert set(alone.each) == {EVERYTHING}

@@ -16,6 +16,7 @@ from matplotlib.image import imread
 
 from calibration.diagnosis import Diagnosis
 from calibration.diagnosis.report import Figure, paired_bars, write_report
+from calibration.diagnosis.report._tables import fold_rows
 
 KINDS: tuple[Kind, ...] = ("none", "found", "ambiguous", "unexplained")
 EVIL = "<script>alert(1)</script><img src=x onerror=alert(2)>\"'&"
@@ -169,16 +170,28 @@ def test_missing_pictures_are_said(tmp_path: Path) -> None:
     assert "pictures of shapes and residuals are missing: no equilibrium at this state" in words
 
 
-def test_fits_that_did_not_converge_are_counted() -> None:
+def test_a_fit_that_did_not_converge_is_said_where_the_verdict_stands_on_it() -> None:
+    """Those of causes that are not named are in the notes."""
     made, model = diagnosis("found")
     first, *others = made.finding.explanations
     lame = replace(first, fit=replace(first.fit, converged=False, message="not converged in 10 steps"))
-    made = replace(made, finding=replace(made.finding, explanations=(lame, *others)))
-    total = len(made.finding.explanations)
-    assert (
-        f"1 of {total} fits of causes did not converge: bend (not converged in 10 steps)."
-        in _page(made, model).text
-    )
+    other = replace(made, finding=replace(made.finding, explanations=(lame, *others)))
+    assert "did not converge" not in _page(other, model).text
+    named = replace(made, chosen=lame)
+    assert "The fit of bend did not converge: not converged in 10 steps." in _page(named, model).text
+
+
+def test_parts_that_a_cause_does_not_change_are_counted() -> None:
+    def fold(name: str, after: float) -> dict[str, object]:
+        sizes = {"rms_mm_before": 2.0, "rms_mm_after": after, "rms_mm_noise": 1.0}
+        return {"left_out": name, "skill": 0.5, **sizes}
+
+    def first(*folds: dict[str, object]) -> list[str]:
+        return [row[0].text for row in fold_rows({"gain": {"folds": folds}}, "mm")]
+
+    assert first(fold("a", 1.5), fold("b", 2.0), fold("c", 2.0001)) == ["a", "2 others"]
+    assert first(fold("a", 1.5), fold("b", 2.1)) == ["a", "b"]
+    assert first(fold("a", 2.0), fold("b", 2.0)) == ["all 2"]
 
 
 def test_no_fold_is_said() -> None:

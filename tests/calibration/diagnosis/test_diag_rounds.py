@@ -1,0 +1,80 @@
+"""Two rounds of a diagnosis: what a round costs, and what is named where nobody states the noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from fake_model import FakeModel, effect, library, noise, sigmas, waves
+
+from calibration.diagnosis import laws
+from calibration.diagnosis.engine import run
+from calibration.diagnosis.engine.run import Searched, diagnose
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.diagnosis.laws import diagnose_with_law
+
+
+def hidden(name: str, size: float) -> np.ndarray:
+    return np.asarray(library()[name] * (size / sigmas(library()[name], FakeModel())))
+
+
+@dataclass(eq=False)
+class OfUnknownNoise(FakeModel):
+    """Beams whose noise nobody states, of this full scale."""
+
+    scale: float = 1e3
+
+    def states_noise(self, k: int) -> bool:
+        del k
+        return False
+
+    def full_scale(self) -> np.ndarray:
+        return np.full(len(self.records), self.scale)
+
+
+def test_a_departure_that_a_smooth_error_may_make_is_not_named_though_a_cause_explains_it() -> None:
+    told = {"hidden": hidden("bend", 30.0), "drawn": noise(1)}
+    assert diagnose(FakeModel(**told), gain=False).finding.verdict == "found"
+    large = diagnose(OfUnknownNoise(**told, scale=100.0), gain=False)
+    assert large.finding.verdict == "found", large.sentence()
+    small = diagnose(OfUnknownNoise(**told, scale=1e3), gain=False)
+    assert small.finding.verdict == "unexplained"
+    assert small.to_json()["causes"] == []
+    assert small.nearest is not None
+    assert small.nearest.explanation.names == ("bend",)
+    assert "which a smooth error that nobody stated may have" in small.sentence()
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_a_first_round_is_concluded_only_where_the_second_says_less(
+    named: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Predictions and advice of a round that is not reported would cost more than its search."""
+    rare = replace(effect("ripple"), further=True)
+    shapes = {n: library()[n] for n in ("bend", "ripple")}
+    outside = 30.0 * waves(7)[:, 6] / np.linalg.norm(waves(7)[:, 6])
+    data = {"hidden": outside + hidden("ripple", 120.0 if named else 0.0), "drawn": noise(3)}
+
+    def make(*, further: bool = True, **_: object) -> FakeModel:
+        model = FakeModel(
+            shapes=shapes if further else {"bend": shapes["bend"]},
+            effects={"ripple": rare} if further else {},
+            **data,
+        )
+        model.visible = dict.fromkeys(model.candidates, True)
+        return model
+
+    concluded = []
+
+    def watched(found: Searched, **options: bool) -> Diagnosis:
+        concluded.append("ripple" in found.model.effects)
+        return run_concluded(found, **options)  # type: ignore[arg-type]
+
+    run_concluded = run.concluded
+    monkeypatch.setattr(run, "concluded", watched)
+    monkeypatch.setattr(laws, "concluded", watched)
+    found, model = diagnose_with_law(make, gain=False)
+    assert concluded == ([True] if named else [True, False])
+    assert found.finding.verdict == ("partly explained" if named else "unexplained"), found.sentence()
+    assert "ripple" in model.effects
