@@ -103,14 +103,15 @@ class IndentationModel(MeasurementModel):
             raise InputError("experiment.yaml: trials: expected a poke")
         self.experiment = experiment
         self.effects = dict(effects or {})
-        self.curves = CurveCache(workers)
+        self._remembers = baseline is not None and bool(baseline.law.parts)
+        # a relaxation is read off the force against depth of a ramp, whose error takes the same part in it
+        self.curves = CurveCache(workers, extrapolated=self._remembers)
         self.forward = ForwardMap(curves=self.curves, effects=self.effects)
         self._geometry = partial(
             geometry_of, friction=friction, edge_radius=edge_radius, refinement=refinement
         )
         self._part = partial(part_of, max_depth=max_depth, first_loading=first_loading)
         self._fits_law = baseline is not None and baseline.whole
-        self._remembers = baseline is not None and bool(baseline.law.parts)
         self._measured_in(trials)
         self.baseline = baseline or Baseline.per_specimen(self.records, bulk_ratio=BULK_RATIO)
         self._of_law = {
