@@ -66,8 +66,8 @@ class Law:
     fault : callable (parameters) -> str
         What is wrong with the parameters beyond numbers and moduli, or "".
     examples : sequence of mappings
-        Parameters at which `check_law` looks besides those of `from_moduli`: where the law has constants that a
-        plain default leaves at zero.
+        Parameters at which `check_law` looks besides those of `from_moduli`: where the law has constants that
+        a plain default leaves at zero.
     """
 
     name: str
