@@ -117,7 +117,7 @@ def test_a_baseline_that_cannot_be_calibrated(
     def nowhere(*_: object, **__: object) -> None:
         raise ValueError("no shear modulus gives an equilibrium")
 
-    monkeypatch.setattr("calibration.diagnosis.laws.diagnose", nowhere)
+    monkeypatch.setattr("calibration.diagnosis.laws.searched", nowhere)
     refused(diagnose(beam, "--out", tmp_path / "out"), "no shear modulus")
     assert not (tmp_path / "out").exists()
 
