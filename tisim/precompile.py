@@ -69,8 +69,10 @@ def precompile(names: Iterable[str] = (), *, workers: int = 1) -> list[str]:
     Raises
     ------
     ValueError
-        For an unknown law or part, before anything is compiled.
+        For an unknown law or part, or no workers, before anything is compiled.
     """
+    if workers < 1:
+        raise ValueError(f"--workers: expected 1 or more, got {workers}")
     wanted = list(names) or list(tisim.laws.all_names())
     for name in wanted:
         material(name)

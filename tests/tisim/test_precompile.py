@@ -39,6 +39,11 @@ def test_an_unknown_law_or_part_is_one_sentence(name: str, capsys: pytest.Captur
     assert error.count("\n") == 1
 
 
+def test_no_workers_are_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    assert precompile.main(["ogden", "--workers", "0"]) == 2
+    assert capsys.readouterr().err == "--workers: expected 1 or more, got 0\n"
+
+
 @pytest.mark.slow
 def test_the_next_process_finds_them_on_disk(tmp_path: Path) -> None:
     place = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(tmp_path)}
