@@ -15,6 +15,7 @@ from calibration.measurements._state import Linearisation, State
 Array = NDArray[np.float64]
 
 TOLERANCE = 0.05  # of chi-square: a twentieth of what one standard deviation of one parameter makes
+AS_FITTED = 0.002  # as a calibration's polish, for moduli that are reported: 0.04 of a standard deviation
 LONGEST = 0.7  # of a coordinate u in one step; coordinates are logarithms of moduli
 # Levenberg's damping where a plain step fails, over the squared length of a column: where coordinates nearly
 # hide each other (terms of a series law) the plain step leaves what the derivatives are good for
@@ -70,12 +71,18 @@ class Fit:
 
 
 def fit(
-    model: MeasurementModel, start: State, candidates: Sequence[Candidate] = (), *, max_steps: int = 10
+    model: MeasurementModel,
+    start: State,
+    candidates: Sequence[Candidate] = (),
+    *,
+    max_steps: int = 10,
+    tolerance: float = TOLERANCE,
 ) -> Fit:
     """Minimise the squared sum of residuals over u and the amplitudes of `candidates`, from `start`.
 
     A step that does not lower it is shortened, up to 6 times, then damped. `max_steps` counts those that take
-    less than a tenth of it. ValueError where the start has no answer.
+    less than a tenth of it. The fit ends where a step promises less than `tolerance` of chi-square.
+    ValueError where the start has no answer.
     """
     wanted = tuple(candidates)
     state = _inside(model, np.r_[start.u, [start.amplitudes.get(c, 0.0) for c in wanted]], wanted)
@@ -84,10 +91,10 @@ def fit(
     while slow < max_steps and taken < MOST * max_steps:
         jacobian = np.column_stack([linear.by_u, linear.columns])
         move, promise = _step(model, linear, jacobian, wanted)
-        if promise < TOLERANCE:
+        if promise < tolerance:
             return Fit(linear=linear, converged=True)
         now = float(linear.z @ linear.z)
-        found = _shortened(model, state, move, wanted, now)
+        found = _shortened(model, state, move, wanted, now - 0.1 * tolerance)
         if found is None and promise < 20.0 * TOLERANCE:
             return Fit(linear=linear, converged=True)
         if found is None:
@@ -181,13 +188,14 @@ def _moved(
 
 
 def _shortened(
-    model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], now: float
+    model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], below: float
 ) -> State | None:
+    """After the longest part of the move that brings chi-square below `below`."""
     for part in 0.5 ** np.arange(6):
         trial = _moved(model, state, move, wanted, part)
         z = model.residuals([trial])[0]
         cost = float(z @ z)
-        if np.isfinite(cost) and cost < now - 0.1 * TOLERANCE:
+        if np.isfinite(cost) and cost < below:
             return trial
     return None
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from calibration.diagnosis.engine.advice import advice
 from calibration.diagnosis.engine.explanation import Explanation, explain
-from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
 from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
 from calibration.diagnosis.engine.model_error import model_error_of
 from calibration.diagnosis.engine.null import Null
@@ -207,7 +207,7 @@ def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[E
         found = [(c, *again.fit.amplitude(c)) for c in again.candidates]
         if all(abs(value - before[c]) < SETTLED * sd for c, value, sd in found):
             break
-    return again, fit(model, State(u=finding.baseline.state.u)), null
+    return again, fit(model, State(u=finding.baseline.state.u), tolerance=AS_FITTED), null
 
 
 def _numbers(model: MeasurementModel, found: Fit, p: float) -> Numbers:

@@ -16,7 +16,7 @@ from calibration.diagnosis.engine.explanation import (
     equivalent_explanations,
     explain,
 )
-from calibration.diagnosis.engine.fitting import Fit, fit
+from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
 from calibration.diagnosis.engine.multi_cause import hiding_each_other, with_second, with_third
 from calibration.diagnosis.engine.null import LackOfFit, Null
 from calibration.diagnosis.engine.positions import at_best_position
@@ -153,13 +153,13 @@ def search(
 
 
 def fit_baseline(model: MeasurementModel) -> Fit:
-    """The fit of the baseline, with nuisances taken where it ends."""
+    """The fit of the baseline, with nuisances taken where it ends, as sharp as a calibration: `AS_FITTED`."""
     start = State(u=model.start())
     model.update_nuisances(start, rough=True)
     found = fit(model, start)
     for _ in range(3):
         model.update_nuisances(found.state)
-        again = fit(model, found.state)
+        again = fit(model, found.state, tolerance=AS_FITTED)
         moved = np.abs(again.state.u - found.state.u).max(initial=0.0)
         found = again
         if moved < FAR:

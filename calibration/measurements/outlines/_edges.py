@@ -52,11 +52,14 @@ def feet(points: Array, edge: Array) -> Feet:
     length = np.linalg.norm(pieces, axis=1)
     along = pieces / length[:, None]
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    t = np.einsum("ijk,jk->ij", points[:, None] - edge[None, :-1], along)
+    start = edge[:-1]
+    t = points @ along.T - np.einsum("jk,jk->j", start, along)
+    off = points @ across.T - np.einsum("jk,jk->j", start, across)
     high, low = length.copy(), np.zeros_like(length)
     high[-1], low[0] = np.inf, -np.inf
-    foot = edge[None, :-1] + np.clip(t, low, high)[..., None] * along
-    nearest = ((points[:, None] - foot) ** 2).sum(axis=2).argmin(axis=1)
-    at = foot[np.arange(len(points)), nearest]
+    past = t - np.clip(t, low, high)
+    nearest = (off * off + past * past).argmin(axis=1)
+    reached = np.clip(t[np.arange(len(points)), nearest], low[nearest], high[nearest])
+    at = start[nearest] + reached[:, None] * along[nearest]
     normal = across[nearest]
     return Feet(np.einsum("ik,ik->i", points - at, normal), normal, at)

@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 import yaml
 
-from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.search import fit_baseline
 from calibration.experiment import read
 from calibration.inference import Problem, identify, polish
-from calibration.measurements._state import State
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.parameters import parametrisation
 from calibration.study import measurements
@@ -37,23 +36,19 @@ def fitted(material: str, begin: float) -> tuple[float, float, float]:
     return LAW.moduli(end.u).shear_modulus, known.shear_modulus_sd, chi2
 
 
-def diagnosed(materials: list[str], begin: float) -> tuple[dict[str, float], float]:
+def diagnosed(materials: list[str]) -> tuple[dict[str, float], float]:
     """Shear moduli [Pa] and chi-square over points of the baseline of a diagnosis."""
     experiment = read(CLEAN)
     some = replace(experiment, trials=tuple(t for t in experiment.trials if t.material in materials))
     model = OutlineModel(some, workers=1)
-    state = State(u=np.full(len(model.names), np.log(begin)))
-    for _ in range(2):
-        model.update_nuisances(state)
-        found = fit(model, state)
-        assert found.converged
-        state = found.state
-    return model.shear_moduli(state.u), found.chi2 / model.points
+    found = fit_baseline(model)
+    assert found.converged
+    return model.shear_moduli(found.state.u), found.chi2 / model.points
 
 
 def test_one_material() -> None:
     material, begin = "S0", 28e3
-    moduli, chi2 = diagnosed([material], begin)
+    moduli, chi2 = diagnosed([material])
     own, sd, reduced = fitted(material, begin)
     assert abs(own - moduli[material]) < 0.1 * sd, (own, moduli, sd)
     assert reduced == pytest.approx(chi2, rel=1e-3)
@@ -63,7 +58,7 @@ def test_one_material() -> None:
 def test_all_materials_of_the_clean_bench() -> None:
     """The diagnosis of all of them at once, as the command makes it."""
     truth = yaml.safe_load((CLEAN / "truth.yaml").read_text(encoding="utf-8"))["shear_modulus_Pa"]
-    moduli, _ = diagnosed([*truth], 12e3)
+    moduli, _ = diagnosed([*truth])
     for material, other in moduli.items():
         own, sd, _ = fitted(material, 1.1 * truth[material])
         assert abs(own - other) < 0.1 * sd, (material, own, other, sd)
