@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -87,9 +88,15 @@ def explain(
     return None
 
 
-def equivalent_explanations(explanations: Sequence[Explanation], tolerance: float) -> tuple[Names, ...]:
-    """Distinct sets of effects whose score is within this of the best, best first. A set that only adds to a
-    better one explains nothing of its own.
+def equivalent_explanations(
+    explanations: Sequence[Explanation],
+    tolerance: float,
+    first: Mapping[Names, float] | None = None,
+    rival: float = 1.0,
+) -> tuple[Names, ...]:
+    """Distinct sets of effects whose score is within this of the best, or that are ranked `first` in this
+    part of the replicates (`rival`) or more; best first. A set that only adds to a better one explains
+    nothing of its own.
 
     Where several causes are named, the constants of a richer law in the place of some of them cost nothing:
     they make a set less simple, which is no evidence against it, and several causes are not simple either.
@@ -99,15 +106,16 @@ def equivalent_explanations(explanations: Sequence[Explanation], tolerance: floa
     for e in ordered:
         as_many = len(e.names) <= len(ordered[0].names) > 1
         score = e.score - (e.constants_cost if as_many else 0.0)
-        if score > ordered[0].score + tolerance or e.names in found:
+        near = score <= ordered[0].score + tolerance or (first or {}).get(e.names, 0.0) >= rival
+        if not near or e.names in found:
             continue
         if not any(set(better) < set(e.names) for better in found):
             found.append(e.names)
     return tuple(found)
 
 
-def confidence(explanations: Sequence[Explanation], null: Null) -> float:
-    """Probability that the best set of effects would be ranked first again with other noise, were it true.
+def ranked_first(explanations: Sequence[Explanation], null: Null) -> dict[Names, float]:
+    """Probability that each set of effects would be ranked first with other noise, were the best one true.
 
     Each explanation is refitted to first order to what the best one predicts plus drawn noise.
     """
@@ -119,5 +127,5 @@ def confidence(explanations: Sequence[Explanation], null: Null) -> float:
         size = np.linalg.norm(e.fit.jacobian, axis=0)
         q, _ = np.linalg.qr(e.fit.jacobian[:, size > 0] / size[size > 0])
         row[:] = (data**2).sum(axis=1) - ((data @ q) ** 2).sum(axis=1) + e.cost
-    same = np.array([e.names == ordered[0].names for e in ordered])
-    return float(np.mean(same[scores.argmin(axis=0)]))
+    times = Counter(ordered[k].names for k in scores.argmin(axis=0))
+    return {names: count / len(draws) for names, count in times.items()}

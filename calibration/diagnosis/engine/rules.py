@@ -18,6 +18,8 @@ class Rules:
     extra_cause_rate : probability of naming one cause too many.
     lack_of_fit_level : p-value below which what a fit leaves of the residuals counts as unexplained.
     score_tolerance : explanations within this of the best score (chi-square) are equivalent.
+    rival : so are those that would be ranked first in this part of the replicates: a name is given alone
+        where other noise would give it nine times in ten.
     shortlist : effects that are confirmed in the simulator.
     pairs : pairs of causes that are confirmed.
     max_causes : causes that are named together, where the model allows as many.
@@ -44,6 +46,7 @@ class Rules:
     extra_cause_rate: float = 0.003
     lack_of_fit_level: float = 0.005
     score_tolerance: float = 6.0
+    rival: float = 0.1
     shortlist: int = 7
     pairs: int = 5
     max_causes: int = 3

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from calibration.diagnosis.engine.explanation import (
     Explanation,
     Names,
-    confidence,
     equivalent_explanations,
     explain,
+    ranked_first,
 )
 from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
 from calibration.diagnosis.engine.multi_cause import hiding_each_other, with_second, with_third
@@ -111,7 +111,9 @@ def search(
     best = max((baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty for e in singles), default=0.0)
     p_value = improvement.p_value(best)
 
-    def finding(verdict: Verdict, explanations: Sequence[Explanation], named: bool) -> Finding:
+    def finding(
+        verdict: Verdict, explanations: Sequence[Explanation], sets: tuple[Names, ...] = (), sure: float = 0.0
+    ) -> Finding:
         return Finding(
             verdict=verdict,
             baseline=baseline,
@@ -120,12 +122,12 @@ def search(
             screened=screened,
             null=null,
             explanations=tuple(explanations),
-            equivalent=equivalent_explanations(explanations, rules.score_tolerance) if named else (),
-            confidence=confidence(explanations, null) if named else 0.0,
+            equivalent=sets,
+            confidence=sure,
         )
 
     if p_value > rules.false_alarm_rate and lack_of_fit.p_value >= rules.lack_of_fit_level:
-        return finding("none", singles, False)
+        return finding("none", singles)
     most = min(rules.max_causes, model.max_causes)
     if most < 2:
         pairs = []
@@ -147,9 +149,10 @@ def search(
     if (p_value > rules.false_alarm_rate and not pairs) or both[
         0
     ].lack_of_fit.p_value < rules.lack_of_fit_level:
-        return finding("unexplained", both, False)
-    sets = equivalent_explanations(both, rules.score_tolerance)
-    return finding("found" if len(sets) == 1 else "ambiguous", both, True)
+        return finding("unexplained", both)
+    first = ranked_first(both, null)
+    sets = equivalent_explanations(both, rules.score_tolerance, first, rules.rival)
+    return finding("found" if len(sets) == 1 else "ambiguous", both, sets, first.get(sets[0], 0.0))
 
 
 def fit_baseline(model: MeasurementModel) -> Fit:

@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 from fake_model import FakeModel, effect, library, noise, sigmas
 
-from calibration.diagnosis.engine.explanation import Explanation, confidence, equivalent_explanations, explain
+from calibration.diagnosis.engine.explanation import (
+    Explanation,
+    equivalent_explanations,
+    explain,
+    ranked_first,
+)
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.measurements._effect import Candidate
@@ -70,6 +75,13 @@ def test_rivals_are_what_comes_near_the_best() -> None:
     assert found == (("a",), ("b",))
 
 
+def test_what_other_noise_would_often_rank_first_is_a_rival_too() -> None:
+    some = [made(10.0, "a"), made(17.5, "b"), made(18.0, "c")]
+    often = {("a",): 0.86, ("b",): 0.11, ("c",): 0.03}
+    assert equivalent_explanations(some, 6.0, often, 0.1) == (("a",), ("b",))
+    assert equivalent_explanations(some, 6.0, often, 0.2) == (("a",),)
+
+
 def test_one_effect_in_two_places_is_one_rival() -> None:
     assert equivalent_explanations([made(10.0, "a"), made(11.0, "a"), made(12.0, "b")], 6.0) == (
         ("a",),
@@ -102,10 +114,10 @@ def test_confidence_is_high_for_what_is_clear_and_even_for_what_is_not() -> None
     hidden = 8.0 / sigmas(shapes["bend"], FakeModel()) * shapes["bend"]
     model = FakeModel(shapes=shapes, hidden=hidden, drawn=noise(2))
     (bend, twin, slope), null = explained(model, of("bend"), of("twin"), of("slope"))
-    assert confidence([bend, slope], null) > 0.97
-    assert confidence([bend, twin], null) == pytest.approx(0.5, abs=0.1)
-    assert confidence([slope, bend], null) == confidence([bend, slope], null)
-    assert confidence([bend], null) == 1.0
+    assert ranked_first([bend, slope], null)[bend.names] > 0.97
+    assert ranked_first([bend, twin], null)[bend.names] == pytest.approx(0.5, abs=0.1)
+    assert ranked_first([slope, bend], null) == ranked_first([bend, slope], null)
+    assert ranked_first([bend], null) == {bend.names: 1.0}
 
 
 @pytest.mark.parametrize("size", [2.0, 3.0, 4.0, 6.0])
@@ -125,5 +137,6 @@ def test_confidence_is_how_often_the_first_would_be_first_again(size: float) -> 
         ]
         again += int(left[0] < left[1])
     expected = again / 400
-    assert 0.0 <= confidence(both, null) <= 1.0
-    assert confidence(both, null) == pytest.approx(expected, abs=4.0 * np.sqrt(0.25 / 400 + 0.25 / 1000))
+    first = ranked_first(both, null)
+    assert sum(first.values()) == pytest.approx(1.0)
+    assert first[best.names] == pytest.approx(expected, abs=4.0 * np.sqrt(0.25 / 400 + 0.25 / 1000))
