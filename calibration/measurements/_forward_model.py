@@ -153,7 +153,8 @@ class ForwardModel(ABC):
         for."""
         groups: dict[object, list[int]] = {}
         for k, c in enumerate(candidates):
-            if self.visible.get(c, True):
+            # one of an older experiment may reach no record of this one
+            if self.visible.get(c, True) and self.reached(c).any():
                 groups.setdefault((c.form, self._step(c, state)), []).append(k)
         found = []
         for members in groups.values():
