@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 import tisim
+from calibration.diagnosis.catalogue import effects_of
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
 from calibration.inference import Problem, identify, polish
 from calibration.measurements._baseline import Baseline
+from calibration.measurements._effect import Candidate
 from calibration.measurements._state import State
 from calibration.measurements.indentation import _curve_cache
 from calibration.measurements.indentation.model import IndentationModel
@@ -124,6 +126,15 @@ def test_a_late_touch_is_a_nuisance(flat: Pokes) -> None:
     assert 0.3 < seeing.nuisances(SOFT)["touch of p1"] < 1.2
     cost = [float((p.residuals(SOFT[None]) ** 2).sum()) for p in (blind, seeing)]
     assert cost[1] < cost[0]
+
+
+def test_a_cause_that_reaches_no_record_changes_nothing() -> None:
+    """An explanation of older records, predicted for one without an inclusion and with another rod."""
+    pokes = pokes_of(made.trial(DEPTH, LINE), law=HELD, effects=effects_of("indentation"))
+    assert pokes.linearise(SOFT)
+    elsewhere = (Candidate(effect="inclusion-debonded"), Candidate(effect="friction", at="rod 9 mm flat"))
+    linear = pokes.model.linearise(pokes.state(SOFT), elsewhere)
+    np.testing.assert_array_equal(linear.columns, np.zeros((len(linear.z), 2)))
 
 
 def modulus_sd(pokes: Pokes) -> float:
