@@ -6,7 +6,8 @@ are known.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -50,6 +51,7 @@ class _Effect(_Lenient):
     applies_to: Literal["material", "shape"] = "material"
     scope: str = "all"
     becomes: Literal["viscosity", "softening", "fibres", "law"] | None = None
+    valid_range: dict[str, tuple[float, float]] = Field(default_factory=dict)
 
 
 class _Uncertainty(_Lenient):
@@ -97,6 +99,7 @@ class CardModel:
     covariance : of u.
     model_error : relative, of the modulus.
     notes : what the card does not state, a sentence each.
+    ranges : between what its effects were measured, by the quantity's name in files.
     """
 
     label: str
@@ -105,6 +108,7 @@ class CardModel:
     covariance: Array
     model_error: float
     notes: tuple[str, ...] = ()
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 def read_cards(path: Path) -> dict[str, CardFile]:
@@ -160,15 +164,20 @@ def extended_model(card: CardFile) -> CardModel:
     sds = [(high or 0.0) / WIDTH]
     law = scaled_law(name, parameters)
     own = []
-    for field in FIELDS:
-        entry = getattr(card, field)
+    for part in FIELDS:
+        entry = getattr(card, part)
         if entry is None:
             continue
-        known = _relative_sd(card, field)
-        own.append(part_coordinates(field, part_of(field, entry), free=known is not None))
+        known = _relative_sd(card, part)
+        own.append(part_coordinates(part, part_of(part, entry), free=known is not None))
         sds += [] if known is None else [known]
     law = law.with_parts(own) if own else law
     labels = [e.effect for e in card.effects if e.becomes]
+    ranges: dict[str, tuple[float, float]] = {}
+    for e in card.effects:
+        for quantity, (low, high) in e.valid_range.items() if e.becomes else ():
+            known_low, known_high = ranges.get(quantity, (low, high))
+            ranges[quantity] = min(low, known_low), max(high, known_high)
     return CardModel(
         label=" + ".join(labels) or law.label.replace("+", " + "),
         law=law,
@@ -176,6 +185,7 @@ def extended_model(card: CardFile) -> CardModel:
         covariance=np.diag(np.square(sds)),
         model_error=card.model_error or 0.0,
         notes=tuple(notes),
+        ranges=ranges,
     )
 
 

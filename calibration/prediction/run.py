@@ -180,7 +180,9 @@ def from_cards(
             if domain not in (None, kind.name, kind.old_name):
                 continue
             say(f"predicting {kind.name} of {material}")
-            records += _by_cards(kind, own, models, scatter, workers)
+            predicted, outside = _by_cards(kind, own, models, scatter, workers)
+            records += predicted
+            notes += outside
     if not records:
         raise InputError(
             f"{experiment.folder / 'experiment.yaml'}: trials: expected some that can be compared"
@@ -216,7 +218,8 @@ def _by_cards(
     models: Mapping[Name, CardModel],
     scatter: float,
     workers: int | None,
-) -> list[Record]:
+) -> tuple[list[Record], list[str]]:
+    """Records with their predictions; where these lie outside of what the cards' effects were measured in."""
     made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
     options: dict[str, Any] = {"workers": workers} if "workers" in kind.takes else {}
     try:
@@ -225,10 +228,32 @@ def _by_cards(
             model = kind.load()(own, baseline=Baseline.of_law(own.trials, m.law), **options)
             made[name] = (model, _from_card(model, m, scatter))
         test = next(iter(made.values()))[0]
-        return predict_records(test, made)
+        records = predict_records(test, made)
     except ValueError as error:
         ids = ", ".join(t.id for t in own.trials)
         raise InputError(f"trials {ids}: the cards predict nothing of them: {error}") from error
+    known = [m for m in models.values() if m.ranges]
+    outside = {
+        f"{own.trials[0].material}: {text}": None
+        for m in known
+        for name, seen in m.ranges.items()
+        for text in beyond(name, seen, [x for r in test.records for x in r.ranges.get(name, ())])
+    }
+    return records, [f"{text}; {UNSEEN}" for text in outside]
+
+
+UNSEEN = "there the model's error may be larger than the intervals know"
+BEYOND = 0.02  # of a range that was fitted: a prediction further outside is said
+
+
+def beyond(name: str, seen: Sequence[float], here: Sequence[float]) -> list[str]:
+    """What is predicted of a quantity outside of where it was measured (`seen`): one text, or none."""
+    if not here:
+        return []
+    low, high, slack = min(seen), max(seen), BEYOND * (max(seen) - min(seen))
+    if min(here) >= low - slack and max(here) <= high + slack:
+        return []
+    return [f"{name} {min(here):.3g} to {max(here):.3g} is predicted from {low:.3g} to {high:.3g}"]
 
 
 def _from_card(model: MeasurementModel, card: CardModel, scatter: float) -> Calibrated:

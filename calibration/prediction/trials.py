@@ -21,7 +21,16 @@ from calibration.measurements._kinds import Kind, kind_of
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.prediction._interval import Calibrated, all_moduli, of_unseen, predict_records
-from calibration.prediction.run import BASELINE, EXTENDED, Name, Prediction, Say, from_cards
+from calibration.prediction.run import (
+    BASELINE,
+    EXTENDED,
+    UNSEEN,
+    Name,
+    Prediction,
+    Say,
+    beyond,
+    from_cards,
+)
 
 Rows = NDArray[np.bool_]
 Make = Callable[..., MeasurementModel]
@@ -227,9 +236,6 @@ def _within(
     )
 
 
-BEYOND = 0.02  # of a range that was fitted: a prediction further outside is said
-
-
 def _extrapolations(model: MeasurementModel, fold: Rows) -> list[str]:
     """In what the predicted records are unlike those that were fitted, a sentence each: there the model's
     error may be larger than the fit shows."""
@@ -246,15 +252,13 @@ def _extrapolations(model: MeasurementModel, fold: Rows) -> list[str]:
     for name in dict.fromkeys(n for r in wanted for n in r.ranges):
         seen = [x for f in fitted for x in f.ranges.get(name, ())]
         here = [x for r in wanted for x in r.ranges.get(name, ())]
-        slack = BEYOND * (max(seen) - min(seen)) if seen else 0.0
-        if not seen or min(here) < min(seen) - slack or max(here) > max(seen) + slack:
+        if not seen:
             found[f"{name} {min(here):.3g} to {max(here):.3g}"] = None
+        else:
+            found |= dict.fromkeys(beyond(name, seen, here))
     if not found:
         return []
-    return [
-        f"not among the trials that were fitted: {', '.join(found)}; there the model's error may be larger"
-        " than the intervals know"
-    ]
+    return [f"not among the trials that were fitted: {', '.join(found)}; {UNSEEN}"]
 
 
 def _calibrated(model: MeasurementModel, fold: Rows, found: Fit, name: str) -> Calibrated:

@@ -185,7 +185,8 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
         reloaded=again,
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
-        ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))},
+        ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))}
+        | ({} if trial.time is None else {"time_s": (float(trial.time[0]), float(trial.time[-1]))}),
         course=None
         if furthest is None
         else course_of(trial, np.concatenate(firsts), np.concatenate(counts), furthest, holds),

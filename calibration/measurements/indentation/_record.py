@@ -304,7 +304,10 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
         labels=tuple(p.label for p in phases),
         degrees=degrees,
         estimated=trial.force_sd is None,
-        ranges={"depth_mm": (1e3 * float(raw.depth.min()), 1e3 * float(raw.depth.max()))},
+        ranges={
+            "depth_mm": (1e3 * float(raw.depth.min()), 1e3 * float(raw.depth.max())),
+            "time_s": (float(raw.time[0]), float(raw.time[-1])),
+        },
         course=course_of(raw.time, depth, phases, whole["time"], whole["depth"]) if courses else None,
         **whole,
     )

@@ -127,6 +127,24 @@ def test_cards_scale_their_parts_by_how_well_they_are_known(tmp_path: Path) -> N
     assert more.viscosity.spectrum().strengths == pytest.approx([0.066] * 6)
 
 
+def test_what_lies_outside_of_where_a_card_was_measured_is_said(measured: Path, tmp_path: Path) -> None:
+    """A relaxation measured for 20 s, in tests of 30 and 62 s; within 100 s, and of what no range is stated,
+    nothing is said."""
+    effect = {
+        "effect": "relaxation",
+        "parameters": {"fraction_of_modulus": {"value": 0.2, "sd": 0.02}},
+        "becomes": "viscosity",
+    }
+    said = []
+    for last in (20.0, 100.0):
+        cards = card(tmp_path / "cards", effects=[effect | {"valid_range": {"time_s": [0.0, last]}}])
+        said.append(calibration.predict(measured, cards, workers=1).prediction.notes)
+    assert [n for n in said[0] if n not in said[1]] == [
+        "S0: time_s 0 to 62 is predicted from 0 to 20; there the model's error may be larger than the"
+        " intervals know"
+    ]
+
+
 def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
     """A fit to the hold, of the diagnosis' own models, predicts the slow ramp."""
     found = calibration.predict(measured, calibrate="held", predict="slow", law="neo-hookean", workers=1)
