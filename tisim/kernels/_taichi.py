@@ -30,6 +30,19 @@ class _Unwrapped:
 
 
 ast_transformer_utils.TextWrapper = _Unwrapped
+_position = ast_transformer_utils.ASTTransformerContext.get_pos_info
+
+
+def _position_once(context: Any, node: Any) -> str:
+    """Where a node of a kernel stands, for errors: Taichi writes it at each visit, and an unrolled loop
+    visits its nodes again for each turn."""
+    known: dict[Any, str] = context.__dict__.setdefault("_positions", {})
+    if node not in known:
+        known[node] = _position(context, node)
+    return known[node]
+
+
+ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_once
 
 f64 = ti.f64
 i32 = ti.i32
