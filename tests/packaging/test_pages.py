@@ -61,6 +61,7 @@ def run(command: list[str], folder: Path) -> None:
     environment = dict(os.environ)
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     environment["PYTHONPATH"] = str(ROOT)  # a checkout needs no installation
+    environment.pop("LOKY_MAX_CPU_COUNT", None)  # of the tests: whole pages take the cores that a user has
     ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, f"{' '.join(command)}\n{ended.stdout[-3000:]}\n{ended.stderr[-3000:]}"
 
