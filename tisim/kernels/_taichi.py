@@ -17,7 +17,7 @@ os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 # imported that is no file, and `inspect` looks for it in every module there is: a second among thousands. Its
 # own table of files answers at once that no module is there.
 _importing = os.path.normcase(os.path.abspath("<frozen importlib._bootstrap>"))  # noqa: PTH100 - no path
-inspect.modulesbyfile[_importing] = ""  # type: ignore[attr-defined]
+inspect.modulesbyfile[_importing] = ""
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
