@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,6 @@ from benchmarks.blind import compression, coupons, indentation
 from benchmarks.blind.beams.model import Beam
 from benchmarks.blind.beams.solver import solve
 from benchmarks.blind.camera import Lens, Setting, Tube, View, photograph
-from benchmarks.blind.indentation.cases import sized
 
 OUT = Path(__file__).resolve().parents[2] / "datasets" / "measured"
 RADIUS, DENSITY, SHEAR_MODULUS = 0.010, 1000.0, 30e3  # of the photographed beams [m], [kg/m3], [Pa]
@@ -34,7 +32,6 @@ PHOTOGRAPHS = {
 }
 LENS = Lens(size=(1600, 1200), focal=3720.0, centre=(803.0, 594.0), k1=-0.1)
 BOARD_CORNER = (12.0, 26.0)  # [mm]
-POKED = 1.6e-3  # deepest of the indentation [m]
 
 
 def photographs(folder: Path) -> None:
@@ -101,15 +98,8 @@ def homogeneous(folder: Path) -> None:
 
 
 def indented(folder: Path) -> None:
-    """A rod pushed into a thin layer, with the zero of its depth off. Not as deep as the laboratory goes: the
-    deeper, the longer each simulated indentation of a diagnosis takes."""
+    """A rod pushed into a thin layer, with the zero of its depth off."""
     case = indentation.make_poke(12, "one", "depth-offset", target=9.0)
-    trials = tuple(
-        replace(t, strokes=tuple((min(to, POKED), speed, hold) for to, speed, hold in t.strokes))
-        for t in case.trials
-    )
-    (hidden,) = case.hidden
-    case = replace(case, trials=trials, hidden=(sized(trials, hidden, 9.0),))
     indentation.write(case, folder)
     _rename(
         folder,
