@@ -16,6 +16,9 @@ import psutil
 import pytest
 
 HERE = Path(__file__).parent
+# what says nothing of processes starts none: pytest-xdist fills the cores, and a process that is started
+# imports everything and compiles kernels for itself, at several times the cost of what most tests compute
+os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
 # the same random examples in every run: what fails is the commit, not the draw. New ones:
 # HYPOTHESIS_PROFILE=explore python -m pytest ...
 hypothesis.settings.register_profile("fixed", derandomize=True, deadline=None)

@@ -115,7 +115,8 @@ if __name__ == "__main__":
     pull = tisim.Course(start=1.0).ramp(to=1.4, speed=0.1).ramp(to=1.1, speed=0.1)
     scenes = [tisim.Coupon(material=mine, course=pull, mode=mode) for mode in ("uniaxial", "planar")]
     hang = tisim.Course().jump(1.0).hold(1.0)
-    scenes.append(tisim.Beam(material=mine, length=0.05, radial_elements=1, course=hang))
+    small = {"length": 0.02, "axial_element_size": 0.01, "radial_elements": 1}
+    scenes.append(tisim.Beam(material=mine, course=hang, **small))
     results = tisim.simulate(scenes, workers=int(sys.argv[1]))
     assert all(r.ok for r in results)
     np.savez(sys.argv[2], *[r.positions for r in results])

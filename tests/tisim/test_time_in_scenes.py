@@ -12,7 +12,9 @@ from tisim import parts
 
 G = 3e4
 SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=G, bulk_modulus=20 * G)
-STIFF = tisim.material_from_moduli("mooney-rivlin", shear_modulus=G, bulk_modulus=1000 * G)
+# of laws and parts whose kernels other tests need as well: each set is compiled for itself
+STIFF = tisim.material_from_moduli("ogden", shear_modulus=G, bulk_modulus=1000 * G)
+MATRIX = tisim.material_from_moduli("neo-hookean", shear_modulus=G, bulk_modulus=1000 * G)
 PRONY = tisim.Prony(fractions=(0.3, 0.2), times=(1.0, 20.0))
 VISCOUS = replace(SOFT, viscosity=PRONY)
 MULLINS = tisim.OgdenRoxburgh(r=1.6, m=1e3, beta=0.1)
@@ -78,7 +80,7 @@ def test_a_strip_with_fibres_at_an_angle_shears_and_carries_along_x_only(angle: 
     """Cauchy stress along x alone; at 0 and 90 degrees the stress of the closed form."""
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     fibres = tisim.HolzapfelGasserOgden(direction=(c, s, 0.0), k1=5e3, k2=0.5)
-    material = replace(STIFF, fibres=fibres)
+    material = replace(MATRIX, fibres=fibres)
     found = tisim.simulate(tisim.Coupon(material=material, stretches=(1.1, 1.4)))
     assert found.ok
     F = np.array([np.linalg.lstsq(found.mesh.nodes, x)[0].T for x in found.positions])
@@ -94,7 +96,7 @@ def test_a_strip_with_fibres_at_an_angle_shears_and_carries_along_x_only(angle: 
     l = found.load
     I4 = l**2 if angle == 0.0 else 1.0 / l  # at 90 degrees the fibres are slack
     e = np.maximum(I4 - 1.0, 0.0)
-    matrix = tisim.simulate(tisim.Coupon(material=STIFF, stretches=(1.1, 1.4))).nominal_stress
+    matrix = tisim.simulate(tisim.Coupon(material=MATRIX, stretches=(1.1, 1.4))).nominal_stress
     assert found.nominal_stress == pytest.approx(
         matrix + 2.0 * fibres.k1 * e * np.exp(fibres.k2 * e**2) * l, rel=3e-3
     )
@@ -128,7 +130,7 @@ def test_a_cylinder_follows_a_course(platens: str) -> None:
         assert found.dissipated == pytest.approx(coupon.dissipated / 0.01**3 * volume, rel=2e-2)
 
 
-@pytest.mark.parametrize("law", ["neo-hookean", "mooney-rivlin"])
+@pytest.mark.parametrize("law", ["neo-hookean", "ogden"])
 def test_creep_of_a_cantilever_by_correspondence(law: str) -> None:
     """At small strain and fixed nu: the elastic deflection times the creep function."""
     times = (0.0, 0.5, 2.0, 10.0, 60.0)
@@ -226,7 +228,7 @@ def test_a_released_viscous_beam_loses_what_its_material_says() -> None:
     """A light beam swings; its log decrement is pi tan delta of the material at that frequency."""
     weak = tisim.Prony(fractions=(0.05,), times=(0.02,))
     elastic = tisim.material_from_moduli("neo-hookean", shear_modulus=1e5, bulk_modulus=1e7)
-    solver = tisim.Solver(method="implicit", duration=0.35, time_step=4e-4)
+    solver = tisim.Solver(method="implicit", duration=0.35, time_step=8e-4)
     beam = tisim.Beam(
         material=replace(elastic, viscosity=weak), length=0.06, solver=solver, gravity=(0, 0, -1.0), **SMALL
     )

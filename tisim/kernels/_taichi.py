@@ -5,12 +5,19 @@ result independent of the number of workers, bit by bit.
 """
 
 import contextlib
+import inspect
 import io
 import os
 import warnings
 from typing import Any
 
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+
+# Of each function that it decorates Taichi asks where the code around it stands. For a module that is being
+# imported that is no file, and `inspect` looks for it in every module there is: a second among thousands. Its
+# own table of files answers at once that no module is there.
+_importing = os.path.normcase(os.path.abspath("<frozen importlib._bootstrap>"))  # noqa: PTH100 - no path
+inspect.modulesbyfile[_importing] = ""
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
@@ -30,6 +37,19 @@ class _Unwrapped:
 
 
 ast_transformer_utils.TextWrapper = _Unwrapped
+_position = ast_transformer_utils.ASTTransformerContext.get_pos_info
+
+
+def _position_once(context: Any, node: Any) -> str:
+    """Where a node of a kernel stands, for errors: Taichi writes it at each visit, and an unrolled loop
+    visits its nodes again for each turn."""
+    known: dict[Any, str] = context.__dict__.setdefault("_positions", {})
+    if node not in known:
+        known[node] = _position(context, node)
+    return known[node]
+
+
+ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_once
 
 f64 = ti.f64
 i32 = ti.i32

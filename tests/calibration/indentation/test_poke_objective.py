@@ -301,8 +301,8 @@ def test_a_poke_without_frames_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_hardly_any_point_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     _cut(monkeypatch, 3, which=of_second(step=False))
-    deep = made.trial(3e-3 * np.linspace(0.0, 1.0, 6), 450e-3 * 3 * np.linspace(0.0, 1.0, 6))
-    assert not pokes_of(deep, law=MOONEY).linearise(SECOND)
+    few = made.trial(DEPTH[::8], LINE[::8])
+    assert not pokes_of(few, law=MOONEY).linearise(SECOND)
 
 
 def test_other_laws_have_curves_of_their_own(flat: Pokes) -> None:
