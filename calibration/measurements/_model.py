@@ -131,9 +131,9 @@ class MeasurementModel(ForwardModel):
         del test, state
         return None
 
-    def with_law(self, law: str, terms: int) -> Self:
-        """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
-        no answer; OptionError of a kind that has one law only."""
+    def with_law(self, law: str, terms: int) -> Sequence[Self]:
+        """The same measurements with one of `laws` as baseline and no effects, in parts that share no
+        coordinate. ValueError where the law has no answer; OptionError of a kind that has one law only."""
         raise OptionError("law", f"{law}:{terms}", f"{self.kind} has one law only, expected auto")
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:

@@ -142,12 +142,17 @@ class HomogeneousModel(MeasurementModel):
         said = replace(effect.effect, sentence=sentence)
         return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
 
-    def with_law(self, law: str, terms: int) -> Self:
+    def with_law(self, law: str, terms: int) -> list[Self]:
         """The same measurements with another law as baseline and no effects, to compare laws.
 
-        ValueError where the law has no answer.
+        Of each material by itself: they share no coordinate, and one fit of all would go at the slowest one's
+        pace. ValueError where the law has no answer.
         """
-        return type(self)(self.experiment, law=law, terms=terms)
+        each: dict[str, list[CouponTrial]] = {m: [] for m in self.baseline.materials}
+        for t in self.trials:
+            each[t.material].append(t)
+        some = [replace(self.experiment, trials=tuple(trials)) for trials in each.values()]
+        return [type(self)(e, law=law, terms=terms) for e in some]
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
         mine = [k for k, r in enumerate(self.records) if r.material == material]
