@@ -30,6 +30,7 @@ AUTO = "auto"
 PREFERRED = "leave-one-fifth-out"  # folds; others where the model has none of these
 WORTH = 0.1  # part of the simpler law's held-out misfit that further constants have to take away
 SHARP = 1e-3  # of chi-square: laws that are compared are fitted as sharp as that, which WORTH does not see
+STEPS = 5  # of such a fit that gain less than a tenth each
 SURE = 2.0  # standard deviations of a chi-square of so many points, that is noise
 EXPLAINED = ("none", "found", "ambiguous")  # verdicts after which no other law is asked
 
@@ -285,12 +286,12 @@ class _Compared:
 
 def _compared(own: MeasurementModel) -> _Compared:
     """ValueError where there is no answer."""
-    whole = _near_enough(own, State(u=own.start()), max_steps=20)
+    whole = _near_enough(own, State(u=own.start()))
     folds = own.folds()
     name = PREFERRED if PREFERRED in folds else next(iter(folds))
     held_out, squares, points = 0.0, 0.0, 0
     for _, fold in folds[name]:
-        trained = _near_enough(own.subset(fold, others=True), whole.state, max_steps=8).state
+        trained = _near_enough(own.subset(fold, others=True), whole.state).state
         left = own.subset(fold, others=False)
         z = left.residuals([trained])[0][: left.points]
         held_out += float(z @ z)
@@ -303,8 +304,8 @@ def _compared(own: MeasurementModel) -> _Compared:
     )
 
 
-def _near_enough(model: MeasurementModel, start: State, *, max_steps: int) -> Fit:
+def _near_enough(model: MeasurementModel, start: State) -> Fit:
     """A fit that is sharp enough to compare laws: where a law misses by much, the usual tolerance asks for
     many steps along constants that nearly hide each other."""
     z = model.residuals([start])[0]
-    return fit(model, start, max_steps=max_steps, tolerance=max(TOLERANCE, SHARP * float(z @ z)))
+    return fit(model, start, max_steps=STEPS, tolerance=max(TOLERANCE, SHARP * float(z @ z)))

@@ -121,7 +121,8 @@ class HomogeneousModel(MeasurementModel):
         form = parametrisation(law, terms=terms)
         centres = {}
         for m in self.baseline.materials:
-            found = law_start(form, [r for r in self.records if r.material == m])
+            own = [r for r in self.records if r.material == m]
+            found = law_start(form, own, bulk_ratio=BULK_RATIO)
             if found is None:
                 raise ValueError(f"{form.label}: no stress at the stretches of {m}")
             centres[m] = found[1]
@@ -182,7 +183,7 @@ class HomogeneousModel(MeasurementModel):
         """Moduli of the incompressible neo-Hookean curves nearest to the records; a law with constants of its
         own is fitted from several starts. ValueError where a specimen pulls back against its stretch."""
         if self.baseline.free and not self.baseline.whole:
-            return start_of(self.baseline, self.records)
+            return start_of(self.baseline, self.records, bulk_ratio=BULK_RATIO)
         found = {}
         for name in self.baseline.specimens:
             top = bottom = 0.0
