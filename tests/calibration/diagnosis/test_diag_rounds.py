@@ -78,3 +78,37 @@ def test_a_first_round_is_concluded_only_where_the_second_says_less(
     assert concluded == ([True] if named else [True, False])
     assert found.finding.verdict == ("partly explained" if named else "unexplained"), found.sentence()
     assert "ripple" in model.effects
+
+
+@pytest.mark.parametrize("fewer", [True, False])
+def test_of_two_rounds_that_explain_only_what_is_said_is_concluded(
+    fewer: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two usual causes, or one further one that has their shape: fewer are said."""
+    usual = {n: library()[n] for n in ("bend", "slope")}
+    both = hidden("bend", 40.0) + hidden("slope", 40.0)
+    rare = both / np.linalg.norm(both) if fewer else library()["ripple"]
+
+    def make(*, further: bool = True, **_: object) -> FakeModel:
+        model = FakeModel(
+            shapes=usual | ({"rare": rare} if further else {}),
+            effects={"rare": replace(effect("rare"), further=True)} if further else {},
+            hidden=both,
+            drawn=noise(3),
+        )
+        model.visible = dict.fromkeys(model.candidates, True)
+        return model
+
+    concluded = []
+
+    def watched(found: Searched, **options: bool) -> Diagnosis:
+        concluded.append("rare" in found.model.effects)
+        return run_concluded(found, **options)  # type: ignore[arg-type]
+
+    run_concluded = run.concluded
+    monkeypatch.setattr(laws, "concluded", watched)
+    found, model = diagnose_with_law(make, gain=False)
+    assert concluded == [fewer]
+    assert found.finding.verdict == "found", found.sentence()
+    assert found.finding.equivalent == ((("rare",),) if fewer else (("bend", "slope"),))
+    assert ("rare" in model.effects) == fewer
