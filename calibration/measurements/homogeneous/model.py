@@ -380,8 +380,8 @@ class HomogeneousModel(MeasurementModel):
             parts.append("the stress and stretch errors that the lab states, white from point to point")
         if len(stated) < len(self.records):
             parts.append(
-                "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " largest stress"
+                "where the lab states none, an error from the scatter about a smooth curve, at least 0.5 % of"
+                " the largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "

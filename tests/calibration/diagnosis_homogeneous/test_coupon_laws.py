@@ -53,7 +53,7 @@ def test_laws_are_compared_material_by_material(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_constants_begin_at_the_volume_that_is_held() -> None:
-    """At eight times its length a rubber is 1 % larger, and at constant volume the exponent comes out wrong."""
+    """At eight times its length a rubber is 1 % larger: at constant volume the exponent comes out wrong."""
     stretch = ramps(8.0, 1, 25)
     model = coupon_model(experiment(trial("A", "uniaxial", stretch, of_ogden, sd=None)))
     law = parametrisation("ogden", terms=1)
