@@ -194,7 +194,7 @@ def row(one: Set, found: dict[str, Any]) -> list[str]:
         "" if skill is None else f"{skill:.2f}",
         f"{found['seconds']:.0f}",
         one.expert,
-        agrees(one, sure) + ("" if told or not named else " (first of several)"),
+        agrees(one, sure, sets) + ("" if told or not named else " (first of several)"),
     ]
 
 
@@ -216,14 +216,15 @@ def interval(share: dict[str, Any] | None) -> str:
     return f"{100 * share['value']:.0f} %{between}"
 
 
-def agrees(one: Set, named: set[str]) -> str:
-    """Whether what is named is what an expert would say."""
+def agrees(one: Set, named: set[str], sets: Sequence[set[str]]) -> str:
+    """Whether what is named is what an expert would say. sets: that the data cannot tell apart."""
     if not named:
         return "nothing named"
     if named & one.against:
         return "no"
     if not named & one.causes:
-        return "not said by the source"
+        some = sum(bool(names & one.causes) for names in sets)
+        return f"open: in {some} of {len(sets)} sets" if some else "not said by the source"
     return "yes" if named <= one.causes else "in part"
 
 
