@@ -149,7 +149,7 @@ def diagnose_with_law(
     again: Searched | None = None
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
-        again = searched(fuller, rules=rules, noise=noise, on_progress=on_progress)
+        again = searched(fuller, rules=rules, noise=noise, before=first, on_progress=on_progress)
     model, found = _said(first, again, "richer" in options, gain=gain, on_progress=on_progress)
     notes = () if choice is None else (choice.sentence(),)
     return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model

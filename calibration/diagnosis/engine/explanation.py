@@ -62,7 +62,10 @@ def explain(
     null: Null,
 ) -> Explanation | None:
     """Fit a set of causes, from another fit and first guesses of the amplitudes [SI]; None where the
-    simulator has no answer with them."""
+    simulator has no answer with them. A fit that has converged once is taken as it was (`Null.explained`)."""
+    causes = frozenset(candidates)
+    if causes in null.explained:
+        return null.explained[causes]
     known = dict(start.state.amplitudes)
     for c, a in zip(candidates, amplitudes, strict=True):
         effect = model.effects[c.effect]
@@ -83,7 +86,10 @@ def explain(
         constants = each * sum(map(model.brings, found.candidates))
         cost = each * len(found.candidates) + sum(map(multiplicity_penalty, found.candidates))
         left = null.lack_of_fit(found.z, found.jacobian)
-        return Explanation(fit=found, cost=cost + constants, lack_of_fit=left, constants_cost=constants)
+        made = Explanation(fit=found, cost=cost + constants, lack_of_fit=left, constants_cost=constants)
+        if found.converged:
+            null.explained[causes] = made
+        return made
     return None
 
 
