@@ -126,6 +126,12 @@ class MeasurementModel(ForwardModel):
         what is dear may be left out."""
         del state, rough
 
+    def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
+        """Where a fit begins that takes these causes in beside those of a state: elsewhere where one changes
+        what the coordinates stand for."""
+        del candidates
+        return state
+
     def predicted_in(self, test: Any, state: State) -> Self | None:
         """The same specimens in one of `experiments`, as a state predicts it; None where it cannot be."""
         del test, state

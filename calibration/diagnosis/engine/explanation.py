@@ -67,6 +67,7 @@ def explain(
     if causes in null.explained:
         return null.explained[causes]
     known = dict(start.state.amplitudes)
+    begun = model.begun(start.state, [c for c in candidates if c not in known])
     for c, a in zip(candidates, amplitudes, strict=True):
         effect = model.effects[c.effect]
         low, high = effect.bounds
@@ -77,7 +78,7 @@ def explain(
     for fraction in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
         inside = {c: known[c] if model.effects[c.effect].switch else fraction * known[c] for c in candidates}
         try:
-            found = fit(model, replace(start.state, amplitudes=inside), candidates)
+            found = fit(model, replace(begun, amplitudes=inside), candidates)
         except ValueError:
             continue
         if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:

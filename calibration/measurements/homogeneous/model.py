@@ -119,13 +119,15 @@ class HomogeneousModel(MeasurementModel):
     def _take_richer(self, law: str, terms: int) -> None:
         """Constants of a richer law as further coordinates, each material's from a fit of its own."""
         form = parametrisation(law, terms=terms)
-        centres = {}
+        centres: dict[str, Array] = {}
+        self._rich_moduli: dict[str, float] = {}
         for m in self.baseline.materials:
             own = [r for r in self.records if r.material == m]
             found = law_start(form, own, bulk_ratio=BULK_RATIO)
             if found is None:
                 raise ValueError(f"{form.label}: no stress at the stretches of {m}")
-            centres[m] = found[1]
+            moduli, centres[m] = found
+            self._rich_moduli |= moduli
         self.richer = RicherLaw(law=form, centres=centres)
         self.baseline = self._base.baseline = self.baseline.with_extras(self.richer.extras())
         self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
@@ -154,6 +156,17 @@ class HomogeneousModel(MeasurementModel):
             each[t.material].append(t)
         some = [replace(self.experiment, trials=tuple(trials)) for trials in each.values()]
         return [type(self)(e, law=law, terms=terms) for e in some]
+
+    def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
+        """With a richer law the moduli begin where that law's fit has them: a stress that grows hundredfold
+        asks another small-strain modulus of each law, too far for steps from the baseline's."""
+        u = state.u.copy()
+        for c in candidates if self.richer is not None else ():
+            if self.effects[c.effect].richer:
+                for r, hit in zip(self.records, self.reached(c), strict=True):
+                    if hit:
+                        u[self.baseline.specimens.index(r.specimen)] = np.log(self._rich_moduli[r.specimen])
+        return replace(state, u=u)
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
         mine = [k for k, r in enumerate(self.records) if r.material == material]

@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 from diagnosis_coupon_cases import Array, coupon_model, experiment, ramps, trial
 
+from calibration.diagnosis.engine.explanation import explain
+from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.laws import choose_law
+from calibration.measurements._state import State
 from calibration.measurements.homogeneous import nominal_stress
 from calibration.measurements.homogeneous._richer import law_start
 from calibration.measurements.homogeneous.model import BULK_RATIO, HomogeneousModel
@@ -62,3 +66,24 @@ def test_constants_begin_at_the_volume_that_is_held() -> None:
     assert exponents[0] == pytest.approx(3.0, abs=1e-4)
     assert abs(exponents[1] - 3.0) > 20.0 * abs(exponents[0] - 3.0)
     assert np.isfinite(exponents).all()
+
+
+def test_a_richer_law_begins_at_its_own_moduli() -> None:
+    """The neo-Hookean modulus of a rubber that stiffens is many times too large for the law that stiffens."""
+    trials = [
+        trial(m, "uniaxial", ramps(8.0, 1, 25), of_ogden, sd=2e3, material=m, seed=k)
+        for k, m in enumerate("AB")
+    ]
+    model = coupon_model(experiment(*trials), further=True, richer=("ogden", 1))
+    forms = {c.at: c for c in model.candidates if c.effect == "law-form"}
+    baseline = fit(model, State(u=model.start()))
+    assert (baseline.state.u[:2] > np.log(3.0 * 4.5e4)).all()
+    begun = model.begun(baseline.state, [forms["B"]])
+    assert begun.u[0] == baseline.state.u[0]
+    assert begun.u[1] == pytest.approx(np.log(4.5e4), abs=0.05)
+    null = Null(len(baseline.z), model.discrepancy_basis())
+    found = explain(model, baseline, (forms["all"],), [1.0], null)
+    assert found is not None
+    assert found.fit.converged
+    assert found.fit.chi2 < 2.0 * model.points
+    assert model.shear_moduli(found.fit.state.u)["A"] == pytest.approx(4.5e4, rel=0.05)
