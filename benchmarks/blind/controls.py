@@ -69,6 +69,7 @@ def rows(kind: str, control: str, count: int, seed: int) -> Iterator[Row]:
             "sigma": [round(h.sigma, 1) for h in lab.hidden(case)],
             "scope": [h.where for h in lab.hidden(case)],
             "excused": excused,
+            "words": sorted(n for n, h in lab.same.items() if set(hidden[:1]) & h),
             "seconds": seconds,
             "true_shares": _true_shares(lab, control, case, verdict),
             **{k: verdict[k] for k in ("verdict", "causes", "alternatives", "share", "nearest", "gain")},
@@ -156,6 +157,10 @@ def scores(control: str, done: list[Row]) -> Iterator[str]:
     either = [a or b for a, b in zip(here, near, strict=True)]
     yield f"  the same, or nearest: goal 90 %, {part(either)}"
     yield f"  true share in its interval: goal 88 to 97 %, {part([c for r in done for c in covered(r)])}"
+    if control == "half":
+        words = [bool({c["effect"] for c in causes_of(r)} & set(r["words"])) for r in done]
+        other = [a or b for a, b in zip(either, words, strict=True)]
+        yield f"  the same, or another word for it: {part(other)}"
 
 
 def main() -> None:

@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calibration.diagnosis.engine.fitting import fit
+from calibration.diagnosis.engine.fitting import TOLERANCE, Fit, fit
 from calibration.diagnosis.engine.resampling import test_of
 from calibration.diagnosis.engine.rules import Progress, Rules
-from calibration.diagnosis.engine.run import concluded, diagnose, searched
+from calibration.diagnosis.engine.run import Searched, concluded, searched
 from calibration.diagnosis.engine.search import Finding
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.errors import InputError
@@ -29,6 +29,8 @@ from calibration.parameters import parametrisation
 AUTO = "auto"
 PREFERRED = "leave-one-fifth-out"  # folds; others where the model has none of these
 WORTH = 0.1  # part of the simpler law's held-out misfit that further constants have to take away
+SHARP = 1e-3  # of chi-square: laws that are compared are fitted as sharp as that, which WORTH does not see
+STEPS = 5  # of such a fit that gain less than a tenth each
 SURE = 2.0  # standard deviations of a chi-square of so many points, that is noise
 EXPLAINED = ("none", "found", "ambiguous")  # verdicts after which no other law is asked
 
@@ -136,8 +138,7 @@ def diagnose_with_law(
         options["law"], options["terms"] = law_of(law)
     model = make(further=False, **options)
     first = searched(model, rules=rules, noise=noise, on_progress=on_progress)
-    explained = first.finding.verdict in EXPLAINED
-    if explained and _causes(first.finding) < 2:
+    if first.finding.verdict in EXPLAINED and _causes(first.finding) < 2:
         return concluded(first, gain=gain, on_progress=on_progress), model
     choice = None
     if law == AUTO and model.laws:
@@ -145,18 +146,11 @@ def diagnose_with_law(
     if choice is not None and choice.best is not choice.simplest:
         options["richer"] = choice.best.law, choice.best.terms
     fuller = make(**options)
-    again: Diagnosis | None = None
+    again: Searched | None = None
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
-        again = diagnose(fuller, rules=rules, gain=gain, noise=noise, on_progress=on_progress)
-    # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
-    if again is not None and not explained and ("richer" in options or _says(again)):
-        model, found = fuller, again
-    else:
-        found = concluded(first, gain=gain, on_progress=on_progress)
-        better = _simpler(again, found, rules or Rules()) if again and explained else not _says(found)
-        if again is not None and better:
-            model, found = fuller, again
+        again = searched(fuller, rules=rules, noise=noise, before=first, on_progress=on_progress)
+    model, found = _said(first, again, "richer" in options, gain=gain, on_progress=on_progress)
     notes = () if choice is None else (choice.sentence(),)
     return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model
 
@@ -196,9 +190,33 @@ def _in_one_test(found: Diagnosis, model: MeasurementModel) -> str:
     return reached.pop() if len(reached) == 1 < len(set(tests)) else ""
 
 
-def _causes(found: Diagnosis | Finding) -> int:
+def _causes(found: Finding) -> int:
     """How many are named together."""
     return 0 if found.chosen is None else len(found.chosen.candidates)
+
+
+def _said(
+    first: Searched, again: Searched | None, richer: bool, *, gain: bool, on_progress: Progress
+) -> tuple[MeasurementModel, Diagnosis]:
+    """What the rounds come to. Only what is said is concluded, where the search tells which round that is.
+
+    richer : the second round has a law that predicts better.
+    """
+
+    def conclude(one: Searched) -> Diagnosis:
+        return concluded(one, gain=gain, on_progress=on_progress)
+
+    if again is None:
+        return first.model, conclude(first)
+    if first.finding.verdict in EXPLAINED:
+        one = again if _simpler(again.finding, first.finding, first.rules) else first
+        return one.model, conclude(one)
+    second = conclude(again)
+    # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
+    if richer or _says(second):
+        return again.model, second
+    found = conclude(first)
+    return (first.model, found) if _says(found) else (again.model, second)
 
 
 def _says(found: Diagnosis) -> int:
@@ -207,10 +225,10 @@ def _says(found: Diagnosis) -> int:
     return 2 if verdict in EXPLAINED else 0 if verdict == "unexplained" else 1
 
 
-def _simpler(again: Diagnosis, found: Diagnosis, rules: Rules) -> bool:
+def _simpler(again: Finding, found: Finding, rules: Rules) -> bool:
     """Whether fewer causes explain the data about as well, or as many clearly better; constants that they
     bring count in the score."""
-    if again.chosen is None or found.chosen is None or again.finding.verdict not in EXPLAINED:
+    if again.chosen is None or found.chosen is None or again.verdict not in EXPLAINED:
         return False
     better = found.chosen.score - again.chosen.score
     fewer = _causes(found) - _causes(again)
@@ -229,35 +247,65 @@ def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: Non
         label = parametrisation(law, terms=terms).label
         on_progress(f"comparing laws: {label}")
         try:
-            own = model.with_law(law, terms)
-            whole = fit(own, State(u=own.start()), max_steps=20)
-            folds = own.folds()
-            name = PREFERRED if PREFERRED in folds else next(iter(folds))
-            held_out, squares, points = 0.0, 0.0, 0
-            for _, fold in folds[name]:
-                trained = fit(own.subset(fold, others=True), whole.state, max_steps=8).state
-                left = own.subset(fold, others=False)
-                z = left.residuals([trained])[0][: left.points]
-                held_out += float(z @ z)
-                squares += left.distance_rms(trained) ** 2 * left.points
-                points += left.points
+            parts = [_compared(own) for own in model.with_law(law, terms)]
         except ValueError as error:
             if not scores:
                 raise
             missing.append(f"{label} could not be compared ({error})")
             continue
+        held_out, squares = sum(p.held_out for p in parts), sum(p.squares for p in parts)
         if not np.isfinite(held_out):
             missing.append(f"{label} has no stress at some measurements that its fit has not seen")
             continue
+        name, points = parts[0].folds, sum(p.points for p in parts)
         scores.append(
             LawScore(
                 law=law,
                 terms=terms,
                 label=label,
-                constants=len(own.baseline.free) * len(own.baseline.materials),
-                chi2=whole.chi2,
+                constants=sum(p.constants for p in parts),
+                chi2=sum(p.chi2 for p in parts),
                 held_out=held_out,
                 rms=float(np.sqrt(squares / points)),
             )
         )
     return LawChoice(scores=tuple(scores), folds=name, points=points, missing=tuple(missing))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Compared:
+    """A law as the baseline of some measurements. squares : of the predictions' errors, in SI."""
+
+    constants: int
+    chi2: float
+    held_out: float
+    squares: float
+    points: int
+    folds: str
+
+
+def _compared(own: MeasurementModel) -> _Compared:
+    """ValueError where there is no answer."""
+    whole = _near_enough(own, State(u=own.start()))
+    folds = own.folds()
+    name = PREFERRED if PREFERRED in folds else next(iter(folds))
+    held_out, squares, points = 0.0, 0.0, 0
+    for _, fold in folds[name]:
+        trained = _near_enough(own.subset(fold, others=True), whole.state).state
+        left = own.subset(fold, others=False)
+        z = left.residuals([trained])[0][: left.points]
+        held_out += float(z @ z)
+        if np.isfinite(held_out):
+            squares += left.distance_rms(trained) ** 2 * left.points
+        points += left.points
+    constants = len(own.baseline.free) * len(own.baseline.materials)
+    return _Compared(
+        constants=constants, chi2=whole.chi2, held_out=held_out, squares=squares, points=points, folds=name
+    )
+
+
+def _near_enough(model: MeasurementModel, start: State) -> Fit:
+    """A fit that is sharp enough to compare laws: where a law misses by much, the usual tolerance asks for
+    many steps along constants that nearly hide each other."""
+    z = model.residuals([start])[0]
+    return fit(model, start, max_steps=STEPS, tolerance=max(TOLERANCE, SHARP * float(z @ z)))

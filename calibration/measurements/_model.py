@@ -126,14 +126,20 @@ class MeasurementModel(ForwardModel):
         what is dear may be left out."""
         del state, rough
 
+    def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
+        """Where a fit begins that takes these causes in beside those of a state: elsewhere where one changes
+        what the coordinates stand for."""
+        del candidates
+        return state
+
     def predicted_in(self, test: Any, state: State) -> Self | None:
         """The same specimens in one of `experiments`, as a state predicts it; None where it cannot be."""
         del test, state
         return None
 
-    def with_law(self, law: str, terms: int) -> Self:
-        """The same measurements with one of `laws` as baseline and no effects. ValueError where the law has
-        no answer; OptionError of a kind that has one law only."""
+    def with_law(self, law: str, terms: int) -> Sequence[Self]:
+        """The same measurements with one of `laws` as baseline and no effects, in parts that share no
+        coordinate. ValueError where the law has no answer; OptionError of a kind that has one law only."""
         raise OptionError("law", f"{law}:{terms}", f"{self.kind} has one law only, expected auto")
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:

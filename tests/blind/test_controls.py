@@ -86,6 +86,7 @@ def row(verdict: str, named: tuple[str, ...] = (), **more: Any) -> dict[str, Any
         "nearest": nearest,
         "hidden": ("b", "slip"),
         "excused": False,
+        "words": ["c"],
         "true_shares": {},
         **more,
     }
@@ -103,6 +104,8 @@ def test_scores() -> None:
     assert "1 of 3" in half[1]
     assert "2 of 3" in half[2]
     assert "1 of 2" in half[3]
+    assert "2 of 3" in half[4]
+    assert "3 of 4" in list(scores("half", [*done, row("found", ("c",))]))[4]
     without = list(scores("without", [*done, row("found", ("c",), excused=True)]))
     assert "1 of 4" in without[1]
     assert "1 of 4" in without[2]

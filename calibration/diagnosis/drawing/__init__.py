@@ -10,6 +10,7 @@ from calibration.diagnosis.drawing._curves import (
 from calibration.diagnosis.drawing._domain import Figure
 from calibration.diagnosis.drawing._labels import label, label_of_causes
 from calibration.diagnosis.drawing._panels import (
+    PANELS,
     dots,
     draw_rms,
     legend_handles,
@@ -21,6 +22,7 @@ from calibration.diagnosis.drawing._panels import (
 __all__ = [
     "AFTER",
     "BEFORE",
+    "PANELS",
     "DrawnCurve",
     "Figure",
     "before_and_after",

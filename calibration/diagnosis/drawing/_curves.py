@@ -15,7 +15,7 @@ from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
-MOST = 24  # panels of one picture
+MOST = 24  # trials of one picture of bars
 NAMED, PARTIAL = "extended", "nearest of the library, not named"
 
 
@@ -100,12 +100,14 @@ def legend_of(diagnosis: Diagnosis) -> str:
 Drawn = TypeVar("Drawn", bound=DrawnCurve)
 
 
-def most_telling(curves: Sequence[Drawn]) -> tuple[list[Drawn], int]:
-    """Those that have a panel, in the file's order, and how many depart too little to have one."""
-    largest = sorted(curves, key=lambda d: -d.size)[:MOST]
+def most_telling(curves: Sequence[Drawn], most: int = MOST) -> tuple[list[Drawn], int]:
+    """Those that are drawn, in the file's order, and how many depart too little for that."""
+    largest = sorted(curves, key=lambda d: -d.size)[:most]
     return [d for d in curves if d in largest], len(curves) - len(largest)
 
 
 def missing(count: int) -> str:
     """What a caption says of them."""
+    if count == 1:
+        return " 1 trial that departs less is not drawn."
     return f" {count} trials that depart less are not drawn." if count else ""

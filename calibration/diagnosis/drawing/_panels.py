@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,10 @@ from calibration.report import INK, paper, plain, significant
 Array = NDArray[np.float64]
 
 COLUMNS = 3
+PANELS: Mapping[Section, int] = {
+    "shapes": 6,
+    "residuals": 12,
+}  # of one picture: the first ones are to be read
 TITLE = 26  # characters of a trial's name
 
 
@@ -31,7 +35,7 @@ def per_trial(
     handles: Sequence[Line2D],
     section: Section = "shapes",
 ) -> Figure:
-    """A picture of one panel a trial, of those that depart most (`most_telling`).
+    """A picture of one panel a trial, of the `PANELS` trials that depart most.
 
     Parameters
     ----------
@@ -45,7 +49,7 @@ def per_trial(
     handles : sequence of Line2D
         Of the legend above the panels (`legend_handles`).
     """
-    shown, unshown = most_telling(curves)
+    shown, unshown = most_telling(curves, PANELS[section])
     figure, each = panels(len(shown))
     for axes, curve in zip(each, shown, strict=True):
         draw(axes, curve)

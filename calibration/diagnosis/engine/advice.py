@@ -122,7 +122,7 @@ def _left(values: Array, jacobian: Array) -> float:
 
 def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
     """The advised experiment for people, where all explanations are to be separated."""
-    names = ", ".join(" + ".join(e.names) for e in explanations)
+    names = ", ".join(_told_apart(explanations))
     if best.separation < 1.0:
         return f"no experiment of the catalogue parts {names}"
     apart = float(np.sqrt(best.separation))
@@ -132,7 +132,7 @@ def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
 
 def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
     """The advised experiment for people, which may separate the chosen cause from some others only."""
-    first, *others = (" + ".join(e.names) for e in explanations)
+    first, *others = _told_apart(explanations)
     parted = [n for n, s in zip(others, best.separations, strict=True) if s >= 1.0]
     if not parted:
         return f"no experiment of the catalogue parts {first} from {', '.join(others)}"
@@ -143,6 +143,12 @@ def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
         f"{best.sentence}: {first} parts there from {', '.join(parted)} by {apart:.0f} standard"
         f" deviations{_sure(best, apart**2)}{rest}"
     )
+
+
+def _told_apart(explanations: Sequence[Explanation]) -> list[str]:
+    """The names of each without those that all have, and that nothing needs to part."""
+    common = set.intersection(*(set(e.names) for e in explanations))
+    return [" + ".join([n for n in e.names if n not in common] or e.names) for e in explanations]
 
 
 def _sure(best: Advice, separation: float) -> str:

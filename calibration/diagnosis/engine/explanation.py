@@ -63,8 +63,12 @@ def explain(
     null: Null,
 ) -> Explanation | None:
     """Fit a set of causes, from another fit and first guesses of the amplitudes [SI]; None where the
-    simulator has no answer with them."""
+    simulator has no answer with them. A fit that has converged once is taken as it was (`Null.explained`)."""
+    causes = frozenset(candidates)
+    if causes in null.explained:
+        return null.explained[causes]
     known = dict(start.state.amplitudes)
+    begun = model.begun(start.state, [c for c in candidates if c not in known])
     for c, a in zip(candidates, amplitudes, strict=True):
         effect = model.effects[c.effect]
         low, high = effect.bounds
@@ -75,7 +79,7 @@ def explain(
     for fraction in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
         inside = {c: known[c] if model.effects[c.effect].switch else fraction * known[c] for c in candidates}
         try:
-            found = fit(model, replace(start.state, amplitudes=inside), candidates)
+            found = fit(model, replace(begun, amplitudes=inside), candidates)
         except ValueError:
             continue
         if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:
@@ -84,7 +88,10 @@ def explain(
         constants = each * sum(map(model.brings, found.candidates))
         cost = each * len(found.candidates) + sum(map(multiplicity_penalty, found.candidates))
         left = null.lack_of_fit(found.z, found.jacobian)
-        return Explanation(fit=found, cost=cost + constants, lack_of_fit=left, constants_cost=constants)
+        made = Explanation(fit=found, cost=cost + constants, lack_of_fit=left, constants_cost=constants)
+        if found.converged:
+            null.explained[causes] = made
+        return made
     return None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,10 @@ from scipy.stats import chi2
 
 from calibration.diagnosis.engine.screening import Screen, basis_of
 from calibration.measurements._baseline import ALLOWED, SPECIMENS
+from calibration.measurements._effect import Candidate
+
+if TYPE_CHECKING:
+    from calibration.diagnosis.engine.explanation import Explanation
 
 Array = NDArray[np.float64]
 
@@ -44,12 +49,18 @@ class Null:
     size : m, number of residuals.
     basis : what a lack of fit might look like, sets of columns (m, k) by name
         (`MeasurementModel.discrepancy_basis`).
+
+    Attributes
+    ----------
+    explained : what fits to these residuals have given already, by their sets of causes (`explain`): a second
+        round, and the shares of single causes, ask for many of them again.
     """
 
     def __init__(self, size: int, basis: Mapping[str, Array], *, seed: int = 0) -> None:
         self.noise = np.random.default_rng(seed).standard_normal((DRAWS, size))
         self._squares = np.einsum("ij,ij->i", self.noise, self.noise)
         self.basis = dict(basis)
+        self.explained: dict[frozenset[Candidate], Explanation] = {}
 
     def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).

@@ -75,14 +75,16 @@ def searched(
     *,
     rules: Rules | None = None,
     noise: Source = "stated",
+    before: Searched | None = None,
     on_progress: Progress = lambda _: None,
 ) -> Searched:
-    """The first part of `diagnose`."""
+    """The first part of `diagnose`. before : see `search`."""
     begun = time.monotonic()
     rules = rules or Rules()
     known = model.with_noise_of_data() if noise == "data" else model.noise_known()
     model.noise_scale = known.scale
-    finding = search(model, rules=rules, on_progress=on_progress)
+    earlier = None if before is None else before.finding
+    finding = search(model, rules=rules, before=earlier, on_progress=on_progress)
     if finding.verdict in ("found", "ambiguous") and within_smooth_error(
         model, finding.baseline, known, rules
     ):
@@ -196,9 +198,12 @@ def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[E
     the explanation is; they compare with each other only, not with what the search found."""
     chosen = finding.chosen
     assert chosen is not None
-    again = chosen
+    again, null = chosen, finding.null
     for _ in range(UPDATES):
+        noise_there = model.noise
         model.update_nuisances(again.fit.state)
+        if model.noise is noise_there and again.fit.converged:  # it would be the same
+            return again, fit(model, State(u=finding.baseline.state.u), tolerance=AS_FITTED), null
         null = Null(len(again.fit.z), model.discrepancy_basis(), seed=rules.seed)
         before = again.fit.state.amplitudes
         taken = explain(model, again.fit, again.candidates, list(before.values()), null)

@@ -80,16 +80,27 @@ class Finding:
 
 
 def search(
-    model: MeasurementModel, *, rules: Rules | None = None, on_progress: Progress = lambda _: None
+    model: MeasurementModel,
+    *,
+    rules: Rules | None = None,
+    before: Finding | None = None,
+    on_progress: Progress = lambda _: None,
 ) -> Finding:
-    """Look for what a model lacks. ValueError where the baseline has no answer anywhere."""
+    """Look for what a model lacks. ValueError where the baseline has no answer anywhere.
+
+    before : of the same measurements with a smaller library, whose fits are not made again.
+    """
     rules = rules or Rules()
     on_progress("fitting the baseline")
     baseline = fit_baseline(model)
     on_progress(f"screening {len(model.candidates)} candidates")
     linear = model.linearise(baseline.state, model.candidates)
     screened = screen(linear, model.effects)
-    null = Null(len(linear.z), model.discrepancy_basis(), seed=rules.seed)
+    null = (
+        before.null
+        if before is not None and _same(before.baseline, baseline)
+        else Null(len(linear.z), model.discrepancy_basis(), seed=rules.seed)
+    )
     lack_of_fit = null.lack_of_fit(linear.z, linear.by_u)
     improvement = null.max_improvement(screened)
     singles: list[Explanation] = []
@@ -168,6 +179,11 @@ def fit_baseline(model: MeasurementModel) -> Fit:
         if moved < FAR:
             break
     return found
+
+
+def _same(before: Fit, now: Fit) -> bool:
+    """Whether two baselines have the same residuals of the same coordinates."""
+    return before.z.shape == now.z.shape and np.array_equal(before.jacobian, now.jacobian)
 
 
 def _unpositioned(explanations: Sequence[Explanation], where: Collection[Candidate]) -> list[Explanation]:

@@ -37,9 +37,12 @@ def sentence(diagnosis: Diagnosis) -> str:
         first = " and ".join(diagnosis.effects[n].sentence for n in common)
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
         takes = _takes(diagnosis, common)
+        other = (
+            "Something else is wrong beside it" if _most(diagnosis, common) else "The larger part is another"
+        )
         return (
-            f"Found in part: {first} ({' + '.join(common)}{takes}). Something else is wrong beside it, and"
-            f" these data cannot say which: {rest}."
+            f"Found in part: {first} ({' + '.join(common)}{takes}). {other}, and these data cannot say which:"
+            f" {rest}."
         )
     others = "; or ".join(" + ".join(names) for names in sets[1:])
     return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
@@ -49,6 +52,12 @@ def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
     """The share of one cause, in the middle of a sentence."""
     own = [s for c, s in diagnosis.shares.items() if c.effect in names]
     return f", {percent(own[0])} of what noise leaves to explain" if len(own) == 1 else ""
+
+
+def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
+    """Whether these causes take more than the others that are named beside them."""
+    own = sum(s.value for c, s in diagnosis.shares.items() if c.effect in names)
+    return 2.0 * own >= sum(s.value for s in diagnosis.shares.values())
 
 
 def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from calibration.diagnosis.drawing import label_of_causes
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.search import Finding, Rules
-from calibration.diagnosis.report._words import HEADLINE
+from calibration.diagnosis.report._words import headline
 from calibration.report import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
 
 CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
@@ -77,7 +77,7 @@ def draw_evidence(finding: Finding) -> Picture:
     figure.legend(loc="outside upper left", ncols=3, fontsize=8, frameon=False)
     left_out = len(everything) - len(shown)
     caption = (
-        f"{HEADLINE[finding.verdict]}. How much of the departure each cause explains: bars in standard"
+        f"{headline(finding)}. How much of the departure each cause explains: bars in standard"
         " deviations (root of the improvement of chi-square less twice the logarithm of the number of places"
         " to choose from, which is written at their ends), each effect at the place where it explains most."
         " Grey bars were screened to first order, coloured ones fitted in the simulator. Left of the lines is"

@@ -88,7 +88,7 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
         else []
     )
     return [
-        f"Noise: {model.points} measured coefficients, whitened by their covariance, nuisances included."
+        f"Noise: {model.points} measured values, whitened by their covariance, nuisances included."
         f" {noise}".strip(),
         f"Null distribution: {draws} draws of that noise, fitted to first order with the baseline's free"
         f" coordinates ({len(model.names)}), in place of textbook values of χ². A chance below"

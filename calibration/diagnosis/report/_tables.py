@@ -59,7 +59,7 @@ def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
             Cell(text=f"{significant(per_si * left.rms, 2)} {unit} rms", value=per_si * left.rms),
             Cell(text=part),
             Cell(text="not known" if real else NOTHING),
-            Cell(text=_REPEATS[left.repeats] if real else "no more than noise"),
+            Cell(text=_REPEATS[left.repeats] if real else "within the noise that was assumed"),
             Cell(text=(about_remainder(left) if real else "") or NOTHING),
         ]
     )
@@ -90,7 +90,8 @@ def _cause_row(
     if effect.switch:  # it is there or not, and has no size
         values = [(cause.get("kind") or "there", values[0][1])]
     share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
-    evidence = _evidence(cause, told["gain"])
+    whole = named and len(diagnosis.finding.equivalent) > 1 and told_apart
+    evidence = _evidence(cause, told["gain"], in_all_sets=whole)
     return [
         Cell(
             text=cause["effect"]
@@ -120,9 +121,12 @@ def _share(share: dict[str, float | None]) -> str:
     return f"{part(value)} %" + ("" if low is None or high is None else f" [{part(low)}, {part(high)}]")
 
 
-def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None) -> str:
+def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None, *, in_all_sets: bool) -> str:
+    """in_all_sets: whether every set of causes that fits as well has it."""
     parts = []
-    if "confidence" in cause:
+    if in_all_sets:
+        parts.append("in every set of causes that fits as well")
+    elif "confidence" in cause:
         parts.append(f"first again in {_confidence(cause['confidence'])} of replicates")
     if gain is not None and gain["skill"] is not None:
         parts.append(f"held-out skill {gain['skill']:.2f} ({gain['held_out']})")

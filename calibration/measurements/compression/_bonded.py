@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 # A disc of 50 mm by 30 mm, the reference of the stored simulations.
 USUAL = Cylinder(radius=0.025, height=0.030)
-REMEMBERED = 512  # curves
+REMEMBERED = 64  # curves, of many records together
 
 
 @dataclass(frozen=True, kw_only=True)

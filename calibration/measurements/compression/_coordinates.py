@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calibration.measurements._baseline import Baseline, Extra
 from calibration.measurements._memory import Memory
 from calibration.measurements.compression._record import LAST, is_compressed
-from calibration.measurements.compression._repeatability import TERMS, Repeatability, basis, bends
+from calibration.measurements.compression._repeatability import TERMS, Repeatability, basis, bent
 from calibration.measurements.homogeneous._record import Record
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # in ripples as long as a tenth of the height, since the side comes down node by node.
 MESH = 0.003
 MESH_BEND = 12
-REMEMBERED = 512  # bases: fits ask for those of the same strains again and again
+REMEMBERED = 512  # bases: fits ask for those of the same records again and again
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,7 +34,7 @@ class Coordinates:
     baseline : with these extras.
     last : strain up to which records are compared.
     scattered : records that have a deviation. terms : of `TERMS`, by index.
-    bases : of deviations by record, of mesh errors by strain.
+    bases : of deviations, by record.
     """
 
     baseline: Baseline
@@ -71,9 +71,7 @@ class Coordinates:
 
     def mesh_error(self, strain: Array, mesh: Array) -> Array:
         """Of the logarithm of bonded over free force, shape of the strain; mesh : its terms."""
-        key = strain.shape, strain.tobytes()
-        (own,) = self.bases.fetch([key], lambda _: [bends(strain, LAST, MESH_BEND)])
-        return np.asarray(own @ mesh)
+        return bent(strain, LAST, mesh)
 
     def constrained_by(self, record: Record) -> NDArray[np.bool_]:
         """Coordinates (n,) that a record constrains."""

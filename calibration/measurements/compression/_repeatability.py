@@ -53,8 +53,16 @@ class Repeatability:
 
 def bends(strain: Array, last: float, degree: int = BEND) -> Array:
     """Legendre polynomials over [FIRST, last], (k, degree + 1); constant beyond."""
-    unit = np.clip(2.0 * (strain - FIRST) / (last - FIRST) - 1.0, -1.0, 1.0)
-    return np.asarray(np.polynomial.legendre.legvander(unit, degree))
+    return np.asarray(np.polynomial.legendre.legvander(_unit(strain, last), degree))
+
+
+def bent(strain: Array, last: float, terms: Array) -> Array:
+    """The sum of the first of `bends` with these factors, shape of the strain."""
+    return np.asarray(np.polynomial.legendre.legval(_unit(strain, last), terms))
+
+
+def _unit(strain: Array, last: float) -> Array:
+    return np.clip(2.0 * (strain - FIRST) / (last - FIRST) - 1.0, -1.0, 1.0)
 
 
 def basis(strain: Array, last: float) -> Array:

@@ -8,7 +8,7 @@ freely where its platens have left it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar, Literal
 
@@ -114,15 +114,36 @@ class CompressionModel(HomogeneousModel):
             # a column that the platen has not met yet carries nothing; one that remembers may be met later
             remembers = x.record.course is not None
             level.append(np.minimum(met, 1.0) if is_compressed(x.record) and not remembers else met)
-        found = []
         free = super()._at_own_stretches(loadings, level)
-        for x, s, p in zip(loadings, level, free, strict=True):
-            fraction, friction = _amount(x, "bonds"), _amount(x, "rubs")
-            if fraction or friction:
-                law = {e.name: a for e, a in x.acting}
-                log_ratio = self.bonded.log_ratio(s, law) + self.coordinates.mesh_error(1.0 - s, x.further)
-                p = p * np.exp(fraction * log_ratio + self._rubbed(s, friction, log_ratio))
+        held = [_amount(x, "bonds") or _amount(x, "rubs") for x in loadings]
+        log_ratios = self._log_ratios(
+            {k: x for k, x in enumerate(loadings) if held[k]}, {k: s for k, s in enumerate(level) if held[k]}
+        )
+        found = []
+        for k, (x, s, p) in enumerate(zip(loadings, level, free, strict=True)):
+            if held[k]:
+                rubbed = self._rubbed(s, _amount(x, "rubs"), log_ratios[k])
+                p = p * np.exp(_amount(x, "bonds") * log_ratios[k] + rubbed)
             found.append(_SHARES @ p if p.ndim == 2 else p)
+        return found
+
+    def _log_ratios(
+        self, loadings: Mapping[int, Loading], stretches: Mapping[int, Array]
+    ) -> dict[int, Array]:
+        """ln of bonded over free force, with the mesh's error, shape of each stretch. Those of one law are
+        taken together: a call costs more than its points do."""
+        alike: dict[Hashable, list[int]] = {}
+        for k, x in loadings.items():
+            law = tuple((e.name, a) for e, a in x.acting)
+            alike.setdefault((law, x.further.tobytes()), []).append(k)
+        found: dict[int, Array] = {}
+        for some in alike.values():
+            first = loadings[some[0]]
+            flat = np.concatenate([stretches[k].ravel() for k in some])
+            own = self.bonded.log_ratio(flat, {e.name: a for e, a in first.acting})
+            own = own + self.coordinates.mesh_error(1.0 - flat, first.further)
+            parts = np.split(own, np.cumsum([stretches[k].size for k in some])[:-1])
+            found.update({k: p.reshape(stretches[k].shape) for k, p in zip(some, parts, strict=True)})
         return found
 
     def _rubbed(self, stretch: Array, friction: float, bonded: Array) -> Array:

@@ -9,8 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.experiment.model import CouponMode
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._memory import Memory
+from calibration.measurements.homogeneous._curve import Curve
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._memory_stress import stresses_along
 from calibration.measurements.homogeneous._record import Record
@@ -68,6 +70,7 @@ class BaseStress:
         self.baseline = baseline
         self._bulk_ratio = bulk_ratio
         self._memory: Memory[Hashable, Array] = Memory(REMEMBERED)
+        self._drawn_curves: dict[CouponMode, Curve] = {}
 
     def over_modulus(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
         """At these stretches, shape of each; NaN where the law has none."""
@@ -102,7 +105,15 @@ class BaseStress:
         except ValueError:  # outside the law's domain
             return [np.full(s.shape, np.nan) for _, s in curves]
         with np.errstate(all="ignore"):
+            if not (self.baseline.free or material.has_parts):
+                # nothing but the stretch moves: one curve a mode, for any number of points
+                return [self._drawn(material, r.mode).at(s) / shear_modulus for r, s in curves]
             return [p / shear_modulus for p in predicted(material, curves)]
+
+    def _drawn(self, material: Material, mode: CouponMode) -> Curve:
+        if mode not in self._drawn_curves:
+            self._drawn_curves[mode] = Curve(material, mode)
+        return self._drawn_curves[mode]
 
 
 def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> list[Array]:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from calibration.experiment.model import CouponMode
 from calibration.measurements._baseline import REFERENCE, Baseline, Extra
 from calibration.measurements.homogeneous._record import Record
-from calibration.measurements.homogeneous.stress import DRIVEN
+from calibration.measurements.homogeneous.stress import DRIVEN, nominal_stresses
 from calibration.parameters import Parametrisation
 from tisim.laws import evaluate
 
@@ -22,6 +23,7 @@ WIDE = 0.25  # sd of a constant, as a part of its search range: it keeps a const
 DRAWS = 60  # of constants, times their number, before the search
 SPREAD = 1.5  # sd of draws of a logarithm
 STARTS, MOST_STEPS = 3, 40  # local searches, and their steps
+SHARP = 1e-4  # of the squares, where a search ends
 _BAD = 1e6  # whitened residual of a point without an answer
 
 
@@ -74,12 +76,16 @@ class RicherLaw:
         return self.materials.index(material) * len(self.free)
 
 
-def law_start(law: Parametrisation, records: Sequence[Record]) -> tuple[dict[str, float], Array] | None:
+def law_start(
+    law: Parametrisation, records: Sequence[Record], *, bulk_ratio: float
+) -> tuple[dict[str, float], Array] | None:
     """The law that fits the records of a material best: shear modulus of each specimen [Pa], and coordinates
     of the law, its first modulus REFERENCE. None where it has no answer.
 
     At constant volume, where a stress takes one evaluation; moduli of specimens are linear and solved for.
-    Constants are drawn over their range, and the best draws descend.
+    Constants are drawn over their range, and the best draws descend. The best of them descends once more at
+    K/G as it is held: at ten times its length a rubber is 1 % larger, and terms of a series law that nearly
+    hide each other are found by this search, not by the joint steps of a fit.
     """
     curves = _Curves.of(law, records)
     base = law.start(shear=REFERENCE)
@@ -118,17 +124,27 @@ def law_start(law: Parametrisation, records: Sequence[Record]) -> tuple[dict[str
             best, least = found.x, 2.0 * found.cost
     if not np.isfinite(least):
         return None
+    real = replace(curves, bulk_ratio=bulk_ratio)
+
+    def real_residuals(x: Array) -> Array:
+        return np.nan_to_num(real.residuals(full(x)), nan=_BAD)
+
+    if free and np.isfinite(_cost(real.residuals(full(best)))):
+        start = np.clip(best, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
+        best = least_squares(real_residuals, start, bounds=(low, high), max_nfev=MOST_STEPS, ftol=SHARP).x
     u = full(best)
     scale = law.moduli(u).shear_modulus
-    return {s: scale * x for s, x in curves.scales(u).items()}, u
+    return {s: scale * x for s, x in real.scales(u).items()}, u
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Curves:
-    """Measured curves of a material, whitened, beside those of a law at constant volume.
+    """Measured curves of a material, whitened, beside those of a law.
 
     Attributes
     ----------
+    bulk_ratio : K/G; None is constant volume.
+    modes : of each record, and its stretches.
     F : deformation gradients of all points, shape (n, 3, 3).
     free, driven : of each point the free principal stretch, and the driven one; 1 in simple shear.
     sheared : points in simple shear, shape (n,).
@@ -137,6 +153,8 @@ class _Curves:
     """
 
     law: Parametrisation
+    bulk_ratio: float | None
+    modes: Sequence[tuple[CouponMode, Array]]
     F: Array
     free: Array
     driven: Array
@@ -159,6 +177,8 @@ class _Curves:
         specimens = np.repeat([r.specimen for r in records], sizes)
         return cls(
             law=law,
+            bulk_ratio=None,
+            modes=[(r.mode, r.stretch) for r in records],
             F=F,
             free=stretches[:, 2],
             driven=stretches[:, 0],
@@ -194,6 +214,10 @@ class _Curves:
 
     def _own(self, u: Array) -> Array:
         """Nominal stress of the law [Pa], the free side without traction."""
+        if self.bulk_ratio is not None:
+            bulk = [c.name == "bulk_ratio" for c in self.law.coordinates]
+            material = self.law.material(np.where(bulk, np.log(self.bulk_ratio), u))
+            return np.concatenate(nominal_stresses(material, self.modes))
         material = self.law.material(u)
         P = evaluate(material.law, material.parameters, self.F)[1]
         pulled = P[:, 0, 0] - P[:, 2, 2] * self.free / self.driven
@@ -205,13 +229,14 @@ def _cost(z: Array) -> float:
     return total if np.isfinite(total) else np.inf
 
 
-def start_of(baseline: Baseline, records: Sequence[Record]) -> Array:
-    """Coordinates u of a baseline that fit best, of each material by itself. ValueError where the law has no
-    answer."""
+def start_of(baseline: Baseline, records: Sequence[Record], *, bulk_ratio: float) -> Array:
+    """Coordinates u of a baseline that fit best at this K/G, of each material by itself. ValueError where the
+    law has no answer."""
     moduli: dict[str, float] = {}
     laws: dict[str, Array] = {}
     for m in baseline.materials:
-        found = law_start(baseline.law, [r for r in records if r.material == m])
+        own = [r for r in records if r.material == m]
+        found = law_start(baseline.law, own, bulk_ratio=bulk_ratio)
         if found is None:
             raise ValueError(f"{baseline.law.label}: no stress at the stretches of {m}")
         moduli |= found[0]

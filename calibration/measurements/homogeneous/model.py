@@ -119,12 +119,15 @@ class HomogeneousModel(MeasurementModel):
     def _take_richer(self, law: str, terms: int) -> None:
         """Constants of a richer law as further coordinates, each material's from a fit of its own."""
         form = parametrisation(law, terms=terms)
-        centres = {}
+        centres: dict[str, Array] = {}
+        self._rich_moduli: dict[str, float] = {}
         for m in self.baseline.materials:
-            found = law_start(form, [r for r in self.records if r.material == m])
+            own = [r for r in self.records if r.material == m]
+            found = law_start(form, own, bulk_ratio=BULK_RATIO)
             if found is None:
                 raise ValueError(f"{form.label}: no stress at the stretches of {m}")
-            centres[m] = found[1]
+            moduli, centres[m] = found
+            self._rich_moduli |= moduli
         self.richer = RicherLaw(law=form, centres=centres)
         self.baseline = self._base.baseline = self.baseline.with_extras(self.richer.extras())
         self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
@@ -142,12 +145,28 @@ class HomogeneousModel(MeasurementModel):
         said = replace(effect.effect, sentence=sentence)
         return replace(effect, effect=said, variants=lambda _: (1.0,), variant_label=lambda _: label)
 
-    def with_law(self, law: str, terms: int) -> Self:
+    def with_law(self, law: str, terms: int) -> list[Self]:
         """The same measurements with another law as baseline and no effects, to compare laws.
 
-        ValueError where the law has no answer.
+        Of each material by itself: they share no coordinate, and one fit of all would go at the slowest one's
+        pace. ValueError where the law has no answer.
         """
-        return type(self)(self.experiment, law=law, terms=terms)
+        each: dict[str, list[CouponTrial]] = {m: [] for m in self.baseline.materials}
+        for t in self.trials:
+            each[t.material].append(t)
+        some = [replace(self.experiment, trials=tuple(trials)) for trials in each.values()]
+        return [type(self)(e, law=law, terms=terms) for e in some]
+
+    def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
+        """With a richer law the moduli begin where that law's fit has them: a stress that grows hundredfold
+        asks another small-strain modulus of each law, too far for steps from the baseline's."""
+        u = state.u.copy()
+        for c in candidates if self.richer is not None else ():
+            if self.effects[c.effect].richer:
+                for r, hit in zip(self.records, self.reached(c), strict=True):
+                    if hit:
+                        u[self.baseline.specimens.index(r.specimen)] = np.log(self._rich_moduli[r.specimen])
+        return replace(state, u=u)
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
         mine = [k for k, r in enumerate(self.records) if r.material == material]
@@ -177,7 +196,7 @@ class HomogeneousModel(MeasurementModel):
         """Moduli of the incompressible neo-Hookean curves nearest to the records; a law with constants of its
         own is fitted from several starts. ValueError where a specimen pulls back against its stretch."""
         if self.baseline.free and not self.baseline.whole:
-            return start_of(self.baseline, self.records)
+            return start_of(self.baseline, self.records, bulk_ratio=BULK_RATIO)
         found = {}
         for name in self.baseline.specimens:
             top = bottom = 0.0
@@ -374,8 +393,8 @@ class HomogeneousModel(MeasurementModel):
             parts.append("the stress and stretch errors that the lab states, white from point to point")
         if len(stated) < len(self.records):
             parts.append(
-                "where it states none, an error from the scatter about a smooth curve, at least 0.5 % of the"
-                " largest stress"
+                "where the lab states none, an error from the scatter about a smooth curve, at least 0.5 % of"
+                " the largest stress"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from calibration.diagnosis.drawing import (
+    PANELS,
     DrawnCurve,
     Figure,
     before_and_after,
@@ -134,7 +135,9 @@ def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
                 axes.plot(x[mine], added, color=LOOK[kind], lw=2.0, zorder=2)
         _titled(axes, d, "above the baseline / kPa")
 
-    kinds = dict.fromkeys(kind for d in most_telling(records)[0] for _, kind in d.branches())
+    kinds = dict.fromkeys(
+        kind for d in most_telling(records, PANELS["residuals"])[0] for _, kind in d.branches()
+    )
     handles = [Line2D([], [], ls="", marker="o", ms=4, color=LOOK[k], label=f"measured, {k}") for k in kinds]
     if any(d.extended for d in records):
         handles.append(Line2D([], [], color=INK, lw=2, label=after))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,10 +10,14 @@ import pytest
 from fake_model import FakeModel, effect, library, noise, sigmas, waves
 
 from calibration.diagnosis import laws
-from calibration.diagnosis.engine import run
+from calibration.diagnosis.engine import explanation, run
+from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.run import Searched, diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.laws import diagnose_with_law
+from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._state import State
 
 
 def hidden(name: str, size: float) -> np.ndarray:
@@ -78,3 +83,65 @@ def test_a_first_round_is_concluded_only_where_the_second_says_less(
     assert concluded == ([True] if named else [True, False])
     assert found.finding.verdict == ("partly explained" if named else "unexplained"), found.sentence()
     assert "ripple" in model.effects
+
+
+@pytest.mark.parametrize("fewer", [True, False])
+def test_of_two_rounds_that_explain_only_what_is_said_is_concluded(
+    fewer: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two usual causes, or one further one that has their shape: fewer are said."""
+    usual = {n: library()[n] for n in ("bend", "slope")}
+    both = hidden("bend", 40.0) + hidden("slope", 40.0)
+    rare = both / np.linalg.norm(both) if fewer else library()["ripple"]
+
+    def make(*, further: bool = True, **_: object) -> FakeModel:
+        model = FakeModel(
+            shapes=usual | ({"rare": rare} if further else {}),
+            effects={"rare": replace(effect("rare"), further=True)} if further else {},
+            hidden=both,
+            drawn=noise(3),
+        )
+        model.visible = dict.fromkeys(model.candidates, True)
+        return model
+
+    concluded = []
+
+    def watched(found: Searched, **options: bool) -> Diagnosis:
+        concluded.append("rare" in found.model.effects)
+        return run_concluded(found, **options)  # type: ignore[arg-type]
+
+    run_concluded = run.concluded
+    monkeypatch.setattr(laws, "concluded", watched)
+    found, model = diagnose_with_law(make, gain=False)
+    assert concluded == [fewer]
+    assert found.finding.verdict == "found", found.sentence()
+    assert found.finding.equivalent == ((("rare",),) if fewer else (("bend", "slope"),))
+    assert ("rare" in model.effects) == fewer
+
+
+def test_a_second_round_fits_no_set_of_causes_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = {n: library()[n] for n in ("bend", "slope")}
+    outside = 30.0 * waves(7)[:, 6] / np.linalg.norm(waves(7)[:, 6])
+
+    def make(*, further: bool = True, **_: object) -> FakeModel:
+        shapes = usual | ({"ripple": library()["ripple"]} if further else {})
+        model = FakeModel(
+            shapes=shapes,
+            effects={"ripple": replace(effect("ripple"), further=True)} if further else {},
+            hidden=outside + hidden("bend", 60.0) + hidden("slope", 40.0) + hidden("ripple", 50.0),
+            drawn=noise(3),
+        )
+        model.visible = dict.fromkeys(model.candidates, True)
+        return model
+
+    fitted: list[frozenset[Candidate]] = []
+    plain = explanation.fit
+
+    def counted(model: MeasurementModel, start: State, candidates: Sequence[Candidate]) -> Fit:
+        fitted.append(frozenset(candidates))
+        return plain(model, start, candidates)
+
+    monkeypatch.setattr(explanation, "fit", counted)
+    diagnose_with_law(make, gain=False)
+    assert any("ripple" in [c.effect for c in causes] for causes in fitted)
+    assert len(fitted) == len(set(fitted)) > 3

@@ -58,9 +58,14 @@ def ramps(top: float, count: int, points: int = 40) -> Array:
 
 
 def coupon_model(
-    made: Experiment, *, without: Sequence[str] = (), law: str = "neo-hookean", further: bool = False
+    made: Experiment,
+    *,
+    without: Sequence[str] = (),
+    law: str = "neo-hookean",
+    further: bool = False,
+    richer: tuple[str, int] | None = None,
 ) -> HomogeneousModel:
     """With the catalogue's effects; those of the second round where `further`."""
     known = effects_of("homogeneous").items()
     effects = {n: e for n, e in known if n not in without and (further or not e.further)}
-    return HomogeneousModel(made, effects=effects, law=law)  # type: ignore[arg-type]
+    return HomogeneousModel(made, effects=effects, law=law, richer=richer)  # type: ignore[arg-type]

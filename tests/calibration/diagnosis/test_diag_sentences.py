@@ -1,0 +1,32 @@
+"""Verdicts in sentences: what all sets of causes share, and how much of it that is."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from calibration.diagnosis.engine.sentences import sentence
+from calibration.diagnosis.engine.shares import Interval
+from calibration.measurements._effect import Candidate
+
+
+@pytest.mark.parametrize(
+    ("grip", "rest"), [(0.6, "Something else is wrong beside it"), (0.2, "The larger part is another")]
+)
+def test_a_cause_that_is_certain_is_said_with_its_weight(grip: float, rest: str) -> None:
+    shares = {"grip": grip, "void": 0.9 - grip}
+    diagnosis: Any = SimpleNamespace(
+        finding=SimpleNamespace(
+            verdict="ambiguous", equivalent=(("grip", "void"), ("grip", "tilt")), certain=("grip",)
+        ),
+        chosen=SimpleNamespace(candidates=[Candidate(effect=n) for n in shares], names=tuple(shares)),
+        effects={n: SimpleNamespace(sentence=f"there is a {n}") for n in ("grip", "void", "tilt")},
+        shares={Candidate(effect=n): Interval(value=s, low=s - 0.1, high=s + 0.1) for n, s in shares.items()},
+    )
+    part = f"{100 * grip:.0f} % [{100 * grip - 10:.0f}, {100 * grip + 10:.0f}]"
+    assert sentence(diagnosis) == (
+        f"Found in part: there is a grip (grip, {part} of what noise leaves to explain)."
+        f" {rest}, and these data cannot say which: void or tilt."
+    )
