@@ -7,7 +7,7 @@ from calibration.diagnosis.drawing._curves import (
     legend_of,
     most_telling,
 )
-from calibration.diagnosis.drawing._domain import Figure
+from calibration.diagnosis.drawing._domain import Figure, Section
 from calibration.diagnosis.drawing._labels import label, label_of_causes
 from calibration.diagnosis.drawing._panels import (
     PANELS,
@@ -25,6 +25,7 @@ __all__ = [
     "PANELS",
     "DrawnCurve",
     "Figure",
+    "Section",
     "before_and_after",
     "dots",
     "draw_rms",

@@ -131,7 +131,8 @@ def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None, *, in_all_sets
     if gain is not None and gain["skill"] is not None:
         parts.append(f"held-out skill {gain['skill']:.2f} ({gain['held_out']})")
     elif gain is not None:
-        parts.append("nothing held out")
+        nothing = gain["held_out"] == "none"
+        parts.append("nothing held out" if nothing else "held out, the baseline leaves no more than noise")
     return "; ".join(parts)
 
 

@@ -14,6 +14,7 @@ from calibration.diagnosis.drawing import (
     PANELS,
     DrawnCurve,
     Figure,
+    Section,
     before_and_after,
     draw_rms,
     legend_handles,
@@ -31,6 +32,7 @@ from calibration.report import COLOURS, INK
 Array = NDArray[np.float64]
 
 Kind = Literal["loading", "unloading", "loading again"]
+SEEN = 0.03  # of a record's largest stress: a departure that shows between its curves
 DOTS = 12  # a branch, where what is left is drawn
 LOOK: dict[Kind, str] = {"loading": COLOURS[0], "unloading": COLOURS[1], "loading again": COLOURS[2]}
 _KPA = 1e-3
@@ -83,9 +85,14 @@ def pictures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[Figure]:
     if not all(np.isfinite(d.before).all() for d in records):
         raise ValueError("the law has no stress at the baseline")
     after = legend_of(diagnosis)
+    curves = draw_curves(records, after)
+    # curves that lie on each other show nothing: what is left of them comes first then
+    if any(d.rms("before") > SEEN * np.abs(d.record.stress).max() for d in records):
+        first = [curves, draw_residuals(records, after, section="residuals")]
+    else:
+        first = [draw_residuals(records, after, section="shapes"), curves]
     return [
-        draw_curves(records, after),
-        draw_residuals(records, after),
+        *first,
         draw_rms(
             records,
             diagnosis,
@@ -121,7 +128,7 @@ def draw_curves(records: Sequence[DrawnRecord], after: str) -> Figure:
     )
 
 
-def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
+def draw_residuals(records: Sequence[DrawnRecord], after: str, *, section: Section) -> Figure:
     """One panel a trial: measured less baseline, in means of neighbouring points, and what the extension adds
     to the baseline: where it says what the baseline lacks, its lines go through the dots."""
 
@@ -135,9 +142,7 @@ def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
                 axes.plot(x[mine], added, color=LOOK[kind], lw=2.0, zorder=2)
         _titled(axes, d, "above the baseline / kPa")
 
-    kinds = dict.fromkeys(
-        kind for d in most_telling(records, PANELS["residuals"])[0] for _, kind in d.branches()
-    )
+    kinds = dict.fromkeys(kind for d in most_telling(records, PANELS[section])[0] for _, kind in d.branches())
     handles = [Line2D([], [], ls="", marker="o", ms=4, color=LOOK[k], label=f"measured, {k}") for k in kinds]
     if any(d.extended for d in records):
         handles.append(Line2D([], [], color=INK, lw=2, label=after))
@@ -149,7 +154,7 @@ def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
         " deviation."
         + (" Lines: what is added to the baseline; right where they go through the dots." if after else ""),
         handles=handles,
-        section="residuals",
+        section=section,
     )
 
 
