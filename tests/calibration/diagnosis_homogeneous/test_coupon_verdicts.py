@@ -87,7 +87,7 @@ def test_pictures_show_something() -> None:
     model, found = diagnosed()
     pictures = model.pictures(found)
     by_name = {p.name: p for p in pictures}
-    assert list(by_name) == ["residuals", "curves", "rms"]  # the departure is 1 % of the stress
+    assert list(by_name) == ["residuals", "curves", "rms"]  # the curves lie on each other
     for p in pictures:
         file = io.BytesIO()
         p.figure.savefig(file, format="png")
