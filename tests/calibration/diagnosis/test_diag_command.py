@@ -33,7 +33,7 @@ def _no_diagnosis(monkeypatch: pytest.MonkeyPatch) -> None:
     def stop(*_: object, **__: object) -> None:
         raise AssertionError("the search began with input that cannot be used")
 
-    monkeypatch.setattr("calibration.diagnosis.laws.diagnose", stop)
+    monkeypatch.setattr("calibration.diagnosis.laws.searched", stop)
 
 
 def refused(done: Result, *said: str) -> None:

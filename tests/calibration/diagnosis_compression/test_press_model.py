@@ -181,7 +181,8 @@ def test_which_coupons_are_presses() -> None:
 def test_pictures_and_words() -> None:
     model = press_model(both(sliding, seed=1))
     found = diagnose(model, gain=False)
-    assert [p.name for p in model.pictures(found)] == ["curves", "residuals", "rms"]
+    names = [p.name for p in model.pictures(found)]
+    assert names == ["residuals", "curves", "rms"]  # the curves lie on each other
     for p in model.pictures(found):
         p.figure.savefig(io.BytesIO(), format="png")
     assert "too few repeats" in model.noise_sentence()
