@@ -175,7 +175,7 @@ def row(one: Set, found: dict[str, Any]) -> list[str]:
     told = [c for c in found["causes"] if all(c["effect"] in names for names in sets)]
     named = sorted(told or found["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
     sure = {c["effect"] for c in named}
-    others = [" + ".join(sorted(names - sure)) for names in sets if names - sure]
+    others = [" + ".join(sorted(names - sure if told else names)) for names in sets if names - sure]
     causes = "; ".join(cause(c, shares=len(named) > 1 or bool(others)) for c in named)
     if others:
         causes += f"; beside it {' or '.join(others)}" if told else f"; or {'; or '.join(others)}"
