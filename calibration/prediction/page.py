@@ -15,6 +15,7 @@ from calibration.report import BAND, COLOURS, INK, Cell, Picture, paper, picture
 
 MOST = 12  # records in the picture
 COLUMNS = 3
+BESIDE = 0.5  # of what lines and the narrowest band span, shown on either side of them
 COLOUR = {BASELINE: COLOURS[4], EXTENDED: COLOURS[0]}
 
 PAGE = """\
@@ -146,7 +147,10 @@ def draw(found: Prediction) -> Picture:
     handles, names = panels[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside upper center", ncols=columns, frameon=False, fontsize=8)
     left_out = len(found.records) - len(some)
-    caption = "Measured points and predictions; bands hold 95 % of measurements where the models are right."
+    caption = (
+        "Measured points and predictions; bands hold 95 % of measurements where the models are right. A band"
+        " that is much wider than all lines goes on beyond its frame."
+    )
     if left_out:
         caption += f" {left_out} more records are in prediction.json."
     return picture(figure, "prediction", caption)
@@ -155,6 +159,7 @@ def draw(found: Prediction) -> Picture:
 def _panel(axes: Any, found: Prediction, r: Record) -> None:
     per_si = r.shown.unit[1]
     x, measured = r.shown.x[r.used], per_si * r.shown.measured[r.used]
+    lines, bands = [measured], []
     for m in found.models:
         value = per_si * r.predicted[m].value[r.used]
         wide = WIDTH * per_si * r.predicted[m].sd[r.used]
@@ -162,11 +167,18 @@ def _panel(axes: Any, found: Prediction, r: Record) -> None:
         label = m if found.labels[m] == m else f"{m} ({found.labels[m]})"
         axes.fill_between(x, value - wide, value + wide, color=colour, alpha=0.18, linewidth=0)
         axes.plot(x, value, color=colour, linewidth=1.4, label=label)
+        lines.append(value)
+        bands.append(np.concatenate([value - wide, value + wide]))
     axes.plot(x, measured, ".", color=INK, markersize=3, label="measured")
     axes.set_title(f"{r.name} ({r.material})", fontsize=9)
     axes.set_xlabel(r.shown.axis, fontsize=8)
     axes.set_ylabel(f"{r.shown.quantity} [{r.shown.unit[0]}]", fontsize=8)
     axes.grid(color=BAND, linewidth=0.6)
+    # all lines and the narrowest band: a wide band of the other model would leave the lines flat
+    seen = np.concatenate([*lines, min(bands, key=np.ptp)])
+    beside = BESIDE * float(np.ptp(seen))
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, float(seen.min()) - beside), min(high, float(seen.max()) + beside))
 
 
 def _evenly(count: int) -> Sequence[int]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import yaml
 from _folders import coupon_entry, write_experiment
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import calibration
@@ -20,6 +21,7 @@ from benchmarks.blind.timed.material import Prony, Solid
 from calibration.errors import InputError
 from calibration.predict import app
 from calibration.prediction._cards import extended_model, read_cards
+from calibration.prediction.page import _panel
 from calibration.prediction.schema import PredictionFile
 
 G, BULK = 3e4, 9e7
@@ -99,6 +101,22 @@ def test_a_card_predicts_what_it_was_not_fitted_to(measured: Path, tmp_path: Pat
     assert whole.models["baseline"].sd["model error"] > 4.0 * sd["parameters"]
     curve = found.records[1].curves["extended"]
     assert all(low < p < high for low, p, high in zip(curve.low, curve.predicted, curve.high, strict=True))
+
+
+def test_a_wide_band_leaves_the_lines_to_be_seen(measured: Path, tmp_path: Path) -> None:
+    """Of a baseline that states an error of ten times its modulus; a narrow band is drawn whole."""
+    spans = []
+    for error in (10.0, 0.01):
+        wide = {**content()["baseline"], "model_error": error}
+        found = calibration.predict(measured, card(tmp_path / "cards", baseline=wide), workers=1).prediction
+        for r in found.records:
+            axes = Figure().subplots()
+            _panel(axes, found, r)
+            stress = 1e-3 * r.shown.measured[r.used]
+            low, high = axes.get_ylim()
+            assert low < stress.min() < stress.max() < high
+            spans.append((high - low) / np.ptp(stress))
+    assert max(spans) < 3.0
 
 
 def test_a_named_specimen_widens_the_interval(measured: Path, tmp_path: Path) -> None:
