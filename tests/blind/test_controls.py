@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
+from benchmarks.blind.compression import SHEAR_MODULI
+from benchmarks.blind.compression import laboratory as compression
 from benchmarks.blind.controls import LABORATORIES, covered, scores
 from benchmarks.blind.laboratory import left, shapley
 
@@ -72,6 +75,18 @@ def test_a_smooth_error_is_small_and_not_stated(kind: str, tmp_path: Path) -> No
         assert np.abs(np.diff(error)).max() < 0.2 * np.ptp(error)  # no jumps: it is smooth
         others = np.arange(plain.shape[1]) != lab.measured
         assert smooth[:, others] == pytest.approx(plain[:, others])
+
+
+def test_one_machine_presses_both_cylinders() -> None:
+    """Its part of the recorded strain, over the stress in Pa, is one number."""
+    case = replace(compression.clean(3), count=1)
+    soft = compression.Hidden(name="machine-compliance", amplitude=0.01)
+    parts = []
+    for material, shear in SHEAR_MODULI.items():
+        plain, yielding = (-compression.stress(case, h, material) for h in ((), (soft,)))
+        own = case.strain - np.interp(yielding, plain, case.strain)
+        parts.append(own[10:] / (shear * yielding[10:]))
+    assert np.concatenate(parts) == pytest.approx(0.01 / SHEAR_MODULI["soft"], rel=0.02)
 
 
 def row(verdict: str, named: tuple[str, ...] = (), **more: Any) -> dict[str, Any]:
