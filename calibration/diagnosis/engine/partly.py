@@ -138,9 +138,9 @@ def _judge(
         against.append(
             f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
         )
-    elif at_least < rules.least_share:
+    elif at_least < rules.surely:
         against.append(
-            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.least_share:.0f} % or more"
+            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.surely:.0f} % or more"
         )
     if within_smooth_error(model, baseline, noise, rules):
         part = relative_rms(model, baseline) or 0.0
@@ -190,7 +190,7 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
         allowed = max(rules.same_amplitude * abs(value), rules.same_sds * sd)
         if np.abs(values - value).max() > allowed:
             found.append(f"the amplitude of {c.effect} changes with the part that is left out")
-    if held_out.within and rules.least_share <= at_least < rules.least_share_within:
+    if held_out.within and at_least < rules.least_share_within:
         found.append(
             f"measurements could be held out from within the tests only, where its share must be sure to be"
             f" {100.0 * rules.least_share_within:.0f} %"

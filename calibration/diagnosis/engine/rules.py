@@ -26,11 +26,13 @@ class Rules:
     triples : pairs that a third cause is looked for beside, and thirds of each that are confirmed.
     seed : of the bootstrap.
     draws : replicates of the bootstrap over specimens, tests or stretches of records.
-    least_share : of the explainable misfit that causes must take to be named where more than noise is left.
-    sure : part of the replicates in which they must.
+    least_share : of the explainable misfit that causes must take to be named where more than noise is left: a
+        cause beside an equally large one that is not in the library takes one half, more or less.
+    surely, sure : share that they must take in this part of the replicates; the same part is asked of the
+        draws of held-out parts.
     least_skill : of what noise leaves to explain in held-out measurements, that they must predict.
-    least_share_within : the same where measurements can only be held out from within a test: what all of one
-        test shares, a smooth error that nobody stated among it, is then in the training as well.
+    least_share_within : of the share, as surely, where measurements can only be held out from within a test:
+        what all of one test shares, a smooth error that nobody stated among it, is then in the training too.
     further_share : that one cause more must take.
     as_good, alike : part of the replicates in which another explanation may take more before it is named as
         well; share by which it must take less.
@@ -53,9 +55,10 @@ class Rules:
     triples: tuple[int, int] = (2, 3)
     seed: int = 0
     draws: int = 400
-    least_share: float = 0.5
+    least_share: float = 0.4
+    surely: float = 0.1
     sure: float = 0.95
-    least_skill: float = 0.5
+    least_skill: float = 0.4
     least_share_within: float = 0.75
     further_share: float = 0.1
     as_good: float = 0.05
