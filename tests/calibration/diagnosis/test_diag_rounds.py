@@ -51,6 +51,20 @@ def test_a_departure_that_a_smooth_error_may_make_is_not_named_though_a_cause_ex
     assert "which a smooth error that nobody stated may have" in small.sentence()
 
 
+def rounds_concluded(monkeypatch: pytest.MonkeyPatch, further: str) -> list[bool]:
+    """Of each round that is concluded from now on, whether it had this further effect."""
+    concluded: list[bool] = []
+    unwatched = run.concluded
+
+    def watched(found: Searched, **options: bool) -> Diagnosis:
+        concluded.append(further in found.model.effects)
+        return unwatched(found, **options)  # type: ignore[arg-type]
+
+    for module in (run, laws):
+        monkeypatch.setattr(module, "concluded", watched)
+    return concluded
+
+
 @pytest.mark.parametrize("named", [True, False])
 def test_a_first_round_is_concluded_only_where_the_second_says_less(
     named: bool, monkeypatch: pytest.MonkeyPatch
@@ -70,15 +84,7 @@ def test_a_first_round_is_concluded_only_where_the_second_says_less(
         model.visible = dict.fromkeys(model.candidates, True)
         return model
 
-    concluded = []
-
-    def watched(found: Searched, **options: bool) -> Diagnosis:
-        concluded.append("ripple" in found.model.effects)
-        return run_concluded(found, **options)  # type: ignore[arg-type]
-
-    run_concluded = run.concluded
-    monkeypatch.setattr(run, "concluded", watched)
-    monkeypatch.setattr(laws, "concluded", watched)
+    concluded = rounds_concluded(monkeypatch, "ripple")
     found, model = diagnose_with_law(make, gain=False)
     assert concluded == ([True] if named else [True, False])
     assert found.finding.verdict == ("partly explained" if named else "unexplained"), found.sentence()
@@ -104,14 +110,7 @@ def test_of_two_rounds_that_explain_only_what_is_said_is_concluded(
         model.visible = dict.fromkeys(model.candidates, True)
         return model
 
-    concluded = []
-
-    def watched(found: Searched, **options: bool) -> Diagnosis:
-        concluded.append("rare" in found.model.effects)
-        return run_concluded(found, **options)  # type: ignore[arg-type]
-
-    run_concluded = run.concluded
-    monkeypatch.setattr(laws, "concluded", watched)
+    concluded = rounds_concluded(monkeypatch, "rare")
     found, model = diagnose_with_law(make, gain=False)
     assert concluded == [fewer]
     assert found.finding.verdict == "found", found.sentence()
