@@ -55,7 +55,7 @@ def test_half_and_half(kind: str, seed: int) -> None:
     assert 0.0 < share < 1.0
 
 
-@pytest.mark.parametrize("kind", list(RECORDS))
+@pytest.mark.parametrize("kind", [*RECORDS, "release"])
 def test_one_cause_alone_has_all(kind: str) -> None:
     lab = LABORATORIES[kind]
     case = lab.one(3, 25.0)
@@ -112,6 +112,25 @@ def test_a_smooth_error_of_edges(tmp_path: Path) -> None:
             normal = np.einsum("kc,kc->k", move, np.stack([-tangent[:, 1], tangent[:, 0]], axis=1))
             turns = np.diff(np.sign(np.diff(normal / np.hypot(*tangent.T)))) != 0
             assert turns.sum() <= WAVES + 1  # smooth, whatever the number of points
+
+
+def test_a_smooth_error_of_markers(tmp_path: Path) -> None:
+    """Of each marker's height its own, beside a stated one that stays."""
+    lab = LABORATORIES["release"]
+    for name in ("plain", "smooth"):
+        lab.write(lab.clean(5), tmp_path / name)
+    lab.smooth_error(tmp_path / "smooth", 5)
+    plain, smooth = (
+        np.loadtxt(tmp_path / name / "run-0.csv", delimiter=",", skiprows=1, usecols=(1, 2, 4))
+        for name in ("plain", "smooth")
+    )
+    assert np.array_equal(plain[:, :2], smooth[:, :2])
+    errors = (smooth - plain)[:, 2].reshape(4, -1) / np.abs(plain[:, 2]).max()
+    size = np.sqrt(np.mean(errors**2, axis=1))
+    assert size == pytest.approx(np.full(4, size[0]), rel=1e-6)
+    assert 0.002 < size[0] < 0.011
+    assert np.abs(np.diff(errors, axis=1)).max() < 0.2 * size[0]  # smooth
+    assert np.abs(np.corrcoef(errors)[np.triu_indices(4, 1)]).max() < 0.99
 
 
 def test_slopes_of_beams_have_the_sizes_of_their_causes() -> None:
