@@ -124,7 +124,7 @@ def _stored_kinds(plan: Plan) -> tuple[str, ...]:
 
 def _specs(plan: Plan) -> dict[str, Spec]:
     """The arrays of the plan's store: laws and kinds of inclusion that others lack are among its codes."""
-    specs = specs_of(plan.recipe.identity())
+    specs = specs_of(plan.identity)
     return {
         **specs,
         "law": replace(specs["law"], attributes=flags(stored_laws(plan.law))),
@@ -258,7 +258,7 @@ def _poke_arrays(
         "course_depth": pieces,
     }
     arrays: dict[str, NDArray[Any]] = {}
-    for name, spec in specs_of(plan.recipe.identity()).items():
+    for name, spec in specs_of(plan.identity).items():
         if spec.rows == "poke":
             row = widths.get(name, spec.row)
             arrays[name] = np.zeros((n, *row), dtype=spec.dtype)
@@ -275,6 +275,9 @@ def _poke_arrays(
         arrays["site"][i] = scene.site
         arrays["direction"][i] = _unit(scene.direction)
         arrays["depth_asked"][i] = deepest(scene)
+        if "solved_as" in arrays:
+            arrays["solved_as"][i] = poke.solved_as if poke.derived else i
+            arrays["force_factor"][i] = poke.force_factor
         if scene.course is not None:
             arrays["course_time"][i], arrays["course_depth"][i] = scene.course.times, scene.course.values
         text = errors.get(i, "").encode()

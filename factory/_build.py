@@ -7,7 +7,7 @@ import shlex
 import shutil
 from collections.abc import Callable, Generator
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from factory._assemble import assemble
@@ -16,6 +16,7 @@ from factory._execution import SIMULATOR
 from factory._input import InputError, describe_os_error
 from factory._local import run_local
 from factory._record import Outcome
+from factory._similar import arrays_of, in_proportion
 from factory._staging import DamagedResultError, Staging, set_damaged_aside
 from factory._store import DamagedError, is_store, root_attributes
 from factory.plan import Plan, PlannedPoke, changes
@@ -243,16 +244,39 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
         on_progress(BuildProgress(len(done), 0, total, staging))
     if not missing:
         return 0
-    with closing(means.run(missing)) as outcomes:
+    derived: dict[int, list[PlannedPoke]] = {}
+    for poke in missing:
+        if poke.derived:
+            derived.setdefault(poke.solved_as, []).append(poke)
+
+    def keep(outcome: Outcome) -> None:
+        nonlocal simulated, failed
+        staging.stage(outcome)
+        simulated += outcome.error is None
+        failed += outcome.error is not None
+        if outcome.error is not None:
+            log.debug("poke %d failed: %s", outcome.index, outcome.error)
+        if on_progress is not None:
+            on_progress(BuildProgress(len(done) + simulated, failed, total, staging, outcome))
+
+    for index in sorted(done & set(derived)):
+        with staging.opened(index) as arrays:
+            for poke in derived[index]:
+                keep(in_proportion(dict(arrays), poke))
+    own = [poke for poke in missing if not poke.derived]
+    if not own:
+        return simulated
+    with closing(means.run(own)) as outcomes:
         for outcome in outcomes:
-            staging.stage(outcome)
+            keep(outcome)
             staging.note_times(outcome)
-            simulated += outcome.error is None
-            failed += outcome.error is not None
-            if outcome.error is not None:
-                log.debug("poke %d failed: %s", outcome.index, outcome.error)
-            if on_progress is not None:
-                on_progress(BuildProgress(len(done) + simulated, failed, total, staging, outcome))
+            if outcome.index not in derived:
+                continue
+            for poke in derived[outcome.index]:
+                if outcome.error is None:
+                    keep(in_proportion(arrays_of(outcome), poke))
+                else:
+                    keep(replace(outcome, index=poke.index, wall=0.0, core=0.0))
     return simulated
 
 

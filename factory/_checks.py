@@ -181,6 +181,25 @@ def forces(data: Dataset) -> list[str]:
     return _frames(data, gap > FORCE_BALANCE, f"base reaction is not the rod's force to {FORCE_BALANCE:.0%}")
 
 
+def one_solve(data: Dataset) -> list[str]:
+    """Pokes that take another's solve move as that one, with forces in proportion."""
+    table = data.table
+    if "solved_as" not in table:
+        return []
+    faults = []
+    for index in np.flatnonzero(table["solved_as"] != np.arange(data.n_pokes)).tolist():
+        other, factor = int(table["solved_as"][index]), float(table["force_factor"][index])
+        if not (0 <= other < index and table["solved_as"][other] == other):
+            faults.append(f"poke {index}: takes the solve of poke {other}, which has none of its own")
+            continue
+        rows, its = data.rows(index, "frame"), data.rows(other, "frame")
+        moved = [data.read("grid_displacement", frames) for frames in (rows, its)]
+        forces = table["rod_force"][rows], factor * table["rod_force"][its]
+        if not (np.array_equal(*moved) and np.array_equal(*forces)):
+            faults.append(f"poke {index}: is not {factor:.4g} times the solve of poke {other}")
+    return faults
+
+
 def motion(data: Dataset) -> list[str]:
     """Frames lie on the rod's path, deeper one by one, apart by the spacing (the last may be nearer).
 
@@ -269,6 +288,7 @@ CHECKS: dict[str, Check] = {
     "inclusions": inclusion_profiles,
     "equilibrium of each frame": equilibrium,
     "base reaction = rod force": forces,
+    "solves taken over": one_solve,
     "rod path and spacing": motion,
     "time, phase and energy": clock,
 }

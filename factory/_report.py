@@ -59,7 +59,9 @@ class Estimate:
     size : float
         Of the store [bytes].
     missing : int
-        Pokes still to simulate.
+        Pokes that are not done.
+    solves : int
+        Of these, solves to do: pokes that differ by the modulus alone share one.
     measured : bool
         `poke_seconds` comes from this build's ledger.
     """
@@ -69,6 +71,7 @@ class Estimate:
     seconds: float
     size: float
     missing: int
+    solves: int
     measured: bool
 
 
@@ -79,8 +82,9 @@ def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
     walls = [float(entry["wall_seconds"]) for entry in ledger.values() if not entry.get("error")]
     asked = plan.recipe.protocol.depth_mm / 10.0
     each = fmean(walls) if walls else SECONDS_TO_10_MM * asked**GROWTH
-    done = len(staging.finished())
-    missing = max(len(plan.pokes) - done, 0)
+    finished = staging.finished()
+    missing = max(len(plan.pokes) - len(finished), 0)
+    solves = sum(not poke.derived and poke.index not in finished for poke in plan.pokes)
     frames = FRAMES_PER_MM * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm
     course = plan.pokes[0].scene.course
     if course is not None:
@@ -90,9 +94,10 @@ def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
     return Estimate(
         nodes=NODES,
         poke_seconds=each,
-        seconds=missing * each / min(workers, max(missing, 1)),
+        seconds=solves * each / min(workers, max(solves, 1)),
         size=len(plan.pokes) * (frames * frame_bytes * _COMPRESSED + 60e3),
         missing=missing,
+        solves=solves,
         measured=bool(walls),
     )
 
@@ -143,7 +148,8 @@ def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Ta
         f"{len(plan.pokes)} = {len(plan.inclusions)} shapes x {len(plan.materials)} material levels x "
         f"{plan.recipe.pokes_each} ({protocol.shared_sites} shared contact points, {protocol.own_sites} own)",
     )
-    table.add_row("to do", f"{expected.missing}")
+    shared = f", by {expected.solves} solves" if expected.solves < expected.missing else ""
+    table.add_row("to do", f"{expected.missing}{shared}")
     table.add_row("depth", f"{protocol.depth_mm:g} mm, a frame each {protocol.frame_spacing_mm:g} mm")
     if protocol.course:
         table.add_row("course", _course_text(plan))

@@ -213,6 +213,18 @@ COURSE_SPECS: dict[str, Spec] = {
     ),
 }
 
+# where pokes that differ by the modulus alone are one solve
+DERIVED_SPECS: dict[str, Spec] = {
+    "solved_as": Spec(
+        rows="poke", dtype="i4",
+        text="poke whose solve this is: itself, or an earlier one that differs by the modulus alone; such a"
+        " poke moves as that one, and its solver counters are 0",
+    ),
+    "force_factor": Spec(
+        rows="poke", dtype="f8", units="1", text="by which the forces of that solve are multiplied"
+    ),
+}
+
 FIRST_DIMENSION: dict[Rows, str] = {
     "poke": "poke", "frame": "frame", "node": "surface_node", "triangle": "surface_triangle_row",
     "value": "surface_value", "geometry": "geometry",
@@ -221,6 +233,10 @@ FIRST_DIMENSION: dict[Rows, str] = {
 FIXED_DIMENSION = {"grid_rest": "grid_row", "level_depth": "level"}
 
 
-def specs_of(recipe: Mapping[str, Any]) -> dict[str, Spec]:
-    """The arrays of a recipe's store, from the recipe as `Recipe.identity` gives it."""
-    return {**SPECS, **COURSE_SPECS} if recipe["protocol"].get("course") else SPECS
+def specs_of(identity: Mapping[str, Any]) -> dict[str, Spec]:
+    """The arrays of a store, from a plan's identity."""
+    return {
+        **SPECS,
+        **(COURSE_SPECS if identity["recipe"]["protocol"].get("course") else {}),
+        **(DERIVED_SPECS if identity.get("one_solve") else {}),
+    }

@@ -19,6 +19,7 @@ from factory._course import deepest, draw_course
 from factory._effects import in_one_law
 from factory._input import InputError
 from factory._parts import part_entries
+from factory._similar import one_solve
 from factory.materials import (
     Card,
     card_names,
@@ -58,6 +59,11 @@ class PlannedPoke:
         Seed that contact point and direction were drawn from.
     scene : Poke
         What is simulated.
+    solved_as : int
+        Index of the poke whose solve this is: its own, or that of an earlier one which differs by the modulus
+        alone (`factory._similar`). -1 stands for its own.
+    force_factor : float
+        By which the forces of that solve are multiplied.
     """
 
     index: int
@@ -68,6 +74,13 @@ class PlannedPoke:
     shared: bool
     seed: int
     scene: Poke
+    solved_as: int = -1
+    force_factor: float = 1.0
+
+    @property
+    def derived(self) -> bool:
+        """Whether it takes another poke's solve."""
+        return self.solved_as >= 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,6 +193,7 @@ def make_plan(
                         scene=scene,
                     )
                 )
+    solved = one_solve(pokes)
     identity = {
         "format": FORMAT,
         "model": model,
@@ -189,6 +203,8 @@ def make_plan(
             for name, material, card in zip(recipe.levels, laws, cards, strict=True)
         },
         "versions": versions(),
+        # stores in which each poke has a solve of its own stay as they were
+        **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
     }
     return Plan(
         recipe=recipe,
@@ -196,7 +212,7 @@ def make_plan(
         cards=cards,
         materials=laws,
         inclusions=inclusions,
-        pokes=tuple(pokes),
+        pokes=solved,
         identity=json.loads(json.dumps(identity)),  # as it will be read back: lists for tuples
     )
 

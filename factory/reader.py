@@ -123,7 +123,7 @@ class Dataset:
     @property
     def specs(self) -> dict[str, Spec]:
         """The arrays that the store has, with units and contents."""
-        return specs_of(self.attributes["identity"]["recipe"])
+        return specs_of(self.attributes["identity"])
 
     @property
     def timed(self) -> bool:

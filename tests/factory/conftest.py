@@ -43,7 +43,7 @@ seed: 3
 block_mm: [100, 100, 32]
 rod: {radius_mm: 2.5, length_mm: 40, tip: flat, edge_radius_mm: 1}
 friction: 0.6
-protocol: {shared_sites: 1, own_sites: 1, margin_mm: 20, max_angle_deg: 45, depth_mm: 30, frame_spacing_mm: 1}
+protocol: {shared_sites: 0, own_sites: 2, margin_mm: 20, max_angle_deg: 45, depth_mm: 30, frame_spacing_mm: 1}
 softness: [S0, S1]
 border_mm: 10
 cover_mm: 8

@@ -118,7 +118,7 @@ def _files(target: Path) -> str:
 @pytest.fixture
 def short(tiny: Recipe) -> Plan:
     """Two pokes: there is a rebuild for each moment to be killed at."""
-    protocol = tiny.protocol.model_copy(update={"own_sites": 0})
+    protocol = tiny.protocol.model_copy(update={"own_sites": 1})
     return make_plan(tiny.model_copy(update={"protocol": protocol}), "ogden")
 
 

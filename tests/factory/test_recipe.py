@@ -130,7 +130,7 @@ BAD: list[tuple[str, str, str]] = [
     (TINY + "colour: red\n", "key colour: unknown key", ""),
     (TINY.replace("friction: 0.6", "friction: .nan"), "key friction: ", "finite"),
     (TINY.replace("friction: 0.6", "friction: true"), "key friction: ", "valid number"),
-    (TINY.replace("own_sites: 1", "own_sites: 1.5"), "key protocol.own_sites: ", "integer"),
+    (TINY.replace("own_sites: 2", "own_sites: 1.5"), "key protocol.own_sites: ", "integer"),
     (TINY.replace("max_angle_deg: 45", "max_angle_deg: 60"), "key protocol.max_angle_deg: ", "equal to 45"),
     (TINY.replace("depth_mm: 30", "depth_mm: 0"), "key protocol.depth_mm: ", "greater than 0"),
     (TINY.replace("[100, 100, 32]", "[100, 100]"), "key block_mm.2: this key is missing", ""),
@@ -141,7 +141,7 @@ BAD: list[tuple[str, str, str]] = [
     (TINY.replace("[S0, S1]", "[S0, S0]"), "softness: expected different names", ""),
     (TINY.replace("[S0, S1]", "[]"), "key softness: ", "at least 1 item"),
     (TINY.replace("[S0, S1]", "[../S0]"), "key softness.0: ", "pattern"),
-    (TINY.replace("shared_sites: 1, own_sites: 1", "shared_sites: 0, own_sites: 0"), "at least one poke", ""),
+    (TINY.replace("own_sites: 2", "own_sites: 0"), "at least one poke", ""),
     # missing and unknown keys, all of them
     (
         TINY.replace("depth_mm: 30, ", "depth: 30, "),

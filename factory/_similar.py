@@ -1,0 +1,82 @@
+"""Pokes that differ by a modulus alone are one solve.
+
+Without gravity and time the scene has no other stress to compare a modulus with: of a law W(F) and s W(F) the
+tissue moves alike, and forces are in proportion to s.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from factory._record import Arrays, Outcome, encode
+from tisim import Material, Poke, laws
+
+if TYPE_CHECKING:
+    from factory.plan import PlannedPoke
+
+# parts of a modulus: cards are written with five digits, which is a ten thousandth of the force's own error
+ROUNDED = 1e-4
+FORCES = ("rod_force", "base_force")
+
+
+def modulus_ratio(material: Material, other: Material) -> float | None:
+    """s where the stress of `material` is s times that of `other` at any deformation; None where it is not.
+
+    Every parameter in Pa differs by the same factor, to `ROUNDED`, and every other one is the same. Materials
+    with parts beside their law have no such factor.
+    """
+    if material.law != other.law or material.has_parts or other.has_parts:
+        return None
+    law = laws.get(material.law)
+    factor = law.moduli(material.parameters).shear_modulus / law.moduli(other.parameters).shear_modulus
+    for name, (unit, _) in law.parameters.items():
+        own, its = (np.atleast_1d(np.asarray(m.parameters[name], float)) for m in (material, other))
+        scale, slack = (factor, ROUNDED) if unit == "Pa" else (1.0, 0.0)
+        if own.shape != its.shape or not np.allclose(own, scale * its, rtol=slack, atol=0.0):
+            return None
+    return factor
+
+
+def one_solve(pokes: Sequence[PlannedPoke]) -> tuple[PlannedPoke, ...]:
+    """The pokes, each with the first one that moves alike, and by what its forces are larger."""
+    first: dict[tuple[int, int], list[PlannedPoke]] = {}
+    found = []
+    for poke in pokes:
+        known = first.setdefault((poke.shape, poke.seed), [])
+        for other in known:
+            factor = _alike(poke.scene, other.scene)
+            if factor is not None:
+                found.append(replace(poke, solved_as=other.index, force_factor=factor))
+                break
+        else:
+            known.append(poke)
+            found.append(poke)
+    return tuple(found)
+
+
+def _alike(scene: Poke, other: Poke) -> float | None:
+    if scene.course is not None or any(scene.gravity) or replace(scene, material=other.material) != other:
+        return None
+    return modulus_ratio(scene.material, other.material)
+
+
+def in_proportion(arrays: Arrays, poke: PlannedPoke) -> Outcome:
+    """The result of a poke from the arrays of the one that it is solved as; its counters are 0."""
+    scaled = {name: np.asarray(values) for name, values in arrays.items()}
+    for name in FORCES:
+        scaled[name] = poke.force_factor * scaled[name]
+    scaled["counters"] = np.zeros_like(scaled["counters"])
+    scaled["poke"] = np.array(poke.index, dtype=np.int64)
+    return Outcome(index=poke.index, payload=encode(scaled), error=None)
+
+
+def arrays_of(outcome: Outcome) -> Arrays:
+    """The arrays of an outcome that has them."""
+    assert outcome.payload is not None
+    with np.load(io.BytesIO(outcome.payload), allow_pickle=False) as file:
+        return dict(file)
