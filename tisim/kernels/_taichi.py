@@ -5,10 +5,13 @@ result independent of the number of workers, bit by bit.
 """
 
 import contextlib
+import functools
 import inspect
 import io
 import os
+import textwrap
 import warnings
+from types import SimpleNamespace
 from typing import Any
 
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
@@ -22,34 +25,56 @@ inspect.modulesbyfile[_importing] = ""
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
     import taichi as ti
+    from taichi.lang import expr, impl, kernel_impl
     from taichi.lang.ast import ast_transformer_utils
 
 
-class _Unwrapped:
-    """Stands in for the `TextWrapper` by which Taichi breaks a line of source for each node of a kernel's
-    syntax tree, in case an error should have to show it: over half of the time that a kernel in its cache
-    takes to load. Errors show the line as it is."""
-
-    def __init__(self, **options: object) -> None: ...
-
-    def wrap(self, text: str) -> list[str]:
-        return [text] if text.strip() else []
-
-
-ast_transformer_utils.TextWrapper = _Unwrapped
+# Most of the time that a kernel takes to load from Taichi's cache is Taichi's way through its syntax tree,
+# whose result is the key to what lies there; and half of that way went into what only errors show, and into
+# what is the same each time.
+_visit = ast_transformer_utils.Builder.__call__
 _position = ast_transformer_utils.ASTTransformerContext.get_pos_info
 
 
-def _position_once(context: Any, node: Any) -> str:
-    """Where a node of a kernel stands, for errors: Taichi writes it at each visit, and an unrolled loop
-    visits its nodes again for each turn."""
-    known: dict[Any, str] = context.__dict__.setdefault("_positions", {})
-    if node not in known:
-        known[node] = _position(context, node)
-    return known[node]
+class _Failed:
+    """Stands in for a visitor whose visit has failed, so that Taichi words the error as it does."""
+
+    def __init__(self, error: Exception) -> None:
+        self.error = error
+
+    def __getattr__(self, name: str) -> Any:
+        def again(*_: object) -> None:
+            raise self.error
+
+        return again
 
 
-ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_once
+def _visit_unmarked(self: Any, context: Any, node: Any) -> Any:
+    """Of each node of a kernel Taichi writes down where it stands, with the line underlined, in case an error
+    should have to say it: here once there is one."""
+    visit = getattr(self, f"build_{type(node).__name__}", None)
+    if visit is None:
+        return _visit(self, context, node)
+    try:
+        return visit(context, node)
+    except Exception as error:
+        context.failed = True
+        return _visit(_Failed(error), context, node)
+
+
+def _position_of_errors(context: Any, node: Any) -> str:
+    return _position(context, node) if hasattr(context, "failed") else ""
+
+
+ast_transformer_utils.Builder.__call__ = _visit_unmarked
+ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_of_errors
+impl.PyTaichi.get_current_src_info = lambda _: ""
+# a function's source is looked up, and each line of it laid out, at each call of it in a kernel
+kernel_impl.getsourcelines = functools.cache(kernel_impl.getsourcelines)
+kernel_impl.textwrap = SimpleNamespace(fill=functools.cache(textwrap.fill), dedent=textwrap.dedent)
+# of each whole number NumPy is asked for the limits of its type
+expr._check_in_range = functools.cache(expr._check_in_range)
+expr._clamp_unsigned_to_range = functools.cache(expr._clamp_unsigned_to_range)
 
 f64 = ti.f64
 i32 = ti.i32
