@@ -165,6 +165,8 @@ def _init() -> None:
         # Half of the time of compiling, for kernels that LLVM makes as fast without it. Taichi's other passes
         # (advanced_optimization) are worth theirs: 20 % of the kernels' speed.
         cfg_optimization=False,
+        # Half of what is left of it: matrices are taken apart before Taichi's passes, not between them.
+        force_scalarize_matrix=True,
         log_level=ti.WARN,
         verbose=False,
     )
