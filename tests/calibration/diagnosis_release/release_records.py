@@ -82,8 +82,8 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
     at_tip = shapes[-2, :MODES]
     friction = truth.rub if hung else 0.0
 
-    def rate(_: float, now: Array) -> Array:
-        y, v, memory = now[:MODES], now[MODES : 2 * MODES], now[2 * MODES :].reshape(b, MODES)
+    def rate(_: float, state: Array) -> Array:
+        y, v, memory = state[:MODES], state[MODES : 2 * MODES], state[2 * MODES :].reshape(b, MODES)
         k = squares[:MODES]
         pull = y + truth.viscous * v + parts @ (y - memory)
         rubs = friction * np.tanh(at_tip @ v / CREEPS)
@@ -93,20 +93,13 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
 
     first = np.concatenate([start * whole[:MODES], np.zeros(MODES), np.tile(start * whole[:MODES], b)])
     after = time[time > 0.0]
-    if friction:
-        span = (0.0, float(after[-1]))
-        state = solve_ivp(rate, span, first, method="LSODA", t_eval=after, rtol=1e-8, atol=1e-12).y
-    else:  # linear: by its eigenvectors, in a hundredth of the time
-        still = rate(0.0, np.zeros(len(first)))
-        matrix = np.column_stack([rate(0.0, unit) - still for unit in np.eye(len(first))])
-        end = np.linalg.solve(matrix, -still)
-        powers, vectors = np.linalg.eig(matrix)
-        weights = np.linalg.solve(vectors, first - end)
-        state = end[:, None] + (vectors @ (weights[:, None] * np.exp(np.outer(powers, after)))).real
+    found = solve_ivp(
+        rate, (0.0, float(after[-1])), first, method="LSODA", t_eval=after, rtol=1e-8, atol=1e-12
+    )
     quick = rest - shapes[:, :MODES] @ whole[:MODES]  # higher modes follow at once
     nodes = np.zeros((len(time), len(rest) + 1))
     below = 0.0 if hung else truth.held
-    nodes[time > 0.0, 1:] = state[:MODES].T @ shapes[:, :MODES].T + quick - below * rest
+    nodes[time > 0.0, 1:] = found.y[:MODES].T @ shapes[:, :MODES].T + quick - below * rest
     return nodes.reshape(len(time), -1, 2)
 
 
