@@ -20,16 +20,20 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.blind.beams import laboratory as beams
 from benchmarks.blind.compression import laboratory as compression
 from benchmarks.blind.coupons import laboratory as coupons
 from benchmarks.blind.indentation import laboratory as indentation
 from benchmarks.blind.laboratory import Laboratory
 from benchmarks.blind.record_scores import named, named_set, part
+from benchmarks.blind.release import laboratory as release
 
 LABORATORIES: dict[str, Laboratory[Any]] = {
+    "beams": beams.LABORATORY,
     "coupons": coupons.LABORATORY,
     "compression": compression.LABORATORY,
     "indentation": indentation.LABORATORY,
+    "release": release.LABORATORY,
 }
 CONTROLS = ("without", "smooth", "half", "one", "two")
 SIZE = 25.0  # standard deviations of a cause

@@ -45,8 +45,7 @@ class Laboratory(Generic[C]):
     whitened : the data without noise with these causes, over the standard deviation of the noise, shape (k,).
     free : columns of the moduli, shape (k, moduli).
     diagnose : the verdict on a folder, with effects left out of the catalogue.
-    measured, stated : column of the records that holds what is measured; key of a trial by which the lab
-        states its noise.
+    smooth_error : gives what was measured a smooth error that nobody states, by folder and seed.
     same : hidden causes that an effect of the catalogue is another word for.
     """
 
@@ -59,8 +58,7 @@ class Laboratory(Generic[C]):
     whitened: Callable[[C, Sequence[Any]], Array]
     free: Callable[[C], Array]
     diagnose: Callable[..., dict[str, Any]]
-    measured: int
-    stated: str
+    smooth_error: Callable[[Path, int], None]
     same: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def true_shares(self, case: C, names: Iterable[str]) -> dict[str, float]:
@@ -71,26 +69,43 @@ class Laboratory(Generic[C]):
         columns = {h.name: self.whitened(case, (h,)) - base for h in every}
         return shapley(departure, self.free(case), {n: columns[n] for n in sorted(set(names))})
 
-    def smooth_error(self, folder: Path, seed: int) -> None:
-        """Give each record of an experiment a smooth error of its own, and take the stated errors out."""
+
+def smooth_error_of_records(*, measured: int, stated: str) -> Callable[[Path, int], None]:
+    """Of tables: each gets an error of its own, and the stated ones are taken out.
+
+    Parameters
+    ----------
+    measured : column of the records that holds what is measured.
+    stated : key of a trial by which the lab states its noise.
+    """
+
+    def put(folder: Path, seed: int) -> None:
         rng = np.random.default_rng([seed, 7])
-        size = float(np.exp(rng.uniform(*np.log(SMOOTH))))
+        size = log_uniform(rng, SMOOTH)
         path = folder / "experiment.yaml"
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
         for trial in content["trials"]:
-            trial.pop(self.stated, None)
+            trial.pop(stated, None)
             record = folder / trial["record"]
             head, *rows = record.read_text(encoding="utf-8").splitlines()
             table = np.array([[float(x) for x in row.split(",")] for row in rows])
-            x = np.linspace(0.0, 1.0, len(table))
-            wave = sum(
-                rng.standard_normal() * np.cos(np.pi * (k * x + rng.random())) for k in range(1, WAVES + 1)
-            )
-            own = table[:, self.measured]
-            own += wave * size * np.abs(own).max() / float(np.sqrt(np.mean(wave**2)))
+            own = table[:, measured]
+            own += size * np.abs(own).max() * waves(rng, np.linspace(0.0, 1.0, len(table)))
             lines = [head, *(",".join(f"{v:.9g}" for v in row) for row in table)]
             record.write_text("\n".join(lines) + "\n", encoding="utf-8")
         path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+
+    return put
+
+
+def log_uniform(rng: np.random.Generator, limits: tuple[float, float]) -> float:
+    return float(np.exp(rng.uniform(*np.log(limits))))
+
+
+def waves(rng: np.random.Generator, at: Array) -> Array:
+    """A smooth error of rms 1 at parts of a record's or an edge's length."""
+    found = sum(rng.standard_normal() * np.cos(np.pi * (k * at + rng.random())) for k in range(1, WAVES + 1))
+    return np.asarray(found / np.sqrt(np.mean(np.square(found))))
 
 
 def shapley(departure: Array, free: Array, columns: dict[str, Array]) -> dict[str, float]:

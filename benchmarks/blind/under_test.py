@@ -176,10 +176,21 @@ def diagnose_indentation(folder: Path, *, without: tuple[str, ...] = ()) -> Verd
 
 def diagnose_compression(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
     """The content of diagnosis.json, without the held-out improvement."""
+    return _content(folder, "compression", without)
+
+
+def diagnose_release(folder: Path, *, without: tuple[str, ...] = ()) -> Verdict:
+    """The same, of bars that are let go."""
+    return _content(folder, "release", without)
+
+
+def _content(folder: Path, domain: str, without: tuple[str, ...]) -> Verdict:
     import calibration
 
     data = calibration.read_experiment(folder)
-    return calibration.diagnose(data, domain="compression", without=without, gain=False).diagnosis.to_json()
+    return calibration.diagnose(
+        data, domain=domain, without=without, gain=False, workers=1
+    ).diagnosis.to_json()
 
 
 def _scored(model: MeasurementModel, made: Diagnosis) -> Verdict:

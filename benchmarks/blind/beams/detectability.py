@@ -6,7 +6,8 @@ specimen and, with their priors, radii, free lengths and registrations; the root
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -92,6 +93,49 @@ def sigmas(case: Case, edges: Array, kept: Table, *, against: tuple[Case, Array]
         if np.abs(move[: len(specimens)]).max() < 1e-5:
             break
     return size
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Columns:
+    """Changes of all photographs around a case, over the noise: free (k, parameters) of what any fit may
+    move, causes (k, causes). The last rows are the priors."""
+
+    free: Array
+    causes: Array
+
+
+def columns_at(case: Case, edges: Array, kept: Table, others: Sequence[tuple[Case, Array]]) -> Columns:
+    """Of moduli, radii, free lengths and registrations; causes: from the cases `others` (with their edges) to
+    this one."""
+    specimens = sorted({t.specimen for t in case.trials})
+    shared = 2 * len(specimens) + len(case.trials)
+    count = shared + 4 * len(case.trials) * len(TIMES)
+    free, causes = [], []
+    for k, trial in enumerate(case.trials):
+        group = specimens.index(trial.specimen)
+        own = [group, len(specimens) + group, 2 * len(specimens) + k]
+        plain = kept.ideal_edges(_fitted(trial.beam(), np.zeros(3), trial.kind), trial.kind)
+        slopes = [
+            (kept.ideal_edges(_fitted(trial.beam(), d, trial.kind), trial.kind) - plain) / 0.02
+            for d in 0.02 * np.eye(3)
+        ]
+        for photograph in range(len(TIMES)):
+            first = shared + 4 * (len(TIMES) * k + photograph)
+            base = seen(case, edges, k, photograph, edge_points(trial.kind))
+            found = [
+                _misfit(trial.kind, seen(*other, k, photograph, trace(trial.kind)), base, slopes, np.zeros(4))
+                for other in ((case, edges), *others)
+            ]
+            (still, J), *moved = found
+            rows = np.zeros((len(J), count))
+            rows[:, [*own, *range(first, first + 4)]] = J
+            free.append(rows)
+            causes.append(np.stack([still - r for r, _ in moved], axis=1).reshape(len(J), len(others)))
+    priors = np.eye(count)[len(specimens) :]
+    return Columns(
+        free=np.concatenate([*free, priors]),
+        causes=np.concatenate([*causes, np.zeros((len(priors), len(others)))]),
+    )
 
 
 def _fitted(beam: Beam, own: Array, kind: int) -> Beam:

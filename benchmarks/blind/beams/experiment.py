@@ -4,6 +4,7 @@ registration error a photograph, drawn from the case's seed when it is written.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from benchmarks.blind.beams.detectability import CORRELATION, OUTLINE_SD, ROLL_S
 from benchmarks.blind.beams.ideal_beams import LENGTHS, RADIUS
 
 Array = NDArray[np.float64]
+SIDES = ("upper", "lower")
 
 
 def write_experiment(case: Case, edges: Array, folder: Path, *, noise: bool = True) -> None:
@@ -48,6 +50,15 @@ def write_experiment(case: Case, edges: Array, folder: Path, *, noise: bool = Tr
     }
     text = yaml.safe_dump(experiment, sort_keys=False)
     (folder / "experiment.yaml").write_text(text, encoding="utf-8")
+
+
+def rewrite_tables(folder: Path, moved: Callable[[Array], Array]) -> None:
+    """Put each edge (k, 2) [m] of each photograph elsewhere."""
+    for path in sorted((folder / "beams").glob("*.csv")):
+        _, *rows = path.read_text(encoding="utf-8").splitlines()
+        points = {side: [r.split(",")[1:] for r in rows if r.startswith(side)] for side in SIDES}
+        edges = [moved(1e-3 * np.array(points[side], dtype=float)) for side in SIDES]
+        path.write_text(_table(np.stack(edges)), encoding="utf-8")
 
 
 def jittered(s: Array, rng: np.random.Generator) -> Array:
@@ -86,7 +97,7 @@ def _registered(edges: Array, rng: np.random.Generator) -> Array:
 
 def _table(edges: Array) -> str:
     lines = ["side,x_mm,z_mm"]
-    for side, edge in zip(("upper", "lower"), edges, strict=True):
+    for side, edge in zip(SIDES, edges, strict=True):
         lines += [f"{side},{1e3 * x:.4f},{1e3 * z:.4f}" for x, z in edge]
     return "\n".join(lines) + "\n"
 

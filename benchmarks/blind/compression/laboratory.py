@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from benchmarks.blind.compression.cases import SHEAR_MODULI, bonded, free, measured, ramps, write
 from benchmarks.blind.coupons.model import Solid, inverse_of
-from benchmarks.blind.laboratory import Laboratory, left
+from benchmarks.blind.laboratory import Laboratory, left, smooth_error_of_records
 from benchmarks.blind.records import apart, reaching
 from benchmarks.blind.under_test import diagnose_compression
 
@@ -167,6 +167,5 @@ LABORATORY = Laboratory(
     whitened=whitened,
     free=free_of,
     diagnose=diagnose_compression,
-    measured=1,
-    stated="stress_sd_kPa",
+    smooth_error=smooth_error_of_records(measured=1, stated="stress_sd_kPa"),
 )

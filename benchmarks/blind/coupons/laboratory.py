@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.blind.coupons.cases import hide, make_coupon, write
 from benchmarks.blind.coupons.model import LIBRARY, OUTSIDE, Case, Hidden, curve, errors
-from benchmarks.blind.laboratory import Laboratory
+from benchmarks.blind.laboratory import Laboratory, smooth_error_of_records
 from benchmarks.blind.under_test import diagnose_coupons
 
 Array = NDArray[np.float64]
@@ -55,8 +55,7 @@ LABORATORY = Laboratory(
     whitened=whitened,
     free=free,
     diagnose=diagnose_coupons,
-    measured=1,
-    stated="stress_sd_kPa",
+    smooth_error=smooth_error_of_records(measured=1, stated="stress_sd_kPa"),
     same={
         "law-form": frozenset({"strain-stiffening", "second-invariant", "limited-extensibility"}),
         "relaxation": frozenset({"rate-dependence"}),

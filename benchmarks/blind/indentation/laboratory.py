@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.blind.indentation.cases import free, hide, make_poke, whitened, write
 from benchmarks.blind.indentation.model import LIBRARY, OUTSIDE, TABLED, Case
-from benchmarks.blind.laboratory import Laboratory
+from benchmarks.blind.laboratory import Laboratory, smooth_error_of_records
 from benchmarks.blind.under_test import diagnose_indentation
 
 NEAR = (0.8, 1.25)  # of the size that is asked of a cause
@@ -39,6 +39,5 @@ LABORATORY = Laboratory(
     whitened=lambda case, hidden: whitened(case.trials, hidden),
     free=lambda case: free(case.trials),
     diagnose=diagnose_indentation,
-    measured=2,
-    stated="force_sd_N",
+    smooth_error=smooth_error_of_records(measured=2, stated="force_sd_N"),
 )

@@ -3,10 +3,11 @@
 No real bench passes a test for "nothing but noise is left". What is named then is the smallest set of causes
 that takes most of the explainable misfit, if
 
-1. it takes at least half of it, in 95 % of the replicates over specimens, tests or stretches of records;
+1. it takes two fifths of it or more, and in 95 % of the replicates over specimens, tests or stretches of
+   records a tenth;
 2. it predicts every part of the measurements that its fit has not seen better than the baseline does, or of
    many parts so many that chance would not, whichever of them were measured; and all of them together by at
-   least half of what noise leaves to explain;
+   least two fifths of what noise leaves to explain;
 3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
 4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
 
@@ -75,10 +76,11 @@ def assess(
         return None
     found = [(e, shares.misfit(e.fit)) for e in explanations]
     sound = [(e, m) for e, m in found if inside_bounds(model, e)]
-    ordered = _dominant(sound or found, shares, rules)
+    left = _best_of_each_number(sound or found)
     first: Assessed | None = None
     known: Predictions = {}
-    for explanation, misfit in ordered[: rules.tries]:
+    for _ in range(min(rules.tries, len(left))):
+        explanation, misfit = left.pop(_dominant(left, shares, rules))
         on_progress(f"predicting held-out measurements: {explanation.fit.label}")
         held_out = held_out_improvement(model, baseline, explanation.fit, known=known)
         judged = _judge(model, baseline, explanation, misfit, held_out, sound, shares, rules, noise)
@@ -95,25 +97,34 @@ def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnow
     return part is not None and part < rules.smooth_error
 
 
-def _dominant(
-    found: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules
-) -> list[tuple[Explanation, Misfit]]:
-    """In the order in which they are tried: the best of the smallest number of causes that one cause more
-    adds little to; then those of one cause more each, and of fewer. Of each number the best `EACH` sets of
-    names."""
-    best: dict[int, list[tuple[Explanation, Misfit]]] = {}
+def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tuple[Explanation, Misfit]]:
+    """Of each number of causes the `EACH` sets of names that take most; by what they leave."""
+    best: dict[int, list[Names]] = {}
+    kept = []
     for e, m in sorted(found, key=lambda pair: pair[1].value):
         own = best.setdefault(len(e.names), [])
-        if len(own) < EACH and e.names not in [other.names for other, _ in own]:
-            own.append((e, m))
-    sizes = sorted(best)
-    chosen = sizes[0]
-    for size in sizes[1:]:
-        gained = shares.share(best[size][0][1]).value - shares.share(best[chosen][0][1]).value
+        if len(own) < EACH and e.names not in own:
+            own.append(e.names)
+            kept.append((e, m))
+    return kept
+
+
+def _dominant(left: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules) -> int:
+    """Which is tried next: the best of the smallest number of causes that one cause more adds little to.
+
+    It is asked again without those that may not be named: what a rejected set of few causes took is no reason
+    against a set of more.
+    """
+    best: dict[int, int] = {}
+    for k, (e, _) in enumerate(left):
+        best.setdefault(len(e.names), k)
+    smallest, *more = sorted(best)
+    chosen = smallest
+    for size in more:
+        gained = shares.share(left[best[size]][1]).value - shares.share(left[best[chosen]][1]).value
         if gained >= rules.further_share * (size - chosen):
             chosen = size
-    larger = [k for k in sizes if k > chosen]
-    return [pair for k in (chosen, *larger, *(k for k in sizes[::-1] if k < chosen)) for pair in best[k]]
+    return best[chosen]
 
 
 def _judge(

@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ import calibration
 from calibration.diagnosis.engine.explanation import explain
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
+from calibration.diagnosis.engine.partly import _dominant
 from calibration.diagnosis.engine.resampling import Groups, Resampled, groups_of
 from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.run import diagnose
@@ -170,6 +172,24 @@ def test_what_helps_one_part_only_is_not_named() -> None:
     assert found.finding.verdict == "unexplained"
     assert found.nearest is not None
     assert any("held out" in reason or "amplitude" in reason for reason in found.nearest.against)
+
+
+def test_a_rejected_set_of_few_causes_is_no_reason_against_more() -> None:
+    """One cause takes 96 %, another 81 %, two together 98 %: the pair adds little to the first, much to the
+    second."""
+
+    def tried(sets: dict[tuple[str, ...], float]) -> tuple[str, ...]:
+        left = [(SimpleNamespace(names=n), s) for n, s in sets.items()]
+        share = SimpleNamespace(share=lambda part: SimpleNamespace(value=part))
+        chosen = left[_dominant(left, share, Rules())][0].names  # type: ignore[arg-type]
+        return tuple(chosen)
+
+    sets = {("a", "b"): 0.98, ("a",): 0.96, ("c",): 0.81}
+    assert tried(sets) == ("a",)
+    del sets[("a",)]
+    assert tried(sets) == ("a", "b")
+    del sets[("a", "b")]
+    assert tried(sets) == ("c",)
 
 
 def test_what_predicts_too_little_is_not_named() -> None:

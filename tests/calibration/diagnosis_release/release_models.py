@@ -1,4 +1,4 @@
-"""The model under test, with the catalogue's effects; apart from `release_records`, which makes the data."""
+"""The model under test, with the catalogue's effects; `benchmarks.blind.release` makes the data."""
 
 from __future__ import annotations
 

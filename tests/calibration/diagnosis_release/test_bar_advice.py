@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from release_models import bar_model
-from release_records import Truth, write_bars
 
+from benchmarks.blind.release import Truth, write_bars
 from calibration.diagnosis.effects.release import EFFECTS
 from calibration.diagnosis.engine.advice import Advice, advice, advise
 from calibration.diagnosis.engine.explanation import Explanation, explain

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from release_models import bar_model
-from release_records import DENSITY, GRAVITY, HEIGHT, LENGTH, WIDTH, Truth, write_bars
 
+from benchmarks.blind.release import DENSITY, GRAVITY, HEIGHT, LENGTH, WIDTH, Truth, write_bars
 from calibration.diagnosis import model_of
 from calibration.diagnosis.effects.release import EFFECTS
 from calibration.errors import InputError

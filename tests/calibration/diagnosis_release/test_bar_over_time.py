@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from release_records import Truth, write_bars
 
+from benchmarks.blind.release import Truth, write_bars
 from calibration.diagnosis import model_of
 from calibration.diagnosis.engine.search import fit_baseline
 from calibration.errors import InputError

@@ -14,9 +14,9 @@ import yaml
 from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 from matplotlib.image import imread
 from release_models import bar_model
-from release_records import Truth, beam, write_bars
 from typer.testing import CliRunner
 
+from benchmarks.blind.release import Truth, beam, write_bars
 from calibration.diagnosis.card import write_cards
 from calibration.diagnosis.engine.fitting import fit as fit_causes
 from calibration.diagnosis.engine.run import diagnose

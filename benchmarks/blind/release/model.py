@@ -1,14 +1,12 @@
-"""Cantilever releases, for tests of their diagnosis: a Timoshenko beam of linear finite elements, its modes
-integrated with a viscoelastic material, written in the file format. No code is shared with calibration."""
+"""A cantilever that is let go: a Timoshenko beam of linear finite elements, its modes integrated with a
+viscoelastic material, and what its markers show."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from _folders import Entry, beam_entry, write_experiment
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
@@ -31,7 +29,8 @@ class Truth:
     """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm]. loose: part
     of the hung mass that does not move with the bar. rub: dry friction against the tip of a bar with a hung
     mass [N]. held: drop at which a bar without a hung mass is held, of where it settles. extra: a further
-    height of the tip [m], by the time."""
+    height of the tip [m], by the time since the release. drag: damping in proportion to mass [1/s]. clock: by
+    which the record's time runs fast. scale: by which displacements are seen too large."""
 
     shear: float = 6e5
     viscous: float = 4e-4
@@ -41,6 +40,9 @@ class Truth:
     rub: float = 0.0
     held: float = 0.0
     extra: Callable[[Array], Array] | None = None
+    drag: float = 0.0
+    clock: float = 0.0
+    scale: float = 0.0
 
 
 def beam(truth: Truth, hung: float) -> tuple[Array, Array, Array]:
@@ -79,28 +81,46 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
     times = np.array([t for _, t in truth.branches])
     b = len(parts)
 
-    at_tip = shapes[-2, :MODES]
-    friction = truth.rub if hung else 0.0
-
-    def rate(_: float, state: Array) -> Array:
-        y, v, memory = state[:MODES], state[MODES : 2 * MODES], state[2 * MODES :].reshape(b, MODES)
-        k = squares[:MODES]
-        pull = y + truth.viscous * v + parts @ (y - memory)
-        rubs = friction * np.tanh(at_tip @ v / CREEPS)
-        return np.concatenate(
-            [v, k * (whole[:MODES] - pull) - rubs * at_tip, ((y - memory) / times[:, None]).ravel()]
-        )
-
     first = np.concatenate([start * whole[:MODES], np.zeros(MODES), np.tile(start * whole[:MODES], b)])
     after = time[time > 0.0]
-    found = solve_ivp(
-        rate, (0.0, float(after[-1])), first, method="LSODA", t_eval=after, rtol=1e-8, atol=1e-12
+    friction = truth.rub if hung else 0.0
+    # state: modes' amplitudes, speeds, and what each branch remembers of each mode
+    eye, no = np.eye(MODES), np.zeros((MODES, MODES))
+    k = np.diag(squares[:MODES])
+    rates = np.block(
+        [
+            [no, eye, *[no] * b],
+            [-(1.0 + parts.sum()) * k, -truth.viscous * k - truth.drag * eye, *(p * k for p in parts)],
+            *([eye / t, no, *(-eye / t if n == m else no for m in range(b))] for n, t in enumerate(times)),
+        ]
     )
+    still = np.concatenate([whole[:MODES], np.zeros(MODES), np.tile(whole[:MODES], b)])
+    if friction:
+        found = _rubbing(rates, still, first, after, shapes[-2, :MODES], friction)[:MODES]
+    else:
+        values, vectors = np.linalg.eig(rates)
+        parts_of = np.linalg.solve(vectors, first - still)[:, None] * np.exp(np.outer(values, after))
+        found = (vectors @ parts_of).real[:MODES] + whole[:MODES, None]
     quick = rest - shapes[:, :MODES] @ whole[:MODES]  # higher modes follow at once
     nodes = np.zeros((len(time), len(rest) + 1))
     below = 0.0 if hung else truth.held
-    nodes[time > 0.0, 1:] = found.y[:MODES].T @ shapes[:, :MODES].T + quick - below * rest
+    nodes[time > 0.0, 1:] = found.T @ shapes[:, :MODES].T + quick - below * rest
     return nodes.reshape(len(time), -1, 2)
+
+
+def _rubbing(rates: Array, still: Array, first: Array, after: Array, at_tip: Array, friction: float) -> Array:
+    """States (k, t) of modes that dry friction at the tip holds back besides."""
+
+    def rate(_: float, state: Array) -> Array:
+        change = rates @ (state - still)
+        speed = state[MODES : 2 * MODES]
+        change[MODES : 2 * MODES] -= friction * np.tanh(at_tip @ speed / CREEPS) * at_tip
+        return np.asarray(change)
+
+    found = solve_ivp(
+        rate, (0.0, float(after[-1])), first, method="LSODA", t_eval=after, rtol=1e-8, atol=1e-12
+    )
+    return np.asarray(found.y)
 
 
 def moved(nodes: Array, at: tuple[float, float, float], *, on_clamp: bool) -> Array:
@@ -118,54 +138,20 @@ def moved(nodes: Array, at: tuple[float, float, float], *, on_clamp: bool) -> Ar
     return np.column_stack([short - z * np.sin(theta), w + z * (np.cos(theta) - 1.0)])
 
 
-def write_bars(
-    folder: Path,
-    truth: Truth,
-    *,
-    hung: Sequence[float] = (0.0, 0.01),
-    seconds: float = 1.6,
-    rate: float = 200.0,
-    sd_mm: float = 0.02,
-    seed: int = 0,
-    **changed: object,
-) -> Path:
-    """An experiment with one trial for each hung mass [kg]: bars let go 20 ms or so after the record begins,
-    frames turned by up to a degree, markers half a millimetre off; changed: keys of all trials."""
-    rng = np.random.default_rng(seed)
-    time = np.arange(int(seconds * rate)) / rate
-    trials: list[Entry] = []
-    tables = {}
-    off = {name: 0.5 * rng.standard_normal(3) for name in MARKERS}
-    for k, mass in enumerate(hung):
-        since = time - (0.02 + rng.uniform(0.0, 1.0 / rate))
-        nodes = swing(truth, mass, since, start=rng.uniform(0.0, 0.1))
-        angle = np.radians(rng.uniform(-1.0, 1.0))
-        columns: dict[str, list[object]] = {c: [] for c in ("marker", "time_s", "ux_mm", "uy_mm", "uz_mm")}
-        for name, at in MARKERS.items():
-            where = tuple(np.array(at) + off[name])
-            u = 1e3 * moved(nodes, where, on_clamp=at[0] < 0.0)
-            if truth.extra is not None and name != "base":
-                u[:, 1] += 1e3 * truth.extra(np.maximum(since, 0.0)) * (since > 0.0)
-            turned = u @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-            seen = turned + sd_mm * rng.standard_normal(u.shape)
-            columns["marker"] += [name] * len(time)
-            columns["time_s"] += time.tolist()
-            columns["ux_mm"] += seen[:, 0].tolist()
-            columns["uy_mm"] += [0.0] * len(time)
-            columns["uz_mm"] += seen[:, 1].tolist()
-        entry = beam_entry(
-            f"run-{k}",
-            section={"rectangle": {"width_mm": 1e3 * WIDTH, "height_mm": 1e3 * HEIGHT}},
-            free_length_mm=1e3 * LENGTH,
-            grip_length_mm=10.0,
-            supports="clamped-free",
-            gravity_m_s2=[0.0, 0.0, -GRAVITY],
-            tip_force_N=[0.0, 0.0, -mass * GRAVITY],
-            markers=f"run-{k}.csv",
-            marker_sd_mm=sd_mm,
-            marker_positions_mm={name: list(at) for name, at in MARKERS.items()},
-        )
-        trials.append({**entry, **changed})
-        tables[f"run-{k}.csv"] = columns
-    material = {"density_kg_m3": DENSITY, "density_sd_kg_m3": 0.0}
-    return write_experiment(folder, trials, tables=tables, materials={trials[0]["material"]: material})
+def displaced(
+    truth: Truth, hung: float, since: Array, places: dict[str, Array], *, start: float, angle: float
+) -> dict[str, Array]:
+    """Displacements (t, 2) in x and z [mm] of markers at `places` [mm], at times since the release by the
+    record's clock, in a frame that is turned by `angle` [rad]."""
+    true = since / (1.0 + truth.clock)
+    nodes = swing(truth, hung, true, start=start)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    found = {}
+    for name, at in places.items():
+        x, y, z = (float(v) for v in at)
+        on_clamp = MARKERS[name][0] < 0.0
+        u = 1e3 * (1.0 + truth.scale) * moved(nodes, (x, y, z), on_clamp=on_clamp)
+        if truth.extra is not None and not on_clamp:
+            u[:, 1] += 1e3 * truth.extra(np.maximum(true, 0.0)) * (true > 0.0)
+        found[name] = u @ turn
+    return found

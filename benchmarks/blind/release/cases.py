@@ -1,0 +1,130 @@
+"""Experiment folders of bars that are let go: one trial for each hung mass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from benchmarks.blind.release.model import (
+    DENSITY,
+    GRAVITY,
+    HEIGHT,
+    LENGTH,
+    MARKERS,
+    WIDTH,
+    Truth,
+    displaced,
+)
+
+Array = NDArray[np.float64]
+MATERIAL = "S0"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Run:
+    """What a lab cannot know of a run: when the bar was let go [s], from what part of the drop at which it
+    settles, and how far the camera was turned [rad]."""
+
+    onset: float
+    start: float
+    angle: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Setup:
+    """time [s] of all records, true places of the markers [mm], the runs."""
+
+    time: Array
+    places: dict[str, Array]
+    runs: tuple[Run, ...]
+
+    def seen(self, truth: Truth, hung: float, run: Run) -> dict[str, Array]:
+        """Displacements (t, 2) [mm] of the markers, without noise."""
+        since = self.time - run.onset
+        return displaced(truth, hung, since, self.places, start=run.start, angle=run.angle)
+
+
+def setup(count: int, *, seconds: float, rate: float, rng: np.random.Generator) -> Setup:
+    """Let go 20 ms or so after the record begins, frames turned by up to a degree, markers half a millimetre
+    off."""
+    places = {name: np.array(at) + 0.5 * rng.standard_normal(3) for name, at in MARKERS.items()}
+    runs = tuple(
+        Run(
+            onset=0.02 + float(rng.uniform(0.0, 1.0 / rate)),
+            start=float(rng.uniform(0.0, 0.1)),
+            angle=float(np.radians(rng.uniform(-1.0, 1.0))),
+        )
+        for _ in range(count)
+    )
+    return Setup(time=np.arange(int(seconds * rate)) / rate, places=places, runs=runs)
+
+
+def write_bars(
+    folder: Path,
+    truth: Truth,
+    *,
+    hung: Sequence[float] = (0.0, 0.01),
+    seconds: float = 1.6,
+    rate: float = 200.0,
+    sd_mm: float = 0.02,
+    seed: int = 0,
+    **changed: object,
+) -> Path:
+    """An experiment with one trial for each hung mass [kg]; changed: keys of all trials."""
+    rng = np.random.default_rng(seed)
+    made = setup(len(hung), seconds=seconds, rate=rate, rng=rng)
+    return write_runs(folder, truth, made, hung=hung, sd_mm=sd_mm, rng=rng, **changed)
+
+
+def write_runs(
+    folder: Path,
+    truth: Truth,
+    made: Setup,
+    *,
+    hung: Sequence[float],
+    sd_mm: float,
+    rng: np.random.Generator,
+    **changed: object,
+) -> Path:
+    """The same, of runs that are set up."""
+    folder.mkdir(parents=True, exist_ok=True)
+    trials: list[dict[str, Any]] = []
+    for k, (mass, run) in enumerate(zip(hung, made.runs, strict=True)):
+        rows = ["marker,time_s,ux_mm,uy_mm,uz_mm"]
+        for name, u in made.seen(truth, mass, run).items():
+            noisy = u + sd_mm * rng.standard_normal(u.shape)
+            both = zip(made.time.tolist(), noisy.tolist(), strict=True)
+            rows += [f"{name},{t!r},{x!r},0.0,{z!r}" for t, (x, z) in both]
+        (folder / f"run-{k}.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        trials.append(
+            {
+                "id": f"run-{k}",
+                "kind": "beam",
+                "material": MATERIAL,
+                "section": {"rectangle": {"width_mm": 1e3 * WIDTH, "height_mm": 1e3 * HEIGHT}},
+                "free_length_mm": 1e3 * LENGTH,
+                "free_length_sd_mm": 0.2,
+                "grip_length_mm": 10.0,
+                "supports": "clamped-free",
+                "gravity_m_s2": [0.0, 0.0, -GRAVITY],
+                "tip_force_N": [0.0, 0.0, -mass * GRAVITY],
+                "markers": f"run-{k}.csv",
+                "marker_sd_mm": sd_mm,
+                "marker_positions_mm": {name: list(at) for name, at in MARKERS.items()},
+                **changed,
+            }
+        )
+    content = {
+        "format": 1,
+        "name": "made",
+        "materials": {MATERIAL: {"density_kg_m3": DENSITY, "density_sd_kg_m3": 0.0}},
+        "trials": trials,
+    }
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    return folder
