@@ -1,4 +1,4 @@
-"""For all tests: long files first, and the core-seconds of each package beside their budget in README.md."""
+"""For all tests: long files first, and the core-seconds of files, and of packages beside their budget."""
 
 from __future__ import annotations
 
@@ -24,31 +24,39 @@ os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
 hypothesis.settings.register_profile("fixed", derandomize=True, deadline=None)
 hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
-# pytest-xdist hands out whole files: a long one that comes late would leave the other processes idle
+# pytest-xdist hands out whole files: a long one that comes late would leave the other processes idle. The end
+# of a run shows which they are
 LONG = (
     "packaging/test_pages.py",
+    "blind/test_coupons.py",
     "blind/test_beams.py",
     "tisim/test_time_in_scenes.py",
-    "blind/test_coupons.py",
+    "tisim/test_law_registry.py",
     "calibration/study/test_fit_command.py",
-    "tisim/test_parts_point.py",
-    "tisim/test_parts_registry.py",
     "learn/test_evaluation.py",
     "factory/test_interruption.py",
-    "calibration/indentation/test_poke_objective.py",
-    "tisim/test_law_registry.py",
-    "tisim/test_simulate_batch.py",
-    "tisim/test_assembly.py",
-    "tisim/test_dynamics.py",
+    "factory/test_timed.py",
     "calibration/photo/test_trace_photo.py",
-    "calibration/compression/test_press_fit.py",
-    "calibration/indentation/test_poke_fit.py",
-    "calibration/time/test_fit_over_time.py",
+    "tisim/test_parts_point.py",
+    "calibration/indentation/test_poke_objective.py",
+    "tisim/test_dynamics.py",
+    "calibration/diagnosis_release/test_bar_verdicts.py",
     "calibration/metrics/test_metrics_distance.py",
+    "tisim/test_beam_steps.py",
+    "tisim/test_beam_reference.py",
+    "calibration/diagnosis/test_diag_beam_model.py",
+    "calibration/diagnosis/test_diag_early_stop.py",
     "learn/test_training.py",
     "learn/test_pokes.py",
     "factory/test_damage_store.py",
-    "factory/test_timed.py",
+    "tisim/test_simulate_batch.py",
+    "tisim/test_laws.py",
+    "calibration/time/test_fit_over_time.py",
+    "tisim/test_assembly.py",
+    "tisim/test_parts_registry.py",
+    "calibration/compression/test_press_fit.py",
+    "calibration/indentation/test_poke_fit.py",
+    "calibration/time/test_memory_stress.py",
     "factory/test_adding.py",
 )
 
@@ -67,12 +75,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class _CoreSeconds:
-    """Counts what each package's tests use, in this process and those that it starts."""
+    """Counts what each file's tests use, in this process and those that it starts."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
         self.used: Counter[str] = Counter()
         self.last = 0.0
+
+    def pytest_collection_finish(self) -> None:
+        self.last = self.used["start"] = _core_seconds()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(
@@ -81,7 +92,7 @@ class _CoreSeconds:
         done = yield
         if nextitem is None or nextitem.path != item.path:
             now = _core_seconds()
-            self.used[item.path.relative_to(HERE).parts[0]] += now - self.last
+            self.used[item.path.relative_to(HERE).as_posix()] += now - self.last
             self.last = now
         return done
 
@@ -94,15 +105,25 @@ class _CoreSeconds:
         self.used.update(getattr(node, "workeroutput", {}).get("core_seconds", {}))
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        budgets = _budgets()
+        if not self.used:
+            return
+        budgets, packages = _budgets(), Counter[str]()
+        for name, used in self.used.items():
+            packages[name.partition("/")[0]] += used
         lines = [
             f"{name:>12} {used:6.0f} of {budgets.get(name, 0):4d}{'  over' * (used > budgets.get(name, 0))}"
-            for name, used in sorted(self.used.items())
+            for name, used in sorted(packages.items())
         ]
-        if lines:
-            total = f"{'all':>12} {sum(self.used.values()):6.0f} of {sum(budgets.values()):4d}"
-            terminalreporter.section("core-seconds of each package, of its budget in tests/README.md")
-            terminalreporter.write("\n".join([*lines, total, ""]))
+        total = f"{'all':>12} {sum(packages.values()):6.0f} of {sum(budgets.values()):4d}"
+        files = [
+            f"{used:6.0f}  {name}{'  not in LONG' * (name not in LONG)}"
+            for name, used in self.used.most_common()
+            if used > 15.0 and name != "start"
+        ]
+        terminalreporter.section("core-seconds of files over 15")
+        terminalreporter.write("\n".join([*files, ""]))
+        terminalreporter.section("core-seconds of each package, of its budget in tests/README.md")
+        terminalreporter.write("\n".join([*lines, total, ""]))
 
 
 def _core_seconds() -> float:

@@ -47,3 +47,33 @@ def test_errors_of_kernels_show_their_line():
     with pytest.raises(ti.TaichiCompilationError, match=r"name_that_nobody_defined \+ 1.0") as caught:
         wrong(np.zeros(3))
     assert "^^^^" in str(caught.value)
+
+
+def test_later_calls_of_a_kernel_take_what_the_first_one_took():
+    """By the short way where the arguments are of the same kind, and as Taichi does where they are not."""
+    ensure_runtime()
+
+    @ti.kernel
+    def scale(values: ti.types.ndarray(dtype=ti.f64, ndim=2), by: ti.f64, times: ti.i32):
+        ti.loop_config(serialize=True)
+        for i in range(values.shape[0]):
+            for k in range(values.shape[1]):
+                values[i, k] = values[i, k] * by + times
+
+    grid = np.arange(6.0).reshape(2, 3)
+    for given in (grid.copy(), grid.copy(), grid[:1].copy(), np.asfortranarray(grid), grid.copy()):
+        wanted = given * 2.0 + 3
+        scale(given, np.float64(2.0), np.int64(3))
+        np.testing.assert_array_equal(given, wanted)
+        scale(given, 1, 3)
+        np.testing.assert_array_equal(given, wanted + 3)
+    with pytest.raises(ValueError, match="required array has dtype=f64"):
+        scale(grid.astype(np.float32), 2.0, 3)
+    with pytest.raises(ValueError, match="required array has ndim=2"):
+        scale(grid.ravel(), 2.0, 3)
+    with pytest.raises(ValueError, match="Non contiguous"):
+        scale(np.zeros((4, 4))[::2, ::2], 2.0, 3)
+    with pytest.raises(ti.TaichiRuntimeTypeError, match="cannot be converted"):
+        scale(grid, "2.0", 3)
+    with pytest.raises(ti.TaichiRuntimeTypeError, match="cannot be converted"):
+        scale(grid, 2.0, 3.5)

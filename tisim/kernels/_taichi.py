@@ -5,11 +5,16 @@ result independent of the number of workers, bit by bit.
 """
 
 import contextlib
+import functools
 import inspect
 import io
 import os
+import textwrap
 import warnings
+from types import SimpleNamespace
 from typing import Any
+
+import numpy as np
 
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 
@@ -22,34 +27,117 @@ inspect.modulesbyfile[_importing] = ""
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # Taichi's own, of its Python AST use
     import taichi as ti
+    from taichi.lang import expr, impl, kernel_impl
     from taichi.lang.ast import ast_transformer_utils
 
 
-class _Unwrapped:
-    """Stands in for the `TextWrapper` by which Taichi breaks a line of source for each node of a kernel's
-    syntax tree, in case an error should have to show it: over half of the time that a kernel in its cache
-    takes to load. Errors show the line as it is."""
-
-    def __init__(self, **options: object) -> None: ...
-
-    def wrap(self, text: str) -> list[str]:
-        return [text] if text.strip() else []
-
-
-ast_transformer_utils.TextWrapper = _Unwrapped
+# Most of the time that a kernel takes to load from Taichi's cache is Taichi's way through its syntax tree,
+# whose result is the key to what lies there; and half of that way went into what only errors show, and into
+# what is the same each time.
+_visit = ast_transformer_utils.Builder.__call__
 _position = ast_transformer_utils.ASTTransformerContext.get_pos_info
 
 
-def _position_once(context: Any, node: Any) -> str:
-    """Where a node of a kernel stands, for errors: Taichi writes it at each visit, and an unrolled loop
-    visits its nodes again for each turn."""
-    known: dict[Any, str] = context.__dict__.setdefault("_positions", {})
-    if node not in known:
-        known[node] = _position(context, node)
-    return known[node]
+class _Failed:
+    """Stands in for a visitor whose visit has failed, so that Taichi words the error as it does."""
+
+    def __init__(self, error: Exception) -> None:
+        self.error = error
+
+    def __getattr__(self, name: str) -> Any:
+        def again(*_: object) -> None:
+            raise self.error
+
+        return again
 
 
-ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_once
+def _visit_unmarked(self: Any, context: Any, node: Any) -> Any:
+    """Of each node of a kernel Taichi writes down where it stands, with the line underlined, in case an error
+    should have to say it: here once there is one."""
+    visit = getattr(self, f"build_{type(node).__name__}", None)
+    if visit is None:
+        return _visit(self, context, node)
+    try:
+        return visit(context, node)
+    except Exception as error:
+        context.failed = True
+        return _visit(_Failed(error), context, node)
+
+
+def _position_of_errors(context: Any, node: Any) -> str:
+    return _position(context, node) if hasattr(context, "failed") else ""
+
+
+ast_transformer_utils.Builder.__call__ = _visit_unmarked
+ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_of_errors
+impl.PyTaichi.get_current_src_info = lambda _: ""
+# a function's source is looked up, and each line of it laid out, at each call of it in a kernel
+kernel_impl.getsourcelines = functools.cache(kernel_impl.getsourcelines)
+kernel_impl.textwrap = SimpleNamespace(fill=functools.cache(textwrap.fill), dedent=textwrap.dedent)
+# of each whole number NumPy is asked for the limits of its type
+expr._check_in_range = functools.cache(expr._check_in_range)
+expr._clamp_unsigned_to_range = functools.cache(expr._clamp_unsigned_to_range)
+
+_call = kernel_impl.Kernel.__call__
+
+
+def _call_known(self: Any, *given: Any) -> Any:
+    """A kernel's later calls. Taichi works out each time what the arguments are, in 0.3 ms where the law at a
+    hundred points takes a tenth of that; here they need only be what they were, and else Taichi has them."""
+    known = self.__dict__.get("known")
+    if known is None:
+        result = _call(self, *given)
+        self.known = _known(self)
+        return result
+    if not known:
+        return _call(self, *given)
+    kernel, compiled, kinds = known
+    context = kernel.make_launch_context()
+    for slot, (value, (dtype, ndim)) in enumerate(zip(given, kinds, strict=True)):
+        if ndim is None:
+            if not isinstance(value, float if dtype is float else int):
+                return _call(self, *given)
+            (context.set_arg_float if dtype is float else context.set_arg_int)((slot,), value)
+        else:
+            if (
+                type(value) is not np.ndarray
+                or value.dtype != dtype
+                or value.ndim != ndim
+                or not value.flags.c_contiguous
+            ):
+                return _call(self, *given)
+            start = value.__array_interface__["data"][0]
+            context.set_arg_external_array_with_shape((slot,), start, value.nbytes, value.shape, 0)
+    self.runtime.prog.launch_kernel(compiled, context)
+    return None
+
+
+def _known(kernel: Any) -> tuple[Any, Any, list[tuple[Any, int | None]]] | tuple[()]:
+    """A compiled kernel and what its arguments are: dtype and number of axes, None of a number; empty where
+    it has others than arrays of numbers, real numbers and whole ones, or gives something back."""
+    kinds: list[tuple[Any, int | None]] = []
+    for argument in kernel.arguments:
+        kind = argument.annotation
+        if (
+            isinstance(kind, kernel_impl.ndarray_type.NdarrayType)
+            and kind.dtype in _ARRAYS
+            and kind.ndim is not None
+        ):
+            kinds.append((_ARRAYS[kind.dtype], kind.ndim))
+        elif kind in _NUMBERS:
+            kinds.append((_NUMBERS[kind], None))
+        else:
+            return ()
+    if kernel.return_type is not None or len(kernel.compiled_kernels) != 1:
+        return ()
+    (made,) = kernel.compiled_kernels.values()
+    prog = kernel.runtime.prog
+    return made, prog.compile_kernel(prog.config(), prog.get_device_caps(), made), kinds
+
+
+kernel_impl.Kernel.__call__ = _call_known
+_ARRAYS = {ti.f64: np.dtype(np.float64), ti.i32: np.dtype(np.int32)}
+_NUMBERS = {ti.f64: float, ti.i32: int}
 
 f64 = ti.f64
 i32 = ti.i32
@@ -77,6 +165,8 @@ def _init() -> None:
         # Half of the time of compiling, for kernels that LLVM makes as fast without it. Taichi's other passes
         # (advanced_optimization) are worth theirs: 20 % of the kernels' speed.
         cfg_optimization=False,
+        # Half of what is left of it: matrices are taken apart before Taichi's passes, not between them.
+        force_scalarize_matrix=True,
         log_level=ti.WARN,
         verbose=False,
     )

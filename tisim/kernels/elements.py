@@ -196,7 +196,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
                     minj = ti.min(minj, J)
                     if J > 0.0:
                         w = weight[e, q]
-                        P, A = tangent(F, J, prm, kp, pe, load_point(state, e, q))
+                        _psi, P, A = tangent(F, J, prm, kp, pe, load_point(state, e, q))
                         if kb != 0.0:
                             th = theta(F.norm_sqr(), J)
                             T = 2.0 * th[1] * F + th[2] * cofactor(F)
@@ -280,7 +280,7 @@ def evaluation_kernel(law: Law, features: Features = NONE) -> Kernel:
     state (1, n, k): that of the points.
     """
     ensure_runtime()
-    _, psi_only, _, tangent, _ = make_response(law, features)
+    _, _, _, tangent, _ = make_response(law, features)
     load_point = make_load_point(features)
 
     @ti.kernel
@@ -292,8 +292,8 @@ def evaluation_kernel(law: Law, features: Features = NONE) -> Kernel:
                 for k in ti.static(range(3)):
                     G[i, k] = F[n, i, k]
             point = load_point(state, 0, n)
-            S, T = tangent(G, determinant(G), prm, kappa, 0.0, point)
-            psi[n] = psi_only(G, determinant(G), prm, kappa, 0.0, point)
+            w, S, T = tangent(G, determinant(G), prm, kappa, 0.0, point)
+            psi[n] = w
             for i in ti.static(range(3)):
                 for k in ti.static(range(3)):
                     P[n, i, k] = S[i, k]

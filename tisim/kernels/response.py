@@ -49,7 +49,7 @@ def make_theta(law: Law) -> Any:
 
 
 def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, Any, Any]:
-    """Taichi functions of one material: theta, (psi), (psi, P), (P, A), isochoric. F needs det F > 0.
+    """Taichi functions of one material: theta, (psi), (psi, P), (psi, P, A), isochoric. F needs det F > 0.
 
     `point`: a point's state, as `make_load_point` loads it.
     isochoric: C, the softened isochoric energy's S = 2 df/dC, and the energy Wbar + W_fibres.
@@ -152,6 +152,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
     def tangent(F, J, prm: ti.template(), kp, p, point):
         C, I1, I2 = invariants(F)
         th = theta(I1, J)
+        w = 0.5 * kp * th[0] * th[0] + p * th[0]
         pressure = kp * th[0] + p
         w1 = pressure * th[1]
         w2 = 0.0
@@ -177,6 +178,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
             if ti.static(extended):
                 iso = isochoric_law(lam, J, prm)
                 e, gain, bend, t = extended_terms(C, J, e, iso, prm, point)
+            w += e[0]
             U = F @ V
             for a in ti.static(range(3)):
                 for i in ti.static(range(3)):
@@ -227,6 +229,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
                             P0[3 * i + k] += (
                                 2.0 * iso[1] * F[i, k] + 2.0 * iso[2] * g2[i, k] + iso[3] * cof[i, k]
                             )
+            w += e[0]
             w1 += e[1]
             w2 += e[2]
             wj += e[3]
@@ -299,6 +302,6 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
         for r in ti.static(range(1, 9)):
             for s in ti.static(range(r)):
                 A[r, s] = A[s, r]
-        return P, A
+        return w, P, A
 
     return theta, psi_only, stress, tangent, isochoric

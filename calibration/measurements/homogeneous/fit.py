@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
-import cma
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
@@ -231,6 +230,8 @@ def _draw(p: Parametrisation, base: Array, free: NDArray[np.intp], rng: np.rando
 
 def _evolve(residuals: _Counted, start: Array, bounds: Array, evaluations: int, seed: int) -> Array:
     """CMA-ES in the unit box."""
+    import cma  # imported when needed: it takes a second with the plotting it brings along
+
     low, span = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
     options = {
         "bounds": [0.0, 1.0],

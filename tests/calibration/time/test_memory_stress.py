@@ -52,18 +52,19 @@ def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     mode: CouponMode, parts: tuple[str, ...]
 ) -> None:
     """A strip shears, its two lateral stretches differ, and with viscosity or softening both depend on the
-    past."""
+    past. The neo-Hookean law (Ogden's with alpha 2), whose kernels compile in a quarter of the time."""
     angle = float(np.radians(35.0))
     solid = replace(
         SOLID,
+        mu=(3e4,),
+        alpha=(2.0,),
         prony=SOLID.prony if "viscosity" in parts else Prony(),
         softening=SOLID.softening if "softening" in parts else None,
         fibres=Fibres(k1=1.5e4, k2=0.8, angle=angle),
     )
     fibres = tisim.HolzapfelGasserOgden(direction=(np.cos(angle), np.sin(angle), 0.0), k1=1.5e4, k2=0.8)
-    material = tisim.Material(
-        law="ogden",
-        parameters=OGDEN,
+    material = replace(
+        tisim.material_from_moduli("neo-hookean", shear_modulus=3e4, bulk_modulus=3e7),
         fibres=fibres,
         viscosity=PRONY if "viscosity" in parts else None,
         softening=MULLINS if "softening" in parts else None,
