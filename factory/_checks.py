@@ -193,9 +193,9 @@ def one_solve(data: Dataset) -> list[str]:
             faults.append(f"poke {index}: takes the solve of poke {other}, which has none of its own")
             continue
         rows, its = data.rows(index, "frame"), data.rows(other, "frame")
-        moved = [data.read("grid_displacement", frames) for frames in (rows, its)]
-        forces = table["rod_force"][rows], factor * table["rod_force"][its]
-        if not (np.array_equal(*moved) and np.array_equal(*forces)):
+        moved, still = (data.read("grid_displacement", frames) for frames in (rows, its))
+        force = factor * table["rod_force"][its]
+        if not (np.array_equal(moved, still) and np.array_equal(table["rod_force"][rows], force)):
             faults.append(f"poke {index}: is not {factor:.4g} times the solve of poke {other}")
     return faults
 

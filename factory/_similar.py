@@ -69,7 +69,7 @@ def in_proportion(arrays: Arrays, poke: PlannedPoke) -> Outcome:
     """The result of a poke from the arrays of the one that it is solved as; its counters are 0."""
     scaled = {name: np.asarray(values) for name, values in arrays.items()}
     for name in FORCES:
-        scaled[name] = poke.force_factor * scaled[name]
+        scaled[name] = poke.force_factor * np.asarray(scaled[name], dtype=np.float64)
     scaled["counters"] = np.zeros_like(scaled["counters"])
     scaled["poke"] = np.array(poke.index, dtype=np.int64)
     return Outcome(index=poke.index, payload=encode(scaled), error=None)
