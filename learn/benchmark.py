@@ -13,7 +13,7 @@ import torch
 
 from learn.data import Batch, MemoryDataset, Store, StreamDataset, make_batch
 from learn.data.loaders import epoch_order
-from learn.models import InvariantGnn, Scene, pokes_of
+from learn.models import InvariantGnn, Model, Pokes, Response, Scene, pokes_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import OnnxBundle
 from learn.training import Run
@@ -99,20 +99,28 @@ def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[
             middle, best = timed(lambda onnx=onnx, code=code: onnx.poke(code, one, 0), repeats)  # type: ignore[misc]
             times.append((f"{name}, onnxruntime", str(threads), middle, best))
     if torch.cuda.is_available():
-        there, on_gpu = model.cuda(), scene.to("cuda")
-        prepared = there.prepare(scene)
-        ready = there.encode(on_gpu, prepared and tuple(s.to("cuda") for s in prepared))
-        moved = type(many)(**{k: v.cuda() for k, v in vars(many).items()})
-
-        def answer() -> None:
-            there.decode(ready, moved)
-            torch.cuda.synchronize()
-
-        middle, best = timed(answer, repeats)
+        middle, best = timed(on_device(model, scene, many, "cuda", torch.cuda.synchronize), repeats)
         each = f"{name}, GPU, {len(rows)} at once, each"
         times.append((each, "-", middle / len(rows), best / len(rows)))
         model.cpu()
     return times
+
+
+def on_device(
+    model: Model, scene: Scene, pokes: Pokes, device: str, synchronize: Callable[[], None]
+) -> Callable[[], Response]:
+    """A call that answers pokes on a device, and waits for it; model and scene are moved there."""
+    prepared = model.prepare(scene)
+    there = model.to(device)
+    ready = there.encode(scene.to(device), prepared and tuple(s.to(device) for s in prepared))
+    moved = type(pokes)(**{k: v.to(device) for k, v in vars(pokes).items()})
+
+    def answer() -> Response:
+        found = there.decode(ready, moved)
+        synchronize()
+        return found
+
+    return answer
 
 
 def yardstick(repeats: int) -> tuple[float, float]:

@@ -25,16 +25,22 @@ BINS = 16  # of the profile's levels
 
 
 class _Product(torch.autograd.Function):
-    """A constant sparse matrix times a dense one (torch's own has no fast gradient)."""
+    """A constant sparse matrix times a dense one (torch's own has no fast gradient).
+
+    In float32, under mixed precision too: sums over many neighbours that nearly cancel lose their digits in
+    bfloat16, and not every device has sparse products of it.
+    """
 
     @staticmethod
     def forward(ctx: Any, matrix: Tensor, transposed: Tensor, values: Tensor) -> Tensor:
         ctx.transposed = transposed
-        return torch.mm(matrix, values)
+        with torch.autocast(values.device.type, enabled=False):
+            return torch.mm(matrix, values)
 
     @staticmethod
     def backward(ctx: Any, *gradient: Tensor) -> tuple[None, None, Tensor]:
-        return None, None, torch.mm(ctx.transposed, gradient[0].contiguous())
+        with torch.autocast(gradient[0].device.type, enabled=False):
+            return None, None, torch.mm(ctx.transposed, gradient[0].contiguous())
 
 
 @dataclass(frozen=True, eq=False)
