@@ -28,7 +28,6 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
 # of a run shows which they are
 LONG = (
     "packaging/test_pages.py",
-    "blind/test_coupons.py",
     "blind/test_beams.py",
     "tisim/test_time_in_scenes.py",
     "tisim/test_law_registry.py",
@@ -42,6 +41,7 @@ LONG = (
     "tisim/test_dynamics.py",
     "calibration/diagnosis_release/test_bar_verdicts.py",
     "calibration/metrics/test_metrics_distance.py",
+    "blind/test_coupons.py",
     "tisim/test_beam_steps.py",
     "tisim/test_beam_reference.py",
     "calibration/diagnosis/test_diag_beam_model.py",

@@ -54,7 +54,7 @@ def test_what_is_outside_the_library_has_no_name(tmp_path: Path) -> None:
     assert verdict["verdict"] == "unexplained"
 
 
-@pytest.mark.parametrize("seeds", [(42, 43), pytest.param(range(41, 47), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seeds", [(43,), pytest.param(range(41, 47), marks=pytest.mark.slow)])
 def test_three_causes_at_once(tmp_path: Path, seeds: Sequence[int]) -> None:
     """Of those drawn at 25 sigmas; some that are hidden look like two others by themselves, as 41 does."""
     pairs = []
