@@ -1,11 +1,12 @@
-"""What a model predicts of a record, and how well it should: intervals from four sources.
+"""What a model predicts of a record, and how well it should: intervals from five sources.
 
-    predicted less measured = J du + change * d + noise
+    predicted less measured = J du + change * d + choice + noise
 
 du are errors of the fitted coordinates (and, of a specimen that was not seen, how specimens of a material
 scatter), d the relative error of the model, `change` what the same change of all moduli would do. Nuisances
 of the measurement (a photograph's registration, a load cell's zero) are taken out of predictions as of
-measurements, at their most likely values.
+measurements, at their most likely values. choice: other models explain what was fitted as well, and predict
+something else; each is as likely as the one that predicts.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from calibration.measurements._state import State
 Array = NDArray[np.float64]
 
 LEVEL, WIDTH = 0.95, 1.959964  # of the intervals, and half their width in standard deviations
-SOURCES = ("parameters", "specimens", "noise", "model error")
+SOURCES = ("parameters", "specimens", "noise", "model error", "choice")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,12 +104,17 @@ class Record:
 
 
 def predict_records(
-    test: MeasurementModel, models: Mapping[Any, tuple[MeasurementModel, Calibrated]]
+    test: MeasurementModel,
+    models: Mapping[Any, tuple[MeasurementModel, Calibrated]],
+    rivals: Mapping[Any, Sequence[tuple[MeasurementModel, Calibrated]]] | None = None,
 ) -> list[Record]:
     """Each record of `test` that it compares, by each of the models: name -> the model that the coordinates
-    belong to (its noise has the rows of `test`), and what is known. ValueError where one has no answer."""
+    belong to (its noise has the rows of `test`), and what is known; rivals: by name, others that explain as
+    well. ValueError where one has no answer."""
     some = [k for k in range(len(test.records)) if test.noise.used[test.row_record == k].any()]
     by_model = {name: _predicted(model, known, some) for name, (model, known) in models.items()}
+    for name, others in (rivals or {}).items():
+        by_model[name] = _with_choice(by_model[name], [_predicted(m, known, some) for m, known in others])
     found = []
     for k in some:
         r = test.records[k]
@@ -160,8 +166,21 @@ def _predicted(model: MeasurementModel, known: Calibrated, some: Sequence[int]) 
             if noise.ndim == 2
             else np.sqrt(shown.points(np.eye(int(rows.sum()))) ** 2 @ noise[rows] ** 2),
             "model error": np.abs(known.model_error * moved),
+            "choice": np.zeros(len(moved)),
         }
         found[k] = PredictedRecord(value=shown.points(left[rows]), sds=sds)
+    return found
+
+
+def _with_choice(
+    chosen: dict[int, PredictedRecord], others: Sequence[dict[int, PredictedRecord]]
+) -> dict[int, PredictedRecord]:
+    """With the spread of n models that are as likely about the one that was chosen, which is one of them."""
+    found = {}
+    for k, own in chosen.items():
+        squares = [(other[k].value - own.value) ** 2 for other in others]
+        choice = np.sqrt(np.sum(squares, axis=0) / (len(others) + 1)) if others else own.sds["choice"]
+        found[k] = replace(own, sds={**own.sds, "choice": choice})
     return found
 
 

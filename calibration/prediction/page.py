@@ -43,11 +43,11 @@ points within their 95 % intervals.</p>
 <h2>Method</h2>
 <p>Each trial is simulated by the model of its kind of measurement, as fits and diagnoses simulate it.
 What is off by the same all through a record (a zero, a place) is taken out at its most likely value.
-Intervals add four sources: errors of the fitted parameters, wider by the root of the reduced chi-square where
+Intervals add five sources: errors of the fitted parameters, wider by the root of the reduced chi-square where
 that is above 1; how specimens of one material scatter, for a specimen that was not fitted to; noise as the
 lab states it or as the records show it; and the model's error, the relative error of the modulus that is as
-large as what the fit left beyond noise. They hold for single points; errors of neighbouring points are
-alike.</p>
+large as what the fit left beyond noise; and the choice of the model, where what was fitted does not tell it
+from others. They hold for single points; errors of neighbouring points are alike.</p>
 {% endblock %}
 """
 

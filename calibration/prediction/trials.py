@@ -105,12 +105,14 @@ def _same_kind(kind: Kind, wanted: Experiment) -> bool:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Fitted:
-    """Fits to the trials that are fitted, by name; the model's options; what was found, for people."""
+    """Fits to the trials that are fitted, by name; the model's options; what was found, for people; fits of
+    what the trials cannot tell from the extension."""
 
     model: MeasurementModel
     options: dict[str, Any]
     fits: dict[Name, Fit]
     sentence: str
+    rivals: tuple[Fit, ...] = ()
 
 
 def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
@@ -127,9 +129,13 @@ def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
 
     found, model = diagnose_with_law(noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=say)
     fits: dict[Name, Fit] = {BASELINE: found.finding.baseline}
+    rivals: tuple[Fit, ...] = ()
     if found.chosen is not None:
         fits[EXTENDED] = found.chosen.fit
-    return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence())
+        alike = set(found.finding.equivalent) - {found.chosen.names}
+        best = {e.names: e.fit for e in sorted(found.finding.explanations, key=lambda e: -e.score)}
+        rivals = tuple(best[names] for names in sorted(alike))
+    return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence(), rivals=rivals)
 
 
 def _stated(make: Make, *, law: str, effects: Sequence[str], say: Say) -> _Fitted:
@@ -211,17 +217,27 @@ def _within(
         fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
         train = model.subset(fold, others=True)
         say("predicting")
-        made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
-        for name, old in found.fits.items():
+
+        def again(old: Fit, name: str) -> tuple[MeasurementModel, Calibrated]:
             known = dict(zip(found.model.names, old.state.u, strict=True))
             u = np.array([known.get(n, x) for n, x in zip(model.names, model.start(), strict=True)])
             start = replace(old.state, u=u)
             train.update_nuisances(start)
-            again = fit(train, start, old.candidates)
-            if not again.converged:
-                notes.append(f"the fit of the {name} did not converge: {again.message}")
-            made[name] = (model.subset(fold, others=False), _calibrated(model, fold, again, name))
-        records = predict_records(model.subset(fold, others=False), made)
+            new = fit(train, start, old.candidates)
+            if not new.converged:
+                notes.append(f"the fit of {name} did not converge: {new.message}")
+            return model.subset(fold, others=False), _calibrated(model, fold, new, name)
+
+        made: dict[Name, tuple[MeasurementModel, Calibrated]] = {
+            name: again(old, name) for name, old in found.fits.items()
+        }
+        rivals = [again(old, old.label) for old in found.rivals]
+        if rivals:
+            others = ", ".join(known.label for _, known in rivals)
+            notes.append(f"the trials that were fitted do not tell {made[EXTENDED][1].label} from {others}")
+        records = predict_records(
+            model.subset(fold, others=False), made, {EXTENDED: rivals} if rivals else {}
+        )
     except ValueError as error:
         raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error
     materials = model.baseline.materials

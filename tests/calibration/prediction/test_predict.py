@@ -177,6 +177,40 @@ def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
     assert "relax" in told["sentence"] or "rate" in told["sentence"]
 
 
+def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) -> None:
+    """Mooney and Rivlin's law pulled by 30 %: a second invariant or an offset of the strain, which in equibiaxial
+    tension are far apart."""
+    c01 = 0.125 * 30e3
+    c10 = 15e3 - c01
+    stretch = np.linspace(1.0, 1.3, 25)
+    stress = {
+        "uniaxial": 2.0 * (stretch - stretch**-2) * (c10 + c01 / stretch),
+        "equibiaxial": 2.0 * (stretch - stretch**-5) * (c10 + c01 * stretch**2),
+    }
+    rng = np.random.default_rng(2)
+    tables, trials = {}, []
+    for mode, true in stress.items():
+        sd = 0.012 * float(true.max())
+        noisy = true + sd * rng.standard_normal(true.size)
+        tables[f"{mode}.csv"] = {"stretch": stretch, "nominal_stress_kPa": 1e-3 * noisy}
+        trials.append(coupon_entry(mode, f"{mode}.csv", mode=mode, stretch_sd=0.0, stress_sd_kPa=1e-3 * sd))
+    folder = write_experiment(tmp_path / "pulled", trials, tables=tables)
+    found = calibration.predict(
+        folder, calibrate="uniaxial", predict="equibiaxial", law="neo-hookean", workers=1
+    ).prediction
+    assert any("do not tell second-invariant from strain-offset" in note for note in found.notes)
+    (record,) = found.records
+    choice = record.sd("extended", "choice")
+    # of two that are as likely: their difference over the square root of two; an offset leaves neo-Hookean stress
+    apart = stress["equibiaxial"] - 2.0 * (stretch - stretch**-5) * 15e3
+    assert choice[-1] == pytest.approx(abs(apart[-1]) / np.sqrt(2.0), rel=0.35)
+    assert (record.sd("baseline", "choice") == 0.0).all()
+    alone = record.predicted["extended"].sds
+    assert record.sd("extended")[-1] == pytest.approx(
+        np.sqrt(sum(s[record.used][-1] ** 2 for s in alone.values()))
+    )
+
+
 @pytest.mark.parametrize(
     ("more", "sentence"),
     [
