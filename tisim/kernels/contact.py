@@ -13,7 +13,7 @@ p = kn max(-d, 0) is frozen during a line search and refreshed at every linearis
 Coulomb's law without lag. The dependence of mu p and of the tangent plane on x makes the tangent
 unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
 creeps where points slip and where they pass the rounded edge).
-Between its nodes a facet is a chord of the rod's rounding, which the tissue would follow: by `bulge` a point's
+Between its nodes a facet is a chord of the rod's rounding, which tissue would follow: by `bulge` a point's
 distance grows, so that a facet whose nodes lie on the rod touches it evenly. Without it the middles alone
 touch, and lift their neighbours off. It is kept from the last converged step.
 A point that touches first in this step slips for the part of the step that it touches, as the step's

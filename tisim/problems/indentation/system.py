@@ -90,6 +90,7 @@ class PokeSystem:
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
         self._part = np.zeros(points)
         self._bulge = np.zeros(points)
+        self.overlap = 0.0  # deepest, of the last accepted state's flat facets and the rod [m]
         self._measure, self._energy, self._assemble = contact_kernels()
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
@@ -163,6 +164,7 @@ class PokeSystem:
             self._known = None
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
+        self.overlap = max(-float(self._gap.min()), 0.0)
         bulge = self._bulge_at(x, self._gap)
         self._gap += self._bulge
         self._bulge = bulge
