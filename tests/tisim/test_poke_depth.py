@@ -39,7 +39,6 @@ def test_facets_whose_nodes_lie_on_the_rod_touch_it_evenly() -> None:
     on_rod = np.isin(system.facets, inside).all(axis=1)
     assert on_rod.sum() > 10
     assert np.abs(system._gap[on_rod]).max() > 1e-5  # flat facets cut into the rod
-    assert system.overlap == pytest.approx(-system._gap.min())
     system.accept(x)  # now they bulge
     assert np.abs(system._gap[on_rod]).max() < 1e-9
     away = mesh.nodes[system.facets].mean(axis=1)[:, :2]

@@ -29,7 +29,9 @@ TANGENT_STIFFNESS = 50.0
 # body so far that its force is 1.3 % low, whatever the mesh.
 ROUNDEST = 0.4
 POINTS_PER_SIDE = 4
-BULGE = 1.0
+# Facets count as bulging with the rod's rounding by no more than this part of the edge's radius. Deep down, where
+# they are stretched as long as the edge is round, whole bulges would let the edge through the surface.
+LARGEST_BULGE = 0.075
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +92,6 @@ class PokeSystem:
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
         self._part = np.zeros(points)
         self._bulge = np.zeros(points)
-        self.overlap = 0.0  # deepest, of the last accepted state's flat facets and the rod [m]
         self._measure, self._energy, self._assemble = contact_kernels()
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
@@ -164,7 +165,6 @@ class PokeSystem:
             self._known = None
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
-        self.overlap = max(-float(self._gap.min()), 0.0)
         bulge = self._bulge_at(x, self._gap)
         self._gap += self._bulge
         self._bulge = bulge
@@ -185,7 +185,7 @@ class PokeSystem:
         bulge = corners @ self._shape.T - distance
         size = np.abs(bulge).max(axis=1)
         share = np.clip(2.0 - corners.max(axis=1) / np.maximum(size, 1e-12), 0.0, 1.0)
-        found: Array = BULGE * share[:, None] * bulge
+        found: Array = share[:, None] * np.minimum(bulge, LARGEST_BULGE * self.edge)
         return found
 
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
