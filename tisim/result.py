@@ -78,8 +78,7 @@ class Result:
     rod_tip : ndarray, shape (f, 3), or None
         Centre of the rod's tip [m]; pokes.
     penetration : ndarray, shape (f,), or None
-        Deepest overlap of body and rod, or of side and platen [m]; pokes and compression. Of a poke, what the
-        contact has: facets are taken to follow the rod's rounding between their nodes (studies/depth).
+        Deepest overlap of body and rod, or of side and platen [m]; pokes and compression.
     min_jacobian : ndarray, shape (f,)
         Smallest det F at the integration points.
     residual : ndarray, shape (f,)

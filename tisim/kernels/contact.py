@@ -13,9 +13,6 @@ p = kn max(-d, 0) is frozen during a line search and refreshed at every linearis
 Coulomb's law without lag. The dependence of mu p and of the tangent plane on x makes the tangent
 unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
 creeps where points slip and where they pass the rounded edge).
-Between its nodes a facet is a chord of the rod's rounding, which tissue would follow: by `bulge` a point's
-distance grows, so that a facet whose nodes lie on the rod touches it evenly. Without it the middles alone
-touch, and lift their neighbours off. It is kept from the last converged step.
 A point that touches first in this step slips for the part of the step that it touches, as the step's
 start value sees it.
 """
@@ -121,7 +118,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
     @ti.kernel
     def energy(
         x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
-        memory: _f3, part: _f2, bulge: _f2, pressure: _f2, out: _f1,
+        memory: _f3, part: _f2, pressure: _f2, out: _f1,
     ):  # fmt: skip
         """out[0]: energy [J] with the pressures frozen; out[1]: smallest distance [m]."""
         total = 0.0
@@ -132,7 +129,6 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                 for q in range(shape.shape[0]):
                     y = sample(x, conn, shape, f, q)
                     d, n, _km, _kr, _t = rod_distance(y, rod)
-                    d += bulge[f, q]
                     least = ti.min(least, d)
                     if d < 0.0:
                         total += area[f, q] * 0.5 * law[0] * d * d
@@ -151,7 +147,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
     @ti.kernel
     def assemble(
         x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
-        memory: _f3, part: _f2, bulge: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
+        memory: _f3, part: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
         force: _f2, blocks: _f3, out: _f1,
     ):  # fmt: skip
         """Refreshes `pressure` (f, q) and `slip` (f, q, 3; the elastic slip after return), adds energy
@@ -168,7 +164,6 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                 for q in range(shape.shape[0]):
                     y = sample(x, conn, shape, f, q)
                     d, n, km, kr, t = rod_distance(y, rod)
-                    d += bulge[f, q]
                     least = ti.min(least, d)
                     pressure[f, q] = law[0] * ti.max(0.0, -d)
                     for i in ti.static(range(3)):

@@ -15,8 +15,7 @@ Bools = NDArray[np.bool_]
 
 TOP_LAYER = 0.0013
 BOTTOM_LAYER = 0.0060
-# layers thinner than this, at refinement 1, turn over under a rod's edge. Finer meshes have thinner ones in
-# proportion: with layers that stay, refining leads to a force that is some percent off (studies/depth).
+# layers thinner than this turn over under a rod's edge
 THINNEST_LAYER = 0.0012
 
 
@@ -89,11 +88,10 @@ def extrude(
 
 def _hanging(bottom: Floats, height: float, refinement: float) -> Floats:
     """Levels from `bottom` (n,) up to the top face, finest there: (n, k + 1)."""
-    thinnest = THINNEST_LAYER / max(1.0, refinement)
-    top = TOP_LAYER / refinement
+    top = max(THINNEST_LAYER, TOP_LAYER / refinement)
     room, least = height - float(bottom.min()), height - float(bottom.max())
     k = layer_count(height=room, top=top, bottom=BOTTOM_LAYER / refinement, total=height)
-    k = max(1, min(k, int(least / thinnest)))
+    k = max(1, min(k, int(least / THINNEST_LAYER)))
     levels = height - graded(height - bottom, top, k)[:, ::-1]
     levels[:, 0] = bottom
     return levels
@@ -101,9 +99,10 @@ def _hanging(bottom: Floats, height: float, refinement: float) -> Floats:
 
 def _rising(top: Floats, height: float, refinement: float, deepest: float) -> Floats:
     """Even levels from 0 to `top` (n,), as many as a stack that ends at `deepest` wants: (n, k + 1)."""
+    thin = max(THINNEST_LAYER, TOP_LAYER / refinement)
     k = layer_count(
         height=float(top.max()),
-        top=TOP_LAYER / refinement,
+        top=thin,
         bottom=BOTTOM_LAYER / refinement,
         total=height,
         start=height - deepest,

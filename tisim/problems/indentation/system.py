@@ -29,9 +29,6 @@ TANGENT_STIFFNESS = 50.0
 # body so far that its force is 1.3 % low, whatever the mesh.
 ROUNDEST = 0.4
 POINTS_PER_SIDE = 4
-# Facets count as bulging with the rod's rounding by no more than this part of the edge's radius. Deep down, where
-# they are stretched as long as the edge is round, whole bulges would let the edge through the surface.
-LARGEST_BULGE = 0.075
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +88,6 @@ class PokeSystem:
         self._skew = np.zeros((*points, 9))
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
         self._part = np.zeros(points)
-        self._bulge = np.zeros(points)
         self._measure, self._energy, self._assemble = contact_kernels()
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
@@ -148,7 +144,6 @@ class PokeSystem:
         """Set the part of the step in which each point touches, by the step's start value."""
         distance = np.empty_like(self._gap)
         self._measure(guess, self.facets, self._shape, self._rod, distance)
-        distance += self._bulge
         gap = np.maximum(self._gap, 0.0)
         overlap = np.maximum(-distance, 0.0)
         self._part = np.where(self._gap <= 0.0, 1.0, overlap / (gap + overlap + 1e-15))
@@ -165,28 +160,11 @@ class PokeSystem:
             self._known = None
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
-        bulge = self._bulge_at(x, self._gap)
-        self._gap += self._bulge
-        self._bulge = bulge
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
             self._known = None
-
-    def _bulge_at(self, x: Array, distance: Array) -> Array:
-        """How much farther the rod is from a facet that bulges as it than from the flat one, (f, q) [m].
-
-        distance (f, q): of the flat one's points at x. What it differs by from the interpolation of that of
-        the nodes; of facets only whose nodes all lie on the rod as nearly as that.
-        """
-        corners = np.empty(self.facets.shape)
-        self._measure(x, self.facets, np.eye(self.facets.shape[1]), self._rod, corners)
-        bulge = corners @ self._shape.T - distance
-        size = np.abs(bulge).max(axis=1)
-        share = np.clip(2.0 - corners.max(axis=1) / np.maximum(size, 1e-12), 0.0, 1.0)
-        found: Array = share[:, None] * np.minimum(bulge, LARGEST_BULGE * self.edge)
-        return found
 
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
         """This system at its depth on some of the elements, with `far` for the others.
@@ -210,7 +188,7 @@ class PokeSystem:
         out = np.empty(2)
         self._energy(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
-            self._memory, self._part, self._bulge, self._pressure, out,
+            self._memory, self._part, self._pressure, out,
         )  # fmt: skip
         return energy + float(out[0]), min_jacobian
 
@@ -256,7 +234,7 @@ class PokeSystem:
         total = force.copy()
         self._assemble(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, self._bulge, self._pressure, self._slip, self._skew, slot, total, blocks, self.report,
+            self._part, self._pressure, self._slip, self._skew, slot, total, blocks, self.report,
         )  # fmt: skip
         # before first touch there is no force to compare with: a millinewton-scale floor
         floor = 1e-4 * self.body.moduli.shear_modulus * self.edge**2
@@ -286,7 +264,7 @@ class PokeSystem:
         none = np.full_like(self._slot, -1)
         self._assemble(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
-            self._part, self._bulge, pressure, slip, skew, none, total, np.zeros((1, 3, 3)), report,
+            self._part, pressure, slip, skew, none, total, np.zeros((1, 3, 3)), report,
         )  # fmt: skip
         return float(np.linalg.norm(self._free(total)))
 
