@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -48,9 +49,31 @@ def corners(knots: tuple[float, ...], counts: tuple[int, ...], level: int) -> Ar
     return out
 
 
-def disc(level: int) -> fe.Mesh:
-    """9-node quadrilaterals, (axial, radial), small at the top under the rod."""
-    near = corners((0.0, 0.0012, 0.0036), (2, 8), level)
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """What is poked by what, and how deep; moduli in Pa, depths in m.
+
+    tip: "flat", with the edge radius above, or "hemisphere". law: "neo_hookean" or "ogden", alpha 4.
+    """
+
+    tip: str = "flat"
+    law: str = "neo_hookean"
+    bulk: float = BULK
+    depths: tuple[float, ...] = DEPTHS
+
+    def mixed_law(self) -> Any:
+        """As FElupe's `SolidBody` takes it."""
+        if self.law == "neo_hookean":
+            return mixed_law(self.law, self.bulk, mu=MU)
+        return mixed_law(self.law, self.bulk, mu=(MU / 2,), alpha=(4.0,))
+
+
+def disc(level: int, axis: int = 2) -> fe.Mesh:
+    """9-node quadrilaterals, (axial, radial), small at the top under the rod.
+
+    axis: elements of level 1 in the 1.2 mm next to the axis.
+    """
+    near = corners((0.0, 0.0012, 0.0036), (axis, 8), level)
     far = near[-1] + (RADIUS - near[-1]) * graded(8 * level, 4.0)
     radial = np.concatenate([near, far[1:]])
     axial = HEIGHT * (1 - graded(10 * level, 2.2))[::-1]
@@ -62,20 +85,23 @@ def disc(level: int) -> fe.Mesh:
     return fe.Mesh(grid.reshape(-1, 2), np.stack([number[p].ravel() for p in pick], -1), "quad9")
 
 
-def poke(friction: float, level: int, penalty: float = PENALTY) -> dict[str, dict[str, float]]:
+def poke(
+    friction: float, level: int, penalty: float = PENALTY, case: Case = Case()
+) -> dict[str, dict[str, float]]:
     """Force and checks at every depth reached."""
-    mesh = disc(level)
+    mesh = disc(level) if case.tip == "flat" else disc(level, 4)
     field = mixed_fields(fe.RegionBiQuadraticQuad(mesh), axisymmetric=True)
     dof = np.arange(2 * mesh.npoints).reshape(-1, 2)
     base, axis = mesh.points[:, 0] < 1e-9, mesh.points[:, 1] < 1e-9
     fixed = np.unique(np.concatenate([dof[base].ravel(), dof[axis, 1]]))
     top = np.flatnonzero(mesh.points[:, 0] > HEIGHT - 1e-9)
     top = top[np.argsort(mesh.points[top, 1])]
-    top = top[mesh.points[top, 1] < 0.012]
+    top = top[mesh.points[top, 1] < max(0.012, 0.8 * case.depths[-1])]
     top = top[: len(top) - 1 + len(top) % 2]
     edges = np.stack([top[:-2:2], top[2::2], top[1:-1:2]], -1)
-    rod = FlatRod(mesh, edges, HEIGHT, ROD, EDGE, friction, penalty)
-    law = mixed_law("neo_hookean", BULK, mu=MU)
+    edge = EDGE if case.tip == "flat" else ROD
+    rod = FlatRod(mesh, edges, HEIGHT, ROD, edge, friction, penalty)
+    law = case.mixed_law()
     zero = np.zeros(field[0].values.size)
     model = MixedModel(field, law, fixed, lambda _: zero, tolerance=1e-7, contact=rod)
     vertical = np.isin(fixed, dof[base, 0])
@@ -91,12 +117,12 @@ def poke(friction: float, level: int, penalty: float = PENALTY) -> dict[str, dic
         forces = f"force {rod.force:.4f} N, base {reaction:.4f}, penetration {rod.deepest * 1e6:.1f} um"
         print(f"{what}: {forces}, min J {J.min():.3f}, {model.solves} solves, {clock():.0f} s", flush=True)
 
-    if not model.path(0.0, DEPTHS, report, 1e-4, 2.5e-4 / level):
+    if not model.path(0.0, case.depths, report, 1e-4, 2.5e-4 / level):
         print(f"friction {friction} level {level}: no equilibrium beyond the values above", flush=True)
     return out
 
 
-def estimate(found: dict[str, Any]) -> dict[str, Any]:
+def estimate(found: dict[str, Any], depths: tuple[float, ...] = DEPTHS) -> dict[str, Any]:
     """Force for a rigid contact at each friction and depth, from the finest level, and its error [%].
 
     The penalty's part is c / penalty, c from two penalties on one level at that friction, else stick's.
@@ -114,7 +140,7 @@ def estimate(found: dict[str, Any]) -> dict[str, Any]:
 
     out: dict[str, Any] = {}
     for name, runs in found.items():
-        for depth in (f"{d * 1e3:g}" for d in DEPTHS):
+        for depth in (f"{d * 1e3:g}" for d in depths):
             forces = [runs[k][depth]["force"] for k in sorted(runs) if k.isdigit() and depth in runs[k]]
             c = slope(name, depth)
             c = slope("stick", depth) if c is None else c
