@@ -178,8 +178,8 @@ def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
 
 
 def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) -> None:
-    """Mooney and Rivlin's law pulled by 30 %: a second invariant or an offset of the strain, which in equibiaxial
-    tension are far apart."""
+    """Mooney and Rivlin's law pulled by 30 %: a second invariant, or an offset of the strain? Equibiaxial
+    tension would tell."""
     c01 = 0.125 * 30e3
     c10 = 15e3 - c01
     stretch = np.linspace(1.0, 1.3, 25)
@@ -201,9 +201,9 @@ def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) 
     assert any("do not tell second-invariant from strain-offset" in note for note in found.notes)
     (record,) = found.records
     choice = record.sd("extended", "choice")
-    # of two that are as likely: their difference over the square root of two; an offset leaves neo-Hookean stress
-    apart = stress["equibiaxial"] - 2.0 * (stretch - stretch**-5) * 15e3
-    assert choice[-1] == pytest.approx(abs(apart[-1]) / np.sqrt(2.0), rel=0.35)
+    # the difference of two that are as likely over root 2; beside an offset the stress is neo-Hookean
+    one, other = (record.predicted[m].value[record.used] for m in ("extended", "baseline"))
+    assert choice[-1] == pytest.approx(abs(one[-1] - other[-1]) / np.sqrt(2.0), rel=0.1)
     assert (record.sd("baseline", "choice") == 0.0).all()
     alone = record.predicted["extended"].sds
     assert record.sd("extended")[-1] == pytest.approx(
