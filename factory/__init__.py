@@ -9,7 +9,8 @@ Plan(quick, ogden: 12 pokes = 2 shapes x 3 material levels x 2)
 >>> factory.open_dataset("datasets/quick-ogden.zarr").poke(3).rod_force           # doctest: +SKIP
 
 The commands are `python -m factory.build`, `.inspect`, `.verify`, `.card` and `.release`. `build_dataset`
-takes a callback `on_progress`; what happens besides is logged under "factory". Errors that people can act on are `InputError`.
+takes a callback `on_progress`; what happens besides is logged under "factory". Errors that people
+can act on are `InputError`.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ for _module in (build, inspect, verify, card, release):
 
 @app.callback(invoke_without_command=True)
 def main(context: typer.Context, version: Version = False) -> None:
-    """Datasets of simulated pokes: build, inspect, verify, describe, publish (also `python -m factory.build` ...)."""
+    """Datasets of pokes: build, inspect, verify, describe, publish (also `python -m factory.build`)."""
     del version
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())

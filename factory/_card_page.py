@@ -142,7 +142,8 @@ def _simulated(facts: Facts) -> Iterator[str]:
         f"Rod: {rod['tip']}, radius {rod['radius_mm']:g} mm, edge rounded by {rod['edge_radius_mm']:g} mm; "
         f"contact with Coulomb friction of {recipe['friction']:g}.",
         f"Motion: up to {protocol['depth_mm']:g} mm from first touch, up to "
-        f"{protocol['max_angle_deg']:g} degrees from the normal, {motion}; a frame every {protocol['frame_spacing_mm']:g} mm.",
+        f"{protocol['max_angle_deg']:g} degrees from the normal, {motion}; a frame every "
+        f"{protocol['frame_spacing_mm']:g} mm.",
         f"Mesh: {nodes.min()} to {nodes.max()} nodes (mean {nodes.mean():.0f}), {elements.min()} to "
         f"{elements.max()} elements, refinement {recipe['refinement']:g}.",
         f"Solver: residual force below {tolerance:g} of the load in every frame.",
@@ -204,9 +205,9 @@ def _accuracy(facts: Facts) -> Iterator[str]:
         f"{1e3 * worst.penetration:.3g} mm within the rod."
     )
     yield (
-        "That is equilibrium of the discrete model, not its distance from the truth: `studies/depth` of tisim "
-        "compares the force with independent solvers by depth, `docs/simulation.md` says how far each kind of "
-        "scene can be trusted."
+        "That is equilibrium of the discrete model, not its distance from the truth: `studies/depth` of "
+        "tisim compares the force with independent solvers by depth, `docs/simulation.md` says how far each "
+        "kind of scene can be trusted."
     )
 
 
@@ -218,7 +219,7 @@ def _cost(facts: Facts) -> Iterator[str]:
         return
     needed = solves(facts)
     if cost.solves != needed:
-        yield f"The store's ledger lists {cost.solves} solves, the store has {needed}: what follows is of those."
+        yield f"The ledger lists {cost.solves} solves, the store has {needed}: below are the listed ones."
     yield (
         f"{cost.solves} solves took {cost.core_seconds:.1f} core-seconds ({duration(cost.core_seconds)}), "
         f"{cost.core_seconds / cost.solves:.2f} a solve; "

@@ -21,18 +21,11 @@ PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
 }
 
 # section Data Generation, its text: 11 x 3 x 40 pokes of each law, and their snapshots in all
-SHAPES, POKES_EACH, LEVELS = 11, 40, 3
+SHAPES, POKES_EACH = 11, 40
 SNAPSHOTS = {"ogden": 14305, "mooney-rivlin": 13672}
 DEPTH_MM = 30.0  # the largest penetration depth asked for
-NODES = (13297, 17732, 15954)  # of the volume meshes: least, most, mean
 
 
 def pokes_a_level() -> int:
     """Pokes behind each row of the paper's table: all shapes at one softness."""
     return SHAPES * POKES_EACH
-
-
-def reached(law: str, level: str) -> float | None:
-    """Mean of the paper's largest depth over the depth asked for; None where it has no such row."""
-    rows = PAPER.get(law, {}).get(level)
-    return None if rows is None else rows[0][0] / DEPTH_MM
