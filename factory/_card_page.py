@@ -149,6 +149,9 @@ def _simulated(facts: Facts) -> Iterator[str]:
         f"Solver: residual force below {tolerance:g} of the load in every frame.",
         f"Versions: {versions}.",
     ]
+    if course:
+        pieces = (_value({key: v for key, v in piece.items() if v is not None}) for piece in course)
+        lines.append(f"Course: {'; '.join(pieces)}.")
     derived = len(facts.summary.done) - solves(facts)
     if derived:
         lines.append(

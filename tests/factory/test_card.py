@@ -20,7 +20,9 @@ import zarr
 import factory.card
 from factory import _card, _paper, open_dataset
 from factory._store import LEDGER, MANIFEST
-from tests.factory.conftest import digest, run_app
+from factory.plan import Plan
+from tests.factory.conftest import Builder, digest, run_app
+from tests.factory.standin import site_code
 
 OPTIONS = ("--author", "Ada & Co", "--licence", "CC-BY-4.0")
 
@@ -163,15 +165,29 @@ def test_the_date_is_the_stores(store: Path) -> None:
     assert _card.gather(store, date="2031-02-03").date == datetime.date(2031, 2, 3)
 
 
-def test_faults_are_stated_and_end_with_1(
-    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_failed_pokes_are_counted_and_end_with_1(
+    plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A store whose bytes are sound, but whose frames are not."""
-    monkeypatch.setattr("factory._checks.FORCE_BALANCE", -1.0)
-    result = run_app(factory.card.app, store, "--out", tmp_path / "card")
+    monkeypatch.setenv("STANDIN_FAIL", str(site_code(plan.pokes[1].scene)))
+    standin_build(plan, tmp_path / "a.zarr")
+    result = run_app(factory.card.app, tmp_path / "a.zarr", "--out", tmp_path / "card")
     assert result.exit_code == 1
-    assert "base reaction = rod force: 4" in result.stdout
-    assert "| base reaction = rod force | 4 |" in (tmp_path / "card" / "card.md").read_text()
+    assert "the card states faults (statuses: 1)" in result.stdout
+    page = (tmp_path / "card" / "card.md").read_text(encoding="utf-8")
+    for text in (
+        "4 pokes, of which 1 failed",
+        "| statuses | 1 |",
+        "not-converged 3, failed 1",
+        "3 solves took",
+    ):
+        assert text in page, text
+    first, second = _lines(tmp_path / "card" / "features.csv")
+    assert (first["pokes"], first["solves"], first["ended_failed"], second["ended_failed"]) == (
+        "2",
+        "1",
+        "1",
+        "0",
+    )
 
 
 def test_a_damaged_store_gets_no_card(store: Path, tmp_path: Path) -> None:
