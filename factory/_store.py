@@ -142,7 +142,7 @@ def read_ledger(path: Path | zipfile.Path) -> dict[int, dict[str, Any]]:
     lines: dict[int, dict[str, Any]] = {}
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError:
+    except (OSError, zipfile.BadZipFile):
         return lines
     for line in text.splitlines():
         with contextlib.suppress(ValueError, RecursionError):
