@@ -8,8 +8,9 @@ Plan(quick, ogden: 12 pokes = 2 shapes x 3 material levels x 2)
 >>> built = factory.build_dataset(plan, Path("datasets/quick-ogden.zarr"))        # doctest: +SKIP
 >>> factory.open_dataset("datasets/quick-ogden.zarr").poke(3).rod_force           # doctest: +SKIP
 
-The commands are `python -m factory.build`, `.inspect` and `.verify`. `build_dataset` takes a callback
-`on_progress`; what happens besides is logged under "factory". Errors that people can act on are `InputError`.
+The commands are `python -m factory.build`, `.inspect`, `.verify`, `.card` and `.release`. `build_dataset`
+takes a callback `on_progress`; what happens besides is logged under "factory". Errors that people
+can act on are `InputError`.
 """
 
 from __future__ import annotations

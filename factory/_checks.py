@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from factory._archive import zip_faults
 from factory._course import PHASES, states_at
 from factory._input import InputError, one_line
 from factory._record import STATUSES
 from factory._sampling import LEVELS, RIGID, SIZE, profiles
 from factory._store import DamagedError, file_faults, manifest_faults
-from factory.reader import Dataset, open_dataset
+from factory.reader import Dataset, is_zip, open_dataset
 
 FORCE_BALANCE = 0.01  # of the indenter's force
 FORCE_FLOOR = 1e-3  # N: forces below that are compared with it instead
@@ -65,7 +66,8 @@ def verify_dataset(path: str | Path) -> Verification:
     except DamagedError as error:
         faults["attributes"] = [str(error)]
     faults["files"] = _caught(lambda: file_faults(folder))
-    faults["checksums"] = _caught(lambda: manifest_faults(folder))
+    sums = zip_faults if is_zip(folder) else manifest_faults
+    faults["checksums"] = _caught(lambda: sums(folder))
     if data is None:
         return Verification(folder, faults)
     for name, check in CHECKS.items():

@@ -11,6 +11,7 @@ import json
 import math
 import os
 import stat
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -79,13 +80,13 @@ class _Attributes(_Lenient):
     identity: _Identity
 
 
-def is_store(path: Path) -> bool:
+def is_store(path: Path | zipfile.Path) -> bool:
     """`path` is a dataset of the factory, or what damage has left of one."""
     attributes = _raw_attributes(path)
     return (attributes is not None and "fingerprint" in attributes) or (path / MANIFEST).is_file()
 
 
-def root_attributes(store: Path) -> dict[str, Any] | None:
+def root_attributes(store: Path | zipfile.Path) -> dict[str, Any] | None:
     """Attributes of the store's root group; None where this is no store.
 
     Raises
@@ -116,7 +117,7 @@ def check_identity(identity: object, where: Path) -> dict[str, Any]:
     return identity
 
 
-def read_json(path: Path) -> object:
+def read_json(path: Path | zipfile.Path) -> object:
     """Content of a JSON file; ValueError where it is damaged, OSError where it cannot be read."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
@@ -124,7 +125,7 @@ def read_json(path: Path) -> object:
         raise ValueError("nested too deep") from None
 
 
-def _raw_attributes(store: Path) -> dict[str, Any] | None:
+def _raw_attributes(store: Path | zipfile.Path) -> dict[str, Any] | None:
     try:
         metadata = read_json(store / "zarr.json")
     except (OSError, ValueError):
@@ -133,7 +134,7 @@ def _raw_attributes(store: Path) -> dict[str, Any] | None:
     return attributes if isinstance(attributes, dict) else None
 
 
-def read_ledger(path: Path) -> dict[int, dict[str, Any]]:
+def read_ledger(path: Path | zipfile.Path) -> dict[int, dict[str, Any]]:
     """The last sound line of each poke: index, wall_seconds, core_seconds and error text.
 
     Lines torn by a crash or edited by hand are skipped; a ledger that cannot be read is empty.
@@ -141,7 +142,7 @@ def read_ledger(path: Path) -> dict[int, dict[str, Any]]:
     lines: dict[int, dict[str, Any]] = {}
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError:
+    except (OSError, zipfile.BadZipFile):
         return lines
     for line in text.splitlines():
         with contextlib.suppress(ValueError, RecursionError):

@@ -15,21 +15,6 @@ from factory._staging import DamagedResultError, Staging, building_folder
 from factory._store import LEDGER, check_identity, read_json, read_ledger
 from factory.reader import name_of, open_dataset
 
-# the paper's table of dataset features: law -> material level -> mean and sd of Sim_max [mm], F_max [N],
-# Tip_mean [mm], F_mean [N]
-PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
-    "mooney-rivlin": {
-        "S0": ((13.92, 3.88), (12.92, 5.32), (7.91, 4.82), (4.80, 4.59)),
-        "S0.5": ((13.78, 4.14), (6.19, 2.69), (7.94, 4.89), (2.33, 2.30)),
-        "S1": ((13.46, 4.24), (3.87, 2.43), (7.82, 4.87), (1.42, 1.54)),
-    },
-    "ogden": {
-        "S0": ((16.32, 6.53), (29.71, 25.31), (9.88, 6.54), (6.94, 11.44)),
-        "S0.5": ((16.40, 6.41), (18.35, 18.67), (9.89, 6.54), (3.94, 7.47)),
-        "S1": ((11.20, 4.82), (2.34, 1.98), (7.04, 4.87), (1.01, 1.19)),
-    },
-}
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeSummary:
@@ -134,7 +119,7 @@ def summarise(path: str | Path) -> Summary:
         levels=data.levels,
         done=done,
         failed=failed,
-        ledger=read_ledger(path / LEDGER),
+        ledger=read_ledger(data.root / LEDGER),
     )
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from factory._summary import PokeSummary, Summary
+    from factory._summary import Summary
     from factory.reader import Dataset, PokeData
 
 EXAMPLES = """
@@ -101,41 +101,27 @@ def _overview(summary: Summary) -> Table:
 def _reached(summary: Summary) -> Table:
     from rich.table import Table
 
-    from factory._summary import PAPER
+    from factory._features import measures
+    from factory._paper import PAPER, pokes_a_level
 
     table = Table(title="Depths and forces reached, mean +- sd (the paper's below)")
-    measures = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
-    for head in ("material level", "pokes", *measures):
+    heads = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
+    for head in ("material level", "pokes", *heads):
         table.add_column(head, justify="right")
     for name in summary.levels:
         pokes = [poke for poke in summary.done if poke.level == name]
         if not pokes:
             continue
-        table.add_row(name, str(len(pokes)), *_features(pokes))
+        ours = measures(pokes)
+        table.add_row(name, str(len(pokes)), *(_mean_sd(ours) if ours else ["-"] * 4))
         paper = PAPER.get(summary.model, {}).get(name)
         if paper:
-            cells = [f"{mean:.2f} +- {sd:.2f}" for mean, sd in paper]
-            table.add_row("paper", "440", *cells, style="dim")
+            table.add_row("paper", str(pokes_a_level()), *_mean_sd(paper), style="dim")
     return table
 
 
-def _features(pokes: list[PokeSummary]) -> list[str]:
-    import numpy as np
-
-    kept = [poke for poke in pokes if len(poke.depth)]
-    if not kept:
-        return ["-"] * 4
-    columns = (
-        np.array([poke.depth.max() for poke in kept]) * 1e3,
-        np.array([poke.force.max() for poke in kept]),
-        np.concatenate([poke.depth for poke in kept]) * 1e3,
-        np.concatenate([poke.force for poke in kept]),
-    )
-    return [_mean_sd(values) for values in columns]
-
-
-def _mean_sd(values: Any) -> str:
-    return f"{values.mean():.2f} +- {values.std():.2f}"
+def _mean_sd(pairs: Sequence[tuple[float, float]]) -> list[str]:
+    return [f"{mean:.2f} +- {sd:.2f}" for mean, sd in pairs]
 
 
 def _causes(summary: Summary) -> Table:
@@ -163,21 +149,15 @@ def _arrays(data: Dataset, *, everything: bool) -> Table:
     for head in ("name", "shape", "type", "units", "on disk", "content"):
         table.add_column(head)
     specs = data.specs
-    sizes = {name: _size(data.path / name) for name in specs}
+    sizes = {name: data.size_of(name) for name in specs}
     names = list(specs) if everything else sorted(specs, key=lambda name: -sizes[name])[:4]
     for name in names:
         array = data.array(name)
         shape = " x ".join(str(n) for n in array.shape)
         units = str(array.attrs.get("units", ""))
         table.add_row(name, shape, str(array.dtype), units, size_text(sizes[name]), specs[name].text)
-    table.add_row("all", "", "", "", size_text(_size(data.path)), "")
+    table.add_row("all", "", "", "", size_text(data.size_of()), "")
     return table
-
-
-def _size(folder: Path) -> int:
-    from factory._store import plain_files
-
-    return sum(path.stat().st_size for _, path, sound in plain_files(folder) if sound)
 
 
 def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console) -> None:

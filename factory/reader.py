@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 import contextlib
+import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,7 @@ from typing import Any, Literal
 
 import numpy as np
 import zarr
+import zarr.storage
 from numpy.typing import NDArray
 
 from factory._course import PHASES
@@ -23,7 +25,7 @@ from factory._input import InputError, describe_os_error, one_line
 from factory._record import STATUSES
 from factory._schema import Spec, specs_of
 from factory._staging import building_folder
-from factory._store import DamagedError, root_attributes
+from factory._store import DamagedError, plain_files, root_attributes
 from factory.plan import FORMAT
 from tisim import Inclusion, inclusions
 
@@ -99,6 +101,7 @@ class Dataset:
     Attributes
     ----------
     path : Path
+        A folder, or a Zarr zip of `factory.release`.
     attributes : dict
         Of the store's root: recipe, seeds, names of shapes and material levels, versions.
     group : zarr.Group
@@ -117,6 +120,11 @@ class Dataset:
         )
 
     @cached_property
+    def root(self) -> Path | zipfile.Path:
+        """Where the store's files are: its folder, or the inside of its zip."""
+        return files_of(self.path)
+
+    @cached_property
     def table(self) -> dict[str, NDArray[Any]]:
         return {name: self.read(name) for name in self.specs if name not in _BIG}
 
@@ -133,7 +141,7 @@ class Dataset:
     def array(self, name: str) -> Any:
         """The Zarr array itself; DamagedError where it is missing or its metadata are damaged."""
         with self._damage_named(name):
-            if not (self.path / name / "zarr.json").is_file():  # the root's metadata would hide that
+            if not (self.root / name / "zarr.json").is_file():  # the root's metadata would hide that
                 raise KeyError(name)
             return self.group[name]
 
@@ -153,6 +161,13 @@ class Dataset:
             raise DamagedError(
                 f"{self.path / name}: the array cannot be read ({type(error).__name__}: {one_line(error)})"
             ) from None
+
+    def size_of(self, name: str = "") -> int:
+        """Bytes of an array's files, or of the whole store."""
+        if isinstance(self.root, zipfile.Path):
+            prefix = f"{name}/" if name else ""
+            return sum(e.file_size for e in self.root.root.infolist() if e.filename.startswith(prefix))
+        return sum(path.stat().st_size for _, path, sound in plain_files(self.path / name) if sound)
 
     @property
     def n_pokes(self) -> int:
@@ -278,23 +293,36 @@ def open_dataset(path: str | Path) -> Dataset:
         metadata are damaged.
     """
     folder = Path(path)
-    if not folder.is_dir():
+    if not (folder.is_dir() or is_zip(folder)):
         hint = ""
         if building_folder(folder).is_dir():
             hint = f": it is still being built in {building_folder(folder).name}"
         raise InputError(f"{folder}: no such dataset{hint}")
     try:
-        attributes = root_attributes(folder)
+        attributes = root_attributes(files_of(folder))
     except OSError as error:
         raise InputError(describe_os_error(error, "cannot read")) from None
+    except zipfile.BadZipFile as error:
+        raise DamagedError(f"{folder}: cannot be read as a zip ({one_line(error)})") from None
     if attributes is None:
         raise InputError(f"{folder}: not a dataset of the factory")
     if attributes["format"] != FORMAT:
         raise InputError(f"{folder}: format {attributes['format']}, expected {FORMAT}")
     try:
-        group = zarr.open_group(store=folder, mode="r", zarr_format=3)
+        store = zarr.storage.ZipStore(folder, mode="r") if is_zip(folder) else folder
+        group = zarr.open_group(store=store, mode="r", zarr_format=3)
     except Exception as error:  # damaged metadata can break anywhere in the decoding
         raise DamagedError(
             f"{folder / 'zarr.json'}: cannot be read ({type(error).__name__}: {one_line(error)})"
         ) from None
     return Dataset(folder, attributes, group)
+
+
+def is_zip(path: Path) -> bool:
+    """Whether a path is a file that is called a zip."""
+    return path.suffix == ".zip" and path.is_file()
+
+
+def files_of(path: Path) -> Path | zipfile.Path:
+    """The folder of a store, or the inside of its zip; BadZipFile where it is none."""
+    return zipfile.Path(path) if is_zip(path) else path

@@ -45,7 +45,7 @@ def test_help_has_examples() -> None:
         assert text in output
 
 
-COMMANDS = ("factory", "factory.build", "factory.inspect", "factory.verify")
+COMMANDS = ("factory", *(f"factory.{verb}" for verb in ("build", "inspect", "verify", "card", "release")))
 HEAVY = (
     "taichi",
     "matplotlib",
@@ -91,7 +91,7 @@ def test_the_package_lists_its_commands() -> None:
         [sys.executable, "-m", "factory"], capture_output=True, text=True, env=environment(), check=False
     )
     assert done.returncode == 0, done.stderr
-    for verb in ("build", "inspect", "verify"):
+    for verb in ("build", "inspect", "verify", "card", "release"):
         assert verb in done.stdout
 
 

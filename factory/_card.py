@@ -1,0 +1,289 @@
+"""The facts on a dataset's card, all of them read from its store."""
+
+from __future__ import annotations
+
+import datetime
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from factory import _paper
+from factory._checks import FORCE_FLOOR, Verification, verify_dataset
+from factory._features import Features, features, own_solves, write_features, write_softness
+from factory._input import InputError
+from factory._store import LEDGER, MANIFEST, DamagedError, read_json
+from factory._summary import Summary, summarise
+from factory.reader import Dataset, open_dataset
+from tisim import laws
+
+LICENCE = "Apache-2.0"  # that of the programs (LICENSE); who publishes a dataset may choose another
+AUTHOR = "The tisim authors"  # as CITATION.cff
+# checks without which nothing on the card could be believed; faults of the others are stated on it
+_NEEDED = ("attributes", "files", "checksums", "shapes", "finite values")
+FILES = ("card.md", "features.csv", "softness.csv", "features.png", "poke.png", "manifest.json", "SHA256SUMS")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moduli:
+    """A material level: parameters as the store's identity has them, moduli at small strain [Pa]."""
+
+    level: str
+    parameters: dict[str, Any]
+    density: float
+    shear: float
+    bulk: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Worst:
+    """The worst of all frames: residual and force gap as shares, penetration [m]."""
+
+    residual: float
+    force_gap: float
+    min_jacobian: float
+    penetration: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """Sums of the ledger; solves: simulations that it lists with times and no error."""
+
+    solves: int
+    core_seconds: float
+    wall_seconds: float
+    longest: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Facts:
+    """All that the card says.
+
+    Attributes
+    ----------
+    data : Dataset
+    summary : Summary
+    found : Verification
+    rows : list of Features
+    materials : list of Moduli
+    worst : Worst
+    cost : Cost or None
+        None where the store has no ledger, or one without times.
+    date : datetime.date or None
+        When the store was completed.
+    shown : int
+        The poke in the picture: the deepest.
+    sums : dict of str to str
+        sha256 of each file of the store, by its name.
+    licence : str
+    authors : tuple of str
+    """
+
+    data: Dataset
+    summary: Summary
+    found: Verification
+    rows: list[Features]
+    materials: list[Moduli]
+    worst: Worst
+    cost: Cost | None
+    date: datetime.date | None
+    shown: int
+    sums: dict[str, str]
+    licence: str
+    authors: tuple[str, ...]
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """What decides the bytes of the store."""
+        found: dict[str, Any] = self.data.attributes["identity"]
+        return found
+
+
+def gather(
+    path: Path, *, licence: str = LICENCE, authors: tuple[str, ...] = (AUTHOR,), date: str | None = None
+) -> Facts:
+    """Check a store and read the facts of its card.
+
+    Parameters
+    ----------
+    path : Path
+        A finished store, or its zip.
+    licence : str
+        SPDX identifier.
+    authors : tuple of str
+    date : str, optional
+        YYYY-MM-DD; default: that of the store's manifest.
+
+    Raises
+    ------
+    InputError
+        Where an option is bad or no poke has frames; DamagedError where the store is damaged.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9.+-]*", licence):
+        raise InputError(f"--licence {licence}: expected an SPDX identifier, as Apache-2.0 or CC-BY-4.0")
+    if not authors or not all(name.strip() and name.isprintable() for name in authors):
+        raise InputError("--author: expected a name on one line")
+    stated = None if date is None else _date(date)
+    data = open_dataset(path)
+    found = verify_dataset(path)
+    for check in _NEEDED:
+        if found.faults.get(check):
+            raise DamagedError(f"{path}: the dataset is damaged ({check}): {found.faults[check][0]}")
+    summary = summarise(path)
+    deepest = {poke.index: float(poke.depth.max()) for poke in summary.done if len(poke.depth)}
+    if not deepest:
+        raise InputError(f"{path}: expected pokes with frames, found none: there is nothing to describe")
+    return Facts(
+        data=data,
+        summary=summary,
+        found=found,
+        rows=features(data, summary.done),
+        materials=_materials(data),
+        worst=_worst(data),
+        cost=_cost(summary),
+        date=stated or _completed(data),
+        shown=max(deepest, key=lambda index: (deepest[index], -index)),
+        sums=_sums(data),
+        licence=licence,
+        authors=authors,
+    )
+
+
+def check_out(store: Path, out: Path, *, overwrite: bool) -> None:
+    """Refuse a folder in the store, a file, or a folder that holds something unless it may be overwritten."""
+    if out.resolve().is_relative_to(store.resolve()):
+        raise InputError(f"--out {out}: lies in the store, which would change it: give another --out")
+    if out.exists() and not out.is_dir():
+        raise InputError(f"--out {out}: expected a folder, got a file")
+    if out.is_dir() and any(out.iterdir()) and not overwrite:
+        raise InputError(
+            f"--out {out}: is not empty: give --overwrite to write the card anew, or another --out"
+        )
+
+
+def write_card(facts: Facts, out: Path) -> None:
+    """Write the card's files (`FILES`) into a folder: all made beside it first, then put in their places."""
+    from factory._card_figures import draw_features
+    from factory._card_page import page
+    from factory._figures import draw_poke
+
+    out.parent.mkdir(parents=True, exist_ok=True)
+    beside = out.with_name(f".{out.name}.partial")
+    shutil.rmtree(beside, ignore_errors=True)
+    beside.mkdir()
+    try:
+        data, summary = facts.data, facts.summary
+        write_features(facts.rows, beside / "features.csv")
+        write_softness(summary.model, summary.done, summary.levels, beside / "softness.csv")
+        draw_features(facts, beside / "features.png")
+        draw_poke(data.poke(facts.shown), data, beside / "poke.png")
+        (beside / "manifest.json").write_bytes((data.root / MANIFEST).read_bytes())
+        lines = [f"{digest}  {name}\n" for name, digest in sorted(facts.sums.items())]
+        (beside / "SHA256SUMS").write_text("".join(lines), encoding="utf-8")
+        (beside / "card.md").write_text(page(facts), encoding="utf-8")
+        out.mkdir(exist_ok=True)
+        for name in reversed(FILES):  # the page last: where it is, all it points at is
+            (beside / name).replace(out / name)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def size_category(rows: int) -> str:
+    """The class of sizes that Hugging Face's dataset cards have."""
+    for limit, name in ((1e3, "n<1K"), (1e4, "1K<n<10K"), (1e5, "10K<n<100K"), (1e6, "100K<n<1M")):
+        if rows < limit:
+            return name
+    return "1M<n<10M"
+
+
+def beside_the_paper(facts: Facts) -> bool:
+    """Whether the paper's table has rows of this law and these material levels."""
+    return any(level in _paper.PAPER.get(facts.summary.model, {}) for level in facts.summary.levels)
+
+
+def _date(text: str) -> datetime.date:
+    try:
+        return datetime.datetime.strptime(text, "%Y-%m-%d").date()
+    except ValueError:
+        raise InputError(f"--date {text}: expected a date as 2026-01-31") from None
+
+
+def _completed(data: Dataset) -> datetime.date | None:
+    """When the manifest, a store's last file, was written; None where copying has lost that.
+
+    A zip and what was unpacked from it have the zip's fixed date, which says nothing.
+    """
+    if data.root != data.path:
+        return None
+    stamp = (data.path / MANIFEST).stat().st_mtime
+    written = datetime.datetime.fromtimestamp(stamp, tz=datetime.UTC).date()
+    return written if written.year > 1980 else None
+
+
+def _materials(data: Dataset) -> list[Moduli]:
+    stored = data.attributes
+    found = []
+    for number, level in enumerate(data.levels):
+        entry = stored["identity"]["materials"][level]
+        values = {key: tuple(v) if isinstance(v, list) else v for key, v in entry["parameters"].items()}
+        if "shear_modulus" in stored:  # a law from outside, which need not be registered here
+            shear, bulk = stored["shear_modulus"][number], stored["bulk_modulus"][number]
+        else:
+            moduli = laws.get(entry["law"]).moduli(values)
+            shear, bulk = moduli.shear_modulus, moduli.bulk_modulus
+        found.append(
+            Moduli(
+                level=level,
+                parameters=values,
+                density=float(entry["density"]),
+                shear=float(shear),
+                bulk=float(bulk),
+            )
+        )
+    return found
+
+
+def _worst(data: Dataset) -> Worst:
+    table = data.table
+    size = np.maximum(np.linalg.norm(table["rod_force"], axis=1), FORCE_FLOOR)
+    return Worst(
+        residual=float(table["residual"].max()),
+        force_gap=float((np.linalg.norm(table["base_force"] - table["rod_force"], axis=1) / size).max()),
+        min_jacobian=float(table["min_jacobian"].min()),
+        penetration=float(table["penetration"].max()),
+    )
+
+
+def _cost(summary: Summary) -> Cost | None:
+    lines = [line for line in summary.ledger.values() if not line.get("error") and "core_seconds" in line]
+    if not lines:
+        return None
+    walls = [float(line["wall_seconds"]) for line in lines]
+    return Cost(
+        solves=len(lines),
+        core_seconds=sum(float(line["core_seconds"]) for line in lines),
+        wall_seconds=sum(walls),
+        longest=max(walls),
+    )
+
+
+def _sums(data: Dataset) -> dict[str, str]:
+    """Of each file that the manifest lists, and of the manifest and the ledger, which it cannot list."""
+    import hashlib
+
+    content = read_json(data.root / MANIFEST)
+    assert isinstance(content, dict)  # it was verified
+    outside = {
+        name: hashlib.sha256((data.root / name).read_bytes()).hexdigest()
+        for name in (MANIFEST, LEDGER)
+        if (data.root / name).is_file()
+    }
+    return {**content["sha256"], **outside}
+
+
+def solves(facts: Facts) -> int:
+    """Pokes that are there and have a solve of their own."""
+    return int((own_solves(facts.data) & facts.data.table["done"]).sum())

@@ -1,0 +1,320 @@
+"""The page of a dataset's card: Markdown with the front matter that Hugging Face reads."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import yaml
+
+from factory import _paper
+from factory._card import Facts, beside_the_paper, size_category, solves
+from factory._cli import duration, size_text
+from factory._features import Features, Spread, measures
+
+_SNIPPET = """```python
+import zarr
+
+store = zarr.open_group("{name}", mode="r")
+poke = {poke}
+first, count = int(store["frame_start"][poke]), int(store["frame_count"][poke])
+frames = slice(first, first + count)
+depth = store["depth"][frames]  # m
+force = store["rod_force"][frames]  # N
+surface = store["grid_rest"][:] + store["grid_displacement"][frames]  # m, frames x 32 x 32 x 3
+print(f"poke {{poke}}: {{1e3 * depth.max():.2f}} mm, {{(force**2).sum(axis=1).max() ** 0.5:.3f}} N")
+```"""
+
+
+def page(facts: Facts) -> str:
+    """The whole page."""
+    sections = (
+        _front(facts),
+        _head(facts),
+        _holds(facts),
+        _simulated(facts),
+        _reached(facts),
+        _accuracy(facts),
+        _cost(facts),
+        _load(facts),
+        _licence(facts),
+    )
+    return "\n\n".join(text for section in sections for text in section) + "\n"
+
+
+def _front(facts: Facts) -> Iterator[str]:
+    summary = facts.summary
+    entries = {
+        "license": facts.licence.lower(),
+        "pretty_name": _title(facts),
+        "size_categories": [size_category(_frames(facts))],
+        "tags": [
+            "soft tissue",
+            "indentation",
+            "hyperelasticity",
+            "finite element method",
+            "zarr",
+            summary.model,
+        ],
+        "viewer": False,  # it reads tables, not Zarr
+    }
+    yield "---\n" + yaml.safe_dump(entries, sort_keys=False, allow_unicode=True).rstrip() + "\n---"
+
+
+def _head(facts: Facts) -> Iterator[str]:
+    attributes = facts.data.attributes
+    yield f"# {_title(facts)}"
+    yield (
+        "A rod is pushed into blocks of soft tissue with a rigid inclusion: "
+        f"{len(facts.summary.done)} simulated pokes with {_frames(facts)} states in equilibrium, each with "
+        "depth, forces and the deformed surface. "
+        "Made by `python -m factory.card` of tisim from the store itself."
+    )
+    date = facts.date.isoformat() if facts.date else "not recorded"
+    yield _table(
+        ("", ""),
+        [
+            (
+                "store",
+                f"`{facts.data.path.resolve().name}`, {size_text(facts.data.size_of())}, "
+                f"{len(facts.sums)} files",
+            ),
+            ("uuid", f"`{attributes['uuid']}`"),
+            ("fingerprint", f"`{attributes['fingerprint']}`"),
+            ("completed", date),
+        ],
+    )
+
+
+def _holds(facts: Facts) -> Iterator[str]:
+    summary, recipe = facts.summary, facts.identity["recipe"]
+    protocol = recipe["protocol"]
+    each = protocol["shared_sites"] + protocol["own_sites"]
+    yield "## What it holds"
+    failed = f", of which {len(summary.failed)} failed" if summary.failed else ""
+    yield (
+        f"Recipe `{recipe['name']}`: {recipe.get('description', '')}. {len(summary.shapes)} shapes x "
+        f"{len(summary.levels)} material levels x {each} contact points = {summary.pokes} pokes{failed}. "
+        f"Of the contact points of a shape {protocol['shared_sites']} common to its material levels, "
+        f"{protocol['own_sites']} drawn for each. The seed is {facts.data.attributes['seed']}."
+    )
+    shapes = [(f"`{shape['id']}`", shape.get("kind", ""), _lengths(shape)) for shape in recipe["shapes"]]
+    yield _table(("rigid inclusion", "kind", "mm"), shapes)
+    rows = [
+        (
+            f"`{m.level}`",
+            ", ".join(f"{key} = {_value(value)}" for key, value in m.parameters.items()),
+            f"{m.shear / 1e3:.4g}",
+            f"{m.bulk / 1e3:.4g}",
+            f"{m.density:g}",
+        )
+        for m in facts.materials
+    ]
+    head = ("material level", f"parameters ({facts.data.attributes['model']}; moduli in Pa)")
+    yield _table((*head, "shear modulus [kPa]", "bulk modulus [kPa]", "density [kg/m3]"), rows)
+    parts = facts.data.attributes.get("parts")
+    if parts:
+        stated = [
+            f"- `{level}`: " + "; ".join(f"{key} {_value(value)}" for key, value in part.items())
+            for level, part in zip(summary.levels, parts, strict=True)
+            if part
+        ]
+        yield "Besides the law:\n\n" + "\n".join(stated)
+
+
+def _simulated(facts: Facts) -> Iterator[str]:
+    recipe, table = facts.identity["recipe"], facts.data.table
+    protocol, rod = recipe["protocol"], recipe["rod"]
+    nodes, elements = (table[name][table["done"]] for name in ("mesh_nodes", "mesh_elements"))
+    course = protocol.get("course")
+    motion = "along a course over time (quasi-static)" if course else "in steps of equilibrium, without time"
+    versions = ", ".join(f"{name} {number}" for name, number in facts.identity["versions"].items())
+    sides = " x ".join(f"{side:g}" for side in recipe["block_mm"])
+    tolerance = facts.data.attributes["solver_tolerance"]
+    yield "## How it was simulated"
+    lines = [
+        f"Law: `{facts.data.attributes['model']}`; finite elements in large deformation, static equilibrium.",
+        f"Block: {sides} mm, its base and the inclusion fixed.",
+        f"Rod: {rod['tip']}, radius {rod['radius_mm']:g} mm, edge rounded by {rod['edge_radius_mm']:g} mm; "
+        f"contact with Coulomb friction of {recipe['friction']:g}.",
+        f"Motion: up to {protocol['depth_mm']:g} mm from first touch, up to "
+        f"{protocol['max_angle_deg']:g} degrees from the normal, {motion}; a frame every "
+        f"{protocol['frame_spacing_mm']:g} mm.",
+        f"Mesh: {nodes.min()} to {nodes.max()} nodes (mean {nodes.mean():.0f}), {elements.min()} to "
+        f"{elements.max()} elements, refinement {recipe['refinement']:g}.",
+        f"Solver: residual force below {tolerance:g} of the load in every frame.",
+        f"Versions: {versions}.",
+    ]
+    if course:
+        pieces = (_value({key: v for key, v in piece.items() if v is not None}) for piece in course)
+        lines.append(f"Course: {'; '.join(pieces)}.")
+    derived = len(facts.summary.done) - solves(facts)
+    if derived:
+        lines.append(
+            f"One solve for several pokes: {derived} of the {len(facts.summary.done)} pokes differ from "
+            "another by the modulus alone, move as that one, and have its forces times `force_factor`; "
+            "`solved_as` names it."
+        )
+    else:
+        lines.append("Every poke has a solve of its own.")
+    yield "\n".join(f"- {line}" for line in lines)
+
+
+def _reached(facts: Facts) -> Iterator[str]:
+    summary = facts.summary
+    yield "## Depths and forces"
+    yield "![Deepest frame and largest force by shape and softness](features.png)"
+    yield (
+        "Mean ± standard deviation over pokes (deepest frame, largest force) and over frames; "
+        "`softness.csv` holds the same, `features.csv` each shape and softness."
+    )
+    rows = []
+    for level in summary.levels:
+        pokes = [poke for poke in summary.done if poke.level == level]
+        found = measures(pokes)
+        cells = _pairs(found) if found else ["-"] * 4
+        rows.append((f"`{level}`", str(len(pokes)), *cells))
+        paper = _paper.PAPER.get(summary.model, {}).get(level)
+        if paper:
+            rows.append((f"`{level}`, the paper's", str(_paper.pokes_a_level()), *_pairs(paper)))
+    measured = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
+    yield _table(("material level", "pokes", *measured), rows)
+    if beside_the_paper(facts):
+        snapshots = _paper.SNAPSHOTS.get(summary.model)
+        counted = f" It has {snapshots} snapshots of this law, from pokes asked to {_paper.DEPTH_MM:g} mm."
+        yield f"Rows of the paper: {_paper.SOURCE}.{counted if snapshots else ''}"
+    yield _table(
+        ("shape", "softness", "pokes", "deepest [mm]", "largest force [N]", "reached of asked", "ended"),
+        [_row(row) for row in facts.rows],
+    )
+    yield "What ended the pokes: " + _ends(facts) + "."
+    poke = facts.data.poke(facts.shown)
+    yield f"![Poke {poke.index}: {poke.shape}, {poke.level}](poke.png)"
+    yield f"*Poke {poke.index}, the deepest: {poke.shape} in {poke.level}, {1e3 * poke.depth.max():.2f} mm.*"
+
+
+def _accuracy(facts: Facts) -> Iterator[str]:
+    worst = facts.worst
+    yield "## Accuracy"
+    yield "`python -m factory.verify` checked every file and every frame, and found:"
+    yield _table(("check", "faults"), [(name, str(len(found))) for name, found in facts.found.faults.items()])
+    yield (
+        f"The worst of all frames: residual {worst.residual:.2g} of the load; base reaction off the rod's "
+        f"force by {worst.force_gap:.2g} of it; smallest det F {worst.min_jacobian:.3g}; tissue "
+        f"{1e3 * worst.penetration:.3g} mm within the rod."
+    )
+    yield (
+        "That is equilibrium of the discrete model, not its distance from the truth: `studies/depth` of "
+        "tisim compares the force with independent solvers by depth, `docs/simulation.md` says how far each "
+        "kind of scene can be trusted."
+    )
+
+
+def _cost(facts: Facts) -> Iterator[str]:
+    yield "## Cost"
+    cost = facts.cost
+    if cost is None:
+        yield "The store's ledger states no times."
+        return
+    needed = solves(facts)
+    if cost.solves != needed:
+        yield f"The ledger lists {cost.solves} solves, the store has {needed}: below are the listed ones."
+    yield (
+        f"{cost.solves} solves took {cost.core_seconds:.1f} core-seconds ({duration(cost.core_seconds)}), "
+        f"{cost.core_seconds / cost.solves:.2f} a solve; "
+        f"the longest {cost.longest:.1f} s of wall time (`provenance/ledger.jsonl` in the store)."
+    )
+
+
+def _load(facts: Facts) -> Iterator[str]:
+    name = facts.data.path.resolve().name.removesuffix(".zip")
+    yield "## Loading"
+    yield _SNIPPET.format(name=name, poke=facts.shown)
+    yield (
+        "The zip is read without unpacking: "
+        f'`zarr.open_group(zarr.storage.ZipStore("{name}.zip"), mode="r")`. '
+        "Positions and forces are in m and N; `docs/dataset-format.md` of tisim explains every array. "
+        "`sha256sum -c SHA256SUMS` in the store's folder checks every file; "
+        f"`python -m factory.verify {name}` the physics too."
+    )
+
+
+def _licence(facts: Facts) -> Iterator[str]:
+    attributes = facts.data.attributes
+    year = f"\n  year    = {{{facts.date.year}}}," if facts.date else ""
+    authors = " and ".join(_tex(f"{{{name}}}" if name.startswith("The ") else name) for name in facts.authors)
+    yield "## Licence and citation"
+    yield f"{facts.licence}. To cite the dataset:"
+    yield (
+        f"```bibtex\n@misc{{tisim-pokes-{attributes['uuid'][:8]},\n"
+        f"  title   = {{{_tex(_title(facts))}}},\n"
+        f"  author  = {{{authors}}},{year}\n"
+        f"  version = {{tisim {facts.identity['versions'].get('tisim', 'not recorded')}}},\n"
+        f"  note    = {{Dataset, uuid {attributes['uuid']}, "
+        f"fingerprint {attributes['fingerprint'][:16]}}}\n}}\n```"
+    )
+    yield "To cite the programs that made it: `CITATION.cff` of tisim."
+
+
+def _title(facts: Facts) -> str:
+    summary = facts.summary
+    return f"Simulated pokes of soft tissue: {summary.recipe}, {summary.model}, {len(summary.done)} pokes"
+
+
+def _frames(facts: Facts) -> int:
+    return len(facts.data.table["frame_poke"])
+
+
+def _ends(facts: Facts) -> str:
+    ended: Counter[str] = Counter()
+    for row in facts.rows:
+        ended.update(row.ended)
+    return ", ".join(f"{name} {count}" for name, count in ended.most_common())
+
+
+def _row(row: Features) -> tuple[str, ...]:
+    return (
+        f"`{row.shape}`",
+        f"`{row.level}`",
+        str(row.pokes),
+        _range(row.deepest),
+        _range(row.force),
+        "-" if row.reached is None else f"{row.reached:.2f}",
+        ", ".join(f"{name} {count}" for name, count in row.ended.items()),
+    )
+
+
+def _range(spread: Spread | None) -> str:
+    return "-" if spread is None else f"{spread.mean:.2f} ({spread.low:.2f} to {spread.high:.2f})"
+
+
+def _pairs(pairs: Sequence[tuple[float, float]]) -> list[str]:
+    return [f"{mean:.2f} ± {sd:.2f}" for mean, sd in pairs]
+
+
+def _lengths(shape: dict[str, Any]) -> str:
+    lengths = {key[:-3]: value for key, value in shape.items() if key.endswith("_mm") and value is not None}
+    return ", ".join(f"{key} {_value(value)}" for key, value in lengths.items())
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(_value(v) for v in value) + ")"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_value(v)}" for key, v in value.items())
+    if isinstance(value, float | np.floating) and math.isfinite(value):
+        return f"{value:g}"
+    return str(value)
+
+
+def _tex(text: str) -> str:
+    return re.sub(r"([&%$#_])", r"\\\1", text)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)

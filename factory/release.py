@@ -1,0 +1,65 @@
+"""`python -m factory.release DATASET --out FILE.zarr.zip`: one file of a dataset, to be published."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors, size_text
+from factory._input import InputError
+
+EXAMPLES = """
+[bold]Example[/bold]
+
+  python -m factory.release datasets/quick-ogden.zarr --out quick-ogden.zarr.zip
+
+  sha256sum -c quick-ogden.zarr.zip.sha256
+
+The same store gives the same bytes. Stopped or killed, the same command begins anew.
+
+Exit codes: 0 written and compared with the manifest, 2 bad input or a damaged store, 130 stopped by Ctrl-C.
+"""
+
+
+def main(
+    dataset: Annotated[Path, typer.Argument(help="The finished store.")],
+    out: Annotated[Path, typer.Option(help="The zip to write: FILE.zarr.zip.")],
+    plugin: Plugins = None,
+    version: Version = False,
+) -> None:
+    """Write a finished dataset as one Zarr zip (not compressed again) with its sha256 beside it."""
+    del version
+    try:
+        with shown_errors(f"{dataset}: cannot release"):
+            import_plugins(plugin)
+
+            from factory._archive import release_store
+            from factory.reader import open_dataset
+            from tisim.parallel.termination import terminable
+
+            if dataset.is_file():
+                raise InputError(f"{dataset}: expected the folder of a store, got a file")
+            data = open_dataset(dataset)
+            with terminable():
+                released = release_store(dataset, out)
+            console = make_console()
+            missing = data.n_pokes - int(data.attributes["pokes_done"])
+            if missing:
+                console.print(
+                    f"{dataset}: {missing} of {data.n_pokes} pokes failed; the zip has their errors"
+                )
+            console.print(
+                f"{released.path}: {released.files} files, {size_text(released.size)}, as the manifest says"
+            )
+            console.print(f"{released.sums}: {released.sha256}")
+    except KeyboardInterrupt:
+        typer.echo("Stopped. Nothing is left of the zip; the same command begins anew.", err=True)
+        raise typer.Exit(130) from None
+
+
+app = make_app(main, EXAMPLES)
+
+if __name__ == "__main__":
+    app()
