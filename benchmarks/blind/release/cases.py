@@ -50,19 +50,23 @@ class Setup:
         return displaced(truth, hung, since, self.places, start=run.start, angle=run.angle)
 
 
-def setup(count: int, *, seconds: float, rate: float, rng: np.random.Generator) -> Setup:
-    """Let go 20 ms or so after the record begins, frames turned by up to a degree, markers half a millimetre
-    off."""
-    places = {name: np.array(at) + 0.5 * rng.standard_normal(3) for name, at in MARKERS.items()}
-    runs = tuple(
-        Run(
-            onset=0.02 + float(rng.uniform(0.0, 1.0 / rate)),
-            start=float(rng.uniform(0.0, 0.1)),
-            angle=float(np.radians(rng.uniform(-1.0, 1.0))),
-        )
-        for _ in range(count)
+def markers(rng: np.random.Generator) -> dict[str, Array]:
+    """True places [mm], half a millimetre off."""
+    return {name: np.array(at) + 0.5 * rng.standard_normal(3) for name, at in MARKERS.items()}
+
+
+def run_of(rng: np.random.Generator, rate: float) -> Run:
+    """Let go 20 ms or so after the record begins, the frame turned by up to a degree."""
+    return Run(
+        onset=0.02 + float(rng.uniform(0.0, 1.0 / rate)),
+        start=float(rng.uniform(0.0, 0.1)),
+        angle=float(np.radians(rng.uniform(-1.0, 1.0))),
     )
-    return Setup(time=np.arange(int(seconds * rate)) / rate, places=places, runs=runs)
+
+
+def noise_of(rng: np.random.Generator, time: Array) -> Array:
+    """Of a run, in standard deviations: (markers, t, 2)."""
+    return rng.standard_normal((len(MARKERS), len(time), 2))
 
 
 def write_bars(
@@ -78,27 +82,29 @@ def write_bars(
 ) -> Path:
     """An experiment with one trial for each hung mass [kg]; changed: keys of all trials."""
     rng = np.random.default_rng(seed)
-    made = setup(len(hung), seconds=seconds, rate=rate, rng=rng)
-    return write_runs(folder, truth, made, hung=hung, sd_mm=sd_mm, rng=rng, **changed)
+    time, places = np.arange(int(seconds * rate)) / rate, markers(rng)
+    runs, noise = zip(*((run_of(rng, rate), noise_of(rng, time)) for _ in hung), strict=True)
+    made = Setup(time=time, places=places, runs=runs)
+    return write_runs(folder, truth, made, noise, hung=hung, sd_mm=sd_mm, **changed)
 
 
 def write_runs(
     folder: Path,
     truth: Truth,
     made: Setup,
+    noise: Sequence[Array],
     *,
     hung: Sequence[float],
     sd_mm: float,
-    rng: np.random.Generator,
     **changed: object,
 ) -> Path:
-    """The same, of runs that are set up."""
+    """The same, of runs that are set up; noise: see `noise_of`, a run each."""
     folder.mkdir(parents=True, exist_ok=True)
     trials: list[dict[str, Any]] = []
     for k, (mass, run) in enumerate(zip(hung, made.runs, strict=True)):
         rows = ["marker,time_s,ux_mm,uy_mm,uz_mm"]
-        for name, u in made.seen(truth, mass, run).items():
-            noisy = u + sd_mm * rng.standard_normal(u.shape)
+        for (name, u), drawn in zip(made.seen(truth, mass, run).items(), noise[k], strict=True):
+            noisy = u + sd_mm * drawn
             both = zip(made.time.tolist(), noisy.tolist(), strict=True)
             rows += [f"{name},{t!r},{x!r},0.0,{z!r}" for t, (x, z) in both]
         (folder / f"run-{k}.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")

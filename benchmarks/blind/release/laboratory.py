@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from benchmarks.blind.laboratory import SMOOTH, Laboratory, left, log_uniform, waves
 from benchmarks.blind.records import apart
-from benchmarks.blind.release.cases import Run, Setup, setup, write_runs
+from benchmarks.blind.release.cases import Run, Setup, markers, noise_of, run_of, write_runs
 from benchmarks.blind.release.model import Truth
 from benchmarks.blind.under_test import diagnose_release
 
@@ -151,7 +151,11 @@ def _with_run(made: Setup, k: int, **by: float) -> Setup:
 
 def clean(seed: int) -> Case:
     rng = np.random.default_rng([seed, 0])
-    made = setup(len(HUNG), seconds=SECONDS, rate=RATE, rng=rng)
+    made = Setup(
+        time=np.arange(int(SECONDS * RATE)) / RATE,
+        places=markers(rng),
+        runs=tuple(run_of(rng, RATE) for _ in HUNG),
+    )
     return Case(seed=seed, made=made, shear=rng.uniform(4e5, 8e5), viscous=rng.uniform(3e-4, 6e-4))
 
 
@@ -193,7 +197,8 @@ def make(seed: int, size: float, names: Callable[[np.random.Generator], Sequence
 
 def write(case: Case, folder: Path) -> None:
     rng = np.random.default_rng([case.seed, 2])
-    write_runs(folder, case.truth, case.made, hung=HUNG, sd_mm=SD_MM, rng=rng)
+    noise = [noise_of(rng, case.made.time) for _ in HUNG]
+    write_runs(folder, case.truth, case.made, noise, hung=HUNG, sd_mm=SD_MM)
 
 
 def smooth_error(folder: Path, seed: int) -> None:
