@@ -137,7 +137,7 @@ def test_slopes_of_beams_have_the_sizes_of_their_causes() -> None:
     """A stored case of one cause: its size by the slopes is the size that fits found."""
     lab = LABORATORIES["beams"]
     truth = load_truth(CASES)["cases"]
-    index = next(int(k) for k, c in truth.items() if [h["effect"] for h in c["hidden"]] == ["clamp-tilt"])
+    index = next(int(k) for k, c in truth.items() if [h["effect"] for h in c["hidden"]] == ["added-mass"])
     made = stored(index)
     (hidden,) = lab.hidden(made)
     columns = lab.whitened(made, made.hidden)
