@@ -29,13 +29,14 @@ def test_a_material_and_its_multiple(name: str) -> None:
 
 
 def test_another_shape_of_the_law_is_no_multiple() -> None:
-    bulk = 5e5
-    three, four = (
-        Material(law="ogden", parameters={"mu": (2.0 * 2e4 / a,), "alpha": (a,), "bulk": bulk})
-        for a in (3.0, 4.0)
-    )
-    assert laws.get("ogden").moduli(three.parameters) == laws.get("ogden").moduli(four.parameters)
-    assert modulus_ratio(three, four) is None
+    """All moduli are twice as large, and a constant without unit is another one."""
+    law = laws.get("stiffening-neo-hookean")
+    soft = {"mu": 1e4, "stiffening": 0.2, "lam": 2e5}
+    for stiffening, factor in ((0.2, 2.0), (0.3, None)):
+        hard = {"mu": 2e4, "stiffening": stiffening, "lam": 4e5}
+        assert law.moduli(hard).shear_modulus == pytest.approx(2.0 * law.moduli(soft).shear_modulus)
+        found = modulus_ratio(*(Material(law=law.name, parameters=p) for p in (hard, soft)))
+        assert found == (factor and pytest.approx(factor))
 
 
 def test_only_the_modulus_may_differ(quick: Plan) -> None:
