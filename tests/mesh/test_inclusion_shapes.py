@@ -195,7 +195,8 @@ def test_a_block_lacks_the_shape(shape) -> None:
     assert low >= 0.0, "all of it counts"
     tolerance = {"box": 1e-9, "hexagon": 1e-9}.get(shape.kind, 0.2)
     assert rigid == pytest.approx(shape.volume, rel=tolerance)
-    held = mesh.nodes[mesh.node_sets["base"]]
+    # an edge's middle stays on its chord where the curve would turn an element over
+    held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], mesh.elements[:, :8])]
     held = held[held[:, 2] > 1e-9]
     if shape.kind != "spheroid":  # whose distance is right near the surface only
         assert np.abs(shape.signed_distance(held)).max() < 1e-9

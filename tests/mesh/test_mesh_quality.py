@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tisim.mesh._elements import NODE_PLACES, quadrature, shape_gradients
+from tisim.mesh._elements import NODE_PLACES, quadrature, serendipity, shape_gradients
 from tisim.mesh._mesh import Mesh
 from tisim.mesh.quality import nodal_determinants, quality, scaled_jacobian, volumes
 
@@ -58,13 +58,31 @@ def test_volume_of_a_curved_tetrahedron_is_exact():
     assert volumes(mesh)[0] != pytest.approx(1 / 6, rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8"])
+@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8", "hex20"])
 def test_shape_gradients_reproduce_a_linear_field(kind):
     places, weights = quadrature(kind)
     gradient = shape_gradients(kind, places)
     field = NODE_PLACES[kind] @ [2.0, -3.0, 5.0] + 7
     assert np.einsum("qnk,n->qk", gradient, field) == pytest.approx(np.tile([2.0, -3, 5], (len(places), 1)))
-    assert weights.sum() == pytest.approx(8 if kind == "hex8" else 1 / 6)
+    assert weights.sum() == pytest.approx(8 if kind in ("hex8", "hex20") else 1 / 6)
+
+
+def test_quadratic_hexahedra_hold_quadratic_fields_on_their_edges():
+    """Shape functions are 1 at their node and 0 at the others, add up to 1, and have the stated slopes."""
+    places = NODE_PLACES["hex20"]
+    values, _ = serendipity(places, places)
+    assert values == pytest.approx(np.eye(20), abs=1e-15)
+    at = np.random.default_rng(2).uniform(-1, 1, (5, 3))
+    values, slopes = serendipity(at, places)
+    assert values.sum(axis=1) == pytest.approx(1.0)
+    x, y, z = places.T
+    a, b, c = at.T
+    assert values @ (x * y + z * z - 2 * x) == pytest.approx(a * b + c * c - 2 * a)
+    h = 1e-6
+    for k in range(3):
+        step = h * np.eye(3)[k]
+        found = (serendipity(at + step, places)[0] - serendipity(at - step, places)[0]) / (2 * h)
+        assert slopes[:, :, k] == pytest.approx(found, abs=1e-8)
 
 
 def test_edge_middle_too_far_out_is_seen():

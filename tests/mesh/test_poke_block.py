@@ -8,6 +8,7 @@ from poke_cases import assert_good, assert_matching_facets, gauss_jacobians, ran
 
 from tisim.bodies import Block, BoxInclusion, CylinderInclusion, Rod, SphereInclusion
 from tisim.discretisation.quadrature import reference
+from tisim.mesh._elements import HEX_EDGES
 from tisim.mesh._mesh import MeshError
 from tisim.mesh.indentation import poke_mesh
 
@@ -21,6 +22,10 @@ CYLINDER = CylinderInclusion(radius=0.008, height=0.012, centre=(0.0, -0.012, 0.
 INCLUSIONS = [BOX, SPHERE, CYLINDER]
 
 
+def linear(**arguments):
+    return poke_mesh(**({"kind": "hex8"} | arguments))
+
+
 def quad_areas(mesh, facets):
     x = mesh.nodes[facets]
     return 0.5 * np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
@@ -28,9 +33,10 @@ def quad_areas(mesh, facets):
 
 @pytest.mark.parametrize("site", [(0.0, 0.0), (0.030, 0.030), (-0.030, 0.012)])
 @pytest.mark.parametrize("direction", [DOWN, TILTED])
-def test_plain_block_has_its_volume_and_some_3500_nodes(site, direction):
-    mesh = poke_mesh(block=BLOCK, site=site, direction=direction, rod=ROD)
-    assert 3000 <= mesh.n_nodes <= 4000
+@pytest.mark.parametrize(("kind", "some"), [("hex8", 3500), ("hex20", 2360)])
+def test_plain_block_has_its_volume_and_some_nodes(kind, some, site, direction):
+    mesh = poke_mesh(block=BLOCK, site=site, direction=direction, rod=ROD, kind=kind)
+    assert mesh.n_nodes == pytest.approx(some, rel=0.13)
     assert gauss_jacobians(mesh).min() > 0
     assert gauss_jacobians(mesh).sum() == pytest.approx(VOLUME, rel=1e-12)
     assert_matching_facets(mesh)
@@ -42,7 +48,7 @@ def test_plain_block_has_its_volume_and_some_3500_nodes(site, direction):
 
 @pytest.mark.parametrize("inclusion", [None, *INCLUSIONS])
 def test_top_facets_cover_the_top_and_face_up(inclusion):
-    mesh = poke_mesh(block=Block(inclusion=inclusion), site=(0.004, -0.003), rod=ROD)
+    mesh = linear(block=Block(inclusion=inclusion), site=(0.004, -0.003), rod=ROD)
     normals = quad_areas(mesh, mesh.facet_sets["top"])
     assert (normals[:, 2] > 0).all()
     assert normals.sum(axis=0) == pytest.approx([0, 0, 0.01], abs=1e-14)
@@ -52,7 +58,7 @@ def test_top_facets_cover_the_top_and_face_up(inclusion):
 
 def test_the_fine_zone_covers_the_ellipse_in_which_a_tilted_rod_cuts_the_surface():
     direction = (np.sqrt(0.5), 0.0, -np.sqrt(0.5))
-    mesh = poke_mesh(block=BLOCK, site=(0.01, -0.01), direction=direction, rod=ROD)
+    mesh = linear(block=BLOCK, site=(0.01, -0.01), direction=direction, rod=ROD)
     top = mesh.nodes[mesh.facet_sets["top"]][..., :2] - [0.01, -0.01]
     centre, length = top.mean(axis=1), np.linalg.norm(np.roll(top, -1, axis=1) - top, axis=-1)
     radius = np.hypot(centre[:, 0] / np.sqrt(2), centre[:, 1])
@@ -68,7 +74,7 @@ def test_the_fine_zone_covers_the_ellipse_in_which_a_tilted_rod_cuts_the_surface
 
 def test_layers_are_tall_at_the_top_and_grow_downwards():
     for refinement in (1.0, 1.5):
-        mesh = poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD, refinement=refinement)
+        mesh = linear(block=BLOCK, site=(0.0, 0.0), rod=ROD, refinement=refinement)
         steps = np.diff(np.unique(mesh.nodes[:, 2]))
         assert steps.min() >= 0.0012 - 1e-12
         assert (np.diff(steps) < 0).all()
@@ -76,16 +82,17 @@ def test_layers_are_tall_at_the_top_and_grow_downwards():
 
 
 def test_refinement_scales_all_spacings():
-    nodes = [poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD, refinement=r).n_nodes for r in (0.7, 1.0, 1.5)]
+    nodes = [linear(block=BLOCK, site=(0.0, 0.0), rod=ROD, refinement=r).n_nodes for r in (0.7, 1.0, 1.5)]
     assert nodes[0] < 0.5 * nodes[1]
     assert 9_000 < nodes[2] < 13_000
 
 
 @pytest.mark.parametrize("inclusion", INCLUSIONS)
 @pytest.mark.parametrize("site", [(0.008, 0.004), (-0.03, 0.03), (0.018, 0.0)])
-def test_inclusions_are_met(inclusion, site):
+@pytest.mark.parametrize("kind", ["hex8", "hex20"])
+def test_inclusions_are_met(inclusion, site, kind):
     block = Block(inclusion=inclusion)
-    mesh = poke_mesh(block=block, site=site, direction=TILTED, rod=ROD)
+    mesh = poke_mesh(block=block, site=site, direction=TILTED, rod=ROD, kind=kind)
     assert_good(mesh, block)
     assert_matching_facets(mesh)
 
@@ -96,20 +103,38 @@ def test_inclusions_are_met(inclusion, site):
 @example(358610562)
 def test_any_poke_gets_a_good_mesh(seed):
     case = random_poke(np.random.default_rng(seed))
-    mesh = poke_mesh(**case, rod=ROD)
+    mesh = linear(**case, rod=ROD)
     assert_good(mesh, case["block"])
     # layers are fewer where a large sphere leaves little above it; in plane nothing is coarser than without
-    plain = poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD)
+    plain = linear(block=BLOCK, site=(0.0, 0.0), rod=ROD)
     assert len(mesh.node_sets["top"]) >= len(plain.node_sets["top"])
     assert mesh.n_nodes < 16_000
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_any_poke_gets_a_good_quadratic_mesh(seed):
+    case = random_poke(np.random.default_rng(seed))
+    mesh = poke_mesh(**case, rod=ROD)
+    assert mesh.kind == "hex20"
+    assert_good(mesh, case["block"])
+    assert_matching_facets(mesh)
+    assert (reference(mesh).weights > 0.0).all()
+    # an edge is straight unless both of its ends are held, on the inclusion
+    ends = mesh.elements[:, HEX_EDGES]
+    free = ~np.isin(ends, mesh.node_sets["base"]).all(axis=2)
+    assert mesh.nodes[mesh.elements[:, 8:]][free] == pytest.approx(
+        mesh.nodes[ends].mean(axis=2)[free], abs=1e-12
+    )
+
+
 @pytest.mark.slow
-def test_1320_random_pokes_all_get_good_meshes():
+@pytest.mark.parametrize("kind", ["hex8", "hex20"])
+def test_1320_random_pokes_all_get_good_meshes(kind):
     rng = np.random.default_rng(20260)
     for k in range(1320):
         case = random_poke(rng)
-        mesh = poke_mesh(**case, rod=ROD)
+        mesh = poke_mesh(**case, rod=ROD, kind=kind)
         assert_good(mesh, case["block"])
         if k % 20 == 0:
             assert_matching_facets(mesh)
@@ -121,7 +146,7 @@ def test_1320_random_pokes_all_get_good_meshes():
 def test_tetrahedra_fill_the_same_body(seed, kind):
     case = random_poke(np.random.default_rng(seed))
     mesh = poke_mesh(**case, rod=ROD, kind=kind)
-    whole = poke_mesh(**case, rod=ROD)
+    whole = linear(**case, rod=ROD)
     assert mesh.kind == kind
     assert gauss_jacobians(mesh).sum() == pytest.approx(gauss_jacobians(whole).sum(), rel=0.01)
     if kind == "tet4":
@@ -134,7 +159,7 @@ def test_tetrahedra_fill_the_same_body(seed, kind):
 
 def test_a_floating_box_has_soft_material_below_it():
     box = BoxInclusion(size=(0.016, 0.016, 0.010), centre=(0.0, 0.0, 0.011), angle=0.2)
-    mesh = poke_mesh(block=Block(inclusion=box), site=(0.002, 0.001), rod=ROD)
+    mesh = linear(block=Block(inclusion=box), site=(0.002, 0.001), rod=ROD)
     assert_good(mesh, Block(inclusion=box))
     middle = mesh.nodes[mesh.elements].mean(axis=1)
     assert (np.hypot(middle[:, 0], middle[:, 1]) < 0.006)[middle[:, 2] < 0.006].any()
@@ -142,7 +167,7 @@ def test_a_floating_box_has_soft_material_below_it():
 
 def test_an_inclusion_far_from_the_rod_is_not_lost():
     cylinder = CylinderInclusion(radius=0.004, height=0.008, centre=(0.042, 0.042, 0.004))
-    mesh = poke_mesh(block=Block(inclusion=cylinder), site=(-0.03, -0.03), rod=ROD)
+    mesh = linear(block=Block(inclusion=cylinder), site=(-0.03, -0.03), rod=ROD)
     assert_good(mesh, Block(inclusion=cylinder))
     held = mesh.nodes[mesh.node_sets["base"]]
     assert (held[:, 2] == 0.008).sum() >= 8
@@ -152,7 +177,7 @@ def test_the_top_under_the_rod_is_the_same_with_and_without_an_inclusion_deep_be
     cylinder = CylinderInclusion(radius=0.004, height=0.008, centre=(0.001, 0.0, 0.004))
     tops = []
     for inclusion in (None, cylinder):
-        mesh = poke_mesh(block=Block(inclusion=inclusion), site=(0.0, 0.0), rod=ROD)
+        mesh = linear(block=Block(inclusion=inclusion), site=(0.0, 0.0), rod=ROD)
         top = mesh.nodes[mesh.node_sets["top"]]
         near = top[np.hypot(top[:, 0], top[:, 1]) < 0.0035 + 1e-9, :2]
         tops.append({tuple(p) for p in np.round(near * 1e6).tolist()})
@@ -169,7 +194,7 @@ def test_the_top_under_the_rod_is_the_same_with_and_without_an_inclusion_deep_be
         ({"direction": (1.0, 0.0, -0.5)}, "63 degrees from straight down; at most 45"),
         ({"direction": (0.0, 0.0, 0.0)}, "poke direction: expected three finite numbers"),
         ({"refinement": 0.0}, "refinement: expected 0.5 to 6, got 0.0"),
-        ({"kind": "tet20"}, "expected kind hex8, tet4 or tet10, got 'tet20'"),
+        ({"kind": "tet20"}, "expected kind hex20, hex8, tet4 or tet10, got 'tet20'"),
         ({"rod": Rod(radius=-1.0)}, "rod radius: expected a length above 0"),
         ({"block": Block(size=(0.1, 0.1, 0.0))}, "block size: expected three lengths above 0"),
     ],
@@ -198,7 +223,7 @@ def test_what_cannot_be_meshed_is_said_in_one_sentence(change, words):
 )
 def test_an_inclusion_that_cannot_be_met_is_refused(inclusion, words):
     with pytest.raises(MeshError, match=words):
-        poke_mesh(block=Block(inclusion=inclusion), site=(0.0, 0.0), rod=ROD)
+        linear(block=Block(inclusion=inclusion), site=(0.0, 0.0), rod=ROD)
 
 
 @pytest.mark.parametrize(
@@ -213,6 +238,6 @@ def test_tetrahedra_of_hexahedra_above_a_dome_stay_upright(site, direction):
     one of its tetrahedra, which the solver integrates over too, is inside-out."""
     centre = (-0.005932481361387259, 0.0033707093804314415, 0.009)
     block = Block(inclusion=SphereInclusion(radius=0.011, centre=centre))
-    mesh = poke_mesh(block=block, site=site, direction=direction, rod=ROD)
+    mesh = linear(block=block, site=site, direction=direction, rod=ROD)
     assert (reference(mesh).weights >= 0.0).all()
     assert_good(mesh, block)

@@ -164,7 +164,7 @@ def test_projection_that_would_turn_elements_over_is_taken_back(block):
 def test_wrong_kinds_and_endless_refinement_are_refused(block):
     quadratic = to_quadratic(block)
     for action in (to_quadratic, smooth, lambda m: refine(m, size=lambda x: x[:, 0])):
-        with pytest.raises(MeshError, match="only a tet4 mesh"):
+        with pytest.raises(MeshError, match="only a tet4"):
             action(quadratic)
     with pytest.raises(MeshError, match="went past 500 nodes"):
         refine(block, size=lambda x: np.full(len(x), 0.001), max_nodes=500)

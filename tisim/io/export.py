@@ -11,13 +11,14 @@ from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.mesh.quality import volumes
 from tisim.result import Result
 
-# Facets as triangles; those of six nodes are cut at their middle nodes.
+# Facets as triangles; those of six or eight nodes are cut at their middle nodes.
 _TRIANGLES = {
     3: ((0, 1, 2),),
     4: ((0, 1, 2), (0, 2, 3)),
     6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
+    8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
 }
-_VTK = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron"}
+_VTK = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20"}
 
 
 def surface_triangles(mesh: Mesh) -> NDArray[np.int32]:
@@ -30,7 +31,7 @@ def surface_triangles(mesh: Mesh) -> NDArray[np.int32]:
 
 
 def triangles(facets: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Facets of 3, 4 or 6 nodes as triangles (t, 3); collapsed ones (of wedges) are left out."""
+    """Facets of 3, 4, 6 or 8 nodes as triangles (t, 3); collapsed ones (of wedges) are left out."""
     cut = facets[:, _TRIANGLES[facets.shape[1]]].reshape(-1, 3)
     a, b, c = cut.T
     return np.ascontiguousarray(cut[(a != b) & (b != c) & (c != a)])

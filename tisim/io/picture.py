@@ -21,7 +21,7 @@ from tisim.scene import Poke
 Array = NDArray[np.float64]
 
 # Facets as polygons, middle nodes in their places.
-_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5)}
+_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 _COLOURS = "viridis"
 _STEEL = np.array([0.62, 0.65, 0.70])
 _EDGE = 0.82  # brightness of an element's edges against its face

@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh._inclusion import THINNEST_GAP, Outline
-from tisim.mesh._mesh import ElementKind, Mesh, boundary_facets
-from tisim.mesh.refine import to_quadratic
+from tisim.mesh._mesh import HEXAHEDRA, ElementKind, Mesh, boundary_facets
+from tisim.mesh.refine import curved, to_quadratic
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-TOP_LAYER = 0.0013
-BOTTOM_LAYER = 0.0060
-# layers thinner than this turn over under a rod's edge
-THINNEST_LAYER = 0.0012
+
+@dataclass(frozen=True, kw_only=True)
+class Layers:
+    """How thick layers are [m]: at the top, at the base, and at least."""
+
+    top: float
+    bottom: float
+    thinnest: float
+
+    @staticmethod
+    def of(kind: ElementKind, refinement: float) -> Layers:
+        """Of elements of a kind. Linear ones thinner than 1.2 mm turn over under a rod's edge."""
+        if kind == "hex20":
+            return Layers(top=0.0017 / refinement, bottom=0.0120 / refinement, thinnest=0.0008)
+        return Layers(top=max(0.0012, 0.0013 / refinement), bottom=0.0060 / refinement, thinnest=0.0012)
 
 
 def extrude(
@@ -32,12 +45,13 @@ def extrude(
     top_points: Floats | None = None,
 ) -> Mesh:
     """The block over a grid of points (n, 2) and cells (m, 4): hexahedra, wedges over triangles, or
-    tetrahedra from these.
+    tetrahedra from these; linear or quadratic.
 
     side: per point -1 inside the outline, 0 on it, 1 outside; within: cells inside it.
     top_points: where the columns end on the top face (n, 2); they lean from the inclusion's apex upwards.
     """
     height, n = size[2], len(points)
+    layers = Layers.of(kind, refinement)
     low = high = np.zeros(n)
     parts: list[tuple[Floats, Bools]] = []  # per stack: levels (n, k + 1) and cells kept (m,)
     everywhere = np.ones(len(cells), dtype=bool)
@@ -51,13 +65,13 @@ def extrude(
             high = np.where(split, high, outline.high)
             thick = low[cells].min(axis=1) >= THINNEST_GAP
             if outline.low > 0.0:
-                parts.append((_rising(low, height, refinement, outline.low), ~within | thick))
+                parts.append((_rising(low, height, layers, outline.low), ~within | thick))
         else:
             if outline.low > 0.0:
-                parts.append((_rising(low, height, refinement, outline.low), everywhere))
+                parts.append((_rising(low, height, layers, outline.low), everywhere))
             wall = np.full(n, outline.high - outline.low)
-            parts.append((outline.low + _rising(wall, height, refinement, outline.high), ~within))
-    parts.append((_hanging(high, height, refinement), everywhere))
+            parts.append((outline.low + _rising(wall, height, layers, outline.high), ~within))
+    parts.append((_hanging(high, height, layers), everywhere))
 
     nodes, elements, offset, last = [], [], 0, None
     for levels, keep in parts:
@@ -78,32 +92,31 @@ def extrude(
     all_nodes, all_elements = np.concatenate(nodes), np.concatenate(elements)
     used, all_elements = np.unique(all_elements, return_inverse=True)
     all_elements = all_elements.reshape(-1, 8).astype(np.int32)
-    if kind == "hex8":
-        return _named("hex8", all_nodes[used], all_elements, size)
+    if kind in HEXAHEDRA:
+        mesh = _named("hex8", all_nodes[used], all_elements, size)
+        return mesh if kind == "hex8" else curved(mesh, between=None if outline is None else outline.between)
     # diagonals from the columns inside the outline: the others would leave nodes of a sphere's rim unheld
     rank = np.argsort(np.argsort(side, kind="stable")) if side is not None else np.arange(n)
     linear = _named("tet4", all_nodes[used], tetrahedra(all_elements, rank[used % n]), size)
     return linear if kind == "tet4" else to_quadratic(linear)
 
 
-def _hanging(bottom: Floats, height: float, refinement: float) -> Floats:
+def _hanging(bottom: Floats, height: float, layers: Layers) -> Floats:
     """Levels from `bottom` (n,) up to the top face, finest there: (n, k + 1)."""
-    top = max(THINNEST_LAYER, TOP_LAYER / refinement)
     room, least = height - float(bottom.min()), height - float(bottom.max())
-    k = layer_count(height=room, top=top, bottom=BOTTOM_LAYER / refinement, total=height)
-    k = max(1, min(k, int(least / THINNEST_LAYER)))
-    levels = height - graded(height - bottom, top, k)[:, ::-1]
+    k = layer_count(height=room, top=layers.top, bottom=layers.bottom, total=height)
+    k = max(1, min(k, int(least / layers.thinnest)))
+    levels = height - graded(height - bottom, layers.top, k)[:, ::-1]
     levels[:, 0] = bottom
     return levels
 
 
-def _rising(top: Floats, height: float, refinement: float, deepest: float) -> Floats:
+def _rising(top: Floats, height: float, layers: Layers, deepest: float) -> Floats:
     """Even levels from 0 to `top` (n,), as many as a stack that ends at `deepest` wants: (n, k + 1)."""
-    thin = max(THINNEST_LAYER, TOP_LAYER / refinement)
     k = layer_count(
         height=float(top.max()),
-        top=thin,
-        bottom=BOTTOM_LAYER / refinement,
+        top=layers.top,
+        bottom=layers.bottom,
         total=height,
         start=height - deepest,
     )

@@ -8,19 +8,28 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.mesh._mesh import ElementKind
+from tisim.mesh._mesh import HEXAHEDRA, ElementKind
 
 # tet10: the corners of the edge in whose middle each of nodes 4 to 9 lies
 TET_EDGES = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
 
+# hex20: the same of nodes 8 to 19
+HEX_EDGES = np.array(
+    [*((0, 1), (1, 2), (2, 3), (3, 0)), *((4, 5), (5, 6), (6, 7), (7, 4)), *((0, 4), (1, 5), (2, 6), (3, 7))]
+)
+
+_HEX8 = np.array(
+    [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))]
+)
 _TET4 = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 NODE_PLACES: dict[ElementKind, NDArray[np.float64]] = {
     "tet4": _TET4,
     "tet10": np.concatenate([_TET4, _TET4[TET_EDGES].mean(axis=1)]),
-    "hex8": np.array(
-        [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))]
-    ),
+    "hex8": _HEX8,
+    "hex20": np.concatenate([_HEX8, _HEX8[HEX_EDGES].mean(axis=1)]),
 }
+# of a quad8: corners, then the edges' middles
+QUAD_PLACES = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [1, 0], [0, 1], [-1, 0]])
 
 _BARYCENTRIC_GRADIENT = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
@@ -36,15 +45,38 @@ def shape_gradients(kind: ElementKind, places: NDArray[np.float64]) -> NDArray[n
         corners = (4 * L - 1)[:, :, None] * D
         edges = 4 * (L[:, a, None] * D[b] + L[:, b, None] * D[a])
         return np.concatenate([corners, edges], axis=1)
+    if kind == "hex20":
+        return serendipity(places, NODE_PLACES["hex20"])[1]
     sign = NODE_PLACES["hex8"]
     factor = 1 + places[:, None, :] * sign
     others = factor[..., [1, 2, 0]] * factor[..., [2, 0, 1]]
     return 0.125 * sign * others
 
 
+def serendipity(
+    places: NDArray[np.float64], nodes: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Quadratic shape functions (q, a) of corners and edges' middles, and their slopes (q, a, d), at places.
+
+    In d natural coordinates, with node a at s_a: prod_i (1 + x_i s_ai) / 2^d (sum_i x_i s_ai - d + 1) at a
+    corner; in the middle of an edge along k, (1 - x_k^2) prod_(i != k) (1 + x_i s_ai) / 2^(d - 1).
+    """
+    x, s = places[:, None, :], nodes[None]
+    d = nodes.shape[1]
+    factor = np.where(s == 0.0, 1.0 - x * x, 1.0 + x * s)
+    slope = np.where(s == 0.0, -2.0 * x, s)
+    corner = (nodes != 0.0).all(axis=1)
+    scale = 0.5 ** (nodes != 0.0).sum(axis=1)
+    level = np.where(corner, (x * s).sum(axis=2) - (d - 1), 1.0)
+    product = scale * factor.prod(axis=2)
+    by_axis = [slope[..., k] * np.delete(factor, k, axis=2).prod(axis=2) for k in range(d)]
+    gradient = (scale * level)[..., None] * np.stack(by_axis, axis=2)
+    return product * level, gradient + product[..., None] * np.where(corner[:, None], nodes, 0.0)
+
+
 def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places (q, 3) and weights (q,) exact for the volume of a curved element (det J is cubic at most
-    for tet10, quadratic in each coordinate for hex8)."""
+    for tet10, quadratic in each coordinate for hex8, of degree five for hex20)."""
     if kind == "tet4":
         return np.full((1, 3), 0.25), np.array([1 / 6])
     if kind == "tet10":
@@ -52,7 +84,16 @@ def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float
         around = np.full((4, 3), 1 / 6)
         around[np.arange(3), np.arange(3)] = 0.5
         return np.concatenate([np.full((1, 3), 0.25), around]), np.array([-0.8, *[0.45] * 4]) / 6
+    if kind == "hex20":
+        return cube_points(3)
     return NODE_PLACES["hex8"] / 3**0.5, np.ones(8)
+
+
+def cube_points(order: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss points (order^3, 3) of [-1, 1]^3 and their weights."""
+    g, w = np.polynomial.legendre.leggauss(order)
+    places = np.stack(np.meshgrid(g, g, g, indexing="ij"), axis=-1).reshape(-1, 3)
+    return places, np.einsum("i,j,k->ijk", w, w, w).ravel()
 
 
 # The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
@@ -101,7 +142,7 @@ def det_jacobian(
 
 def corner_triads(kind: ElementKind) -> NDArray[np.int64]:
     """Each corner and its three neighbours, right-handed: shape (corners, 4)."""
-    if kind != "hex8":
+    if kind not in HEXAHEDRA:
         return np.array([[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [3, 0, 2, 1]])
     ring = [*range(4), 0]
     low = [(b, c, a, b + 4) for (a, b), c in zip(pairwise([3, *ring[:-1]]), ring[1:], strict=True)]

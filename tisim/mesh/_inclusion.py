@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 # material thinner than this between an inclusion and the block's base is meshed as rigid [m]
 THINNEST_GAP = 0.001
 THINNEST_COVER = 0.001
+# of the radius: points nearer to an inclusion's surface are on it
+ON_SURFACE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +83,30 @@ class Outline:
             within = self.signed(inside + middle[:, None] * (outside - inside)) < 0.0
             low, high = np.where(within, middle, low), np.where(within, high, middle)
         return inside + (0.5 * (low + high))[:, None] * (outside - inside)
+
+    def between(self, ends: Floats) -> Floats:
+        """The middles (k, 3) of edges (k, 2, 3) [m]: on the curved surface where both ends lie on it."""
+        middle = ends.mean(axis=1)
+        if len(self.corners):
+            return middle
+        centre, radius = self.centre, self.radius
+        if self.dome is not None:
+            half = np.array([self.dome.radius, self.dome.radius, self.dome.half_height])
+            there = np.array([*centre, self.dome.middle])
+            on = (np.abs(np.linalg.norm((ends - there) / half, axis=2) - 1.0) < ON_SURFACE).all(axis=1)
+            away = (middle - there) / half
+            out = there + half * away / np.linalg.norm(away, axis=1, keepdims=True)
+        else:
+            on = (np.abs(np.hypot(*(ends[..., :2] - centre).T).T - radius) < ON_SURFACE * radius).all(axis=1)
+            out = middle
+        flat = on & (ends[:, 0, 2] == ends[:, 1, 2])  # rims stay in their plane
+        middle[on] = out[on]
+        at = ends[flat].mean(axis=1)
+        away = at[:, :2] - centre
+        rim = np.hypot(*(ends[flat, 0, :2] - centre).T)
+        at[:, :2] = centre + away * (rim / np.hypot(*away.T))[:, None]
+        middle[flat] = at
+        return middle
 
     def cap(self, points: Floats) -> tuple[Floats, Floats]:
         """Heights of the lower and upper surface over points (n, 2); outside, those of the outline [m]."""

@@ -10,31 +10,44 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-ElementKind = Literal["tet4", "tet10", "hex8"]
-FacetKind = Literal["tri3", "tri6", "quad4"]
+ElementKind = Literal["tet4", "tet10", "hex8", "hex20"]
+FacetKind = Literal["tri3", "tri6", "quad4", "quad8"]
 
-NODES_PER_ELEMENT: Mapping[ElementKind, int] = MappingProxyType({"tet4": 4, "tet10": 10, "hex8": 8})
-FACET_KIND: Mapping[ElementKind, FacetKind] = MappingProxyType(
-    {"tet4": "tri3", "tet10": "tri6", "hex8": "quad4"}
+NODES_PER_ELEMENT: Mapping[ElementKind, int] = MappingProxyType(
+    {"tet4": 4, "tet10": 10, "hex8": 8, "hex20": 20}
 )
-NODES_PER_FACET: Mapping[FacetKind, int] = MappingProxyType({"tri3": 3, "tri6": 6, "quad4": 4})
+FACET_KIND: Mapping[ElementKind, FacetKind] = MappingProxyType(
+    {"tet4": "tri3", "tet10": "tri6", "hex8": "quad4", "hex20": "quad8"}
+)
+NODES_PER_FACET: Mapping[FacetKind, int] = MappingProxyType({"tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8})
 
 # Facets of each element by local node, counter-clockwise seen from outside.
 # tet10 edges: 4=(0,1) 5=(1,2) 6=(2,0) 7=(0,3) 8=(1,3) 9=(2,3) (the order of VTK_QUADRATIC_TETRA).
 # hex8: 0-3 bottom counter-clockwise seen from above, 4-7 above them (VTK_HEXAHEDRON); a wedge is a
-# hex8 with repeated nodes.
+# hex8 with repeated nodes. hex20: then the edges' middles, 8-11 bottom from 8=(0,1), 12-15 top from 12=(4,5),
+# 16-19 upright from 16=(0,4) (VTK_QUADRATIC_HEXAHEDRON); in a wedge a collapsed edge's middle is its corner.
 ELEMENT_FACETS: Mapping[ElementKind, tuple[tuple[int, ...], ...]] = MappingProxyType(
     {
         "tet4": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
         "tet10": ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
         "hex8": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+        "hex20": (
+            *((0, 3, 2, 1, 11, 10, 9, 8), (4, 5, 6, 7, 12, 13, 14, 15), (0, 1, 5, 4, 8, 17, 12, 16)),
+            *((1, 2, 6, 5, 9, 18, 13, 17), (2, 3, 7, 6, 10, 19, 14, 18), (3, 0, 4, 7, 11, 16, 15, 19)),
+        ),
     }
 )
+HEXAHEDRA: tuple[ElementKind, ...] = ("hex8", "hex20")
 # a mask over the nodes (n,), or a function of their positions (n, 3) [m] that gives one
 NodeMask = NDArray[np.bool_] | Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 # Nodes of an element in the order that keeps its volume positive when it is seen in a mirror.
-_TURNED = {"tet4": (0, 2, 1, 3), "tet10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8), "hex8": (0, 3, 2, 1, 4, 7, 6, 5)}
-_TURNED_FACET = {3: (0, 2, 1), 4: (0, 3, 2, 1), 6: (0, 2, 1, 5, 4, 3)}
+_TURNED = {
+    "tet4": (0, 2, 1, 3),
+    "tet10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8),
+    "hex8": (0, 3, 2, 1, 4, 7, 6, 5),
+    "hex20": (0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17),
+}
+_TURNED_FACET = {3: (0, 2, 1), 4: (0, 3, 2, 1), 6: (0, 2, 1, 5, 4, 3), 8: (0, 3, 2, 1, 7, 6, 5, 4)}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,7 +56,7 @@ class Mesh:
 
     Attributes
     ----------
-    kind : "tet4", "tet10" or "hex8"
+    kind : "tet4", "tet10", "hex8" or "hex20"
         Kind of all elements.
     nodes : ndarray of float, shape (n, 3)
         Rest positions [m].
@@ -99,16 +112,16 @@ class Mesh:
 def boundary_facets(kind: ElementKind, elements: NDArray[np.int32]) -> NDArray[np.int32]:
     """Facets that belong to one element only, shape (f, nodes per facet), outward.
 
-    Facets of a wedge (hex8 with repeated nodes) that collapse to a line are dropped.
+    Facets of a wedge (a hexahedron with repeated nodes) that collapse to a line are dropped.
     """
     local = np.array(ELEMENT_FACETS[kind], dtype=np.int64)
     facets = elements[:, local].reshape(-1, local.shape[1])
-    n_corner = 4 if kind == "hex8" else 3
+    n_corner = 4 if kind in HEXAHEDRA else 3
     corners = np.sort(facets[:, :n_corner].astype(np.int64), axis=1)
     twin = np.diff(corners, axis=1) == 0
     keep = twin.sum(axis=1) <= n_corner - 3
     facets, corners, twin = facets[keep], corners[keep], twin[keep]
-    if kind == "hex8":
+    if kind in HEXAHEDRA:
         # a triangle may appear as (a, a, b, c) in one wedge and (a, b, b, c) in its neighbour: (-1, a, b, c)
         corners[:, 1:][twin] = -1
         corners.sort(axis=1)

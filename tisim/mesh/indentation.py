@@ -28,6 +28,8 @@ ATTEMPTS = (
 # circle; more for a sphere, whose dome is met by facets too
 CELL_AT_OUTLINE = 0.65
 CELL_AT_DOME = 0.40
+# a hex20 has nodes in the middle of its edges
+COARSER_QUADRATIC = 1.5
 # they grow by this factor where the rod is FAR [m] from the outline
 COARSER_FAR_AWAY = 1.3
 FAR = 0.020
@@ -44,7 +46,7 @@ def poke_mesh(
     direction: Vector = (0.0, 0.0, -1.0),
     rod: Rod,
     refinement: float = 1.0,
-    kind: ElementKind = "hex8",
+    kind: ElementKind = "hex20",
 ) -> Mesh:
     """The block meshed for a rod pushed along `direction` at `site` (x, y) [m].
 
@@ -60,26 +62,27 @@ def poke_mesh(
         Of the push, up to 45 degrees from -z.
     rod : Rod
     refinement : float
-        Spacings get smaller by this factor, 0.5 to 6; at 1 some 3,500 nodes without an inclusion.
-    kind : "hex8", "tet4" or "tet10"
-        "hex8" has wedges (hexahedra with repeated nodes) where an inclusion's outline cuts a cell; the others
-        are cut from these.
+        Spacings get smaller by this factor, 0.5 to 6; at 1 some 2,400 nodes without an inclusion (3,500 of
+        hex8).
+    kind : "hex20", "hex8", "tet4" or "tet10"
+        Hexahedra have wedges (with repeated nodes) where an inclusion's outline cuts a cell; tetrahedra are
+        cut from the grid of hex8.
 
     Returns
     -------
     Mesh
         Node sets: "base" (all fixed nodes: on z = 0 and on the inclusion), "top". Facet sets: "top" (outward
-        is +z; in quad4 a triangle repeats a node), "surface" (the whole boundary).
+        is +z; in quad4 and quad8 a triangle repeats a node), "surface" (the whole boundary).
 
     Raises
     ------
     MeshError
         In one sentence, for arguments out of range or an inclusion that no grid meets.
     """
-    if kind not in ("hex8", "tet4", "tet10"):
-        raise MeshError(f"poke mesh: expected kind hex8, tet4 or tet10, got {kind!r}")
+    if kind not in ("hex20", "hex8", "tet4", "tet10"):
+        raise MeshError(f"poke mesh: expected kind hex20, hex8, tet4 or tet10, got {kind!r}")
     size = _checked_size(block)
-    grids = _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement)
+    grids = _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement, kind=kind)
     if block.inclusion is None:
         grid = grids.make(None)
         return extrude(points=grid.points, cells=grid.cells, size=size, refinement=refinement, kind=kind)
@@ -87,6 +90,7 @@ def poke_mesh(
     away = float(np.clip((np.hypot(*(outline.centre - grids.site)) - outline.reach) / FAR, 0.0, 1.0))
     coarser = 1.0 + away * (COARSER_FAR_AWAY - 1.0)
     cell = coarser * (CELL_AT_OUTLINE if outline.dome is None else CELL_AT_DOME) * outline.radius / refinement
+    cell *= COARSER_QUADRATIC if kind == "hex20" and outline.dome is None else 1.0
     worse: list[tuple[float, PlaneGrid, Snapped]] = []
     for spacing, turn, more in ATTEMPTS:
         focus = Focus(centre=outline.centre, reach=outline.reach, spacing=spacing * cell)
@@ -172,6 +176,7 @@ class _Grids:
         direction: Vector,
         rod: Rod,
         refinement: float,
+        kind: ElementKind = "hex8",
     ) -> None:
         push = np.array(direction, dtype=np.float64)
         norm = float(np.linalg.norm(push))
@@ -199,8 +204,11 @@ class _Grids:
         self.rings = np.linspace(self.flat, 1.4 * rod.radius, max(3, round(4 * refinement)) + 1)[1:]
         self.azimuth = float(np.arctan2(push[1], push[0]))
         self.stretch = 1.0 / float(np.cos(tilt))
-        self.n_theta = 4 * max(3, round(5 * refinement))
-        self.n_outer = max(5, round(9 * refinement))
+        self.quadratic = kind == "hex20"
+        if self.quadratic:  # half as many rays and rings: there are nodes between them
+            self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(3, round(5 * refinement))
+        else:
+            self.n_theta, self.n_outer = 4 * max(3, round(5 * refinement)), max(5, round(9 * refinement))
 
     def make(self, focus: Focus | None, *, turn: float = 0.0, more: int = 0) -> PlaneGrid:
         """A grid, fine at the focus too; its rays turned by parts of their spacing, with some rings more."""
@@ -211,7 +219,8 @@ class _Grids:
             rings=self.rings,
             azimuth=self.azimuth,
             stretch=self.stretch,
-            n_theta=self.n_theta + 4 * (more // 3),
+            # an inclusion's outline wants more rays than the rod
+            n_theta=self.n_theta + 4 * (more // 3 + (self.quadratic and focus is not None)),
             n_outer=self.n_outer + more,
             focus=focus,
             turn=turn,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh._elements import NODE_PLACES, corner_triads, det_jacobian, quadrature
-from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
+from tisim.mesh._mesh import HEXAHEDRA, Mesh, MeshError, boundary_facets
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ def volumes(mesh: Mesh) -> NDArray[np.float64]:
 def nodal_determinants(mesh: Mesh) -> NDArray[np.float64]:
     """det J at each node of each element [m3], shape (m, nodes per element); positive in a valid mesh.
 
-    A collapsed node of a wedge (hex8 with repeated nodes) has 0 there.
+    A collapsed node of a wedge (a hexahedron with repeated nodes) has 0 there.
     """
     return det_jacobian(mesh.kind, mesh.nodes, mesh.elements, NODE_PLACES[mesh.kind])
 
@@ -55,13 +55,13 @@ def nodal_determinants(mesh: Mesh) -> NDArray[np.float64]:
 def scaled_jacobian(mesh: Mesh) -> NDArray[np.float64]:
     """The least of the corners' triple products of unit edges, shape (m,): 1 for a cube and for a
     regular tetrahedron (where the product is multiplied by sqrt 2), 0 or less where turned over
-    (Knupp 2000, as in VTK's verdict). Edges of 10-node tetrahedra count as straight."""
+    (Knupp 2000, as in VTK's verdict). Edges with a middle node count as straight."""
     x = mesh.nodes[mesh.elements[:, corner_triads(mesh.kind)]]
     edges = x[:, :, 1:] - x[:, :, :1]
     length = np.linalg.norm(edges, axis=-1, keepdims=True)
     unit = np.divide(edges, length, out=np.zeros_like(edges), where=length > 0)
     least = np.linalg.det(unit).min(axis=1)
-    if mesh.kind == "hex8":
+    if mesh.kind in HEXAHEDRA:
         return least
     # for a tetrahedron VTK divides by the largest product of three edges at a corner
     triple = np.abs(np.linalg.det(edges)).max(axis=1)
@@ -74,7 +74,7 @@ def quality(mesh: Mesh) -> Quality:
     det = nodal_determinants(mesh)
     scaled = scaled_jacobian(mesh)
     volume = volumes(mesh)
-    reference = {"tet4": 1 / 6, "tet10": 1 / 6, "hex8": 8.0}[mesh.kind]
+    reference = {"tet4": 1 / 6, "tet10": 1 / 6, "hex8": 8.0, "hex20": 8.0}[mesh.kind]
     return Quality(
         n_nodes=mesh.n_nodes,
         n_elements=mesh.n_elements,

@@ -1,4 +1,4 @@
-"""Finer tetrahedra: local refinement, and 10-node elements from 4-node ones.
+"""Finer tetrahedra: local refinement; and quadratic elements from linear ones.
 
 Edges are halved, longest first (Rivara 1984; Plaza and Carey 2000 for tetrahedra): a tetrahedron with an
 edge to halve has its longest edge halved too, which keeps the angles from getting worse with each pass.
@@ -14,15 +14,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.mesh._elements import NODE_PLACES, TET_EDGES, det_jacobian
-from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
+from tisim.mesh._elements import HEX_EDGES, NODE_PLACES, TET_EDGES, det_jacobian, quadrature
+from tisim.mesh._mesh import ElementKind, Mesh, MeshError, boundary_facets
 from tisim.mesh.quality import smooth
 
 # wanted edge length [m] at points (k, 3) [m]
 Size = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
+# of a linear element: the quadratic one with its corners, and the edges in whose middles the new nodes lie
+_QUADRATIC: dict[ElementKind, tuple[ElementKind, NDArray[np.int64]]] = {
+    "tet4": ("tet10", TET_EDGES),
+    "hex8": ("hex20", HEX_EDGES),
+}
 _TRIANGLE_EDGES = np.array([(0, 1), (1, 2), (2, 0)])
 Projection = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+Between = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 def refine_around(
@@ -162,12 +168,13 @@ def edge_keys(pairs: NDArray[np.integer], n_nodes: int) -> NDArray[np.int64]:
 
 
 def facet_edges(facets: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Edges (f, 3, 2) of triangles by their corners (f, 3 or 6): first-second, second-third, third-first."""
-    return facets[:, [[0, 1], [1, 2], [2, 0]]]
+    """Edges (f, 3 or 4, 2) of facets (f, 3, 4, 6 or 8) by their corners: first-second, ..., last-first."""
+    corners = facets[:, : 4 if facets.shape[1] in (4, 8) else 3]
+    return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
 
 
 def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict[str, NDArray[np.int32]]:
-    """Node sets of a tet4 mesh extended by the nodes first_new + k in the middle of edges (k, 2).
+    """Node sets of a linear mesh extended by the nodes first_new + k in the middle of edges (k, 2).
 
     A set that lies on the boundary passes on only along boundary facets that lie in it as a whole: an
     edge through the body from the base to the inclusion has both ends held, yet its middle is free. (A
@@ -192,32 +199,47 @@ def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict
 
 
 def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
-    """The mesh with a node in the middle of each edge; corners keep their numbers, sets are extended.
+    """The mesh with a node in the middle of each edge: tet10 from tet4, hex20 from hex8.
+
+    Corners keep their numbers, sets are extended. An edge that is collapsed, in a wedge, gets no new node:
+    its corner stands for its middle.
 
     project: puts points (k, 3) [m] of the boundary's edges onto the true curved surface. Where that
     would turn an element over, or nearly (det J below a tenth of the straight element's), the element's
     edges stay straight.
     """
-    if mesh.kind != "tet4":
-        raise MeshError(f"only a tet4 mesh can be made quadratic, this one is {mesh.kind}")
+    return curved(mesh, between=None if project is None else lambda ends: project(ends.mean(axis=1)))
+
+
+def curved(mesh: Mesh, *, between: Between | None) -> Mesh:
+    """As `to_quadratic`; between: the middles (k, 3) of the boundary's edges by their ends (k, 2, 3) [m]."""
+    if mesh.kind not in _QUADRATIC:
+        raise MeshError(f"only a tet4 or hex8 mesh can be made quadratic, this one is {mesh.kind}")
+    kind, local = _QUADRATIC[mesh.kind]
     n = mesh.n_nodes
-    pairs = mesh.elements[:, TET_EDGES].astype(np.int64)
-    keys, first, place = np.unique(edge_keys(pairs, n), return_index=True, return_inverse=True)
-    edges = pairs.reshape(-1, 2)[first]
-    elements = np.concatenate([mesh.elements, n + place.reshape(-1, 6)], axis=1).astype(np.int32)
+    pairs = mesh.elements[:, local].astype(np.int64)
+    keys = np.unique(edge_keys(pairs, n))
+    edges = np.stack(np.divmod(keys, n), axis=1)
+    keys, edges = keys[edges[:, 0] != edges[:, 1]], edges[edges[:, 0] != edges[:, 1]]
+
+    def middles_of(pairs: NDArray[np.integer]) -> NDArray[np.int64]:
+        """Nodes in the middle of edges (..., 2)."""
+        new = n + np.searchsorted(keys, edge_keys(pairs, n))
+        return np.where(pairs[..., 0] == pairs[..., 1], pairs[..., 0], new)
+
+    elements = np.concatenate([mesh.elements, middles_of(pairs)], axis=1).astype(np.int32)
     straight = mesh.nodes[edges].mean(axis=1)
     middles = straight.copy()
-    boundary = boundary_facets("tet4", mesh.elements)
-    if project is not None:
+    boundary = boundary_facets(mesh.kind, mesh.elements)
+    if between is not None:
         outer = np.flatnonzero(np.isin(keys, edge_keys(facet_edges(boundary), n).ravel()))
-        middles[outer] = project(straight[outer])
-        _straighten(mesh.nodes, elements, middles, straight)
+        middles[outer] = between(mesh.nodes[edges[outer]])
+        _straighten(mesh.kind, mesh.nodes, elements, middles, straight)
     facets = {}
     for name, old in mesh.facet_sets.items():
-        middle = n + np.searchsorted(keys, edge_keys(facet_edges(old), n))
-        facets[name] = np.concatenate([old, middle], axis=1).astype(np.int32)
+        facets[name] = np.concatenate([old, middles_of(facet_edges(old))], axis=1).astype(np.int32)
     return Mesh(
-        kind="tet10",
+        kind=kind,
         nodes=np.concatenate([mesh.nodes, middles]),
         elements=elements,
         node_sets=inherited_sets(mesh, edges, n),
@@ -227,6 +249,7 @@ def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
 
 
 def _straighten(
+    kind: ElementKind,
     corners: NDArray[np.float64],
     elements: NDArray[np.int32],
     middles: NDArray[np.float64],
@@ -234,12 +257,17 @@ def _straighten(
 ) -> None:
     """Set back (in place) the middles of elements that the curve turns over."""
     n = len(corners)
-    plain = det_jacobian("tet4", corners, elements[:, :4], NODE_PLACES["tet4"][:1])[:, 0]
-    while True:  # each round straightens an edge at least, and straight elements are good
+    quadratic = _QUADRATIC[kind][0]
+    width = len(NODE_PLACES[kind])
+    centre = NODE_PLACES[kind].mean(axis=0)[None]
+    # the collapsed nodes of a wedge have no volume
+    places = quadrature(quadratic)[0] if quadratic == "hex20" else NODE_PLACES[quadratic]
+    plain = det_jacobian(kind, corners, elements[:, :width], centre)[:, 0]
+    while True:  # each round straightens an edge at least
         nodes = np.concatenate([corners, middles])
-        det = det_jacobian("tet10", nodes, elements, NODE_PLACES["tet10"])
-        bad = det.min(axis=1) < 0.1 * plain
-        if not bad.any():
+        det = det_jacobian(quadratic, nodes, elements, places)
+        back = np.unique(elements[det.min(axis=1) < 0.1 * plain, width:]) - n
+        back = back[back >= 0]  # a collapsed edge has its corner there
+        if np.array_equal(middles[back], straight[back]):
             return
-        back = np.unique(elements[bad, 4:]) - n
         middles[back] = straight[back]
