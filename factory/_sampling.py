@@ -62,7 +62,7 @@ def interpolation(
     nodes : ndarray, shape (n, 3)
         Rest positions [m].
     facets : ndarray of int
-        tri3, tri6 or quad4; a quad with a repeated node counts as a triangle.
+        tri3, tri6, quad4 or quad8, edges straight; a quad4 with a repeated node counts as a triangle.
     points : ndarray, shape (p, 2 or more)
         Of which x and y are used [m]. Each belongs to the facet that holds it best.
 
@@ -79,13 +79,14 @@ def interpolation(
     target = points[:, :2]
     near = (target[:, None] >= low - slack).all(axis=2) & (target[:, None] <= high + slack).all(axis=2)
     point, facet = np.nonzero(near)
-    weights = np.zeros((len(point), facets.shape[1] if facets.shape[1] == 6 else 4))
+    quadratic = facets.shape[1] in (6, 8)
+    weights = np.zeros((len(point), facets.shape[1] if quadratic else 4))
     outside = np.full(len(point), np.inf)
     quad = is_quad[facet]
     if quad.any():
         st, reached = _inverse_bilinear(xy[facet[quad]], target[point[quad]])
         outside[quad] = np.where(reached, (np.abs(st) - 1).max(axis=1), np.inf)
-        weights[quad] = _bilinear(st)
+        weights[quad] = _serendipity(st) if quadratic else _bilinear(st)
     if not quad.all():
         tri = ~quad
         bary = _barycentric(xy[facet[tri]][:, :3], target[point[tri]])
@@ -96,12 +97,14 @@ def interpolation(
     best = order[first]
     if len(found) < len(points) or outside[best].max() > _INSIDE:
         raise ValueError("grid: a point lies on no facet of the top face")
-    used = columns if facets.shape[1] == 6 else corners
+    used = columns if quadratic else corners
     return Interpolation(nodes=used[facet[best]], weights=weights[best])
 
 
 def _corners(facets: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """Four corner columns (triangles first, then a repeated node) and which facets are true quads."""
+    if facets.shape[1] == 8:  # one with a repeated corner is a quad all the same
+        return facets[:, :4], np.ones(len(facets), dtype=bool)
     if facets.shape[1] != 4:
         return facets[:, [0, 1, 2, 2]], np.zeros(len(facets), dtype=bool)
     corners = facets.copy()
@@ -116,6 +119,17 @@ def _corners(facets: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.b
 def _bilinear(st: NDArray[np.float64]) -> NDArray[np.float64]:
     s, t = st[:, 0], st[:, 1]
     return np.stack([(1 - s) * (1 - t), (1 + s) * (1 - t), (1 + s) * (1 + t), (1 - s) * (1 + t)], axis=1) / 4
+
+
+def _serendipity(st: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Eight-node quadrangle, middle nodes after the corners: 4=(0,1) ... 7=(3,0)."""
+    s, t = st[:, 0], st[:, 1]
+    corners = [
+        (1 + a * s) * (1 + b * t) * (a * s + b * t - 1) / 4 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
+    along_s = [(1 - s * s) * (1 + b * t) / 2 for b in (-1, 1)]
+    along_t = [(1 - t * t) * (1 + a * s) / 2 for a in (-1, 1)]
+    return np.stack([*corners, along_s[0], along_t[1], along_s[1], along_t[0]], axis=1)
 
 
 def _inverse_bilinear(
@@ -164,8 +178,8 @@ def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
     Parameters
     ----------
     facets : ndarray of int
-        tri3, tri6 or quad4, outward. A quad becomes two triangles (one where two of its nodes coincide), a
-        6-node triangle four.
+        tri3, tri6, quad4 or quad8, outward. A quad becomes two triangles (one where two of its nodes
+        coincide), a 6-node triangle four, an 8-node quad six (fewer where nodes coincide).
 
     Returns
     -------
@@ -182,8 +196,11 @@ def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
     elif width == 6:
         split = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
         triangles = facets[:, split].reshape(-1, 3)
+    elif width == 8:
+        split = [[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 6], [4, 6, 7]]
+        triangles = facets[:, split].reshape(-1, 3)
     else:
-        raise ValueError(f"facets of {width} nodes: expected 3, 4 or 6")
+        raise ValueError(f"facets of {width} nodes: expected 3, 4, 6 or 8")
     a, b, c = triangles.T
     triangles = triangles[(a != b) & (b != c) & (c != a)]
     nodes, local = np.unique(triangles, return_inverse=True)

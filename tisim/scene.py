@@ -11,7 +11,7 @@ from tisim.bodies import Block, Circle, Rectangle, Rod, Vector
 from tisim.course import Course
 from tisim.mesh import Mesh
 
-ElementChoice = Literal["default", "tet4", "tet10", "hex8"]
+ElementChoice = Literal["default", "tet4", "tet10", "hex8", "hex20"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -291,8 +291,8 @@ class Poke:
         Coulomb coefficient (0 slides freely).
     frame_spacing : float
         A frame is kept each time the tip has moved this far [m].
-    element : "default", "tet4", "tet10" or "hex8"
-        "default" is the 8-node hexahedron with element pressure, on a mesh made for the rod.
+    element : "default", "tet4", "tet10", "hex8" or "hex20"
+        "default" is the 20-node hexahedron, on a mesh made for the rod.
     mesh : Mesh, optional
         An own mesh, with node set "base" (fixed) and facet set "top".
     refinement : float

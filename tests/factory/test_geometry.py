@@ -80,6 +80,46 @@ def test_interpolation_of_six_node_triangles_is_quadratic() -> None:
     np.testing.assert_allclose(at(field(nodes)), field(points), atol=1e-14)
 
 
+def _with_middles(
+    nodes: NDArray[np.float64], facets: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Quads of eight nodes; the middle of a collapsed edge is its corner."""
+    ends = np.sort(np.stack([facets, np.roll(facets, -1, axis=1)], axis=-1), axis=-1)
+    edges, place = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
+    middles = np.where(ends[..., 0] == ends[..., 1], ends[..., 0], len(nodes) + place.reshape(-1, 4))
+    return np.concatenate([nodes, nodes[edges].mean(axis=1)]), np.hstack([facets, middles]).astype(np.int32)
+
+
+@given(st.integers(0, 10_000))
+def test_eight_node_quads_are_exact_for_linear_fields_collapsed_or_not(seed: int) -> None:
+    nodes, facets = _with_middles(*_skewed_top(seed))
+    points = grid_points(BLOCK).reshape(-1, 3)
+    at = interpolation(nodes, facets, points)
+    np.testing.assert_allclose(at(nodes @ LINEAR + 1.0), points @ LINEAR + 1.0, atol=1e-10)
+
+
+def test_interpolation_of_eight_node_quads_is_quadratic() -> None:
+    corners = np.array([[0.0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]])
+    nodes, facets = _with_middles(corners, np.arange(4, dtype=np.int32)[None])
+    points = np.array([[0.2, 1.3, 0], [1.5, 0.1, 0]])
+
+    def field(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.stack([x[:, 0] ** 2, x[:, 0] * x[:, 1], 1 - x[:, 1] ** 2], axis=1)
+
+    np.testing.assert_allclose(interpolation(nodes, facets, points)(field(nodes)), field(points), atol=1e-12)
+
+
+def test_an_eight_node_quad_becomes_six_triangles_that_cover_it() -> None:
+    corners = np.array([[0.0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]])
+    nodes, facets = _with_middles(corners, np.array([[0, 1, 2, 3]], dtype=np.int32))
+    used, triangles = surface_triangles(facets)
+    a, b, c = np.swapaxes(nodes[used][triangles], 0, 1)
+    area = 0.5 * np.cross(b - a, c - a)
+    assert len(triangles) == 6
+    assert (area[:, 2] > 0.0).all()
+    assert area.sum(axis=0) == pytest.approx([0.0, 0.0, 4.0])
+
+
 def test_a_point_outside_the_face_is_an_error() -> None:
     nodes, facets = _skewed_top(1)
     with pytest.raises(ValueError, match="no facet"):

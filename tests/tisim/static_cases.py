@@ -66,7 +66,7 @@ def deflection(result: Result) -> np.ndarray:
 
 
 def awkward(kind: str, cells: tuple[int, int, int] = (3, 3, 2), *, bend: float = 0.0, seed: int = 3) -> Mesh:
-    """A box of distorted elements, 10 mm cells; hex8 with every third column split into wedges.
+    """A box of distorted elements, 10 mm cells; hexahedra with every third column split into wedges.
 
     bend: how far the middle nodes of a tet10 leave their edges [m].
     """
@@ -78,10 +78,11 @@ def awkward(kind: str, cells: tuple[int, int, int] = (3, 3, 2), *, bend: float =
     hexes = np.stack([number[i + a, j + b, k + c] for c in (0, 1) for a, b in ring], axis=1)
     nodes = 0.01 * np.stack(np.meshgrid(*(np.arange(n) for n in shape), indexing="ij"), -1).reshape(-1, 3)
     nodes += rng.uniform(-0.0015, 0.0015, nodes.shape)
-    if kind == "hex8":
+    if kind in ("hex8", "hex20"):
         split = (i + j) % 3 == 0
         wedges = [hexes[split][:, list(c)] for c in ((0, 1, 2, 2, 4, 5, 6, 6), (0, 2, 3, 3, 4, 6, 7, 7))]
-        return Mesh(kind="hex8", nodes=nodes, elements=np.concatenate([hexes[~split], *wedges]))
+        mesh = Mesh(kind="hex8", nodes=nodes, elements=np.concatenate([hexes[~split], *wedges]))
+        return mesh if kind == "hex8" else to_quadratic(mesh)
     mesh = Mesh(kind="tet4", nodes=nodes, elements=hexes[:, _KUHN].reshape(-1, 4))
     if kind == "tet4":
         return mesh

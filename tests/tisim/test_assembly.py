@@ -17,6 +17,7 @@ CASES = [
     ("hex8", "stable-neo-hookean", 50.0),
     ("hex8", "arruda-boyce", 50.0),
     ("hex8", "mooney-rivlin", 1000.0),
+    ("hex20", "ogden", 300.0),
 ]
 
 
@@ -70,7 +71,7 @@ def test_forces_are_the_slope_of_the_energy(kind, law, ratio):
 @pytest.mark.parametrize(("kind", "law", "ratio"), CASES)
 def test_blocks_are_the_hessian_of_the_energy(kind, law, ratio):
     body, x = case(kind, law, ratio)
-    if kind == "hex8":
+    if kind in ("hex8", "hex20"):
         conn = body.discretisation.mesh.elements
         assert (np.diff(np.sort(conn, axis=1), axis=1) == 0).any()  # wedges are among them
     blocks = body.stiffness(x)[0]
@@ -80,7 +81,7 @@ def test_blocks_are_the_hessian_of_the_energy(kind, law, ratio):
     assert np.abs(diagonal - np.swapaxes(diagonal, 1, 2)).max() < 1e-12 * np.abs(K).max()
 
 
-@pytest.mark.parametrize("kind", ["tet10", "hex8"])
+@pytest.mark.parametrize("kind", ["tet10", "hex8", "hex20"])
 def test_held_components_leave_the_system(kind):
     body, x = case(kind, "neo-hookean", 50.0, held=True)
     blocks = body.stiffness(x)[0]

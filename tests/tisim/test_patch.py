@@ -26,7 +26,7 @@ def start(mesh, rng):
 
 
 @pytest.mark.parametrize("law", ["neo-hookean", "ogden"])
-@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8"])
+@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8", "hex20"])
 def test_affine_boundary_motion_gives_the_affine_inside(kind, law):
     mesh = awkward(kind, (3, 3, 3))
     body = body_of(mesh, law, boundary(mesh))
@@ -34,7 +34,7 @@ def test_affine_boundary_motion_gives_the_affine_inside(kind, law):
     assert np.abs(x - affine(mesh)).max() < 1e-9 * np.ptp(mesh.nodes)
 
 
-@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8"])
+@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8", "hex20"])
 def test_energy_and_boundary_forces_of_an_affine_motion_are_the_laws(kind):
     mesh = awkward(kind)
     body = body_of(mesh, "mooney-rivlin", boundary(mesh))
@@ -61,7 +61,7 @@ def test_bent_quadratic_tetrahedra_pass_to_the_accuracy_of_their_quadrature():
 def test_rigid_motion_costs_nothing():
     turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
     turn *= np.linalg.det(turn)
-    for kind in ("tet4", "tet10", "hex8"):
+    for kind in ("tet4", "tet10", "hex8", "hex20"):
         mesh = awkward(kind)
         body = body_of(mesh, "stable-neo-hookean", boundary(mesh))
         x = mesh.nodes @ turn.T + 0.5

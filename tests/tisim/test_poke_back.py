@@ -20,7 +20,9 @@ BLOCK = tisim.Block(size=(0.1, 0.1, 0.012))
 ROD = tisim.Rod(radius=4e-3, edge_radius=1.6e-3)
 
 
-def poke(friction: float, *, depth: float = 3e-3, back: float | None = 0.5e-3) -> tisim.Result:
+def poke(
+    friction: float, *, depth: float = 3e-3, back: float | None = 0.5e-3, refinement: float = 1.0
+) -> tisim.Result:
     soft = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
     scene = tisim.Poke(
         material=soft,
@@ -30,6 +32,7 @@ def poke(friction: float, *, depth: float = 3e-3, back: float | None = 0.5e-3) -
         retract_to=back,
         friction=friction,
         frame_spacing=0.25e-3,
+        refinement=refinement,
     )
     (result,) = tisim.simulate([scene], workers=1)
     return result
@@ -60,10 +63,11 @@ def test_what_sliding_takes_agrees_with_axisymmetric_elements() -> None:
 
 
 def test_where_nothing_slides_the_way_back_is_the_way_there() -> None:
-    """To 0.3 % of the force, on elements that lost their shape on the way in."""
-    result = poke(0.6)
+    """To 0.1 % of the force at 1.5 times the default refinement; at the default some points slip at the edge,
+    and up to 0.6 % is missing."""
+    result = poke(0.6, refinement=1.5)
     assert result.status is tisim.Status.CONVERGED
-    assert missing(result, np.linspace(0.6e-3, 2.9e-3, 12)) == pytest.approx(0.0, abs=3e-3)
+    assert missing(result, np.linspace(0.6e-3, 2.9e-3, 12)) == pytest.approx(0.0, abs=1e-3)
 
 
 def test_frames_of_the_way_back_are_equilibria_at_even_depths() -> None:

@@ -61,7 +61,7 @@ def test_a_step_is_newtons_on_the_whole_block() -> None:
     block._choose(x)
     split = block._split
     assert split is not None
-    assert 30 < len(split.near.body.discretisation.pattern.free) < 0.6 * len(free)
+    assert 30 < len(split.near.body.discretisation.pattern.free) < 0.85 * len(free)
     it.residual(x)
     left = block._place(split, x)
     part = it.restricted(split.near, split.far)

@@ -1,9 +1,13 @@
-"""Hexahedra under a rod: what their tetrahedra carry; and the shifted solves of their Newton steps."""
+"""Linear hexahedra under a rod: what their tetrahedra carry; and the shifted solves of their Newton steps."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import meshio
 import numpy as np
 import pytest
+import trimesh
 
 import tisim
 from tisim.discretisation.body import Discretisation
@@ -14,13 +18,13 @@ from tisim.discretisation.quadrature import (
     TetrahedralParts,
     reference,
 )
-from tisim.mesh import Mesh
+from tisim.mesh import ElementKind, Mesh
 from tisim.mesh.indentation import poke_mesh
 from tisim.problems.indentation.system import PokeSystem
 
 
-def block_mesh() -> Mesh:
-    return poke_mesh(block=tisim.Block(), site=(0.0, 0.0), rod=tisim.Rod(), refinement=0.5)
+def block_mesh(kind: ElementKind = "hex8") -> Mesh:
+    return poke_mesh(block=tisim.Block(), site=(0.0, 0.0), rod=tisim.Rod(), refinement=0.5, kind=kind)
 
 
 def part(ref: Reference) -> np.ndarray:
@@ -58,7 +62,7 @@ def system() -> tuple[PokeSystem, np.ndarray]:
         depth=0.001,
         refinement=0.5,
     )
-    mesh = block_mesh()
+    mesh = block_mesh("hex20")
     it = PokeSystem(scene, Discretisation.build(mesh, mesh.node_sets["base"]))
     it.move_to(0.0003)
     x = mesh.nodes.copy()
@@ -111,3 +115,29 @@ def test_a_layout_is_left_as_it_was() -> None:
     it.turn(-1.0)
     it.accept(mesh.nodes)
     assert it.discretisation.reference.weights / before == pytest.approx(1.0, rel=1e-9)
+
+
+def test_overlap_is_looked_for_between_the_points_of_contact_too() -> None:
+    """A facet's middle pushed through the rod's edge, its contact points left where they touch."""
+    it, x = system()
+    assert it.overlap(x) == pytest.approx(0.3e-3, rel=0.05)  # the depth the rod was moved to
+    facet = it.facets[np.argmin(np.linalg.norm(x[it.facets].mean(axis=1) - it.tip, axis=1))]
+    bulged = x.copy()
+    bulged[facet, 2] += 1e-3 * np.array([-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])
+    it.residual(bulged)
+    assert it.overlap(bulged) > -float(it.report[3]) + 1e-5
+
+
+def test_a_quadratic_poke_is_written_as_quadratic(tmp_path: Path) -> None:
+    scene = tisim.Poke(
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
+        depth=0.0005,
+        refinement=0.5,
+    )
+    result = tisim.simulate(scene)
+    read = meshio.read(tisim.write(result, tmp_path / "poke.vtu"))
+    (cells,) = read.cells
+    assert cells.type == "hexahedron20"
+    assert read.points == pytest.approx(result.positions[-1])
+    skin = tisim.write(result, tmp_path / "poke.ply")
+    assert trimesh.load_mesh(skin).is_watertight

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from tisim.problems.indentation.solve import solve_poke
 SHEAR, BULK = 20e3, 600e3
 
 
-def poked(law: str) -> tuple[tisim.Result, tisim.Result]:
+def poked(law: str, *, element: Any = "default") -> tuple[tisim.Result, tisim.Result]:
     """0.04 and 2 mm deep at 20 degrees on a coarse mesh."""
     angle = np.radians(20.0)
     shallow, deep = (
@@ -23,6 +25,7 @@ def poked(law: str) -> tuple[tisim.Result, tisim.Result]:
                 depth=depth,
                 frame_spacing=depth / 2,
                 refinement=0.6,
+                element=element,
             )
         )
         for depth in (0.00004, 0.002)
@@ -43,7 +46,11 @@ def neo_hookean() -> tuple[float, float]:
 
 @pytest.mark.parametrize("law", [name for name in laws.names() if name != "neo-hookean"])
 def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
-    shallow, deep = poked(law)
+    # this law, which gives way where it is squeezed, goes beyond 1 mm on linear hexahedra only
+    element = "hex8" if law == "st-venant-kirchhoff" else "default"
+    shallow, deep = poked(law, element=element)
+    if element == "hex8":
+        neo_hookean = size(poked("neo-hookean", element=element)[0]), neo_hookean[1]
     for found, depth in ((shallow, 0.00004), (deep, 0.002)):
         assert found.ok
         assert found.load[-1] == pytest.approx(depth)
@@ -51,6 +58,5 @@ def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
         assert (found.min_jacobian > 0).all()
     assert size(shallow) == pytest.approx(neo_hookean[0], rel=0.03)  # the moduli decide
     assert size(deep) != pytest.approx(neo_hookean[1], rel=1e-4)  # the law does
-    # St Venant-Kirchhoff gives way where it is squeezed
     low, high = (0.5, 0.7) if law == "st-venant-kirchhoff" else (0.9, 1.2)
     assert low < size(deep) / neo_hookean[1] < high

@@ -10,7 +10,7 @@ def test_a_ball_sinks_in_by_little() -> None:
     moduli over 0.4 of the radius it sinks in by 0.01 mm, over the whole radius by 0.025 mm."""
     soft = tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=3e6)
     ball = tisim.Rod(radius=4e-3, tip="hemisphere")
-    poke = tisim.Poke(material=soft, depth=1e-3, rod=ball, refinement=0.7, frame_spacing=5e-4)
+    poke = tisim.Poke(material=soft, depth=1e-3, rod=ball, refinement=1.5, frame_spacing=5e-4)
     (result,) = tisim.simulate([poke], workers=1)
     assert result.status is tisim.Status.CONVERGED
     assert 0.01e-3 < result.penetration[-1] < 0.02e-3

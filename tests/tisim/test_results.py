@@ -127,4 +127,4 @@ def test_a_poke_is_meshed_with_the_elements_asked_for(element: tisim.scene.Eleme
     """They used to be hexahedra whatever was asked for."""
     result = tisim.simulate(tisim.Poke(material=SOFT, depth=2e-4, refinement=0.5, element=element))
     assert result.ok
-    assert result.mesh.kind == ("hex8" if element == "default" else element)
+    assert result.mesh.kind == ("hex20" if element == "default" else element)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tisim import laws
 from tisim.discretisation.packed import features_of, history_of, pack
-from tisim.discretisation.quadrature import Reference, reference
+from tisim.discretisation.quadrature import Reference, bulk_shares, reference
 from tisim.linear.blocks import Pattern, pattern_of
 from tisim.linear.direct import DirectSolver
 from tisim.mesh import Mesh
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 # element. One pressure a tet10 is too soft in bending without it: against benchmarks/references/beams.json
 # (K/mu 20 to 1000, mu 9 and 40 kPa) the default beams are within -0.43 and +0.61 % with 0 left to W of
 # Ogden, -0.51 and +0.16 % with 2/3, -0.70 and +0.03 % with 1. The Neo-Hookean W has 2/3 of its own.
-POINTWISE = {"tet4": np.inf, "tet10": 2.0 / 3.0, "hex8": 2.0}
+POINTWISE = {"tet4": np.inf, "tet10": 2.0 / 3.0, "hex8": 2.0, "hex20": 2.0}
 
 
 NO_STATE = np.zeros((1, 1, 1))
@@ -147,8 +147,8 @@ class DiscretisedBody:
         wanted = POINTWISE[discretisation.mesh.kind] * self.moduli.shear_modulus - (
             self.moduli.bulk_modulus - kappa
         )
-        self._kp = float(np.clip(wanted, 0.0, kappa)) if kappa > 0 else kappa
-        self._kb = kappa - self._kp
+        pointwise = float(np.clip(wanted, 0.0, kappa)) if kappa > 0 else kappa
+        self._kb, self._kp = bulk_shares(discretisation.mesh.kind, pointwise, kappa)
         if material.viscosity is not None:  # what there is at once
             more = material.viscosity.spectrum().instantaneous
             self.moduli = replace(self.moduli, shear_modulus=more * self.moduli.shear_modulus)

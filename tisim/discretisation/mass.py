@@ -10,6 +10,8 @@ from scipy.special import roots_jacobi
 from tisim.discretisation.quadrature import facet_areas, shape
 from tisim.linear.blocks import Pattern
 from tisim.mesh import Mesh
+from tisim.mesh._elements import cube_points
+from tisim.mesh._mesh import HEXAHEDRA
 
 Array = NDArray[np.float64]
 
@@ -30,11 +32,11 @@ def consistent_mass(mesh: Mesh, density: float, added: Array | None = None) -> s
 def lumped_mass(mesh: Mesh, density: float) -> Array:
     """Diagonal mass, shape (n,) [kg], with the body's mass in total.
 
-    tet10: each element's consistent diagonal, scaled to the element's mass (Hinton, Rock & Zienkiewicz,
+    tet10, hex20: an element's consistent diagonal, scaled to its mass (Hinton, Rock & Zienkiewicz,
     Earthquake Eng. Struct. Dyn. 4, 1976), because row sums are negative at the corners. Else row sums.
     """
     local = _element_masses(mesh, density)
-    if mesh.kind == "tet10":
+    if mesh.kind in ("tet10", "hex20"):
         share = np.einsum("eaa->ea", local)
         share = share * (local.sum(axis=(1, 2)) / share.sum(axis=1))[:, None]
     else:
@@ -73,10 +75,9 @@ def _element_masses(mesh: Mesh, density: float) -> Array:
 
 def _fine_quadrature(kind: str) -> tuple[Array, Array]:
     """27 Gauss points, exact to degree 5: the four points of the tet10's stiffness cannot hold N_a N_b."""
+    if kind in HEXAHEDRA:
+        return cube_points(3)
     g, w = np.polynomial.legendre.leggauss(3)
-    if kind == "hex8":
-        x, y, z = (c.ravel() for c in np.meshgrid(g, g, g, indexing="ij"))
-        return np.column_stack([x, y, z]), np.einsum("i,j,k->ijk", w, w, w).ravel()
     # a cube collapsed on a corner: Gauss-Jacobi weights (1 - b) and (1 - c)^2 take up its Jacobian
     (gb, wb), (gc, wc) = roots_jacobi(3, 1.0, 0.0), roots_jacobi(3, 2.0, 0.0)
     a, b, c = (0.5 * (1.0 + t.ravel()) for t in np.meshgrid(g, gb, gc, indexing="ij"))

@@ -1,6 +1,6 @@
-"""Shape functions, quadrature and rest-shape gradients of tet4, tet10 and hex8 elements.
+"""Shape functions, quadrature and rest-shape gradients of tet4, tet10, hex8 and hex20 elements.
 
-A hexahedron has one point with its mean gradient and the points of the tetrahedra it is cut into. The
+A hex8 has one point with its mean gradient and the points of the tetrahedra it is cut into. The
 tetrahedra keep it from folding and make it too stiff: few of them are right where it keeps its shape, many
 where a rod's edge folds it. So their part of its energy rises with the worst of its tetrahedra, at the last
 equilibrium, and falls only while the rod is drawn back: were it to stay, the way back would be stiffer than
@@ -16,15 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.mesh import ElementKind, Mesh
-from tisim.mesh._elements import HEX_CUTS, cut_hexahedra
+from tisim.mesh._elements import (
+    HEX_CUTS,
+    NODE_PLACES,
+    QUAD_PLACES,
+    cube_points,
+    cut_hexahedra,
+    serendipity,
+)
 
 Array = NDArray[np.float64]
 
-_G = 1.0 / np.sqrt(3.0)
-_HEX_CORNERS = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
-    dtype=float,
-)
+_HEX_CORNERS = NODE_PLACES["hex8"]
 _A, _B = 0.5854101966249685, 0.1381966011250105
 _TET10_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 # Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra` and `TetrahedralParts`.
@@ -34,6 +37,8 @@ LARGEST_PART = 1.0
 # Where the part begins to rise, and where it is the largest. Rising earlier, from 0.5 to 0.15, a thin cover
 # over an inclusion, squeezed to half, is 10 % too stiff at the default mesh and 7 % on one 2.6 times finer.
 BENT, CRUSHED = 0.3, 0.05
+# Part of a hex20's energy that is integrated at 27 points, the rest at 8: see `_fine_and_coarse`.
+FINE_PART = 0.3
 
 
 def quadrature(kind: ElementKind) -> tuple[Array, Array]:
@@ -44,11 +49,28 @@ def quadrature(kind: ElementKind) -> tuple[Array, Array]:
         points = np.full((4, 3), _B)
         points[np.arange(1, 4), np.arange(3)] = _A
         return points, np.full(4, 1.0 / 24.0)
-    return _HEX_CORNERS * _G, np.ones(8)
+    if kind == "hex20":
+        return _fine_and_coarse()
+    return cube_points(2)
+
+
+def _fine_and_coarse() -> tuple[Array, Array]:
+    """Points (35, 3) and weights (35,) of a hex20: eight Gauss points, then 27, with FINE_PART of the weight.
+
+    At eight points a hex20 has modes that cost no energy; deep under a rod's edge it folds along them, and
+    no equilibrium is found beyond 10 mm. At 27 alone it is too stiff (studies/depth). The sum is exact where
+    each of them is, and passes the patch test. The 27 have but a little of the stiffness against change of
+    volume (`bulk_shares`): all of it there would lock the element.
+    """
+    few, many = cube_points(2), cube_points(3)
+    weights = np.concatenate([(1.0 - FINE_PART) * few[1], FINE_PART * many[1]])
+    return np.concatenate([few[0], many[0]]), weights
 
 
 def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
     """Shape functions (q, a) and their reference gradients (q, a, 3) at reference points (q, 3)."""
+    if kind == "hex20":
+        return serendipity(points, NODE_PLACES["hex20"])
     if kind == "hex8":
         s = 1.0 + points[:, None, :] * _HEX_CORNERS
         n = s.prod(axis=2) / 8.0
@@ -148,8 +170,23 @@ def _hexahedra(mesh: Mesh) -> Reference:
     return Reference(values, gradients, np.ascontiguousarray(weight))
 
 
+def bulk_shares(kind: ElementKind, pointwise: float, whole: float) -> tuple[float, Array]:
+    """Stiffness against the element's mean change of volume, and against that at each point (q,) [Pa].
+
+    whole: of the material; pointwise: what of it an element bears at all its points without locking. The
+    rest goes into one pressure an element, or, in a hex20, to its eight points (selective reduced
+    integration: Malkus and Hughes 1978).
+    """
+    n = len(quadrature(kind)[1]) if kind != "hex8" else 11
+    shares = np.full(n, pointwise)
+    if kind != "hex20":
+        return whole - pointwise, shares
+    shares[:8] = (whole - FINE_PART * pointwise) / (1.0 - FINE_PART)
+    return 0.0, shares
+
+
 def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]:
-    """Points of a facet of 3, 4 or 6 nodes: shape values (q, a), reference gradients (q, a, 2), weights (q,).
+    """Points of a facet of 3, 4, 6 or 8 nodes: shape values (q, a), their slopes (q, a, 2), weights (q,).
 
     order: points along each side (collapsed Gauss points on triangles).
     """
@@ -160,6 +197,8 @@ def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]
         cu, cv = np.array([-1.0, 1, 1, -1]), np.array([-1.0, -1, 1, 1])
         a, b = 1 + u[:, None] * cu, 1 + v[:, None] * cv
         return a * b / 4, np.stack([cu * b, cv * a], axis=2) / 4, weights
+    if n_nodes == 8:
+        return *serendipity(np.column_stack([u, v]), QUAD_PLACES), weights
     r = 0.5 * (1 + u)
     s = 0.5 * (1 + v) * (1 - r)
     weights = weights * 0.25 * (1 - r)

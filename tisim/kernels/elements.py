@@ -2,9 +2,9 @@
 
 All run serially and take plain NumPy arrays: x (n, 3) positions; conn (m, a) element nodes;
 grad (m, q, a, 3) shape function gradients in the rest shape [1/m]; weight (m, q) rest volumes [m3];
-prm packed law parameters, then those of the material's other parts; kp pointwise and kb mean volumetric
+prm packed law parameters, then those of the material's other parts; kp (q,) pointwise and kb mean volumetric
 stiffness [Pa]; state (m, q, k) what these parts need by point (`tisim.kernels.isochoric.Features`).
-The energy of an element is  sum_q w_q (W + kp/2 theta^2) + kb/2 V mean(theta)^2: with kb = 0 the plain
+The energy of an element is  sum_q w_q (W + kp_q/2 theta^2) + kb/2 V mean(theta)^2: with kb = 0 the plain
 displacement element, else one with a constant pressure kb mean(theta), condensed ("P2/P0", "Q1/P0").
 """
 
@@ -74,7 +74,7 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
         weight: ti.template(),
         prm: ti.template(),
         state: ti.template(),
-        kp,
+        kp: ti.template(),
         kb,
         f: ti.template(),
     ):
@@ -91,7 +91,7 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
                 J = determinant(F)
                 minj = ti.min(minj, J)
                 if J > 0.0:
-                    psi, P = stress(F, J, prm, kp, kb * mean, load_point(state, e, q))
+                    psi, P = stress(F, J, prm, kp[q], kb * mean, load_point(state, e, q))
                     th = 0.0
                     if kb != 0.0:
                         th = theta(F.norm_sqr(), J)[0]
@@ -117,7 +117,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
     load_point = make_load_point(features)
 
     @ti.kernel
-    def energy(x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: f64, kb: f64, out: _f1):
+    def energy(x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: _f1, kb: f64, out: _f1):
         """out: energy [J], smallest det F; the energy means nothing where that is not positive."""
         total = 0.0
         minj = 1e300
@@ -132,7 +132,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
                     minj = ti.min(minj, J)
                     if J > 0.0:
                         s += weight[e, q] * theta(F.norm_sqr(), J)[0]
-                        total += weight[e, q] * psi_only(F, J, prm, kp, 0.0, load_point(state, e, q))
+                        total += weight[e, q] * psi_only(F, J, prm, kp[q], 0.0, load_point(state, e, q))
                     v += weight[e, q]
                 total += 0.5 * kb * s * s / v
             out[0] = total
@@ -140,7 +140,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
 
     @ti.kernel
     def forces(
-        x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: f64, kb: f64, f: _f2, out: _f1
+        x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: _f1, kb: f64, f: _f2, out: _f1
     ):
         """f += dEnergy/dx (internal forces), shape (n, 3) [N]; out as in `energy`."""
         ti.loop_config(serialize=True)
@@ -157,7 +157,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         weight: _f2,
         prm: _f1,
         state: _f3,
-        kp: f64,
+        kp: _f1,
         kb: f64,
         pressure: _f1,
         sparse: i32,
@@ -196,7 +196,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
                     minj = ti.min(minj, J)
                     if J > 0.0:
                         w = weight[e, q]
-                        _psi, P, A = tangent(F, J, prm, kp, pe, load_point(state, e, q))
+                        _psi, P, A = tangent(F, J, prm, kp[q], pe, load_point(state, e, q))
                         if kb != 0.0:
                             th = theta(F.norm_sqr(), J)
                             T = 2.0 * th[1] * F + th[2] * cofactor(F)

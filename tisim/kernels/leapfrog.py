@@ -37,7 +37,7 @@ def leapfrog_kernel(law: Law, features: Features = NONE) -> Kernel:
         grad: _f4,
         weight: _f2,
         prm: _f1,
-        kp: f64,
+        kp: _f1,
         kb: f64,
         mass_damping: f64,
         stiffness_damping: f64,

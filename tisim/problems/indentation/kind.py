@@ -53,7 +53,7 @@ def check(scene: Poke) -> None:
         check_number("retract_to", scene.retract_to, what, lambda v: 0.0 <= v < scene.depth)
     check_not_negative("friction", scene.friction)
     check_length("frame_spacing", scene.frame_spacing)
-    check_choice("element", scene.element, ("default", "tet4", "tet10", "hex8"))
+    check_choice("element", scene.element, ("default", "tet4", "tet10", "hex8", "hex20"))
     check_positive("refinement", scene.refinement)
     check_vector("gravity", scene.gravity)
     check_mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))

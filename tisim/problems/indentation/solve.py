@@ -60,7 +60,7 @@ def solve_poke(scene: Poke, *, on_step: OnStep = skip) -> Result:
     mesh_start = time.process_time()
     mesh = scene.mesh or poke_mesh(
         block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod,
-        refinement=scene.refinement, kind="hex8" if scene.element == "default" else scene.element,
+        refinement=scene.refinement, kind="hex20" if scene.element == "default" else scene.element,
     )  # fmt: skip
     discretisation = Discretisation.build(mesh, mesh.node_sets["base"])
     mesh_seconds = time.process_time() - mesh_start

@@ -44,7 +44,7 @@ def frame_of(x: Array, system: PokeSystem, residual: float, time: float = 0.0) -
         rod_force=system.report[:3].copy(),
         base_force=system.base_force(),
         tip=system.tip,
-        penetration=max(-float(system.report[3]), 0.0),
+        penetration=system.overlap(x),
         min_jacobian=system.min_jacobian,
         residual=residual,
         time=time,
@@ -56,7 +56,7 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
     """Why a step is refused; None where it is good."""
     if outcome.status is not Status.CONVERGED:
         return outcome.status
-    return Status.PENETRATION if -float(system.report[3]) > REFUSE_AT * system.edge else None
+    return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
 
 
 def stiffen_where_deep(system: PokeSystem) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tisim.bodies import Rod
 from tisim.discretisation.body import Discretisation, DiscretisedBody, gravity_load
-from tisim.discretisation.quadrature import TetrahedralParts, facet_areas, facet_quadrature
+from tisim.discretisation.quadrature import TetrahedralParts, facet_areas
 from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
@@ -28,7 +28,10 @@ TANGENT_STIFFNESS = 50.0
 # Of the radius: an edge that is rounder counts as this. By its whole radius a hemisphere would sink into the
 # body so far that its force is 1.3 % low, whatever the mesh.
 ROUNDEST = 0.4
-POINTS_PER_SIDE = 4
+# points along a facet's side, by its nodes
+POINTS_PER_SIDE = {3: 4, 4: 4, 6: 4, 8: 3}
+# at which a converged surface is looked at: between a curved facet's points the rod's edge could go through
+WATCHED_PER_SIDE = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +81,10 @@ class PokeSystem:
         self.start = self._previous_start = rod_start(rod, scene.site, height, self.axis)
         self.facets = np.ascontiguousarray(self._near(mesh), dtype=np.int32)
         self._slot = discretisation.pattern.slots(self.facets)
-        self._shape = np.ascontiguousarray(facet_quadrature(self.facets.shape[1], POINTS_PER_SIDE)[0])
-        self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE)[1]
+        shape, self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE[self.facets.shape[1]])
+        self._shape = np.ascontiguousarray(shape)
+        between = facet_areas(mesh, self.facets, WATCHED_PER_SIDE)[0]
+        self._watched = np.ascontiguousarray(between), np.empty((len(self.facets), len(between)))
         points = self._area.shape
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
@@ -191,6 +196,12 @@ class PokeSystem:
             self._memory, self._part, self._pressure, out,
         )  # fmt: skip
         return energy + float(out[0]), min_jacobian
+
+    def overlap(self, x: Array) -> float:
+        """How far the surface at x reaches into the rod [m], also between contact points; not below 0."""
+        shape, distance = self._watched
+        self._measure(x, self.facets, shape, self._rod, distance)
+        return max(-float(distance.min()), 0.0)
 
     def _forces_at(self, x: Array) -> tuple[Array, float, float]:
         """Internal forces (n, 3), energy and smallest det F of the body; an accepted trial is asked again."""
