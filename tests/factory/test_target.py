@@ -47,15 +47,18 @@ def test_a_changed_recipe_is_refused_when_finished(
     assert not building_folder(target).exists()
 
 
-def test_another_law_and_another_version_are_refused(
+def test_another_law_another_version_and_other_elements_are_refused(
     plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "a.zarr"
     standin_build(plan, target)
     with pytest.raises(InputError, match=r"changed: model\)"):
         standin_build(make_plan(plan.recipe, "neo-hookean"), target)
-    monkeypatch.setitem(plan.identity["versions"], "tisim", "99.0")
-    with pytest.raises(InputError, match=r"changed: versions\.tisim\)"):
+    with monkeypatch.context() as patch, pytest.raises(InputError, match=r"changed: versions\.tisim\)"):
+        patch.setitem(plan.identity["versions"], "tisim", "99.0")
+        standin_build(plan, target)
+    with monkeypatch.context() as patch, pytest.raises(InputError, match=r"changed: element\)"):
+        patch.setitem(plan.identity, "element", "hex8")
         standin_build(plan, target)
 
 

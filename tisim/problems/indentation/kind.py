@@ -16,6 +16,7 @@ from tisim._checks import (
 )
 from tisim.bodies import Block, Inclusion, Rod, Vector
 from tisim.course import Course
+from tisim.mesh import ElementKind
 from tisim.mesh.indentation import check_indentation
 from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
@@ -24,6 +25,7 @@ from tisim.scene import Poke
 
 STEEPEST = 45.0  # of a push against the normal [degrees]
 SECONDS = 10.0  # of a default poke [core-s]
+ELEMENT: ElementKind = "hex20"  # what "default" stands for
 
 
 def check(scene: Poke) -> None:

@@ -16,6 +16,7 @@ from tisim.parallel.threads import one_thread
 from tisim.problems._registry import OnStep, skip
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.course import follow, without_course
+from tisim.problems.indentation.kind import ELEMENT
 from tisim.problems.indentation.steps import (
     BETWEEN,
     FIRST_STEP,
@@ -60,7 +61,7 @@ def solve_poke(scene: Poke, *, on_step: OnStep = skip) -> Result:
     mesh_start = time.process_time()
     mesh = scene.mesh or poke_mesh(
         block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod,
-        refinement=scene.refinement, kind="hex20" if scene.element == "default" else scene.element,
+        refinement=scene.refinement, kind=ELEMENT if scene.element == "default" else scene.element,
     )  # fmt: skip
     discretisation = Discretisation.build(mesh, mesh.node_sets["base"])
     mesh_seconds = time.process_time() - mesh_start
