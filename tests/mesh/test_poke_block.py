@@ -111,7 +111,7 @@ def test_any_poke_gets_a_good_mesh(seed):
     assert mesh.n_nodes < 16_000
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_any_poke_gets_a_good_quadratic_mesh(seed):
     case = random_poke(np.random.default_rng(seed))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import tisim
 from tisim.discretisation.body import Discretisation
+from tisim.mesh import ElementKind
 from tisim.mesh.indentation import poke_mesh
 from tisim.nonlinear.contact_newton import contact_newton
 from tisim.nonlinear.newton import Outcome
@@ -32,11 +33,16 @@ def scene(depth: float = 0.002) -> tisim.Poke:
     )
 
 
-def pressed(depth: float = 0.0003) -> tuple[PokeSystem, Array]:
+def pressed(depth: float = 0.0003, *, kind: ElementKind = "hex20") -> tuple[PokeSystem, Array]:
     """A rod in a block that has not yielded."""
     poke = scene()
     mesh = poke_mesh(
-        block=poke.block, site=poke.site, direction=poke.direction, rod=poke.rod, refinement=poke.refinement
+        block=poke.block,
+        site=poke.site,
+        direction=poke.direction,
+        rod=poke.rod,
+        refinement=poke.refinement,
+        kind=kind,
     )
     it = PokeSystem(poke, Discretisation.build(mesh, mesh.node_sets["base"]))
     it.move_to(depth)
@@ -50,7 +56,7 @@ OPTIONS: dict[str, Any] = {"tolerance": 5e-4, "max_iterations": 40, "kept": True
 
 def test_a_step_is_newtons_on_the_whole_block() -> None:
     """Far tissue eliminated and brought along again: the same linear system, solved in two parts."""
-    it, x = pressed()
+    it, x = pressed(kind="hex8")  # in hex20 the tangent at this overlap is indefinite
     rng = np.random.default_rng(3)
     free = it.discretisation.pattern.free
     x[free] += 2e-5 * rng.standard_normal((len(free), 3))
@@ -61,7 +67,7 @@ def test_a_step_is_newtons_on_the_whole_block() -> None:
     block._choose(x)
     split = block._split
     assert split is not None
-    assert 30 < len(split.near.body.discretisation.pattern.free) < 0.85 * len(free)
+    assert 30 < len(split.near.body.discretisation.pattern.free) < 0.6 * len(free)
     it.residual(x)
     left = block._place(split, x)
     part = it.restricted(split.near, split.far)

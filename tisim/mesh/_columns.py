@@ -25,10 +25,14 @@ class Layers:
     thinnest: float
 
     @staticmethod
-    def of(kind: ElementKind, refinement: float) -> Layers:
-        """Of elements of a kind. Linear ones thinner than 1.2 mm turn over under a rod's edge."""
-        if kind == "hex20":
-            return Layers(top=0.0017 / refinement, bottom=0.0120 / refinement, thinnest=0.0008)
+    def of(kind: ElementKind, refinement: float, height: float) -> Layers:
+        """Of elements of a kind, in a block so high [m].
+
+        Linear ones thinner than 1.2 mm turn over under a rod's edge.
+        """
+        if kind == "hex20":  # thin blocks get four layers or more, too
+            bottom = max(0.375 * height, 0.0020)
+            return Layers(top=0.0017 / refinement, bottom=bottom / refinement, thinnest=0.0008)
         return Layers(top=max(0.0012, 0.0013 / refinement), bottom=0.0060 / refinement, thinnest=0.0012)
 
 
@@ -51,7 +55,7 @@ def extrude(
     top_points: where the columns end on the top face (n, 2); they lean from the inclusion's apex upwards.
     """
     height, n = size[2], len(points)
-    layers = Layers.of(kind, refinement)
+    layers = Layers.of(kind, refinement, height)
     low = high = np.zeros(n)
     parts: list[tuple[Floats, Bools]] = []  # per stack: levels (n, k + 1) and cells kept (m,)
     everywhere = np.ones(len(cells), dtype=bool)
