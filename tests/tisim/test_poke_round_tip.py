@@ -6,7 +6,7 @@ import tisim
 
 
 def test_a_ball_sinks_in_by_little() -> None:
-    """Hertz's greatest pressure at 1 mm under a ball of 4 mm is 1.3 shear moduli (less where it is compressible): on a contact of 200 shear
+    """Hertz's greatest pressure at 1 mm under a ball of 4 mm is 1.3 shear moduli: on a contact of 200 shear
     moduli over 0.4 of the radius it sinks in by 0.01 mm, over the whole radius by 0.025 mm."""
     soft = tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=2e5)
     ball = tisim.Rod(radius=4e-3, tip="hemisphere")

@@ -161,7 +161,7 @@ def test_many_pokes_do_not_average_the_mesh_away(monkeypatch: pytest.MonkeyPatch
 
 
 def test_shape_is_first_order(flat: Pokes) -> None:
-    """Another K/G, simulated anew: the derivative, which is of the coarser mesh, takes most of its difference.
+    """Another K/G, simulated anew: the derivative, of the coarser mesh, takes most of its difference.
 
     (Between meshes this coarse the difference itself differs, by 1 % of the force.)
     """

@@ -38,9 +38,10 @@ ASIDE = 0.3  # across the rod, of one that turns
 INNER = 8
 # A round leaves less than SLOW of the residual, or the far tangent is renewed; so many rounds are tried.
 SLOW, ROUNDS = 0.3, 12
-# K/G above which a block is solved whole. There the complement couples all of the interface's nodes, its
-# factor (`FarField`) has negative modes that it does not have itself, and each step is held back: on hex20 of
-# K/G 300 to 1.5 mm 80 iterations and 12.2 core-s in two parts, 23 and 6.0 whole; at 20 to 10 mm 10.7 and 13.8.
+# K/G above which a block is solved whole. There the complement couples all of the interface's nodes, what
+# the factor has of it (`FarField`) has negative modes that it has not, and each step is held back: hex20 of
+# K/G 300 to 1.5 mm take 80 iterations and 12.2 core-s in two parts, 23 and 6.0 whole; of 20 to 10 mm 10.7
+# and 13.8 core-s.
 NEARLY_INCOMPRESSIBLE = 100.0
 # So often the way is halved on which elements turn over.
 SHORTER = 4
