@@ -97,7 +97,7 @@ def test_inclusions_are_met(inclusion, site, kind):
     assert_matching_facets(mesh)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 @example(10632)
 @example(358610562)
@@ -140,7 +140,7 @@ def test_1320_random_pokes_all_get_good_meshes(kind):
             assert_matching_facets(mesh)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["tet4", "tet10"]))
 @example(236, "tet4")
 def test_tetrahedra_fill_the_same_body(seed, kind):
