@@ -38,11 +38,6 @@ ASIDE = 0.3  # across the rod, of one that turns
 INNER = 8
 # A round leaves less than SLOW of the residual, or the far tangent is renewed; so many rounds are tried.
 SLOW, ROUNDS = 0.3, 12
-# K/G above which a block is solved whole. There the complement couples all of the interface's nodes, what
-# the factor has of it (`FarField`) has negative modes that it has not, and each step is held back: hex20 of
-# K/G 300 to 1.5 mm take 80 iterations and 12.2 core-s in two parts, 23 and 6.0 whole; of 20 to 10 mm 10.7
-# and 13.8 core-s.
-NEARLY_INCOMPRESSIBLE = 100.0
 # So often the way is halved on which elements turn over.
 SHORTER = 4
 # The near residual goes down to this part of the whole, or of what the whole is to reach.
@@ -65,7 +60,7 @@ class _Split:
 
 
 class CondensedBlock:
-    """Solves a system at the depths it is moved to; nearly incompressible tissue whole.
+    """Solves a system at the depths it is moved to.
 
     iterations, factorisations, linear_iterations: Newton's on near nodes, of near tangents and condensations,
     of GMRES. rounds: as above. condensations: of the far tangent. last_residual: of the last accepted step.
@@ -180,9 +175,6 @@ class CondensedBlock:
         system, whole = self._system, self._system.discretisation
         mesh = whole.mesh
         self._chosen, self._split, self._stale = system.tip, None, True
-        moduli = system.body.moduli
-        if moduli.bulk_modulus > NEARLY_INCOMPRESSIBLE * moduli.shear_modulus:
-            return
         free = np.zeros(mesh.n_nodes, dtype=bool)
         free[whole.pattern.free] = True
         close = free & (self._distance(x) < REACH * self._radius)
