@@ -1,0 +1,36 @@
+"""Plain tables: the first line names the columns ("Force [N]", "Extension (mm)", "strain %", "Time/s").
+
+Where the format is stated, lines above the names are passed over.
+"""
+
+from __future__ import annotations
+
+from calibration.lab_files._formats import Importer, register
+from calibration.lab_files._table import LabTest, blocks, from_block, parameters_of
+from calibration.lab_files._text import LabFile
+
+
+def _recognises(file: LabFile) -> bool:
+    if file.workbook:
+        return False
+    found, _ = blocks(file, file.sheets[0])
+    first = next(row for row in file.rows if not row.empty)
+    return found[0].header == first and found[0].units is None
+
+
+def _read(file: LabFile) -> tuple[LabTest, ...]:
+    found, separator = blocks(file, file.sheets[0])
+    if len(found) > 1:
+        raise file.error("expected one table, a second begins here", found[1].header)
+    parameters = parameters_of(found[0].above, (separator,))
+    return (from_block(file, found[0], separator, parameters=parameters),)
+
+
+register(
+    Importer(
+        name="csv",
+        about="any table whose first line names the columns, with units in the names",
+        recognises=_recognises,
+        read=_read,
+    )
+)
