@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from calibration.errors import InputError
-from calibration.experiment._beam import CheckerboardEntry, RegistrationEntry, Section
+from calibration.experiment._beam import CheckerboardEntry, Section
 from calibration.experiment._fields import (
     Component,
     Doubt,
@@ -25,6 +25,7 @@ from calibration.experiment._read import MaterialEntry
 from calibration.experiment._yaml import parse
 from calibration.experiment.model import CouponMode, Supports
 from calibration.lab_files import DIMENSIONS, Quantity, unit
+from tisim.io.bounded_yaml import as_tuples
 
 SourceFile = Annotated[str, Field(min_length=1, max_length=1000)]
 Direction = Literal["tension", "compression"]
@@ -53,6 +54,7 @@ class _RecordAnswers(_TrialAnswers):
     displacement_zero_mm: Component | None = None
     force_positive: Direction | None = None
     force_zero_N: Component = 0.0
+    leave_out_rows: bool = False
 
     @model_validator(mode="after")
     def _known_units(self) -> _RecordAnswers:
@@ -89,6 +91,14 @@ class PokeAnswers(_RecordAnswers):
     depth_sd_mm: Doubt | None = None
 
 
+class RegistrationAnswers(Strict):
+    """Standard deviations of one error a photograph; what is left out is proposed."""
+
+    shift_mm: Doubt | None = None
+    roll_deg: Annotated[float, Field(ge=0, le=90)] | None = None
+    scale: Annotated[float, Field(ge=0, le=0.5)] | None = None
+
+
 class CaptureAnswers(Strict):
     """A photograph of a beam, or its traced outline."""
 
@@ -96,7 +106,7 @@ class CaptureAnswers(Strict):
     outline: SourceFile | None = None
     outline_sd_mm: Noise | None = None
     outline_correlation_mm: Doubt | None = None
-    registration_sd: RegistrationEntry | None = None
+    registration_sd: RegistrationAnswers | None = None
     photo: SourceFile | None = None
     photo_checkerboard: CheckerboardEntry | None = None
 
@@ -164,3 +174,19 @@ def fits(quantity: Quantity, text: str) -> bool:
     """Whether a unit measures a quantity."""
     given = unit(text)
     return given is not None and given.dimension == DIMENSIONS[quantity]
+
+
+def validate(raw: dict[str, Any]) -> Answers:
+    """Answers that were given at a terminal.
+
+    Raises
+    ------
+    InputError
+        One does not fit.
+    """
+    try:
+        return Answers.model_validate(as_tuples(raw))
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"answers: key {key}: {first['msg']}") from None

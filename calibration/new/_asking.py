@@ -12,9 +12,9 @@ import typer
 from calibration.errors import InputError
 
 SD = (
-    "A standard deviation (sd) says how far a repeated measurement falls from its mean: two of three lie within"
-    " one sd. Measure the same thing five times and take the spread, or half a division of the scale. 0 means"
-    " exact. One that is too small makes the result surer than the lab is."
+    "A standard deviation (sd) says how far a repeated measurement falls from its mean: two of three lie"
+    " within one sd. Measure the same thing five times and take the spread, or half a division of the scale. 0"
+    " means exact. One that is too small makes the result surer than the lab is."
 )
 
 
@@ -36,6 +36,8 @@ class Question:
         Where the default comes from, for the written file.
     help : str
         What one needs to know for the answer.
+    kept : bool
+        Whether it is a key of an answers file; what follows from others is not.
     """
 
     key: str
@@ -44,6 +46,7 @@ class Question:
     default: Any = None
     why: str = ""
     help: str = ""
+    kept: bool = True
 
 
 class Asker(Protocol):
@@ -75,9 +78,9 @@ class Nobody:
 
 @dataclass
 class Terminal:
-    """The lab, by prompts; `answers` collects what it said, by trial, as an answers file has it."""
+    """The lab, by prompts; what it says goes into `raw`, the answers file that says the same."""
 
-    answers: dict[str, dict[str, Any]] = field(default_factory=dict)
+    raw: dict[str, Any]
     explained: set[str] = field(default_factory=set)
 
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
@@ -95,24 +98,50 @@ class Terminal:
             except ValueError as error:
                 typer.echo(f"  {error}")
                 continue
-            self.note(where, question.key, value)
+            if question.kept:
+                note(self.raw, where, question.key, value)
             return value, False
-
-    def note(self, where: str, key: str, value: Any) -> None:
-        """Keep an answer; where and key may lead deeper by dots."""
-        trial, _, rest = f"{where}.{key}".partition(".")
-        node = self.answers.setdefault(trial, {})
-        *path, last = rest.split(".")
-        for part in path:
-            node = node.setdefault(part, {})
-        node[last] = value
 
     def confirm(self, where: str, name: str, sentence: str) -> bool:
         right = bool(typer.confirm(f"{where}: {sentence} Is that right?", default=False))
         if not right:
             raise InputError(f"{where}: {sentence}")
-        self.answers.setdefault(where, {}).setdefault("accept", []).append(name)
+        _place(self.raw, where).setdefault("accept", []).append(name)
         return True
+
+
+def note(raw: dict[str, Any], where: str, key: str, value: Any) -> None:
+    """Put an answer where an answers file has it.
+
+    Parameters
+    ----------
+    raw : dict
+        The answers; its trials are there already.
+    where : str
+        id of a trial, which "captures[#2]" may follow, or "materials." and a name.
+    key : str
+        Its parts are separated by dots; a column's name behind "units." may hold some.
+    """
+    node = _place(raw, where)
+    *path, last = key.split(".", 1) if key.startswith("units.") else key.split(".")
+    for part in path:
+        node = node.setdefault(part, {})
+    node[last] = value
+
+
+def _place(raw: dict[str, Any], where: str) -> dict[str, Any]:
+    if where.startswith("materials."):
+        found: dict[str, Any] = raw["materials"].setdefault(where.removeprefix("materials."), {})
+        return found
+    for trial in raw["trials"]:
+        name = str(trial["id"])
+        if where == name:
+            own: dict[str, Any] = trial
+            return own
+        if where.startswith(f"{name}.captures[#"):
+            capture: dict[str, Any] = trial["captures"][int(where[len(name) + 11 : -1]) - 1]
+            return capture
+    raise ValueError(where)
 
 
 def shown(value: Any) -> str:

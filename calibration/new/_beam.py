@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from calibration.new._answers import BeamAnswers, CaptureAnswers
-from calibration.new._asking import above_zero, numbers, one_of
+from calibration.new._asking import Question, above_zero, numbers, one_of
 from calibration.new._plausible import Bar
 from calibration.new._trial import Work
 
@@ -64,13 +64,11 @@ def _section(work: Work, entry: BeamAnswers) -> dict[str, Any]:
     if entry.section is not None:
         ((shape, given),) = entry.section.model_dump(exclude_none=True, exclude_unset=True).items()
     else:
-        shape = work.settle(
-            where,
-            "section_shape",
-            None,
-            "section of the beam: circle or rectangle",
-            one_of(("circle", "rectangle")),
+        shapes = ("circle", "rectangle")
+        question = Question(
+            key="section", text="section of the beam: circle or rectangle", read=one_of(shapes), kept=False
         )
+        shape = work.asker.ask(where, question)[0]
         given = {}
     sides = {"circle": ("radius",), "rectangle": ("width", "height")}[shape]
     found: dict[str, float] = {}
@@ -115,22 +113,18 @@ def _capture(work: Work, capture: CaptureAnswers, where: str, number: int) -> di
                     default=default,
                     why="proposed, not measured: of an outline traced by hand",
                 )
-        given = capture.registration_sd
-        if given is not None:
-            found["registration_sd"] = given.model_dump()
-        else:
-            words = {"shift_mm": "shift [mm]", "roll_deg": "turn [deg]", "scale": "scale [-]"}
-            found["registration_sd"] = {
-                key: work.settle_sd(
-                    place,
-                    f"registration_sd.{key}",
-                    None,
-                    f"the photograph's {words[key]}",
-                    default,
-                    "of a tripod",
-                )
-                for key, default in _REGISTRATION.items()
-            }
+        words = {"shift_mm": "shift [mm]", "roll_deg": "turn [deg]", "scale": "scale [-]"}
+        found["registration_sd"] = {
+            key: work.settle_sd(
+                place,
+                f"registration_sd.{key}",
+                getattr(capture.registration_sd, key, None),
+                f"the photograph's {words[key]}",
+                default,
+                "of a tripod",
+            )
+            for key, default in _REGISTRATION.items()
+        }
     if capture.photo is not None:
         found["photo"] = work.copy(work.source(capture.photo, f"{place}.photo"), "photos")
         if capture.photo_checkerboard is not None:
@@ -162,11 +156,12 @@ def _squares(text: str) -> list[int]:
 
 def density(work: Work, name: str, given: dict[str, Any]) -> dict[str, Any]:
     """A material's keys with its density, which a beam under its own weight needs."""
+    where = f"materials.{name}"
     value = work.settle(
-        name, "density_kg_m3", given.get("density_kg_m3"), "density of the material [kg/m3]", above_zero
+        where, "density_kg_m3", given.get("density_kg_m3"), "density of the material [kg/m3]", above_zero
     )
     sd = work.settle_sd(
-        name,
+        where,
         "density_sd_kg_m3",
         given.get("density_sd_kg_m3"),
         "the density [kg/m3]",

@@ -30,8 +30,8 @@ def board_pdf(board: BoardAnswers) -> bytes:
     room = (page[0] - 2 * (_EDGE + side), page[1] - 2 * _EDGE - side - below)
     if width > room[0] or height > room[1]:
         raise InputError(
-            f"board.square_mm: a board of {columns} x {rows} squares of {side:g} mm does not fit on {board.page}:"
-            f" expected at most {min(room[0] / columns, room[1] / rows):.3g} mm"
+            f"board.square_mm: a board of {columns} x {rows} squares of {side:g} mm does not fit on"
+            f" {board.page}: expected at most {min(room[0] / columns, room[1] / rows):.3g} mm"
         )
     left, bottom = 0.5 * (page[0] - width), _EDGE + below + 0.5 * (room[1] - height)
     parts = ["0 g"]
@@ -44,10 +44,10 @@ def board_pdf(board: BoardAnswers) -> bytes:
     for tick in range(11):
         parts.append(_box(start + 10 * tick - 0.1, line, 0.2, 3.0 if tick % 5 else 5.0))
     text = (
-        f"{columns} x {rows} squares of {side:g} mm. Print at 100 %, not fitted to the page: this ruler is 100 mm"
-        " long. Glue it on a flat plate."
+        f"{columns} x {rows} squares of {side:g} mm. Print at 100 %, not fitted to the page: this ruler is"
+        " 100 mm long. Glue it on a flat plate."
     )
-    parts.append(f"BT /F1 9 Tf {start * _POINTS - 60:.3f} {_EDGE * _POINTS:.3f} Td ({text}) Tj ET")
+    parts.append(f"BT /F1 9 Tf {2 * _EDGE * _POINTS:.3f} {_EDGE * _POINTS:.3f} Td ({text}) Tj ET")
     return _document("\n".join(parts), page)
 
 

@@ -37,6 +37,7 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     stress_kind, stress_column = _first(record, _STRESSES)
     if mode != "uniaxial" and "true" in f"{strain_kind}{stress_kind}":
         raise record.error(f"expected nominal strain and stress (or force) of a test in mode {mode}")
+    time = record.time(needed=False)
     raw = record.si(strain_column, strain_kind)
     length = None
     if strain_kind == "stretch":
@@ -48,7 +49,7 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
             length = record.length(
                 "rest_length_mm",
                 r"length|gauge|gage|\bheight\b|l0\b|messlange|einspannlange",
-                "the length that the displacement stretches at rest: between the grips, or a cylinder's height [mm]",
+                "length at rest that is stretched: between the grips, or a cylinder's height [mm]",
             )
             signed = signed / length
         stretch = np.exp(signed) if strain_kind == "true-strain" else 1.0 + signed
@@ -63,7 +64,6 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     else:
         stress = load
         force, area = _beside(record)
-    time = record.time(needed=False)
     columns: dict[str, Array] = {} if time is None else {"time_s": time}
     columns |= {"stretch": stretch, "nominal_stress_kPa": stress * 1e-3}
     name = f"coupons/{entry.id}.csv"
@@ -92,8 +92,8 @@ def _first(record: Record, kinds: tuple[Quantity, ...]) -> tuple[Quantity, Colum
             return kind, column
     headers = ", ".join(c.header for c in record.test.columns if c.header)[:300]
     raise record.error(
-        f"expected a column of {', '.join(kinds[:-1])} or {kinds[-1]}, found {headers} (columns: {{{kinds[0]}: NAME}}"
-        " says which it is)"
+        f"expected a column of {', '.join(kinds[:-1])} or {kinds[-1]}, found {headers}"
+        f" (columns: {{{kinds[0]}: NAME}} says which it is)"
     )
 
 

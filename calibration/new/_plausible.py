@@ -47,8 +47,8 @@ class Bar:
 
 Made = Curve | Push | Bar
 
-# Soft tissue, gels and silicones: brain has some 1 kPa, the stiffest castable silicones some 3 MPa (Shore A 60);
-# a rubber that stretches beyond 1.5 stays below 10 MPa, and what is stiffer does not stretch so far.
+# Soft tissue, gels and silicones: brain has some 1 kPa, the stiffest castable silicones some 3 MPa (Shore A
+# 60); a rubber that stretches beyond 1.5 stays below 10 MPa, and what is stiffer does not stretch so far.
 _SOFTEST, _STIFFEST, _STIFFEST_STRETCHED = 100.0, 30e6, 10e6
 _STRETCHED = 1.5
 _LONGEST_STRETCH = 15.0  # the softest silicones break at 10 to 13
@@ -82,15 +82,17 @@ def _modulus(made: Made) -> str | None:
         return None
     body = f"in a specimen that is stretched to {reach:.3g}" if far else "in a soft material"
     slip = "kPa as MPa, N as kN, or cm as mm" if modulus > stiffest else "MPa as kPa, kN as N, or mm as cm"
-    return f"a Young's modulus of {_pascals(modulus)} {body} is implausible; was a unit read as another ({slip})?"
+    return (
+        f"a Young's modulus of {_pascals(modulus)} {body} is implausible;"
+        f" was a unit read as another ({slip})?"
+    )
 
 
 def young(curve: Curve) -> float | None:
-    """Young's modulus 3 mu of the neo-Hookean curve nearest to the record at small strains [Pa]; None where it
-    has none there that carries a load.
+    """Young's modulus 3 mu of the neo-Hookean curve nearest to the record at small strains [Pa], or None.
 
-    Nominal stress mu g, with g = x - x^-2 (uniaxial), x - x^-5 (equibiaxial), x - x^-3 (planar), x - 1 (simple
-    shear, x = 1 + gamma).
+    Nominal stress mu g, with g = x - x^-2 (uniaxial), x - x^-5 (equibiaxial), x - x^-3 (planar), x - 1
+    (simple shear, x = 1 + gamma).
     """
     x = curve.stretch
     if curve.mode == "simple-shear":
@@ -129,14 +131,12 @@ def _strain(made: Made) -> str | None:
         return None
     low, high = float(made.stretch.min()), float(made.stretch.max())
     if made.mode != "simple-shear" and low <= 0:
-        return f"a stretch of {low:.4g} is impossible; is the strain in %, not a ratio, or the sign turned round?"
+        return f"a stretch of {low:.4g} is impossible; is the strain in %, or its sign turned round?"
     if high > _LONGEST_STRETCH:
         return f"a stretch of {high:.4g} is implausible; is the strain in %, not a ratio?"
     if max(high - 1.0, 1.0 - low) < 2e-3:
-        return (
-            f"the largest strain is {max(high - 1.0, 1.0 - low):.2g}; is it a ratio that was read as %, or the"
-            " length in another unit?"
-        )
+        largest = max(high - 1.0, 1.0 - low)
+        return f"the largest strain is {largest:.2g}; is it a ratio that was read as %, or a length in cm?"
     return None
 
 
@@ -152,7 +152,7 @@ def _sign(made: Made) -> str | None:
     far = np.abs(x) > 0.5 * np.abs(x).max()
     against = float(np.mean(made.stress[far] * x[far] < 0)) if far.any() else 0.0
     if against > 0.5:
-        return f"{against:.0%} of the stress at large strains acts against the strain; which direction is positive?"
+        return f"{against:.0%} of the stresses act against the strain; which direction is positive?"
     return None
 
 
@@ -166,8 +166,8 @@ def _area(made: Made) -> str | None:
     if 0.8 < ratio < 1.25:
         return None
     return (
-        f"the file's force is {ratio:.3g} times its stress over the area of {made.area * 1e6:.4g} mm2; is a unit"
-        " or the area wrong?"
+        f"the file's force is {ratio:.3g} times its stress on the area of {made.area * 1e6:.4g} mm2; is a"
+        " unit or the area wrong?"
     )
 
 
@@ -191,8 +191,8 @@ def _slenderness(made: Made) -> str | None:
     if not isinstance(made, Bar) or 1.0 <= made.free_length / made.height <= 100.0:
         return None
     return (
-        f"a beam of {made.free_length * 1e3:g} mm free length and {made.height * 1e3:g} mm height is implausible;"
-        " is a length in another unit?"
+        f"a beam of {made.free_length * 1e3:g} mm free length and {made.height * 1e3:g} mm height is"
+        " implausible; is a length in another unit?"
     )
 
 

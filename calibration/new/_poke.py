@@ -20,7 +20,7 @@ def make_poke(work: Work, entry: PokeAnswers) -> tuple[dict[str, Any], Push]:
     Raises
     ------
     InputError
-        The record has no time, displacement or force, is damaged, or something is left open that has no default.
+        The record has no time, displacement or force, is damaged, or something without default is left open.
     """
     record = open_record(work, entry)
     time = record.time(needed=True)

@@ -8,8 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.errors import InputError
+from calibration.experiment._files import MOST_LINES, MOST_LOST, longest_growing
 from calibration.lab_files import (
     DIMENSIONS,
     Column,
@@ -36,6 +38,7 @@ class Record:
     work: Work
     entry: CouponAnswers | PokeAnswers
     test: LabTest
+    kept: NDArray[np.intp] | None = None  # rows, where some were left out
 
     @property
     def where(self) -> str:
@@ -81,10 +84,10 @@ class Record:
         if stated is None and column.unit is not None:
             if column.unit.dimension != dimension:
                 raise self.error(
-                    f"column {column.header}: expected a unit of {dimension} for the {quantity}, the file says"
-                    f" {column.unit.text}"
+                    f"column {column.header}: expected a unit of {dimension} for the {quantity}, the file"
+                    f" says {column.unit.text}"
                 )
-            return self.test.numbers(column, self.entry.decimals) * column.unit.factor
+            return self._numbers(column) * column.unit.factor
         if stated is not None and column.unit is not None and column.unit.text != stated:
             self.work.defaults.append(
                 f"{self.where}: column {column.header} taken in {stated}, the file says {column.unit.text}"
@@ -98,10 +101,16 @@ class Record:
         )
         known = unit(text)
         assert known is not None
-        return self.test.numbers(column, self.entry.decimals) * known.factor
+        return self._numbers(column) * known.factor
+
+    def _numbers(self, column: Column) -> Array:
+        values = self.test.numbers(column, self.entry.decimals)
+        return values if self.kept is None else values[self.kept]
 
     def time(self, *, needed: bool) -> Array | None:
-        """Time of each row [s], growing and from 0 on.
+        """Time of each row [s], growing and from 0 on; asked for before other columns.
+
+        Where the answers say so, the fewest rows against which the clock runs are left out, of all columns.
 
         Raises
         ------
@@ -114,15 +123,32 @@ class Record:
                 raise self.error("expected a column of time")
             return None
         time = self.si(column, "time")
-        hint = "" if needed else "; columns: {time: none} leaves it out"
+        hint = "; leave_out_rows: true goes on without such rows" + (
+            "" if needed else ", columns: {time: none} without the time"
+        )
         if time[0] < 0:
             raise self.line(0, f"column {column.header}: expected 0 s or more, got {time[0]:g}{hint}")
         bad = np.flatnonzero(np.diff(time) <= 0)
+        if bad.size and self.entry.leave_out_rows:
+            self.kept = np.array(longest_growing(time), dtype=np.intp)
+            lost = sorted(set(range(len(time))) - set(self.kept.tolist()))
+            if len(lost) > MOST_LOST * len(time):
+                raise self.error(
+                    f"column {column.header}: expected that it grows, but {len(lost)} of {len(time)} rows stand"
+                    " against it"
+                )
+            lines = ", ".join(str(self.test.rows[k]) for k in lost[:MOST_LINES])
+            more = f" and {len(lost) - MOST_LINES} more" if len(lost) > MOST_LINES else ""
+            self.work.defaults.append(
+                f"{self.where}: the clock runs backwards in lines {lines}{more}, left out"
+            )
+            return time[self.kept]
         if bad.size:
             at = int(bad[0]) + 1
             raise self.line(
                 at,
-                f"column {column.header}: expected more than {time[at - 1]:g} s before it, got {time[at]:g}{hint}",
+                f"column {column.header}: expected more than {time[at - 1]:g} s before it, got {time[at]:g}"
+                f"{hint}",
             )
         return time
 
@@ -197,7 +223,7 @@ class Record:
         return float(value) * 1e-3
 
     def area(self) -> float:
-        """Rest area of the specimen [m2]: from what the answers give of it, or the file's header, or asked."""
+        """Rest area of the specimen [m2]: by the answers, or the file's header, or asked."""
         entry = self.entry
         assert isinstance(entry, CouponAnswers)
         if entry.area_mm2 is not None:
