@@ -15,6 +15,7 @@ from calibration.errors import InputError
 LARGEST_FILE = 300_000_000  # bytes
 SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 
+_MARK = re.compile(r"\[[A-Za-z][\w /-]*\]|<[A-Za-z][\w /-]*>")
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS_POINT = re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+")  # 1,234.5
@@ -70,6 +71,13 @@ class LabFile:
         if not self._texts:
             self._texts.extend(r.text.strip().lower() for s in self.sheets for r in s.rows)
         return all(mark.lower() in self._texts for mark in marks)
+
+    @property
+    def sections(self) -> bool:
+        """Whether lines of their own are marks in brackets, [step] or <DATA>: then it is no plain table."""
+        return not self.workbook and any(
+            row.text[:1] in ("[", "<") and _MARK.fullmatch(row.text.strip()) for row in self.rows
+        )
 
     def error(self, text: str, row: Row | int | None = None, *, sheet: str = "") -> InputError:
         """An error at a line of this file, as one sentence."""

@@ -100,7 +100,7 @@ def unit(text: str) -> Unit | None:
 
 
 _BRACKETS = re.compile(r"^(?P<name>.*\S)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
-_SEPARATED = re.compile(r"^(?P<name>.*\S)\s*(?:,|/|_|\bin\b|\s)\s*(?P<unit>[^\s,/_]+(?:/[^\s,/_]+)?)\s*$")
+_SEPARATED = re.compile(r"^(?P<name>.*\S)\s*(?:,|/|_|\s)\s*(?P<unit>[^\s,/_]+(?:/[^\s,/_]+)?)\s*$")
 
 
 def name_and_unit(header: str) -> tuple[str, Unit | None]:
@@ -115,7 +115,7 @@ def name_and_unit(header: str) -> tuple[str, Unit | None]:
         if found:
             given = unit(found["unit"])
             if given is not None and (pattern is _BRACKETS or found["unit"] != "1"):
-                return found["name"].strip().rstrip(",/_"), given
+                return re.sub(r"\s+in$", "", found["name"].strip().rstrip(",/_")), given
     if header.endswith("%") and len(header) > 1:
         return header[:-1].strip(), unit("%")
     return header, None

@@ -24,7 +24,7 @@ def _bracketed(row: Row | None, separator: str) -> bool:
 
 
 def _recognises(file: LabFile) -> bool:
-    if file.workbook:
+    if file.workbook or file.sections:
         return False
     found, separator = blocks(file, file.sheets[0])
     return any(

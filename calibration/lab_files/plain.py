@@ -11,7 +11,7 @@ from calibration.lab_files._text import LabFile
 
 
 def _recognises(file: LabFile) -> bool:
-    if file.workbook:
+    if file.workbook or file.sections:
         return False
     found, _ = blocks(file, file.sheets[0])
     first = next(row for row in file.rows if not row.empty)

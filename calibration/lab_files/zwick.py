@@ -25,6 +25,8 @@ def _bare(row: Row | None, separator: str) -> bool:
 def _recognises(file: LabFile) -> bool:
     if file.workbook:
         return any(_measured(file, sheet) for sheet in file.sheets)
+    if file.sections:
+        return False
     found, separator = blocks(file, file.sheets[0])
     return any(_bare(b.units, separator) or any(_WORDS.search(r.text) for r in b.above) for b in found)
 

@@ -25,11 +25,11 @@ from calibration.experiment._read import MaterialEntry
 from calibration.experiment._yaml import parse
 from calibration.experiment.model import CouponMode, Supports
 from calibration.lab_files import DIMENSIONS, Quantity, unit
+from calibration.new._plausible import CHECKS
 from tisim.io.bounded_yaml import as_tuples
 
 SourceFile = Annotated[str, Field(min_length=1, max_length=1000)]
 Direction = Literal["tension", "compression"]
-CheckName = Annotated[str, Field(min_length=1, max_length=40)]
 
 
 class _TrialAnswers(Strict):
@@ -38,7 +38,15 @@ class _TrialAnswers(Strict):
     id: Name
     material: Name | None = None
     specimen: Name | None = None
-    accept: tuple[CheckName, ...] = ()
+    accept: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _known_checks(self) -> _TrialAnswers:
+        known = [check.name for check in CHECKS]
+        for name in self.accept:
+            if name not in known:
+                raise say("accept", f"expected names of {', '.join(known)}, got {name!r}")
+        return self
 
 
 class _RecordAnswers(_TrialAnswers):

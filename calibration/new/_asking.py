@@ -13,8 +13,8 @@ from calibration.errors import InputError
 
 SD = (
     "A standard deviation (sd) says how far a repeated measurement falls from its mean: two of three lie"
-    " within one sd. Measure the same thing five times and take the spread, or half a division of the scale. 0"
-    " means exact. One that is too small makes the result surer than the lab is."
+    " within one sd. Measure the same thing five times and take the spread, or half a division of the scale."
+    " 0 means exact. One that is too small makes the result surer than the lab is."
 )
 
 

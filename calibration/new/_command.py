@@ -23,7 +23,7 @@ An experiment from files, with questions; an answers file asks none:
 
   python -m calibration.new pull.csv squeeze.txt beam.jpg --out lab
 
-  python -m calibration.new --yes datasets/measured/lab-files/answers.yaml --out lab
+  python -m calibration.new --yes datasets/lab-files/answers.yaml --out lab
 
 The checkerboard for photographs, to print at 100 %:
 
@@ -47,7 +47,7 @@ def main(
     show: Annotated[bool, typer.Option("--show", help="Show what is in the files, write nothing.")] = False,
     board: Annotated[Path | None, typer.Option(help="PDF to write with the checkerboard to print.")] = None,
     squares: Annotated[str, typer.Option(help="Squares of the board along its two sides.")] = "9x6",
-    square_mm: Annotated[float, typer.Option(help="Side of a square of the board [mm].")] = 10.0,
+    square_mm: Annotated[float, typer.Option(help="Side of a square of the board in mm.")] = 10.0,
     page: Annotated[str, typer.Option(help="Page of the board: a4, a3 or letter.")] = "a4",
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:

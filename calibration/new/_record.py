@@ -134,8 +134,8 @@ class Record:
             lost = sorted(set(range(len(time))) - set(self.kept.tolist()))
             if len(lost) > MOST_LOST * len(time):
                 raise self.error(
-                    f"column {column.header}: expected that it grows, but {len(lost)} of {len(time)} rows stand"
-                    " against it"
+                    f"column {column.header}: expected that it grows, but {len(lost)} of {len(time)} rows"
+                    " stand against it"
                 )
             lines = ", ".join(str(self.test.rows[k]) for k in lost[:MOST_LINES])
             more = f" and {len(lost) - MOST_LINES} more" if len(lost) > MOST_LINES else ""
