@@ -25,7 +25,8 @@ def _read(file: LabFile) -> tuple[LabTest, ...]:
     counts: dict[str, int] = {}
     info: list[Row] = []
     own: list[Row] = []
-    name, data, begun, section = "", None, 0, ""
+    data: list[Row] | None = None
+    name, begun, section = "", 0, ""
     for row in file.rows:
         found = _MARK.fullmatch(row.text.strip())
         mark = found["name"].strip().upper() if found else ""
@@ -62,7 +63,8 @@ def _function(
     given = [r for r in rows if not r.empty]
     if len(given) < 2:
         return []  # a function that was stopped at once
-    header, ramps = given[0], [[]]  # type: tuple[Row, list[list[Row]]]
+    header = given[0]
+    ramps: list[list[Row]] = [[]]
     cells = split(header, "\t")
     if all(re.fullmatch(r"[-+.\deE]+", c) for c in cells if c):
         raise file.error("expected the names of the columns below <DATA>", header)

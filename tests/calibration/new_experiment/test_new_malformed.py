@@ -1,4 +1,4 @@
-"""Malformed files of machines, and answers that do not fit them: one sentence, exit code 2, nothing written."""
+"""Malformed files of machines, and answers that do not fit: one sentence, exit code 2, nothing written."""
 
 from __future__ import annotations
 
@@ -367,7 +367,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
     ),
     "% for a ratio": (
         "strip",
-        lambda text: "Time/s,strain %,Stress (kPa)\n0,0,0\n10,0.05,3.6\n20,0.1,7\n",
+        lambda _: "Time/s,strain %,Stress (kPa)\n0,0,0\n10,0.05,3.6\n20,0.1,7\n",
         {"accept": ["modulus"]},
         "answers.yaml: key strip:",
         "the largest strain is 0.001",
