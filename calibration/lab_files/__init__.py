@@ -11,7 +11,7 @@ it, one that reads it, and `register(Importer(...))`; its import stands below, o
 from calibration.lab_files import instron, mach1, plain, trios, zwick
 from calibration.lab_files._formats import Importer, importers, read_lab_file, register
 from calibration.lab_files._quantities import DIMENSIONS, QUANTITIES, Quantity, pulls
-from calibration.lab_files._table import Column, LabTest
+from calibration.lab_files._table import Column, LabTest, table
 from calibration.lab_files._text import LabFile, Row, Sheet
 from calibration.lab_files._units import Unit, name_and_unit, unit
 
@@ -34,6 +34,7 @@ __all__ = [
     "pulls",
     "read_lab_file",
     "register",
+    "table",
     "trios",
     "unit",
     "zwick",
