@@ -8,9 +8,9 @@ it, one that reads it, and `register(Importer(...))`; its import stands below, o
 (`TISIM_EXTENSIONS`).
 """
 
-from calibration.lab_files import instron, mach1, plain, trios, zwick
+from calibration.lab_files import instron, mach1, table_with_header, trios, zwick
 from calibration.lab_files._formats import Importer, importers, read_lab_file, register
-from calibration.lab_files._quantities import DIMENSIONS, QUANTITIES, Quantity, pulls
+from calibration.lab_files._quantities import DIMENSIONS, QUANTITIES, Quantity, plain, pulls
 from calibration.lab_files._table import Column, LabTest, table
 from calibration.lab_files._text import LabFile, Row, Sheet
 from calibration.lab_files._units import Unit, name_and_unit, unit
@@ -35,6 +35,7 @@ __all__ = [
     "read_lab_file",
     "register",
     "table",
+    "table_with_header",
     "trios",
     "unit",
     "zwick",

@@ -90,7 +90,7 @@ class Terminal:
         default = None if question.default is None else shown(question.default)
         label = f"{where}: {question.text}" + (f" ({question.why})" if question.why else "")
         while True:
-            text = str(typer.prompt(label, default=default, show_default=default is not None)).strip()
+            text = prompted(label, default)
             if default is not None and text == default:
                 return question.default, True
             try:
@@ -103,11 +103,18 @@ class Terminal:
             return value, False
 
     def confirm(self, where: str, name: str, sentence: str) -> bool:
-        right = bool(typer.confirm(f"{where}: {sentence} Is that right?", default=False))
-        if not right:
+        if prompted(f"{where}: {sentence} Is that right? y or n", "n").lower() not in ("y", "yes"):
             raise InputError(f"{where}: {sentence}")
         _place(self.raw, where).setdefault("accept", []).append(name)
         return True
+
+
+def prompted(label: str, default: str | None = None) -> str:
+    """What is typed at a prompt, without blanks around it; the end of the input stops the command."""
+    try:
+        return str(typer.prompt(label, default=default, show_default=default is not None)).strip()
+    except typer.Abort:
+        raise KeyboardInterrupt from None
 
 
 def note(raw: dict[str, Any], where: str, key: str, value: Any) -> None:

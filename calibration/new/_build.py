@@ -101,7 +101,7 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
     own = _plain(raw)
     for trial in own["trials"]:
         _move_paths(trial, base, {path: name for name, path in work.copies.items()})
-    texts = {"experiment.yaml": _head(work.defaults) + _dump(content), ANSWERS: _dump(own), **work.tables}
+    texts = {"experiment.yaml": _head(work.defaults) + dump(content), ANSWERS: dump(own), **work.tables}
     with _beside(out) as folder:
         for name, text in texts.items():
             _file(folder, name).write_text(text, encoding="utf-8")
@@ -160,7 +160,8 @@ def _key(text: str) -> str:
     return text if key.endswith(":") else key
 
 
-def _dump(content: dict[str, Any]) -> str:
+def dump(content: dict[str, Any]) -> str:
+    """YAML as it is written."""
     return str(yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110))
 
 

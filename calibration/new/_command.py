@@ -107,7 +107,7 @@ def _print_board(path: Path, squares: str, square_mm: float, page: str) -> None:
 def _build(files: list[Path], out: Path, yes: Path | None) -> None:
     from calibration.new._answers import read_answers, validate
     from calibration.new._asking import Nobody, Terminal
-    from calibration.new._build import build, check_target
+    from calibration.new._build import build, check_target, dump
     from calibration.new._interview import interview
 
     check_target(out)
@@ -115,7 +115,13 @@ def _build(files: list[Path], out: Path, yes: Path | None) -> None:
         made = build(read_answers(yes), yes.parent, out, Nobody(yes))
     else:
         raw = interview(files, out.absolute().name)
-        made = build(validate(raw), Path.cwd(), out, Terminal(raw), raw)
+        try:
+            made = build(validate(raw), Path.cwd(), out, Terminal(raw), raw)
+        except InputError:
+            typer.echo(
+                f"Nothing is written. An answers file that says what you said (--yes FILE):\n{dump(raw)}"
+            )
+            raise
     for text in made.defaults:
         typer.echo(f"not stated, taken: {text}")
     counts = ", ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in made.experiment.counts.items())

@@ -43,16 +43,16 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     if strain_kind == "stretch":
         stretch = raw
     else:
-        signed = raw * record.towards_tension(strain_column, raw)
+        sign = record.towards_tension(strain_column, raw)
         if strain_kind == "displacement":
-            signed = record.zeroed(strain_column, signed, "where the specimen is at rest")
+            raw = record.zeroed(strain_column, raw, "where the specimen is at rest")
             length = record.length(
                 "rest_length_mm",
-                r"length|gauge|gage|\bheight\b|l0\b|messlange|einspannlange",
+                r"length|gauge|gage|\bheight\b|\bl0\b|messlange|einspannlange|hohe\b",
                 "length at rest that is stretched: between the grips, or a cylinder's height [mm]",
             )
-            signed = signed / length
-        stretch = np.exp(signed) if strain_kind == "true-strain" else 1.0 + signed
+            raw = raw / length
+        stretch = np.exp(sign * raw) if strain_kind == "true-strain" else 1.0 + sign * raw
     load = record.si(stress_column, stress_kind) - (entry.force_zero_N if stress_kind == "force" else 0.0)
     load = load * record.force_sign(load, stretch)
     force = area = None

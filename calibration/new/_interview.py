@@ -10,7 +10,7 @@ import typer
 
 from calibration.errors import InputError
 from calibration.lab_files import LabTest, read_lab_file
-from calibration.new._asking import one_of
+from calibration.new._asking import one_of, prompted
 
 _PHOTOS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 _OUTLINE = {"side", "x_mm", "z_mm"}
@@ -85,14 +85,14 @@ def _name(raw: dict[str, Any], file: Path, kind: str) -> str:
 
 
 def _text(label: str, default: str | None) -> str:
-    return str(typer.prompt(label, default=default)).strip()
+    return prompted(label, default)
 
 
 def _choice(label: str, words: tuple[str, ...]) -> str:
     read = one_of(words)
     while True:
         try:
-            return read(str(typer.prompt(label)).strip())
+            return read(prompted(label))
         except ValueError as error:
             typer.echo(f"  {error}")
 

@@ -18,6 +18,7 @@ from calibration.lab_files import (
     LabTest,
     Quantity,
     name_and_unit,
+    plain,
     pulls,
     read_lab_file,
     unit,
@@ -273,9 +274,7 @@ class Record:
     def stated(self, pattern: str, dimension: str) -> float | None:
         """A parameter above the table by its name, in SI; None where there is none, or none with a unit."""
         for name, text in self.test.parameters.items():
-            if re.search(r"final|speed|rate", name, re.IGNORECASE):
-                continue
-            if not re.search(pattern, name, re.IGNORECASE):
+            if re.search(r"final|speed|rate", plain(name)) or not re.search(pattern, plain(name)):
                 continue
             own, in_name = name_and_unit(name)
             found = re.match(r'"?([-+]?\d+(?:[.,]\d+)?)"?\s*(\S*)', text)

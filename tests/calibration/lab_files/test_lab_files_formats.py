@@ -232,3 +232,31 @@ def test_two_formats_are_never_guessed_between(tmp_path: Path) -> None:
         f"{path}: it reads as instron and as zwick: expected one format, state which (format)"
     )
     assert read_lab_file(path, format="zwick")[0] == "zwick"
+
+
+@pytest.mark.parametrize("file", ["instron.csv", "zwick.txt", "trios.txt", "mach-1.txt", "plain.csv"])
+def test_damage_is_read_or_refused_in_a_sentence(file: str, tmp_path: Path) -> None:
+    """Bytes changed, cut out or doubled, 40 times: an error of any other kind is a fault of the program."""
+    rng = np.random.default_rng(7)
+    whole = (SAMPLES / file).read_bytes()
+    for _ in range(40):
+        content = bytearray(whole)
+        for _ in range(rng.integers(1, 5)):
+            at, length = int(rng.integers(len(content))), int(rng.integers(1, 100))
+            match rng.integers(3):
+                case 0:
+                    content[at] = int(rng.integers(256))
+                case 1:
+                    del content[at : at + length]
+                case _:
+                    content[at:at] = content[length : 2 * length]
+        path = write(tmp_path, "damaged.txt", bytes(content))
+        said = f"{path}:"
+        try:
+            for test in read_lab_file(path)[1]:
+                for given in test.columns:
+                    test.numbers(given)
+        except InputError as error:
+            said = str(error)
+        assert said.startswith(f"{path}:")
+        assert "\n" not in said

@@ -202,3 +202,34 @@ def test_the_command_starts_light_and_is_listed() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_what_was_typed_is_shown_where_it_cannot_be_used(tmp_path: Path) -> None:
+    """A section that contradicts the outline is found at the end; the end of the input stops the command."""
+    outline = ROOT / "datasets/measured/bench/clean/beams/S0.5-cantilever-100-t100.csv"
+    typed = [
+        "",
+        "",
+        "gel",
+        "circle",
+        "10",
+        "",
+        "20",
+        "",
+        "20",
+        "clamped-free",
+        "",
+        "60",
+        *[""] * 5,
+        "1000",
+        "",
+        "y",
+    ]
+    out = tmp_path / "lab"
+    code, shown, said = new(outline, "--out", out, typed="\n".join(typed) + "\n")
+    assert code == 2
+    assert said.startswith(f"error: {out}/beams/S0.5-cantilever-100-t100.csv: line "), said
+    assert "free_length_mm: 20.0" in shown
+    code, _, said = new(outline, "--out", out, typed="\n".join(typed[:5]) + "\n")
+    assert (code, said.strip()) == (130, "Stopped: nothing was written.")
+    assert not out.exists()
