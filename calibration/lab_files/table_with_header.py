@@ -11,7 +11,7 @@ from calibration.lab_files._text import LabFile
 
 
 def _recognises(file: LabFile) -> bool:
-    if file.workbook or file.sections:
+    if file.sections or len(file.sheets) > 1:
         return False
     found, _ = blocks(file, file.sheets[0])
     first = next(row for row in file.rows if not row.empty)
@@ -19,11 +19,14 @@ def _recognises(file: LabFile) -> bool:
 
 
 def _read(file: LabFile) -> tuple[LabTest, ...]:
+    if len(file.sheets) > 1:
+        names = ", ".join(s.name for s in file.sheets)[:200]
+        raise file.error(f"expected a workbook of one sheet, got {names}")
     found, separator = blocks(file, file.sheets[0])
     if len(found) > 1:
         raise file.error("expected one table, a second begins here", found[1].header)
     parameters = parameters_of(found[0].above, (separator,))
-    return (from_block(file, found[0], separator, parameters=parameters),)
+    return (from_block(file, found[0], separator, parameters=parameters, sheet=file.sheets[0].name),)
 
 
 register(

@@ -195,6 +195,15 @@ def test_zwick_workbooks_have_a_sheet_a_test(tmp_path: Path) -> None:
     found, tests = read_lab_file(path)
     assert (found, [(t.name, len(t.rows)) for t in tests]) == ("zwick", [("Probe 1", 5), ("Probe 2", 4)])
     assert column(tests[0], "Standardkraft") == pytest.approx([0.0, -0.1, -0.2, -0.3, -0.4])
+    table: list[list[str | float]] = [["Time (s)", "Load (N)"], *([float(k), 2.0 * k] for k in range(4))]
+    found, (test,) = read_lab_file(workbook(tmp_path / "table.xlsx", {"Sheet1": table}))
+    assert found == "csv"
+    assert column(test, "Load") == pytest.approx([0.0, 2.0, 4.0, 6.0])
+    path = workbook(tmp_path / "bad.xlsx", {"Sheet1": [*table, [5.0, "lost"]]})
+    (bad,) = read_lab_file(path)[1]
+    said = "bad.xlsx: sheet Sheet1: row 6: column Load: expected a number, got 'lost'"
+    with pytest.raises(InputError, match=said):
+        bad.numbers(bad.columns[1])
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])

@@ -233,3 +233,68 @@ def test_what_was_typed_is_shown_where_it_cannot_be_used(tmp_path: Path) -> None
     code, _, said = new(outline, "--out", out, typed="\n".join(typed[:5]) + "\n")
     assert (code, said.strip()) == (130, "Stopped: nothing was written.")
     assert not out.exists()
+
+
+def test_a_position_begins_anywhere_and_a_clock_may_slip(tmp_path: Path) -> None:
+    """A cylinder of 20 mm, pressed by 4 mm from a position of 112 mm downwards; two rows came late."""
+    time = [0.0, 1.0, 2.0, 1.5, 3.0, 4.0, 3.9, 5.0, 6.0, 7.0, 8.0]
+    rows = "".join(f"{t},{112 - 0.5 * t:.3f},{0.8 * t:.3f}\n" for t in time)
+    (tmp_path / "a.csv").write_text("Time/s,Position (mm),Load (N)\n" + rows)
+    answers = {
+        "name": "cylinder",
+        "trials": [
+            {
+                "id": "press",
+                "kind": "coupon",
+                "material": "gel",
+                "file": "a.csv",
+                "mode": "uniaxial",
+                "displacement_positive": "tension",
+                "rest_length_mm": 20.0,
+                "diameter_mm": 20.0,
+                "leave_out_rows": True,
+            }
+        ],
+    }
+    (tmp_path / "answers.yaml").write_text(yaml.safe_dump(answers))
+    out = tmp_path / "lab"
+    code, _, said = new("--yes", tmp_path / "answers.yaml", "--out", out)
+    assert code == 0, said
+    experiment = read(out)
+    (trial,) = experiment.trials
+    assert isinstance(trial, CouponTrial)
+    assert trial.time is not None
+    assert trial.time.tolist() == [0.0, 1.0, 1.5, 3.0, 3.9, 5.0, 6.0, 7.0, 8.0]
+    assert trial.stretch == pytest.approx(1.0 - 0.025 * trial.time)
+    assert trial.stress == pytest.approx(-0.8 * trial.time / (np.pi * 0.01**2))
+    assert "press: the clock runs backwards in lines 4, 7, left out" in experiment.notes
+    assert "press.displacement_zero_mm" in experiment.notes
+
+
+def test_an_indentation_is_asked_for_what_its_file_does_not_say(tmp_path: Path) -> None:
+    typed = [
+        "",
+        "poke",
+        "dent",
+        "gel",
+        "Move Relative",
+        "tension",
+        "",
+        "60 60 20",
+        "3",
+        "flat",
+        "",
+        "",
+        "0.05",
+    ]
+    out = tmp_path / "lab"
+    code, shown, said = new(SAMPLES / "mach-1.txt", "--out", out, typed="\n".join(typed) + "\n")
+    assert code == 0, (shown, said)
+    assert "what positive values of the column Position (z) mean" in shown
+    (poke,) = read(out).trials
+    assert isinstance(poke, PokeTrial)
+    assert (poke.rod_radius, *poke.start, poke.depth_sd) == pytest.approx((3e-3, 0.0, 0.0, 0.02, 5e-5))
+    assert poke.record.depth[-1] == pytest.approx(2e-3)
+    again = tmp_path / "again"
+    assert new("--yes", out / "answers.yaml", "--out", again)[0] == 0
+    assert (again / "experiment.yaml").read_bytes() == (out / "experiment.yaml").read_bytes()
