@@ -8,10 +8,13 @@ are those of the computer's language.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from calibration.lab_files._formats import Importer, register
+from calibration.lab_files._quantities import quantity
 from calibration.lab_files._table import Block, LabTest, blocks, from_block, parameters_of
 from calibration.lab_files._text import LabFile, Row, split
+from calibration.lab_files._units import name_and_unit, unit
 
 _WORDS = re.compile(r"\b(instron|bluehill)\b|results? table", re.IGNORECASE)
 _PARAMETER = re.compile(r'^"?[^,;:"]+ : [^,;"]+"?[,;]')
@@ -34,6 +37,17 @@ def _recognises(file: LabFile) -> bool:
     )
 
 
+def _timed(block: Block, separator: str) -> bool:
+    """Whether a table has a column of time: raw data have one, results do not."""
+    units = () if block.units is None else split(block.units, separator)
+    for k, header in enumerate(split(block.header, separator)):
+        name, stated = name_and_unit(header)
+        below = unit(units[k]) if k < len(units) else None
+        if quantity(name, below or stated) == "time":
+            return True
+    return False
+
+
 def _read(file: LabFile) -> tuple[LabTest, ...]:
     found, separator = blocks(file, file.sheets[0])
     separators = (separator, *(s for s in (";", ",", "\t") if s != separator))
@@ -42,24 +56,16 @@ def _read(file: LabFile) -> tuple[LabTest, ...]:
     results: Block | None = None
     for block in found:
         parameters |= parameters_of(block.above, separators)
-        number = len(tests) + 1
-        test = (
-            from_block(file, block, separator, name=f"table {number}", parameters=dict(parameters))
-            if (len(block.rows) >= 3 or len(found) == 1)
-            else None
-        )
-        if test is not None and test.with_quantity("time"):
-            tests.append(test)
+        if _timed(block, separator):
+            name = f"table {len(tests) + 1}"
+            tests.append(from_block(file, block, separator, name=name, parameters=dict(parameters)))
         else:
             results = block
     if not tests:
         row = None if results is None else results.header
         raise file.error("expected a table of raw data with a column of time, as Bluehill exports it", row)
     if len(tests) == 1:
-        only = tests[0]
-        return (
-            LabTest(file=file, name="", columns=only.columns, rows=only.rows, parameters=only.parameters),
-        )
+        return (replace(tests[0], name=""),)
     return tuple(tests)
 
 

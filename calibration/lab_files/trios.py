@@ -1,8 +1,8 @@
-"""TA Instruments TRIOS, .txt: a tab-separated header of the file, then [step] blocks.
+"""TA Instruments TRIOS, .txt: tab-separated, a header of the file, then [Step] blocks.
 
 Both exports of text are read. "Export to LIMS": `Step name`, `Number of points`, `Variables` with the names
-of the columns, a row of units, and rows that begin with `Data point`. Plain text: the step's name, a row of
-names, a row of units, rows. Each step is a test.
+of the columns, `Units` with theirs, and rows that begin with `Data point`. Plain text: the step's name, a row
+of names, a row of units, rows. Each step is a test.
 """
 
 from __future__ import annotations
@@ -64,7 +64,6 @@ def _step(file: LabFile, mark: Row, rows: list[Row], parameters: dict[str, str])
     if not body:
         return None
     units = keys[at + 1]
-    # the row of units has as many empty cells before the first as the header has words
     return table(
         file,
         keys[at][skip:],

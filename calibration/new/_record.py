@@ -306,7 +306,7 @@ def open_record(work: Work, entry: CouponAnswers | PokeAnswers) -> Record:
     path = work.source(entry.file, f"{entry.id}.file")
     _, tests = read_lab_file(path, format=entry.format)
     work.copy(path, "source")
-    names = [t.name for t in tests]
+    names = [t.name or f"test {k}" for k, t in enumerate(tests, 1)]
     if entry.test is None and len(tests) == 1:
         return Record(work=work, entry=entry, test=tests[0])
     wanted = work.settle(

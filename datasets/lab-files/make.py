@@ -61,26 +61,32 @@ def zwick(rng: np.random.Generator) -> str:
 def trios(rng: np.random.Generator) -> str:
     """Simple shear between plates to 50 %, in two steps: TRIOS, "Export to LIMS"."""
     lines = [
-        "Filename\tshear.tri",
+        "[Version]",
+        "TA Instruments LIMS export format version\t0",
+        "[Header]",
         "Instrument name\tDiscovery HR-2",
-        "Sample name\tgel",
-        "Geometry name\t25mm parallel plate, Peltier plate Steel",
-        "",
+        "[Sample]",
+        "Name\tgel",
+        "[Geometry: Standard]",
+        "Diameter\t25.0 mm",
+        "Gap\t1.000 mm",
     ]
     for name, factor in (("Conditioning", 0.2), ("Stress growth", 1.0)):
         lines += [
-            "[step]",
+            "[Step]",
             f"Step name\t{name} (25.0 °C)",
             "Number of points\t41",
-            "Variables\tStep time\tStrain\tStress\tNormal stress",
-            "\ts\t%\tPa\tPa",
+            "Variables\tStep time\tStrain\tStress\tNormal stress\tStatus bits\tDate and time",
+            "Units\ts\t%\tPa\tPa\t\t",
         ]
+        end = "\t0xB6453\t11/20/2026 1:43:31 PM"
         for time in np.linspace(0.5, 20.5, 41):
             gamma = factor * (time - 0.5) / 40.0
             stress = MU * gamma + 20.0 * rng.normal()
-            lines.append(f"Data point\t{time:.3f}\t{100 * gamma:.5f}\t{stress:.4f}\t{5 * rng.normal():.4f}")
-        lines.append("")
-    return "\n".join(lines)
+            lines.append(
+                f"Data point\t{time:.3f}\t{100 * gamma:.5f}\t{stress:.4f}\t{5 * rng.normal():.4f}" + end
+            )
+    return "\n".join(lines) + "\n"
 
 
 def mach1(rng: np.random.Generator) -> str:

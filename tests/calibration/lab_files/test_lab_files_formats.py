@@ -66,6 +66,9 @@ def test_the_examples_are_what_their_maker_writes(tmp_path: Path) -> None:
         ("Shear rate (1/s)", "Shear rate", "1/s", None),
         ("Stress (mpa)", "Stress (mpa)", None, "stress"),  # milli or mega: not guessed
         ("Torque (N.m)", "Torque", "N.m", None),
+        ("Time at Break (s)", "Time at Break", "s", None),
+        ("Date and time", "Date and time", None, None),
+        ("Strain constant", "Strain constant", None, None),
     ],
 )
 def test_headers_state_a_quantity_and_a_unit(

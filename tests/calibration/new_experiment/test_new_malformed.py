@@ -146,7 +146,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "shear",
         lines(20, 20),
         {},
-        "trios.txt: line 6:",
+        "trios.txt: line 10:",
         "expected 41 points, as it states, got 40",
     ),
     "trios without points": (
