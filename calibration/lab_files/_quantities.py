@@ -26,7 +26,8 @@ DIMENSIONS: dict[Quantity, str] = {
 
 # Columns of the same words that are no record of a test: rates, set values, results, oscillation.
 _NOT = re.compile(
-    r"\bdate\b|\bat\b|break|maximum|minimum|constant|strain ratio|rate|speed|velocity|geschw|modul|energy|arbeit|work|cycle|target|set ?point|oscillat|amplitude"
+    r"\bdate\b|\bat\b|break|maximum|minimum|constant|strain ratio"
+    r"|rate|speed|velocity|geschw|modul|energy|arbeit|work|cycle|target|set ?point|oscillat|amplitude"
     r"|normal stress|torque|temperature|count|index|viscosity|compliance|frequency|vorlauf|lateral"
     r"|transverse|quer"
 )
