@@ -54,7 +54,7 @@ _TABLE: dict[str, tuple[Dimension, float]] = {
     **dict.fromkeys(("kgf", "kp"), ("force", _GRAVITY)),
     "lbf": ("force", 4.4482216152605),
     **dict.fromkeys(("%", "percent", "pct", "prozent"), ("ratio", 1e-2)),
-    **dict.fromkeys(("-", "1", "mm/mm", "m/m", "in/in", "ratio"), ("ratio", 1.0)),
+    **dict.fromkeys(("-", "1", "mm/mm", "m/m", "in/in"), ("ratio", 1.0)),
     "pa": ("stress", 1.0),
     "kpa": ("stress", 1e3),
     "gpa": ("stress", 1e9),

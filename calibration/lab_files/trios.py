@@ -24,7 +24,7 @@ def _read(file: LabFile) -> tuple[LabTest, ...]:
     marks = [k for k, row in enumerate(file.rows) if row.text.strip().lower() == "[step]"]
     if not marks:
         raise file.error("expected [step] blocks, found none")
-    parameters = parameters_of(file.rows[: marks[0]], _TAB)
+    parameters = parameters_of([r for r in file.rows[: marks[0]] if not r.text.startswith("[")], _TAB)
     tests = []
     for start, end in zip(marks, [*marks[1:], len(file.rows)], strict=True):
         found = _step(file, file.rows[start], list(_block(file.rows[start + 1 : end])), parameters)

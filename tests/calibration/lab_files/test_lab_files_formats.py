@@ -69,6 +69,8 @@ def test_the_examples_are_what_their_maker_writes(tmp_path: Path) -> None:
         ("Time at Break (s)", "Time at Break", "s", None),
         ("Date and time", "Date and time", None, None),
         ("Strain constant", "Strain constant", None, None),
+        ("Strain ratio", "Strain ratio", None, None),
+        ("Stretch ratio", "Stretch ratio", None, "stretch"),
     ],
 )
 def test_headers_state_a_quantity_and_a_unit(
