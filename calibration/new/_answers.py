@@ -85,6 +85,13 @@ class CouponAnswers(_RecordAnswers):
     stretch_sd: Annotated[float, Field(ge=0, le=1)] | None = None
     stress_sd_kPa: Noise | None = None
 
+    @model_validator(mode="after")
+    def _one_area(self) -> CouponAnswers:
+        sides = self.width_mm is not None or self.thickness_mm is not None
+        if (self.area_mm2 is not None) + (self.diameter_mm is not None) + sides > 1:
+            raise say("area_mm2", "expected one of area_mm2, diameter_mm, or width_mm and thickness_mm")
+        return self
+
 
 class PokeAnswers(_RecordAnswers):
     """An indentation test."""

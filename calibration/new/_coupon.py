@@ -53,6 +53,11 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
             )
             raw = raw / length
         stretch = np.exp(sign * raw) if strain_kind == "true-strain" else 1.0 + sign * raw
+    if length is None and entry.rest_length_mm is not None:
+        raise record.error(
+            f"rest_length_mm: expected only where the stretch comes from a displacement, here it comes from"
+            f" the column {strain_column.header} (columns: {{displacement: NAME}} takes the other)"
+        )
     load = record.si(stress_column, stress_kind) - (entry.force_zero_N if stress_kind == "force" else 0.0)
     load = load * record.force_sign(load, stretch)
     force = area = None
@@ -100,7 +105,9 @@ def _first(record: Record, kinds: tuple[Quantity, ...]) -> tuple[Quantity, Colum
 def _beside(record: Record) -> tuple[Array | None, float | None]:
     """The force beside a column of stress, and the area that the answers or the header state, to compare."""
     found = record.test.with_quantity("force")
-    area = record.stated_area()
+    if not found and record.entry_area is not None:
+        raise record.error("an area is stated: expected a column of force, the file has a stress and none")
+    area = record.entry_area or record.header_area()
     if len(found) != 1 or found[0].unit is None or area is None:
         return None, None
     return record.si(found[0], "force"), area

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,11 +125,9 @@ class Record:
                 raise self.error("expected a column of time")
             return None
         time = self.si(column, "time")
-        hint = "; leave_out_rows: true goes on without such rows" + (
-            "" if needed else ", columns: {time: none} without the time"
-        )
+        without = "" if needed else "; columns: {time: none} goes on without the time"
         if time[0] < 0:
-            raise self.line(0, f"column {column.header}: expected 0 s or more, got {time[0]:g}{hint}")
+            raise self.line(0, f"column {column.header}: expected 0 s or more, got {time[0]:g}{without}")
         bad = np.flatnonzero(np.diff(time) <= 0)
         if bad.size and self.entry.leave_out_rows:
             self.kept = np.array(longest_growing(time), dtype=np.intp)
@@ -149,7 +148,7 @@ class Record:
             raise self.line(
                 at,
                 f"column {column.header}: expected more than {time[at - 1]:g} s before it, got {time[at]:g}"
-                f"{hint}",
+                f"; leave_out_rows: true goes on without such rows{without.replace(' goes on', '')}",
             )
         return time
 
@@ -170,6 +169,10 @@ class Record:
             if named is False and not rises and isinstance(self.entry, CouponAnswers):
                 named = None
             if named is not None:
+                word = "tension" if named else "compression"
+                self.work.defaults.append(
+                    f"{self.where}.displacement_positive {word} (by the name of the column {column.header})"
+                )
                 return 1.0 if named else -1.0
         found = self.work.settle(
             self.where,
@@ -206,7 +209,10 @@ class Record:
         """
         if self.entry.force_positive is not None:
             return 1.0 if self.entry.force_positive == "tension" else -1.0
-        return 1.0 if float(np.sum((force - force[0]) * (along - along[0]))) >= 0 else -1.0
+        if float(np.sum((force - force[0]) * (along - along[0]))) >= 0:
+            return 1.0
+        self.work.defaults.append(f"{self.where}: the force turned round, to grow with the displacement")
+        return -1.0
 
     def length(self, key: str, pattern: str, text: str) -> float:
         """A length of the specimen [m]: the answers', the file header's, or asked."""
@@ -223,14 +229,25 @@ class Record:
         )
         return float(value) * 1e-3
 
-    def area(self) -> float:
-        """Rest area of the specimen [m2]: by the answers, or the file's header, or asked."""
+    @property
+    def entry_area(self) -> float | None:
+        """Rest area by the answers [m2], without asking."""
         entry = self.entry
         assert isinstance(entry, CouponAnswers)
         if entry.area_mm2 is not None:
             return entry.area_mm2 * 1e-6
         if entry.diameter_mm is not None:
             return math.pi / 4 * (entry.diameter_mm * 1e-3) ** 2
+        if entry.width_mm is not None and entry.thickness_mm is not None:
+            return entry.width_mm * entry.thickness_mm * 1e-6
+        return None
+
+    def area(self) -> float:
+        """Rest area of the specimen [m2]: by the answers, or the file's header, or asked."""
+        entry = self.entry
+        assert isinstance(entry, CouponAnswers)
+        if self.entry_area is not None:
+            return self.entry_area
         if entry.width_mm is not None or entry.thickness_mm is not None:
             width = self.length("width_mm", "width|breite", "the specimen's width at rest [mm]")
             return width * self.length(
@@ -258,18 +275,6 @@ class Record:
             return math.pi / 4 * diameter**2
         width, thickness = self.stated("width|breite", "length"), self.stated("thickness|dicke", "length")
         return None if width is None or thickness is None else width * thickness
-
-    def stated_area(self) -> float | None:
-        """Rest area that the answers or the header state [m2], without asking."""
-        entry = self.entry
-        assert isinstance(entry, CouponAnswers)
-        if entry.area_mm2 is not None:
-            return entry.area_mm2 * 1e-6
-        if entry.diameter_mm is not None:
-            return math.pi / 4 * (entry.diameter_mm * 1e-3) ** 2
-        if entry.width_mm is not None and entry.thickness_mm is not None:
-            return entry.width_mm * entry.thickness_mm * 1e-6
-        return self.header_area()
 
     def stated(self, pattern: str, dimension: str) -> float | None:
         """A parameter above the table by its name, in SI; None where there is none, or none with a unit."""
@@ -306,6 +311,17 @@ def open_record(work: Work, entry: CouponAnswers | PokeAnswers) -> Record:
     path = work.source(entry.file, f"{entry.id}.file")
     _, tests = read_lab_file(path, format=entry.format)
     work.copy(path, "source")
+    record = _chosen(work, entry, path, tests)
+    headers = [c.header for c in record.test.columns]
+    for name in entry.units:
+        if name not in headers:
+            raise record.error(
+                f"units.{name}: expected a column of this name, there are {', '.join(headers)}"
+            )
+    return record
+
+
+def _chosen(work: Work, entry: CouponAnswers | PokeAnswers, path: Path, tests: tuple[LabTest, ...]) -> Record:
     names = [t.name or f"test {k}" for k, t in enumerate(tests, 1)]
     if entry.test is None and len(tests) == 1:
         return Record(work=work, entry=entry, test=tests[0])
