@@ -40,11 +40,11 @@ EXTRAS = {
 }
 
 VERBS = {
+    "new": "an experiment from photographs, outlines or files of testing machines",
     "reconstruct": "photographs to outlines, mid lines and bodies",
     "fit": "material parameters of constitutive laws, with error bars, cards and a report",
     "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",
     "predict": "measured against predicted for trials that were not used, with intervals and skill",
-    "new": "an experiment from photographs, outlines or files of testing machines",
     "fetch": "public measurements from their sources, as experiments",
     "table": "the paper's table of calibration results for an experiment",
 }
