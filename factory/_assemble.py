@@ -35,6 +35,7 @@ from factory._schema import (
     flags,
     specs_of,
 )
+from factory._similar import scale_with_modulus
 from factory._staging import DamagedResultError, Staging, sync_folder
 from factory._store import PROVENANCE, read_ledger, write_manifest
 from factory.plan import FORMAT, Plan
@@ -211,6 +212,7 @@ def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
         "shapes": [shape.id for shape in recipe.shapes],
         "softness": list(recipe.levels),
         "parameter_names": _parameter_names(plan),
+        "scales_with_modulus": scale_with_modulus([poke.scene for poke in plan.pokes]),
         "solver_tolerance": plan.pokes[0].scene.solver.tolerance,
         "identity": plan.identity,
         **_described(plan),

@@ -42,6 +42,15 @@ def modulus_ratio(material: Material, other: Material) -> float | None:
     return factor
 
 
+def scale_with_modulus(scenes: Sequence[Poke]) -> bool:
+    """Whether pokes at all material levels move alike, with forces in proportion to the shear modulus."""
+    first = scenes[0].material
+    materials = {id(scene.material): scene.material for scene in scenes}.values()
+    if any(scene.course is not None or any(scene.gravity) for scene in scenes):
+        return False
+    return all(modulus_ratio(material, first) is not None for material in materials)
+
+
 def one_solve(pokes: Sequence[PlannedPoke]) -> tuple[PlannedPoke, ...]:
     """The pokes, each with the first one that moves alike, and by what its forces are larger."""
     first: dict[tuple[int, int], list[PlannedPoke]] = {}

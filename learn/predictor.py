@@ -25,13 +25,14 @@ from numpy.typing import NDArray
 
 from learn.data import Store, open_store, split_of
 from learn.errors import InputError, OutsideDomainError
-from learn.evaluation import join_runs, load_intervals
+from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
 from learn.metrics import Predictions
 from learn.models import Pokes, Response, Scene
+from learn.real_time import RealTime
 from learn.scene_file import PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, load_run
-from learn.validity import Check, Domain, domain_of, poke_values, unknown_checks
+from learn.validity import Check, Domain, domain_of, interior_of, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
 
@@ -85,8 +86,8 @@ class PokePrediction:
             f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
         )
         return (
-            f"Outside what the model was trained on: {names}. The force may be wrong by a factor, and "
-            "no interval holds."
+            f"Outside what the model was trained on: {names}. The force may be wrong by a factor; intervals "
+            "are wider for it, and promise nothing."
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -203,35 +204,55 @@ class Predictor:
             timed = "with" if self.run.model.takes_clock else "without"
             raise InputError(f"{where}: {wanted} the model was trained {timed} time")
         inputs, pokes = scene_and_poke(poke, self.store, where)
-        checks = self._checks(poke, inputs, pokes)
+        values, kind = self._values(inputs, pokes), kind_of(poke, self.store)
         with torch.no_grad():
             response = self.run.model(inputs, pokes)
-        answer = self._answer(poke, inputs, pokes, response, checks)
+        answer = self._answer(poke, inputs, pokes, response, (values, kind))
         if not (np.isfinite(answer.displacement).all() and np.isfinite(answer.force)):
             raise InputError(f"{where}: the model's answer is not finite")
         if strict and answer.inside is not True:
             raise OutsideDomainError(f"{where}: --strict: {_first_lower(answer.verdict)}")
         return answer
 
-    def _checks(self, poke: PokeScene, scene: Scene, pokes: Pokes) -> list[Check]:
+    def real_time(self, interior: Mapping[str, Any]) -> RealTime:
+        """One interior for a program that asks a thousand times a second.
+
+        Parameters
+        ----------
+        interior : keys as in `learn.scene_file.PokeScene` that say what is poked: shape or inclusion,
+            softness or shear_modulus_kPa.
+
+        Raises
+        ------
+        InputError
+            The run's model has no such form, a key is wrong, or the inclusion does not fit the block.
+        """
+        return RealTime(self, interior)
+
+    def _values(self, scene: Scene, pokes: Pokes) -> dict[str, float]:
+        """The poke's quantities, by key of `learn.validity.QUANTITIES`."""
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
-        values = poke_values(
+        return poke_values(
             self.store,
-            profile,
+            interior_of(self.store, profile),
             start=pokes.start[0].numpy(),
             direction=pokes.direction[0].numpy(),
             depth=float(pokes.depth[0]),
             modulus=float(pokes.modulus[0]),
             clock=pokes.clock[0].numpy(),
         )
-        kind = kind_of(poke, self.store)
-        return self.domain.check(values, kind) if self.domain else unknown_checks(values, kind)
 
     def _answer(
-        self, poke: PokeScene, scene: Scene, pokes: Pokes, response: Response, checks: list[Check]
+        self,
+        poke: PokeScene,
+        scene: Scene,
+        pokes: Pokes,
+        response: Response,
+        asked: tuple[dict[str, float], str | None],
     ) -> PokePrediction:
         u, force = response.displacement.numpy(), float(response.force[0])
-        radius, factor = self._interval(response, pokes)
+        distance = self.domain.distance(*asked) if self.domain else 0.0
+        radius, factor = self._interval(response, pokes, distance)
         return PokePrediction(
             poke=poke,
             points=self.store.points,
@@ -239,14 +260,16 @@ class Predictor:
             force=force,
             radius=radius,
             force_interval=None if factor is None else (force / factor, force * factor),
-            checks=checks,
+            checks=self.domain.check(*asked) if self.domain else unknown_checks(*asked),
             scene=scene,
             pokes=pokes,
         )
 
-    def _interval(self, response: Response, pokes: Pokes) -> tuple[Floats | None, float | None]:
+    def _interval(
+        self, response: Response, pokes: Pokes, distance: float
+    ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
-        if self._intervals is None:
+        if self.intervals is None:
             return None, None
         u, force = response.displacement.numpy(), response.force.double().numpy()
         none = np.zeros(0)
@@ -262,17 +285,18 @@ class Predictor:
             spread=none if response.spread is None else response.spread.double().numpy(),
             force_spread=none if response.force_spread is None else response.force_spread.double().numpy(),
         )
-        factor = float(np.exp(self._intervals.force_log(predictions)[0]))
-        return self._intervals.radius_mm(predictions)[0] * 1e-3, factor
+        factor = float(np.exp(self.intervals.force_log(predictions, distance=distance)[0]))
+        return self.intervals.radius_mm(predictions, distance=distance)[0] * 1e-3, factor
 
     @cached_property
-    def _intervals(self) -> Any:
+    def intervals(self) -> Intervals | None:
+        """Of the run, made by `learn.evaluate`; None without."""
         return load_intervals(self.run)
 
     @property
     def has_intervals(self) -> bool:
         """Whether the run has intervals (made by `learn.evaluate`)."""
-        return self._intervals is not None
+        return self.intervals is not None
 
     def _rows(self) -> list[tuple[str, str]]:
         run, store = self.run, self.store

@@ -9,7 +9,7 @@ question.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -186,10 +186,9 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple
     InputError, which begins with `where`, for a poke that does not fit the store's block.
     """
     _check_fit(file, store, where)
-    points = store.points
     profile = _profile(file, store, where)
     scene = make_scene(
-        points=points,
+        points=store.points,
         normals=store.normals,
         profile=profile[None],
         level_depth=store.level_depth,
@@ -199,8 +198,7 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple
     lean, heading = math.radians(file.angle_deg), math.radians(file.heading_deg)
     sine, cosine = math.sin(lean), math.cos(lean)
     direction = np.array([sine * math.cos(heading), sine * math.sin(heading), -cosine])
-    top = np.array([file.site_mm[0] * _MM, file.site_mm[1] * _MM, points[0, 2]])
-    start = top - direction * _set_back(store, sine, cosine) / cosine
+    start = first_touch(store, (file.site_mm[0] * _MM, file.site_mm[1] * _MM), direction)
     _check_cover(file, store, profile, start + direction * file.depth_mm * _MM, where)
 
     def tensor(*values: float) -> torch.Tensor:
@@ -274,9 +272,16 @@ def _check_cover(
         )
 
 
-def _set_back(store: Store, sine: float, cosine: float) -> float:
-    """Height of the middle of the inclined tip above the surface at first contact [m]."""
-    return store.rod_edge * (1 - cosine) + (store.rod_radius - store.rod_edge) * sine
+def first_touch(store: Store, site: Sequence[float], direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The middle of the tip [m], (3,), where the rod first touches the top.
+
+    site: where its axis meets the top, (x, y) [m]; direction: unit vector of the push.
+    """
+    cosine = -float(direction[2])
+    sine = math.hypot(float(direction[0]), float(direction[1]))
+    above = store.rod_edge * (1 - cosine) + (store.rod_radius - store.rod_edge) * sine
+    top = np.array([site[0], site[1], store.points[0, 2]])
+    return np.asarray(top - direction * (above / cosine))
 
 
 def _modulus(file: PokeScene, store: Store, where: str) -> float:

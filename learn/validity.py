@@ -2,8 +2,8 @@
 
 A surrogate answers any poke with the same confidence; beyond its training the answer may be wrong by a
 factor. So the range of every quantity over the training part is recorded with the checkpoint (`domain_of`),
-and each prediction is compared with it (`Domain.check`). The ranges are those of the pokes themselves, not of
-the recipe that drew them.
+and each prediction is compared with it (`Domain.check`), and intervals widen with how far outside it is
+(`Domain.distance`). The ranges are those of the pokes themselves, not of the recipe that drew them.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ CLOCK_QUANTITIES: dict[str, Quantity] = {
 }
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
 _RELATIVE = 1e-3  # tolerance besides the slack
+_NARROW = 0.01  # of the value: a range narrower than this is none
 KINDS = ("cube", "cylinder", "sphere", "none")
 
 
@@ -98,6 +99,8 @@ class Domain(BaseModel):
     ranges : least and largest value by key of `QUANTITIES`.
     kinds : kinds of inclusion ("cube", "cylinder", "sphere", "none"); None where the dataset does not say.
     law : material law of the dataset.
+    proportional : keys of quantities of which any value is inside, since the force is in proportion to them
+        and the displacement does not depend on them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -105,20 +108,21 @@ class Domain(BaseModel):
     ranges: dict[str, tuple[Finite, Finite]]
     kinds: tuple[str, ...] | None
     law: str
+    proportional: tuple[str, ...] = ()
 
     def check(self, values: Mapping[str, float], kind: str | None) -> list[Check]:
         """Every quantity of a poke (`poke_values`) against its range; kind of inclusion: None if unknown."""
         checks = []
         for key, value in values.items():
             quantity = _ALL[key]
+            if key in self.proportional:
+                checks.append(Check(key=key, name=quantity.name, value=value, trained="any", inside=True))
+                continue
             if key not in self.ranges:
                 checks.append(_unknown(key, value))
                 continue
             low, high = self.ranges[key]
-            slack = quantity.slack + _RELATIVE * max(abs(low), abs(high))
-            inside = (quantity.sides == "high" or value >= low - slack) and (
-                quantity.sides == "low" or value <= high + slack
-            )
+            inside = _excess(quantity, low, high, value) <= 0.0
             text = _range(low, high, quantity)
             checks.append(Check(key=key, name=quantity.name, value=value, trained=text, inside=inside))
         if kind is None or self.kinds is None:
@@ -131,6 +135,21 @@ class Domain(BaseModel):
             )
         return checks
 
+    def distance(self, values: Mapping[str, float], kind: str | None) -> float:
+        """How far outside the ranges a poke is, 0 inside: the root of the sum of squares over its quantities.
+
+        Each counts in units of its range's width, or of its value where there is no range to speak of; a kind
+        of inclusion that was not trained counts as 1, quantities of which no range is known as 0.
+        """
+        total = 0.0 if kind is None or self.kinds is None or kind in self.kinds else 1.0
+        for key, value in values.items():
+            if key in self.ranges:
+                low, high = self.ranges[key]
+                size = max(abs(low), abs(high))
+                width = high - low if high - low > _NARROW * size else size
+                total += (max(_excess(_ALL[key], low, high, value), 0.0) / width) ** 2 if width else 0.0
+        return math.sqrt(total)
+
     def rows(self) -> list[tuple[str, str]]:
         """The trained ranges as text: name, range."""
         rows = []
@@ -138,6 +157,7 @@ class Domain(BaseModel):
             quantity = _ALL.get(key)
             if quantity is not None:
                 rows.append((f"trained {quantity.name}", _range(low, high, quantity)))
+        rows += [(f"trained {_ALL[key].name}", "any") for key in self.proportional if key in _ALL]
         return [*rows, ("trained inclusions", ", ".join(self.kinds or ["not known"]))]
 
     @classmethod
@@ -153,7 +173,10 @@ class Domain(BaseModel):
         kinds = None
         if first is not None and all(domain.kinds is not None for domain in domains):
             kinds = tuple(kind for kind in first if all(kind in (d.kinds or ()) for d in domains))
-        return cls(ranges=ranges, kinds=kinds, law=domains[0].law)
+        proportional = tuple(
+            key for key in domains[0].proportional if all(key in d.proportional for d in domains)
+        )
+        return cls(ranges=ranges, kinds=kinds, law=domains[0].law, proportional=proportional)
 
     @classmethod
     def from_dict(cls, values: Any, where: str) -> Domain:
@@ -162,6 +185,14 @@ class Domain(BaseModel):
             return cls.model_validate(values)
         except ValidationError as error:
             raise InputError(f"{where}: domain: {first_fault(error)}") from None
+
+
+def _excess(quantity: Quantity, low: float, high: float, value: float) -> float:
+    """How far a value lies beyond the sides of its range that matter; 0 or less inside."""
+    slack = quantity.slack + _RELATIVE * max(abs(low), abs(high))
+    under = -math.inf if quantity.sides == "high" else low - value
+    over = -math.inf if quantity.sides == "low" else value - high
+    return max(under, over) - slack
 
 
 def _range(low: float, high: float, quantity: Quantity) -> str:
@@ -190,15 +221,18 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
     frames = store.frame_poke[rows]
     values: dict[str, list[float]] = {}
     kinds: set[str | None] = set()
+    interiors: dict[int, Interior] = {}
     for poke in np.unique(frames):
         mine = rows[frames == poke]
         depths, clocks = store.depth[mine], store.clocks(mine)
-        profile = store.profile[store.geometry[poke]]
+        geometry = int(store.geometry[poke])
+        if geometry not in interiors:
+            interiors[geometry] = interior_of(store, store.profile[geometry])
         ends = ((depths.min(), clocks.min(axis=0)), (depths.max(), clocks.max(axis=0)))
         for depth, clock in ends:
             found = poke_values(
                 store,
-                profile,
+                interiors[geometry],
                 start=store.path_start[poke],
                 direction=store.direction[poke],
                 depth=float(depth),
@@ -209,13 +243,37 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
                 values.setdefault(key, []).append(value)
         kinds.add(shape_kind(store, store.shapes[store.shape[poke]]))
     known = None if None in kinds else tuple(sorted(str(kind) for kind in kinds))
-    ranges = {key: (min(column), max(column)) for key, column in values.items()}
-    return Domain(ranges=ranges, kinds=known, law=store.law)
+    proportional = ("shear_modulus_kPa",) if store.scales_with_modulus else ()
+    ranges = {key: (min(column), max(column)) for key, column in values.items() if key not in proportional}
+    return Domain(ranges=ranges, kinds=known, law=store.law, proportional=proportional)
+
+
+class Interior(NamedTuple):
+    """What of an interior the quantities of a poke depend on.
+
+    soft: thickness of the soft tissue above the inclusion, or above the base, at each point (n,) [m]; width,
+    height: of the inclusion [mm].
+    """
+
+    soft: Floats
+    width: float
+    height: float
+
+
+def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
+    """profile: stiffness under each point as stored, shape (n, levels)."""
+    rigid = profile == RIGID
+    length, breadth, height = store.block_size
+    columns = rigid.any(axis=1)
+    soft = np.where(columns, rigid.argmax(axis=1), rigid.shape[1]) * (height / rigid.shape[1])
+    area = columns.sum() * length * breadth / len(store.points)
+    tall = (height - float(soft.min())) * 1e3 if columns.any() else 0.0
+    return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall)
 
 
 def poke_values(
     store: Store,
-    profile: NDArray[np.uint8],
+    interior: Interior,
     *,
     start: Floats,
     direction: Floats,
@@ -227,22 +285,18 @@ def poke_values(
 
     Parameters
     ----------
-    profile : stiffness under each point as stored, shape (n, levels).
+    interior : from `interior_of`.
     start, direction, depth, modulus, clock : of the poke, SI units, as in `learn.models.Pokes`.
     """
-    points, rigid = store.points, profile == RIGID
+    points = store.points
     length, width, height = store.block_size
     site = contact_site(store, start, direction)
-    level = height / rigid.shape[1]
-    soft = np.where(rigid.any(axis=1), rigid.argmax(axis=1), rigid.shape[1]) * level
     away = np.linalg.norm(points[:, :2] - site, axis=1)
     near = away <= max(store.rod_radius, float(away.min()))
-    cover = float(soft[near].min())
+    cover, level = float(interior.soft[near].min()), height / len(store.level_depth)
     cosine = min(1.0, float(-direction[2]))
     middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
     to_side = float((np.array([length, width]) / 2 - np.abs(site - middle)).min())
-    columns = rigid.any(axis=1)
-    area = columns.sum() * length * width / len(points)
     timed = {}
     if clock is not None and len(clock):
         timed = dict(zip(CLOCK_QUANTITIES, (clock * np.array([1.0, 1e3, 1e3])).tolist(), strict=True))
@@ -258,8 +312,8 @@ def poke_values(
         "block_y_mm": width * 1e3,
         "block_z_mm": height * 1e3,
         "site_to_side_mm": to_side * 1e3,
-        "inclusion_width_mm": 2e3 * math.sqrt(area / math.pi),
-        "inclusion_height_mm": (height - float(soft.min())) * 1e3 if columns.any() else 0.0,
+        "inclusion_width_mm": interior.width,
+        "inclusion_height_mm": interior.height,
         **timed,
     }
 

@@ -88,6 +88,11 @@ def check_attributes(location: str, attributes: dict[str, Any]) -> None:
         value = attributes[name]
         if not isinstance(value, list) or not value or not all(isinstance(item, str) for item in value):
             raise InputError(f"{location}: attribute {name}: expected a list of names, got {value!r}"[:300])
+    if type(attributes.get("scales_with_modulus", False)) is not bool:
+        raise InputError(
+            f"{location}: attribute scales_with_modulus: expected true or false, got "
+            f"{attributes['scales_with_modulus']!r}"[:300]
+        )
     if type(attributes["pokes"]) is not int:
         raise InputError(
             f"{location}: attribute pokes: expected a whole number, got {attributes['pokes']!r}"[:300]

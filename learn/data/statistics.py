@@ -9,6 +9,7 @@ from typing import Any
 import torch
 
 from learn.data.loaders import Batch
+from learn.data.store import Store
 from learn.errors import InputError
 
 
@@ -23,7 +24,8 @@ class Statistics:
     depth_mean, depth_max : of the depth [m].
     log_force_mean, log_force_sd : of ln(force / (shear modulus x rod radius x depth)).
     force_rms : root mean square of the force [N].
-    log_modulus_mean : mean of ln(modulus / Pa).
+    log_modulus_mean : mean of ln(modulus / Pa); None where pokes at all moduli move alike, with forces in
+        proportion (`Store.scales_with_modulus`).
     log_time_mean, log_speed_mean : of ln(time since contact / s) and ln(speed of approach / (m/s)); None
         where the dataset has no time.
     """
@@ -35,7 +37,7 @@ class Statistics:
     log_force_mean: float
     log_force_sd: float
     force_rms: float
-    log_modulus_mean: float
+    log_modulus_mean: float | None
     log_time_mean: float | None = None
     log_speed_mean: float | None = None
 
@@ -43,8 +45,8 @@ class Statistics:
         return {name: value for name, value in asdict(self).items() if value is not None}
 
 
-def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
-    """One pass over the training part. rod_radius [m]. InputError for a force of zero or less."""
+def statistics(batches: Iterable[Batch], store: Store) -> Statistics:
+    """One pass over a training part of the store. InputError for a force of zero or less."""
     squares = 0.0
     points = 0
     depth, force, modulus, clock = [], [], [], []
@@ -60,7 +62,7 @@ def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
     d, f, g = torch.cat(depth), torch.cat(force), torch.cat(modulus)
     if not bool((f > 0).all()):
         raise InputError("a training frame has a rod force of zero")
-    scaled = torch.log(f / (g * rod_radius * d))
+    scaled = torch.log(f / (g * store.rod_radius * d))
     times = torch.cat(clock)
     timed = {}
     if times.shape[1]:
@@ -76,6 +78,6 @@ def statistics(batches: Iterable[Batch], rod_radius: float) -> Statistics:
         log_force_mean=float(scaled.mean()),
         log_force_sd=float(scaled.std(unbiased=False)),
         force_rms=float(f.square().mean().sqrt()),
-        log_modulus_mean=float(torch.log(g).mean()),
+        log_modulus_mean=None if store.scales_with_modulus else float(torch.log(g).mean()),
         **timed,
     )

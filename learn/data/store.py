@@ -129,6 +129,11 @@ class Store:
         return str(self.attributes["model"])
 
     @property
+    def scales_with_modulus(self) -> bool:
+        """Pokes at all material levels move alike, with forces in proportion to the shear modulus."""
+        return self.attributes.get("scales_with_modulus") is True
+
+    @property
     def shapes(self) -> list[str]:
         return [str(name) for name in self.attributes["shapes"]]
 

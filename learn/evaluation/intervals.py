@@ -19,6 +19,7 @@ Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -39,6 +40,9 @@ _LEAST_MM = 1e-4
 LEVEL = 0.9
 LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
 LEAST_FOLDS = 3
+# Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
+# known to a factor of e^FORCE_UNKNOWN, by which a guess by modulus, radius and depth is off at 90 %.
+LENGTH, FORCE_UNKNOWN = 0.5, 1.0
 
 
 @dataclass(frozen=True)
@@ -63,15 +67,22 @@ class Intervals:
     force_scale: float
     force: float
 
-    def radius_mm(self, predictions: Predictions) -> Floats:
-        """Radius of the interval at each point of each frame [mm], (f, n)."""
-        return np.asarray(
-            np.array(self.factors)[_ring(predictions)] * _scale_mm(predictions, np.array(self.scale))
-        )
+    def radius_mm(self, predictions: Predictions, *, distance: float = 0.0) -> Floats:
+        """Radius of the interval at each point of each frame [mm], (f, n).
 
-    def force_log(self, predictions: Predictions) -> Floats:
-        """The true force lies within predicted e^-x and predicted e^x, (f,)."""
-        return np.asarray(self.force * np.hypot(self.force_scale, predictions.force_spread))
+        distance: how far the pokes are outside what was trained (`learn.validity.Domain.distance`); far
+        outside the radius is as large as the predicted displacement itself.
+        """
+        radius = np.array(self.factors)[_ring(predictions)] * _scale_mm(predictions, np.array(self.scale))
+        if distance > 0.0:
+            size = 1e3 * np.linalg.norm(predictions.predicted, axis=2)
+            radius = np.hypot(radius, math.sqrt(_unknown(distance)) * size)
+        return np.asarray(radius)
+
+    def force_log(self, predictions: Predictions, *, distance: float = 0.0) -> Floats:
+        """The true force lies within predicted e^-x and predicted e^x, (f,); distance: as above."""
+        inside = self.force * np.hypot(self.force_scale, predictions.force_spread)
+        return np.asarray(np.hypot(inside, math.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -154,6 +165,15 @@ def rank_correlation(intervals: Intervals, predictions: Predictions) -> float:
     radius = intervals.radius_mm(predictions).reshape(-1).argsort().argsort()
     error = predictions.distance_mm.reshape(-1).argsort().argsort()
     return float(np.corrcoef(radius, error)[0, 1])
+
+
+def _unknown(distance: float) -> float:
+    """Share of what is not known of an answer outside the training, beside an answer of nothing known.
+
+    1 - exp(-(d / LENGTH)^2): the variance of a Gaussian process with a squared exponential covariance goes
+    to its prior in this way with the distance from its data (Rasmussen and Williams 2006, eqs 2.26, 4.9).
+    """
+    return -math.expm1(-((distance / LENGTH) ** 2))
 
 
 def _ring(predictions: Predictions) -> NDArray[np.int64]:

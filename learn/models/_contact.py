@@ -17,12 +17,17 @@ from typing import Any, NamedTuple
 import torch
 from torch import Tensor
 
+from learn.models.base import Pokes, Scene
+
 RINGS = torch.linspace(0, 1, 10)  # centres of bumps in log(1 + distance / 2 mm), from 0 to 40 mm
 WIDTHS = (5e-3, 12e-3, 25e-3)  # m; neighbourhoods of the contact
 N_POINT = 10 + len(RINGS) + 12
-N_POKE = 5
+N_POKE = 4
 
 
+# At first contact displacement and force over depth tend to a limit, and so does what the network is told:
+# depths below the first count as that, and the second is added under the logarithm.
+TOUCH, SHALLOW = 1e-3, 0.05
 N_GATES = 2
 # distances from the axis at rest, where it begins to fade and has faded:
 STICK = (1.0, 1.8)  # moving with the rod
@@ -44,16 +49,18 @@ class Contact:
 
     r: from first contact to the points (n, b, 3); unit: r / sqrt(|r|^2 + 1); far: 1 / sqrt(|r|^2 + 1).
     push: direction (b, 3). point: invariants (n, b, N_POINT); poke: invariants (b, N_POKE).
-    near: one weight a point for each of WIDTHS, summing to 1 over the points, (w, n, b).
+    near: one weight a point for each of WIDTHS, summing to 1 over the points, (w, n, b); a point weighs as
+    the area that it stands for.
     """
 
-    def __init__(
-        self, points: Tensor, normals: Tensor, pokes: tuple[Tensor, ...], radius: float, edge: float
-    ) -> None:
-        start, direction, depth, modulus = pokes
+    def __init__(self, scene: Scene, pokes: Pokes) -> None:
+        radius = scene.rod_radius
         # differences in float64: a scene far from the origin loses nothing
         self.exact = Exact(
-            (points[:, None] - start[None]) / radius, direction, normals[:, None], depth / radius
+            (scene.points[:, None] - pokes.start[None]) / radius,
+            pokes.direction,
+            scene.normals[:, None],
+            (pokes.depth / radius).clamp(min=TOUCH),
         )
         self.r, self.push, self.normal, self.depth = (t.float() for t in self.exact)
         square = self.r.square().sum(dim=2)
@@ -61,8 +68,11 @@ class Contact:
         self.unit = self.r * self.far[..., None]
         distance = torch.sqrt(square + 1e-6)
         millimetres = radius * 1e3
-        self.near = torch.stack([torch.softmax(-0.5 * square * (radius / w) ** 2, dim=0) for w in WIDTHS])
-        self.edge = edge / radius
+        size = torch.log(scene.area).float()[:, None]
+        self.near = torch.stack(
+            [torch.softmax(size - 0.5 * square * (radius / w) ** 2, dim=0) for w in WIDTHS]
+        )
+        self.edge = scene.rod_edge / radius
         self.along = along = (self.r * self.push).sum(dim=2)
         off = self.r - along[..., None] * self.push
         self.aside = aside = torch.sqrt(off.square().sum(dim=2) + 1e-6)
@@ -71,7 +81,7 @@ class Contact:
         lift = (self.unit * self.normal).sum(dim=2)
         lean = (self.push * self.normal).sum(dim=2).expand_as(lift)
         turn = (self.unit * self.push).sum(dim=2)
-        deep = self.depth.expand_as(lift)
+        deep, log_deep = self.depth.expand_as(lift), torch.log(self.depth + SHALLOW)
         ring = torch.log1p(distance * (millimetres / 2)) / torch.log1p(torch.tensor(20.0)) * 1.0
         bumps = torch.exp(-0.5 * ((ring[..., None] - RINGS.to(ring.device)) * len(RINGS)).square())
         beside = torch.stack(
@@ -97,7 +107,7 @@ class Contact:
                 turn,
                 turn - lift * lean,
                 deep / 4,
-                torch.log(deep),
+                log_deep.expand_as(lift),
                 self.far * deep,
                 ((self.unit - lift[..., None] * self.normal) * self.push).sum(dim=2) * self.far,
             ],
@@ -105,11 +115,9 @@ class Contact:
         )
         self.point = torch.cat([plain, bumps, beside], dim=2)
         # the surface's normal where the rod touches
-        here = torch.einsum("nb,nk->bk", self.near[0], normals.float())
+        here = torch.einsum("nb,nk->bk", self.near[0], scene.normals.float())
         facing = (here * self.push).sum(dim=1)
-        self.poke = torch.stack(
-            [self.depth / 4, torch.log(self.depth), facing, facing * self.depth / 4, modulus.float()], dim=1
-        )
+        self.poke = torch.stack([self.depth / 4, log_deep, facing, facing * self.depth / 4], dim=1)
         self.here = here
 
     @property
@@ -175,11 +183,14 @@ def distance(ahead: Any, aside: Any, edge: float, xp: Any = torch) -> tuple[Any,
 
 
 def travel(place: Place, xp: Any = torch) -> Any:
-    """How far the rod goes on after it meets a point that stays at rest, 0 where it does not (n, b)."""
+    """How far the rod goes on after it meets a point that stays at rest, 0 where it does not (n, b).
+
+    Not farther than it goes at all: a point beside a leaning rod may lie behind its tip from the start.
+    """
     edge = place.edge
     over = xp.clip(place.aside - (1 - edge), 0.0, edge)
     rounded = edge - xp.sqrt(xp.clip(edge * edge - over * over, 1e-12, None))
-    return xp.clip(place.depth - place.along - rounded, 0.0, None)
+    return xp.minimum(xp.clip(place.depth - place.along - rounded, 0.0, None), place.depth)
 
 
 def held(place: Place, smooth: Any, learned: Any, gates: Any, xp: Any = torch) -> Any:
@@ -198,7 +209,8 @@ def held(place: Place, smooth: Any, learned: Any, gates: Any, xp: Any = torch) -
     off = now - along[..., None] * push
     aside = xp.sqrt((off * off).sum(-1) + 1e-12)
     gap, of_a, of_s = distance(along - place.depth, aside, place.edge, xp)
-    step = land * _REACH * xp.tanh(gap / _REACH) / place.depth
+    reach = xp.clip(place.depth, None, _REACH)  # no farther than the rod has gone
+    step = land * reach * xp.tanh(gap / reach) / place.depth
     return u - step[..., None] * (of_a[..., None] * push + (of_s / aside)[..., None] * off)
 
 

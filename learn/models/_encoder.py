@@ -91,15 +91,18 @@ class Stencil:
         return Stencil(self.mean.to(device), self.slope.to(device))
 
 
-def stencil(points: NDArray[np.float64], radius: float) -> Stencil:
-    """The stencil of a cloud (n, 3) [m], neighbours nearer than radius [m], each point its own as well."""
+def stencil(points: NDArray[np.float64], radius: float, area: NDArray[np.float64]) -> Stencil:
+    """The stencil of a cloud (n, 3) [m], neighbours nearer than radius [m], each point its own as well.
+
+    Points weigh as the area (n,) that they stand for.
+    """
     n = len(points)
     pairs = KDTree(points).query_pairs(radius, output_type="ndarray")
     own = np.arange(n)
     row = np.concatenate([pairs[:, 0], pairs[:, 1], own])
     column = np.concatenate([pairs[:, 1], pairs[:, 0], own])
     offset = (points[column] - points[row]) / radius
-    weight = (1 - np.minimum((offset**2).sum(axis=1), 1)) ** 2
+    weight = area[column] * (1 - np.minimum((offset**2).sum(axis=1), 1)) ** 2
     weight /= np.bincount(row, weight, minlength=n)[row]
     slopes = [(row + k * n, column, weight * offset[:, k]) for k in range(3)]
     slope_row, slope_column, slope_weight = (np.concatenate(part) for part in zip(*slopes, strict=True))
@@ -168,8 +171,8 @@ class Encoded:
 
 def stencils_of(scene: Scene) -> tuple[Stencil, ...]:
     """The cloud's neighbourhoods; they depend on its points alone."""
-    points = scene.points.cpu().numpy()
-    return tuple(stencil(points, radius).to(scene.points.device) for radius in RADII)
+    points, area = scene.points.cpu().numpy(), scene.area.cpu().numpy()
+    return tuple(stencil(points, radius, area).to(scene.points.device) for radius in RADII)
 
 
 class GeometryEncoder(nn.Module):

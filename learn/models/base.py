@@ -24,7 +24,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from learn.data.clouds import nearest_columns
+from learn.data.clouds import areas, nearest_columns
 from learn.data.loaders import Batch, no_clock
 from learn.data.statistics import Statistics
 from learn.data.store import Store, rigid_masks
@@ -39,6 +39,7 @@ class Scene:
     ----------
     points : rest positions [m], shape (n, 3), float64.
     normals : outward unit normals, shape (n, 3), float64.
+    area : that each point stands for, in any unit, shape (n,), float64: sums over points are integrals.
     profile : stiffness codes under each point from 0 to 1 (rigid), top level first, shape (g, n, levels).
     rigid : 1 where a level is rigid, one entry a distinct inclusion, shape (k, n, levels).
     rigid_index : inclusion of each interior, shape (g,).
@@ -48,6 +49,7 @@ class Scene:
 
     points: Tensor
     normals: Tensor
+    area: Tensor
     profile: Tensor
     rigid: Tensor
     rigid_index: Tensor
@@ -77,6 +79,7 @@ class Scene:
             self,
             points=self.points[some],
             normals=self.normals[some],
+            area=torch.from_numpy(areas(self.points[some].cpu().numpy())).to(self.points.device),
             profile=self.profile[:, some],
             rigid=self.rigid[:, some],
         )
@@ -96,6 +99,7 @@ def make_scene(
     return Scene(
         points=torch.from_numpy(np.ascontiguousarray(points)),
         normals=torch.from_numpy(np.ascontiguousarray(normals)),
+        area=torch.from_numpy(areas(points)),
         profile=torch.from_numpy(profile).float() / 255,
         rigid=torch.from_numpy(masks).float(),
         rigid_index=torch.from_numpy(index),

@@ -6,7 +6,8 @@ with the scene (surface normal, direction from the contact, direction of the pus
 messages). So a rotated, mirrored or translated scene gives the rotated, mirrored or translated displacement,
 and the same force, to rounding. Interior and neighbourhoods are encoded once a geometry (`encode`), a poke
 costs `decode` alone. The displacement is predicted in units of the depth, the force in units of shear modulus
-times rod radius times depth: without gravity the force of one elastic law is proportional to its moduli.
+times rod radius times depth: without gravity the force of one elastic law is proportional to its moduli, and
+the modulus is no input of the networks where the dataset says that all its levels are of such a law.
 Where the dataset has time, the time since contact and the rod's speeds are invariants of the poke as well.
 """
 
@@ -33,8 +34,8 @@ N_CLOCK = 3  # invariants of a poke with time
 SCALES = ((0, 1), (0,))  # of the encoder's radii, those of each round of messages
 
 
-# version 1 did not know the indenter's surface
-@register_model("invariant-gnn", version=2)
+# version 1 did not know the indenter's surface; 2 counted points, not area, and knew a modulus of no effect
+@register_model("invariant-gnn", version=3)
 class InvariantGnn(Model):
     """The surrogate.
 
@@ -65,7 +66,8 @@ class InvariantGnn(Model):
         code, vectors = self.encoder.n_code, self.encoder.n_vectors
         self.look = nn.Linear(code, SEEN, bias=False)
         seen = 3 * SEEN
-        about = _contact.N_POKE + 3 * seen + (N_CLOCK if self.takes_clock else 0)
+        about = _contact.N_POKE + 3 * seen + (self.log_modulus is not None)
+        about += N_CLOCK if self.takes_clock else 0
         self.from_code = nn.Linear(code, hidden)
         self.from_poke = nn.Linear(about, hidden, bias=False)
         self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * vectors, hidden, bias=False)
@@ -99,7 +101,7 @@ class InvariantGnn(Model):
         samples = (
             (contact, _soft(encoded, contact, scene.rigid_index[batch.geometry]), batch)
             for batch in batches
-            for contact in [self._contact(scene, pokes_of(batch))]
+            for contact in [Contact(scene, pokes_of(batch))]
         )
         self.prior.fit(samples)
 
@@ -107,10 +109,10 @@ class InvariantGnn(Model):
         """Displacement and force of b pokes."""
         scene = encoded.scene
         inclusion = scene.rigid_index[pokes.geometry]
-        contact = self._contact(scene, pokes)
+        contact = Contact(scene, pokes)
         vectors = encoded.vectors.index_select(2, inclusion)
         scalars, toward = contact.seen(self.look(encoded.code).index_select(1, inclusion))
-        about = torch.cat([contact.poke, scalars, *self._of_clock(pokes)], dim=1)
+        about = torch.cat([contact.poke, scalars, *self._of_modulus(pokes), *self._of_clock(pokes)], dim=1)
         unit = contact.unit.permute(2, 0, 1)[..., None]
         push = contact.push.T[:, None, :, None]
         toward = torch.einsum("nbk,kbc->nbc", contact.unit, toward)
@@ -133,11 +135,18 @@ class InvariantGnn(Model):
 
         pooled = [torch.einsum("nb,nbc->bc", contact.near[k], out) for k in (0, 1)]
         kappa = self.force_head(torch.cat([*pooled, about], dim=1))[:, 0]
-        unit_force = (pokes.modulus * pokes.depth).float() * (scene.rod_radius * self.force_unit)
+        depth = pokes.depth.clamp(min=0.0)  # a rod that is not in touch does nothing
+        unit_force = (pokes.modulus * depth).float() * (scene.rod_radius * self.force_unit)
         return Response(
-            displacement=(u * pokes.depth.float()[None, :, None]).permute(1, 0, 2),
+            displacement=(u * depth.float()[None, :, None]).permute(1, 0, 2),
             force=unit_force * softplus(kappa),
         )
+
+    def _of_modulus(self, pokes: Pokes) -> list[Tensor]:
+        """The modulus' logarithm, where more than the force's size depends on it."""
+        if self.log_modulus is None:
+            return []
+        return [(torch.log(pokes.modulus) - self.log_modulus).float()[:, None]]
 
     def _of_clock(self, pokes: Pokes) -> list[Tensor]:
         """Invariants of time: its logarithm, that of the speed of approach, and speed over that."""
@@ -151,13 +160,8 @@ class InvariantGnn(Model):
         parts = [torch.log(time) - self.log_time, torch.log(approach) - self.log_speed, speed / approach]
         return [torch.stack(parts, dim=1).float()]
 
-    def _contact(self, scene: Scene, pokes: Pokes) -> Contact:
-        modulus = torch.log(pokes.modulus) - self.log_modulus
-        rod = (pokes.start, pokes.direction, pokes.depth, modulus)
-        return Contact(scene.points, scene.normals, rod, scene.rod_radius, scene.rod_edge)
 
-
-@register_model("invariant-gnn-small", version=2)
+@register_model("invariant-gnn-small", version=3)
 def small(statistics: Statistics) -> InvariantGnn:
     """Half as wide: faster, at a larger error."""
     return InvariantGnn(statistics, hidden=32, messages=8, directions=4)

@@ -45,6 +45,7 @@ class SinglePoke:
         self._matrices = tuple((_matrix(s.mean), _matrix(s.slope)) for s in encoded.stencils)
         self._radius, self._edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
         self._log_modulus, self._force_unit = model.log_modulus, model.force_unit
+        self._log_area = torch.log(scene.area).float().numpy()
         self._points = np.ascontiguousarray((scene.points / self._radius).numpy().T)
         self._normals64 = np.ascontiguousarray(scene.normals.numpy().T)
         self._normals = self._normals64.astype(np.float32)
@@ -94,19 +95,20 @@ class SinglePoke:
         start: of the rod's tip at first contact (3,) [m]; direction: unit (3,), both float64; depth [m];
         modulus: small-strain shear modulus [Pa].
         """
-        deep = depth / self._radius
+        deep = max(depth / self._radius, _contact.TOUCH)
         r64 = self._points - (start / self._radius)[:, None]
         r, push = r64.astype(np.float32), direction.astype(np.float32)
         square = (r * r).sum(axis=0)
-        near = np.exp(self._widths * (square - square.min()))
+        near = np.exp(self._widths * (square - square.min()) + self._log_area)
         near /= near.sum(axis=1, keepdims=True)  # (w, n)
         here = self._normals @ near[0]
-        about, toward = self._about(r, near, here, push, deep, math.log(modulus) - self._log_modulus)
+        log_deep = math.log(deep + _contact.SHALLOW)
+        about, toward = self._about(r, near, here, push, (deep, log_deep, modulus))
 
         unit, along, aside = self._fill(r, square, push, deep)
         k = self._own
         self._first_here[k : k + 3] = toward @ self._toward
-        of_depth = deep / 4 * self._of_depth[0] + math.log(deep) * self._of_depth[1]
+        of_depth = deep / 4 * self._of_depth[0] + log_deep * self._of_depth[1]
         self._first_here[k + 3] = self._of_poke @ about + of_depth
         h = silu(torch.addmm(self._code, self._rows_there.T, self._first), inplace=True)
         h = silu(self._enter(h), inplace=True)
@@ -138,21 +140,28 @@ class SinglePoke:
         weight, bias, last, last_bias = self._head
         hidden = weight @ np.concatenate([pooled, about]) + bias
         kappa = float(last @ (hidden / (1 + np.exp(-hidden))) + last_bias[0])
+        depth = max(depth, 0.0)
         force = modulus * depth * self._radius * self._force_unit * float(np.logaddexp(0, kappa))
         return np.ascontiguousarray((u * np.float32(depth)).T), force
 
     def _about(
-        self, r: Floats, near: Floats, here: Floats, push: Floats, deep: float, stiff: float
+        self, r: Floats, near: Floats, here: Floats, push: Floats, poke: tuple[float, float, float]
     ) -> tuple[Floats, Floats]:
-        """Invariants of the poke, and the vectors to where the code is large (3, c), as `Contact.seen`."""
+        """Invariants of the poke, and the vectors to where the code is large (3, c), as `Contact.seen`.
+
+        poke: depth over radius, its logarithm as `Contact` has it, modulus [Pa].
+        """
+        deep, log_deep, modulus = poke
         facing = float(here @ push)
-        of_poke = np.array([deep / 4, math.log(deep), facing, facing * deep / 4, stiff], dtype=np.float32)
+        of_poke = np.array([deep / 4, log_deep, facing, facing * deep / 4], dtype=np.float32)
+        known = [] if self._log_modulus is None else [[math.log(modulus) - self._log_modulus]]
         means = near @ self._looked
         moments = ((self._scales * near[:, None] * r).reshape(-1, r.shape[1]) @ self._looked).reshape(
             len(WIDTHS), 3, -1
         )
         toward = moments.transpose(1, 0, 2).reshape(3, -1)
-        return np.concatenate([of_poke, means.reshape(-1), push @ toward, here @ toward]), toward
+        parts = [of_poke, means.reshape(-1), push @ toward, here @ toward, *known]
+        return np.concatenate(parts, dtype=np.float32), toward
 
     def _fill(self, r: Floats, square: Floats, push: Floats, deep: float) -> tuple[Floats, Floats, Floats]:
         """The features of all points, a row each; direction from the contact, distances along and aside."""

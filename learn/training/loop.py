@@ -87,7 +87,7 @@ class Trainer:
             else None
         )
         if kept is None:
-            self.statistics = statistics(self._ordered(), store.rod_radius)
+            self.statistics = statistics(self._ordered(), store)
         else:
             self.statistics = Statistics(**kept["statistics"])
         torch.manual_seed(recipe.seed)

@@ -73,7 +73,7 @@ class _Statistics(BaseModel):
     log_force_mean: _Number
     log_force_sd: _Number
     force_rms: _Number
-    log_modulus_mean: _Number
+    log_modulus_mean: _Number | None = None
     log_time_mean: _Number | None = None
     log_speed_mean: _Number | None = None
 

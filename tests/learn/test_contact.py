@@ -7,6 +7,7 @@ import pytest
 import torch
 from scipy.spatial import KDTree
 
+from learn.models import Pokes, make_scene
 from learn.models import _contact as indenter
 from learn.models._contact import Contact
 
@@ -45,11 +46,23 @@ def _contact(points: torch.Tensor, depth: float = 4e-3) -> Contact:
     push = torch.tensor([0.6, 0.0, -0.8], dtype=torch.float64)
     x, y = torch.tensor([0.8, 0.0, 0.6], dtype=torch.float64), torch.tensor([0.0, 1, 0], dtype=torch.float64)
     place = RADIUS * (points[:, :1] * x + points[:, 1:2] * y + points[:, 2:] * push)
-    normals = torch.tensor([0.0, 0, 1], dtype=torch.float64).expand_as(place)
     start = torch.tensor([0.3, -0.2, 1.0], dtype=torch.float64)
-    depths = torch.tensor([depth], dtype=torch.float64)
-    poke = (start[None], push[None], depths, torch.zeros(1, dtype=torch.float64))
-    return Contact(start + place, normals, poke, RADIUS, EDGE)
+    scene = make_scene(
+        points=(start + place).numpy(),
+        normals=np.tile([0.0, 0.0, 1.0], (len(place), 1)),
+        profile=np.zeros((1, len(place), 16), dtype=np.uint8),
+        level_depth=np.linspace(0, 0.03, 16),
+        rod_radius=RADIUS,
+        rod_edge=EDGE,
+    )
+    poke = Pokes(
+        geometry=torch.zeros(1, dtype=torch.int64),
+        start=start[None],
+        direction=push[None],
+        depth=torch.tensor([depth], dtype=torch.float64),
+        modulus=torch.ones(1, dtype=torch.float64),
+    )
+    return Contact(scene, poke)
 
 
 def test_a_point_under_the_end_moves_with_the_rod_from_where_they_met() -> None:

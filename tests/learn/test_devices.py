@@ -55,7 +55,7 @@ def one_of(batch: Batch) -> Batch:
 
 
 def sizes_of(store: Store) -> Statistics:
-    return statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store.rod_radius)
+    return statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store)
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -13,7 +13,17 @@ from torch import Tensor
 from learn.data import MemoryDataset, Statistics, Store, open_store, statistics
 from learn.errors import InputError
 from learn.evaluation import predict_part, summarise
-from learn.models import InvariantGnn, Model, Pokes, Scene, make_model, make_scene, pokes_of, scene_of
+from learn.models import (
+    InvariantGnn,
+    Model,
+    Pokes,
+    Scene,
+    make_model,
+    make_scene,
+    pokes_of,
+    scene_of,
+    scene_on,
+)
 from learn.models._encoder import stencil
 from learn.models.cegnn import Cegnn, _neighbours
 from learn.models.single_poke import SinglePoke
@@ -32,7 +42,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
 
 @pytest.fixture(scope="module")
 def sizes(store: Store) -> Statistics:
-    return statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store.rod_radius)
+    return statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store)
 
 
 @pytest.fixture(scope="module")
@@ -199,12 +209,73 @@ def test_force_is_proportional_to_the_modulus_but_for_what_is_learned_of_it(
     assert bool((one.force > 0).all())
 
 
+def test_where_levels_scale_with_the_modulus_the_displacement_does_not_depend_on_it(
+    store: Store, pokes: Pokes
+) -> None:
+    """Of a law without gravity the answer is known: nothing is left to learn."""
+    alike = dataclasses.replace(store, attributes={**store.attributes, "scales_with_modulus": True})
+    sizes = statistics(MemoryDataset(alike, np.arange(alike.frames)).batches(64), alike)
+    model, scene = _model("invariant-gnn", sizes), scene_of(alike)
+    with torch.no_grad():
+        one = model(scene, pokes)
+        two = model(scene, dataclasses.replace(pokes, modulus=pokes.modulus * 7))
+    assert torch.equal(one.displacement, two.displacement)
+    torch.testing.assert_close(two.force, 7 * one.force, rtol=1e-6, atol=0)
+
+
+def test_force_and_displacement_go_to_zero_in_proportion_at_first_contact(
+    store: Store, sizes: Statistics, pokes: Pokes
+) -> None:
+    """A contact has a stiffness, and a rod that is not in touch does nothing."""
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    assert isinstance(model, InvariantGnn)
+    with torch.no_grad():
+        encoded = model.encode(scene, model.prepare(scene))
+    one = SinglePoke(model, encoded, int(scene.rigid_index[pokes.geometry[0]]))
+    rod = pokes.start[0].numpy(), pokes.direction[0].numpy()
+    found = [one(*rod, depth, 2e4) for depth in (1e-6, 2e-6, 1e-5)]
+    stiffness = [force / depth for (_, force), depth in zip(found, (1e-6, 2e-6, 1e-5), strict=True)]
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=0.02)
+    assert stiffness[0] == pytest.approx(stiffness[2], rel=0.2)
+    shares = [np.abs(u).max() / depth for (u, _), depth in zip(found, (1e-6, 2e-6, 1e-5), strict=True)]
+    assert shares[0] == pytest.approx(shares[1], rel=0.1)
+    for depth in (0.0, -1e-3):
+        u, force = one(*rod, depth, 2e4)
+        assert force == 0.0
+        assert not u.any()
+        there = dataclasses.replace(pokes, depth=torch.full_like(pokes.depth, depth))
+        with torch.no_grad():
+            batch = model.decode(encoded, there)
+        assert not batch.displacement.any()
+        assert not batch.force.any()
+
+
+def test_more_points_near_the_rod_do_not_change_the_answer(
+    store: Store, sizes: Statistics, pokes: Pokes
+) -> None:
+    """Points weigh as the area that they stand for, as a surface mesh that is finer somewhere wants it."""
+    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    some = np.random.default_rng(0).uniform(-8e-3, 8e-3, (600, 2)) + pokes.start[0, :2].numpy()
+    points = np.concatenate([store.points, np.column_stack([some, np.full(600, store.points[0, 2])])])
+    wrong = {}
+    first = Pokes(**{k: v[:1] for k, v in vars(pokes).items()})
+    with torch.no_grad():
+        whole = model(scene, first)
+        for weighted in (True, False):
+            cloud = scene_on(store, points)
+            if not weighted:
+                cloud = dataclasses.replace(cloud, area=torch.ones_like(cloud.area))
+            apart = model(cloud, first).displacement[:, :1024] - whole.displacement
+            wrong[weighted] = float(apart.norm(dim=2).mean() / whole.displacement.norm(dim=2).mean())
+    assert wrong[True] < 0.4 * wrong[False]
+
+
 def test_stencil_is_a_mean_and_a_slope() -> None:
     """The mean of a constant is the constant, the slope of it zero where the cloud is symmetric; of a linear
     function the slope points uphill."""
     x = np.arange(9.0)
     points = np.stack([*(g.reshape(-1) for g in np.meshgrid(x, x)), np.zeros(81)], axis=1)
-    s = stencil(points, 2.1)
+    s = stencil(points, 2.1, np.ones(81))
     one = torch.ones(81, 1)
     torch.testing.assert_close(s.mean(one), one)
     slope = s.slope(torch.from_numpy(points[:, :1]).float()).reshape(3, 81)
@@ -216,7 +287,7 @@ def test_stencil_is_a_mean_and_a_slope() -> None:
 
 def test_gradients_of_the_sparse_product_are_right() -> None:
     points = np.random.default_rng(0).uniform(size=(12, 3))
-    s = stencil(points, 0.6)
+    s = stencil(points, 0.6, np.ones(12))
     values = torch.randn(12, 2, requires_grad=True)
     weight = torch.randn(36, 2)
     (s.slope(values) * weight).sum().backward()

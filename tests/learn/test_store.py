@@ -215,7 +215,7 @@ def test_too_few_shapes_are_an_error_that_says_what_to_do(tmp_path: Path) -> Non
 def test_statistics_see_the_training_part_alone(whole: Path) -> None:
     store = open_store(whole)
     split = split_pokes(store, fold=1)
-    found = statistics(MemoryDataset(store, split.train).batches(5), store.rod_radius)
+    found = statistics(MemoryDataset(store, split.train).batches(5), store)
     u = store.displacement(slice(0, store.frames)).astype(float)
     of = np.sqrt((u[split.train] ** 2).sum(axis=-1).mean())
     assert found.displacement == pytest.approx(of, rel=1e-6)

@@ -99,7 +99,7 @@ def test_a_dataset_without_time_is_as_before(tmp_path: Path) -> None:
     assert store.presses.all()
     data = MemoryDataset(store, np.arange(store.frames))
     assert data.__getitems__([0, 1]).clock.shape == (2, 0)
-    found = statistics(data.batches(16), store.rod_radius)
+    found = statistics(data.batches(16), store)
     assert not {"log_time_mean", "log_speed_mean"} & set(found.as_dict())
     model = make_model("invariant-gnn-small", found)
     assert not model.takes_clock

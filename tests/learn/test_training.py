@@ -113,7 +113,7 @@ def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) ->
     for name in ("best.pt", "last.pt"):
         content = load_checkpoint(tmp_path / "run" / name)
         save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
-    with pytest.raises(InputError, match="weights of version 1 of model invariant-gnn, this is version 2"):
+    with pytest.raises(InputError, match="weights of version 1 of model invariant-gnn, this is version 3"):
         load_run(tmp_path / "run")
     with pytest.raises(InputError, match="train again"):
         _train(folder, TINY, tmp_path / "run", resume=True)

@@ -1,13 +1,13 @@
-"""The far field as a spring: its force is its energy's slope, its parts make its stiffness."""
+"""The far field as a spring: its force is its energy's slope, and its stiffness is in what is factorised."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.sparse import bsr_matrix
 
-from tisim.linear.blocks import pattern_of
+from tisim.linear.blocks import Pattern, pattern_of
 from tisim.problems.indentation.far_field import FarField
 
 Array = NDArray[np.float64]
@@ -45,58 +45,35 @@ def test_force_is_the_slope_of_the_energy() -> None:
     assert (up - down) / (2 * step) == pytest.approx(float(np.vdot(force, way)), rel=1e-3)
 
 
-def test_pairs_and_the_rest_make_the_stiffness() -> None:
+def _dense(pattern: Pattern, blocks: Array) -> Array:
+    """The matrix of which the upper triangle is given."""
+    n = len(pattern.indptr) - 1
+    upper = bsr_matrix((blocks, pattern.indices, pattern.indptr), shape=(3 * n, 3 * n)).toarray()
+    triangle = np.triu(np.ones((n, n)), 1).repeat(3, axis=0).repeat(3, axis=1)
+    whole: Array = upper + (upper * triangle).T
+    return whole
+
+
+def test_the_factor_has_near_and_far_tissue_and_so_have_products() -> None:
     rng = np.random.default_rng(7)
     it, stiffness, rows = field(rng)
-    paired = np.zeros((5, 3, 5, 3))
-    for i, j, block in zip(it._i, it._j, it.paired, strict=True):
-        paired[j, :, i] = block.T
-        paired[i, :, j] = block
-    near = paired.reshape(15, 15)
-    out, v = np.zeros(3 * FREE_ROWS), rng.standard_normal(3 * FREE_ROWS)
-    it.add_unpaired(v, out)
+    conn = np.array([[k, k + 1] for k in range(NODES - 1)], dtype=np.int32)
+    pattern = pattern_of(conn, NODES, np.array([0, 1, 2], dtype=np.int32))
+    blocks = rng.standard_normal((pattern.n_blocks, 3, 3))
+    diagonal = pattern.indptr[:-1]
+    blocks[diagonal] += blocks[diagonal].transpose(0, 2, 1)
     at = (3 * rows[:, None] + np.arange(3)).ravel()
-    assert near @ v[at] + out[at] == pytest.approx(stiffness @ v[at], rel=1e-5)
-    others = np.setdiff1d(np.arange(3 * FREE_ROWS), at)
-    assert not out[others].any()
-    # neighbours along the chain are paired, others are not
-    assert {(int(i), int(j)) for i, j in zip(it._i, it._j, strict=True)} == {
-        *((k, k) for k in range(5)), *((k, k + 1) for k in range(4)),
-    }  # fmt: skip
+    expected = _dense(pattern, blocks)
+    expected[np.ix_(at, at)] += stiffness
+    assert _dense(it.factor_pattern, it.joined(blocks)) == pytest.approx(expected, rel=1e-6, abs=1e-6)
+    out, v = np.zeros(3 * FREE_ROWS), rng.standard_normal(3 * FREE_ROWS)
+    it.add_product(v, out)
+    assert _dense(pattern, blocks) @ v + out == pytest.approx(expected @ v, rel=1e-5)
 
 
-def test_the_factor_is_positive_where_distant_pairs_are_left_out() -> None:
-    """A sheet whose points all drag each other along: neighbours alone are indefinite; with a share of the
-    others on the diagonal they are positive, and the spectrum of one by the other is narrow."""
-    line = np.linspace(0.0, 1.0, 40)
-    conn = np.array([[k, k + 1] for k in range(39)], dtype=np.int32)
-    pattern = pattern_of(conn, 40, np.zeros(0, dtype=np.int32))
-    it = FarField(np.arange(40, dtype=np.int32), pattern)
-    away = np.abs(line[:, None] - line)
-    stiffness = np.kron(np.exp(-away / 0.1) + 0.1 * np.eye(40), np.eye(3))
-    it.set_stiffness(stiffness.astype(np.float32))
-    near = np.zeros((40, 3, 40, 3))
-    for i, j, block in zip(it._i, it._j, it.paired, strict=True):
-        near[j, :, i] = block.T
-        near[i, :, j] = block
-    spectrum = eigh(stiffness, near.reshape(120, 120), eigvals_only=True)
-    assert spectrum[0] > 0.05
-    assert spectrum[-1] < 1.6
-
-
-def test_the_factor_is_positive_whatever_is_left_out() -> None:
-    """A band of which the outer diagonals carry the balance, (1 + cos t)^2: three tenths of what is left out
-    do not make up for it, and the share grows until it does."""
-    conn = np.array([[k, k + 1] for k in range(39)], dtype=np.int32)
-    it = FarField(np.arange(40, dtype=np.int32), pattern_of(conn, 40, np.zeros(0, dtype=np.int32)))
-    band = sum(v * np.eye(40, k=k) for k, v in ((0, 1.51), (1, 1.0), (-1, 1.0), (2, 0.25), (-2, 0.25)))
-    stiffness = np.kron(band, np.eye(3))
-    it.set_stiffness(stiffness.astype(np.float32))
-    near = np.zeros((40, 3, 40, 3))
-    for i, j, block in zip(it._i, it._j, it.paired, strict=True):
-        near[j, :, i] = block.T
-        near[i, :, j] = block
-    assert np.linalg.eigvalsh(near.reshape(120, 120))[0] > 0.0
-    out, v = np.zeros(120), np.random.default_rng(8).standard_normal(120)
-    it.add_unpaired(v, out)
-    assert near.reshape(120, 120) @ v + out == pytest.approx(stiffness @ v, rel=1e-4, abs=1e-4)
+def test_the_factors_pattern_keeps_what_the_pattern_says_of_the_diagonal() -> None:
+    it, _, _ = field(np.random.default_rng(8))
+    whole = it.factor_pattern
+    assert np.array_equal(whole.indices[whole.indptr[:-1]], np.arange(FREE_ROWS))
+    row = np.repeat(np.arange(FREE_ROWS), np.diff(whole.indptr))
+    assert (np.diff(row * FREE_ROWS + whole.indices) > 0).all()

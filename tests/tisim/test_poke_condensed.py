@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -178,13 +179,14 @@ def test_a_near_part_that_fails_says_why(monkeypatch: pytest.MonkeyPatch, status
 
 
 def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    condensed = solve_poke(scene())
+    poke = replace(scene(), solver=tisim.Solver(tolerance=1e-4, max_iterations=40))
+    condensed = solve_poke(poke)
     monkeypatch.setattr(condensed_module, "REACH", -1.0)
-    whole = solve_poke(scene())
+    whole = solve_poke(poke)
     assert condensed.ok
     assert whole.ok
     size = np.linalg.norm(whole.rod_force, axis=1)
-    assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 2e-3 * size).all()
+    assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 5e-4 * size).all()
 
 
 def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -213,3 +215,17 @@ def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.Mon
     assert block.condensations == block.rounds + 1 > 2
     monkeypatch.setattr(CondensedBlock, "_sound", lambda _self, _x, _moved: (None, 0.0))
     assert block.solve(x, **OPTIONS).status is Status.INVERTED
+
+
+def test_nearly_incompressible_far_tissue_does_not_hold_steps_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is factorised has all of the far tissue's stiffness: no iteration more than on the whole block.
+
+    With pairs of neighbours alone, and a diagonal in place of the others, it looked unstable: 113 for 18.
+    """
+    poke = replace(
+        scene(0.0006),
+        material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=9e6),
+    )
+    condensed = solve_poke(poke).cost.newton_iterations
+    monkeypatch.setattr(condensed_module, "REACH", -1.0)
+    assert condensed <= 1.5 * solve_poke(poke).cost.newton_iterations

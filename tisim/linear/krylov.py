@@ -30,8 +30,15 @@ class FactorGMRES:
         and the factor is kept while it serves.
     """
 
-    def __init__(self, pattern: Pattern, *, patience: int = 14, limit: int = 20) -> None:
-        self._pattern = pattern
+    def __init__(
+        self,
+        pattern: Pattern,
+        *,
+        joined: Callable[[Array], Array] | None = None,
+        patience: int = 14,
+        limit: int = 20,
+    ) -> None:
+        self._pattern, self._joined = pattern, joined
         self._factor = DirectSolver(pattern.indptr, pattern.indices, single=True)
         self._patience, self._limit = patience, limit
         self._stale = True
@@ -84,6 +91,8 @@ class FactorGMRES:
         return x
 
     def _refresh(self, blocks: Array) -> None:
+        if self._joined is not None:
+            blocks = self._joined(blocks)
         diagonal = self._pattern.indptr[:-1]
         scale = float(np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
         self.shift = self._wanted

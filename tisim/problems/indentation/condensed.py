@@ -186,13 +186,15 @@ class CondensedBlock:
         near, body = self._body(inside, of_near), self._body(~inside, of_far)
         pattern = near.discretisation.pattern
         facets = system.facets
-        part = Part(near, FactorGMRES(pattern), FullMatrix(pattern, facets), pattern.slots(facets))
+        far = FarField(np.flatnonzero(interface).astype(np.int32), pattern)
+        linear = FactorGMRES(far.factor_pattern, joined=far.joined)
+        part = Part(near, linear, FullMatrix(pattern, facets), pattern.slots(facets))
         p = body.discretisation.pattern
         kept = interface[p.free]
         self._split = _Split(
             inside=inside, near=part, body=body, beyond=~kept,
             condensation=Condensation(p.indptr, p.indices, kept),
-            far=FarField(np.flatnonzero(interface).astype(np.int32), pattern),
+            far=far,
         )  # fmt: skip
 
     def _beyond(self, chosen: Array) -> bool:

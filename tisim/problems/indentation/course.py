@@ -14,6 +14,7 @@ from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.steps import (
     BETWEEN,
     FIRST_STEP,
+    IN_VAIN,
     LARGEST_STEP,
     SMALLEST_STEP,
     Frame,
@@ -85,7 +86,7 @@ def _advance(
     scene: Poke, system: PokeSystem, block: CondensedBlock, walk: _Walk, stop: Stop, origin: float
 ) -> Status:
     """On to a stop, in depth steps no larger than a poke's, and in parts of the time where a hold fails."""
-    part, refused = 1.0, 0
+    part, refused, in_vain = 1.0, 0, 0
     while walk.time < stop.time or walk.depth != stop.value:
         left = stop.value - walk.depth
         way = abs(left)
@@ -117,11 +118,13 @@ def _advance(
         if failed is not None:
             walk.cuts += 1
             refused += 1
+            in_vain += outcome.iterations
             if way:
                 walk.step = 0.4 * min(walk.step, share * way)
             else:
                 part = 0.5 * share
-            if walk.step < SMALLEST_STEP or part < SMALLEST_PART:
+            spent = in_vain >= IN_VAIN * scene.solver.max_iterations
+            if spent or walk.step < SMALLEST_STEP or part < SMALLEST_PART:
                 system.begin(0.0)
                 return failed
             continue

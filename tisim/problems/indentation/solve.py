@@ -20,6 +20,7 @@ from tisim.problems.indentation.kind import ELEMENT
 from tisim.problems.indentation.steps import (
     BETWEEN,
     FIRST_STEP,
+    IN_VAIN,
     LARGEST_STEP,
     SMALLEST_STEP,
     Frame,
@@ -87,7 +88,7 @@ def _push(
 ) -> tuple[list[Frame], Status, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
-    refused = 0
+    refused = in_vain = 0
     depth = 0.0
     frames: list[Frame] = []
     travelled = 0.0
@@ -124,6 +125,9 @@ def _push(
                 status = failed
                 cuts += 1
                 refused += 1
+                in_vain += outcome.iterations
+                if in_vain >= IN_VAIN * scene.solver.max_iterations:
+                    return frames, status, steps, cuts
                 if frame and way * (goal - target) > SAME:
                     next_frame = way * min(way * target + LATER * scene.frame_spacing, way * goal)
                     if refused == 1:
@@ -144,6 +148,7 @@ def _push(
             elif outcome.iterations > 12:
                 step *= 0.7
             if frame:
+                in_vain = 0
                 frames.append(frame_of(outcome.x, system, outcome.residual))
                 next_frame = depth + way * scene.frame_spacing
     return frames, Status.CONVERGED, steps, cuts

@@ -223,7 +223,6 @@ class PokeSystem:
         self._blocks, force, self.min_jacobian = self.body.stiffness(x)
         if self.far is not None:
             self.far.add_to(force, x)
-            self._blocks[self.far.slots] += self.far.paired
         self.linearisations += 1
         found = self._with_contact(x, force, self._slot, self._blocks)
         self.discretisation.hold(self._blocks)
@@ -264,7 +263,7 @@ class PokeSystem:
         """The tangent of the last linearisation times v (3 n_free,)."""
         product: Array = self._matrix @ v
         if self.far is not None:
-            self.far.add_unpaired(v, product)
+            self.far.add_product(v, product)
         return product
 
     def residual_norm(self, x: Array) -> float:

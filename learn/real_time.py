@@ -1,0 +1,182 @@
+"""Predictions for a program that asks a thousand times a second: one interior, then poke by poke.
+
+>>> predictor = learn.load("runs/quick")
+>>> touch = predictor.real_time({"shape": "cube-18", "softness": "S0.5"})  # once an interior
+>>> answer = touch(site=(5e-3, -10e-3), direction=(0, 0, -1), depth=4e-3)  # each millisecond
+>>> answer.force, answer.force_interval, answer.displacement, answer.inside
+
+Lengths here are in metres. `torch.set_num_threads(1)` is the fastest where the machine has other work.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from learn.errors import InputError
+from learn.metrics import Predictions
+from learn.models import InvariantGnn
+from learn.models.single_poke import SinglePoke
+from learn.scene_file import first_touch, kind_of, load_poke, scene_and_poke
+from learn.validity import interior_of, poke_values
+
+if TYPE_CHECKING:
+    from learn.evaluation import Intervals
+    from learn.predictor import Predictor
+
+Floats = NDArray[np.float64]
+_ONE = 1e-6  # by which a direction's length may differ from 1
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Answer:
+    """One poke. SI units.
+
+    Attributes
+    ----------
+    displacement : of the surface's points [m], shape (n, 3), float32.
+    force : magnitude of the force on the indenter [N].
+    force_interval : 90 % interval of the force [N]; None where the run has no intervals.
+    distance : how far the poke is outside what was trained, 0 inside (`learn.validity.Domain.distance`); NaN
+        where that is not known.
+    """
+
+    displacement: NDArray[np.float32]
+    force: float
+    force_interval: tuple[float, float] | None
+    distance: float
+    _intervals: Intervals | None
+    _asked: Predictions | None
+
+    @property
+    def inside(self) -> bool | None:
+        """Whether the poke is inside what the model was trained on; None where that is not known."""
+        return None if math.isnan(self.distance) else self.distance == 0.0
+
+    @cached_property
+    def radius(self) -> Floats | None:
+        """Radius of the 90 % interval at each point [m], shape (n,); None without intervals."""
+        if self._intervals is None or self._asked is None:
+            return None
+        distance = 0.0 if math.isnan(self.distance) else self.distance
+        return np.asarray(self._intervals.radius_mm(self._asked, distance=distance)[0] * 1e-3)
+
+
+class RealTime:
+    """One interior of a predictor, made by `Predictor.real_time`.
+
+    Parameters
+    ----------
+    predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    interior : keys of `learn.scene_file.PokeScene` that say what is poked: shape or inclusion, softness or
+        shear_modulus_kPa.
+
+    Attributes
+    ----------
+    points : rest positions of the surface's points [m], shape (n, 3).
+    modulus : shear modulus at small strain [Pa]; may be set anew between pokes.
+
+    Raises
+    ------
+    InputError
+        Another model, a key that is wrong, or an inclusion that does not fit the dataset's block.
+    """
+
+    def __init__(self, predictor: Predictor, interior: Mapping[str, Any]) -> None:
+        run, store = predictor.run, predictor.store
+        if not isinstance(run.model, InvariantGnn):
+            raise InputError(
+                f"{run.folder}: expected one run of invariant-gnn or invariant-gnn-small, in real time is no "
+                f"{run.recipe.model if not run.members else 'ensemble'}"
+            )
+        for key in ("site_mm", "depth_mm", "angle_deg", "heading_deg"):
+            if key in interior:
+                raise InputError(f"scene: unexpected key {key}: it is given with each poke")
+        middle = (store.points[:, :2].min(axis=0) + store.points[:, :2].max(axis=0)) / 2
+        file = load_poke({**interior, "site_mm": (middle * 1e3).tolist(), "depth_mm": 1e-3})
+        scene, pokes = scene_and_poke(file, store)
+        with torch.no_grad():
+            encoded = run.model.encode(scene, run.model.prepare(scene))
+        self._single = SinglePoke(run.model, encoded)
+        self._store, self._domain = store, predictor.domain
+        self._intervals, self._kind = predictor.intervals, kind_of(file, store)
+        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
+        self._interior = interior_of(store, profile)
+        self.points, self.modulus = store.points, float(pokes.modulus[0])
+
+    def __call__(
+        self,
+        *,
+        site: Sequence[float],
+        direction: Sequence[float],
+        depth: float,
+    ) -> Answer:
+        """Displacement, force and its interval of one poke.
+
+        Parameters
+        ----------
+        site : where the rod's axis meets the rest surface, (x, y) [m].
+        direction : unit vector of the push, (3,).
+        depth : travel since first contact [m]; at 0 or less the rod does not touch, and nothing moves.
+
+        Raises
+        ------
+        InputError
+            A value is not finite, or the direction does not point into the block or is no unit vector.
+        """
+        push = np.asarray(direction, dtype=np.float64)
+        size = math.sqrt(float(push @ push))
+        if not (abs(size - 1.0) <= _ONE and push[2] < 0.0):
+            raise InputError(
+                f"direction: expected a unit vector that points down into the block, got {direction}"
+            )
+        if not (math.isfinite(depth) and math.isfinite(site[0]) and math.isfinite(site[1])):
+            raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
+        start = first_touch(self._store, site, push)
+        u, force = self._single(start, push, depth, self.modulus)
+        distance = self._distance(start, push, depth)
+        asked, interval = None, None
+        if self._intervals is not None and depth > 0.0:
+            asked = self._predictions(u, force, start, depth)
+            far = 0.0 if math.isnan(distance) else distance
+            factor = math.exp(float(self._intervals.force_log(asked, distance=far)[0]))
+            interval = (force / factor, force * factor)
+        return Answer(
+            displacement=u,
+            force=force,
+            force_interval=interval,
+            distance=distance,
+            _intervals=self._intervals,
+            _asked=asked,
+        )
+
+    def _distance(self, start: Floats, push: Floats, depth: float) -> float:
+        if self._domain is None:
+            return math.nan
+        values = poke_values(
+            self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
+        )
+        return self._domain.distance(values, self._kind)
+
+    def _predictions(self, u: NDArray[np.float32], force: float, start: Floats, depth: float) -> Predictions:
+        none = np.zeros(0)
+        size = np.array([force])
+        return Predictions(
+            truth=u[None],
+            predicted=u[None],
+            force=size,
+            force_predicted=size,
+            away=np.linalg.norm(self.points - start, axis=1)[None],
+            depth=np.array([depth]),
+            poke=np.zeros(1, dtype=np.int64),
+            softness=np.array([""]),
+            spread=none,
+            force_spread=none,
+        )
