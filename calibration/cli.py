@@ -32,6 +32,7 @@ _USUAL = 45
 # package: the extra of tisim that brings it
 EXTRAS = {
     "cv2": "photo",
+    "openpyxl": "lab",
     "pooch": "fetch",
     "trimesh": "mesh",
     "rtree": "mesh",

@@ -92,13 +92,14 @@ def _recognises(importer: Importer, file: LabFile) -> bool:
 
 def _unknown(file: LabFile) -> InputError:
     """Why no importer took a file: what is wrong with its table, or that there is none that it knows."""
-    from calibration.lab_files._table import blocks
+    from calibration.lab_files._table import blocks, without_numbers
 
     try:
-        for sheet in file.sheets:
-            blocks(file, sheet)
+        tables = [blocks(file, sheet)[0] for sheet in file.sheets]
     except InputError as error:
         return error
+    if not any(tables):
+        return without_numbers(file)
     return InputError(
         f"{file.path}: expected an export of {', '.join(_IMPORTERS)}, its content is none of them (csv: the"
         " line with the names of the columns comes first, or state format: csv)"

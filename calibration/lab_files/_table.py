@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.errors import InputError
 from calibration.lab_files._quantities import Quantity, quantity
 from calibration.lab_files._text import (
     LabFile,
@@ -137,6 +138,13 @@ def blocks(file: LabFile, sheet: Sheet) -> tuple[tuple[Block, ...], str]:
         file.tables[sheet.name] = _find(file, sheet)
     found: tuple[tuple[Block, ...], str] = file.tables[sheet.name]
     return found
+
+
+def without_numbers(file: LabFile) -> InputError:
+    """That the sheets of a workbook hold no table; of a text file `blocks` says it."""
+    return file.error(
+        "expected rows of two or more numbers, found none (a row with a word, date or clock time is none)"
+    )
 
 
 def _find(file: LabFile, sheet: Sheet) -> tuple[tuple[Block, ...], str]:

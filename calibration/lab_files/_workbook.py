@@ -1,19 +1,19 @@
-"""Sheets of an .xlsx workbook (ECMA-376), by the standard library: cells' values, no formulas or formats."""
+"""Sheets of an .xlsx workbook by openpyxl (`pip install 'tisim[lab]'`): values of cells, no formulas."""
 
 from __future__ import annotations
 
-import re
+import contextlib
+import warnings
 import zipfile
+from collections.abc import Iterator
+from datetime import date, datetime, time
 from io import BytesIO
 from pathlib import Path
-from xml.etree import ElementTree
 
 from calibration.errors import InputError
 from calibration.lab_files._text import LARGEST_FILE, LabFile, Row, Sheet
 
-_MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
-_LINK = "{http://schemas.openxmlformats.org/officeDocument/2006/relationships}id"
-_PACKAGE = "{http://schemas.openxmlformats.org/package/2006/relationships}"
+_MOST_ROWS = 1_048_576  # of the format
 _MOST_COLUMNS = 1000
 
 
@@ -24,77 +24,75 @@ def workbook(path: Path, content: bytes) -> LabFile:
     ------
     InputError
         It is no workbook, or damaged, or larger than a machine writes one.
+    ModuleNotFoundError
+        openpyxl is not installed.
     """
+    _check_archive(path, content)
+    with warnings.catch_warnings():
+        # of styles, headers and extensions that it does not know, none of which is read
+        warnings.simplefilter("ignore")
+        from openpyxl import load_workbook
+
+        try:
+            with contextlib.closing(
+                load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
+            ) as book:
+                sheets = []
+                for sheet in book.worksheets:
+                    sheet.reset_dimensions()  # as stated in the file, by some programs wrongly
+                    rows = tuple(_rows(sheet.iter_rows(values_only=True), f"{path}: sheet {sheet.title}:"))
+                    if not all(row.empty for row in rows):
+                        sheets.append(Sheet(name=sheet.title, rows=rows))
+        except (InputError, MemoryError):
+            raise
+        except Exception as error:  # openpyxl states none of its own: damage shows as whatever it met
+            raise _damaged(path) from error
+    if not sheets:
+        raise InputError(f"{path}: expected a sheet with cells, the workbook is empty")
+    return LabFile(path=path, sheets=tuple(sheets), workbook=True)
+
+
+def _check_archive(path: Path, content: bytes) -> None:
+    """Refuse what is no workbook, and what would fill the memory, before anything is unpacked."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > LARGEST_FILE:
-                raise InputError(f"{path}: expected at most {LARGEST_FILE / 1e6:.0f} MB when unpacked")
-            names = set(archive.namelist())
-            if "xl/workbook.xml" not in names:
-                raise InputError(
-                    f"{path}: expected a workbook (.xlsx) or text, it is another kind of archive"
-                )
-            shared: list[str] = []
-            if "xl/sharedStrings.xml" in names:
-                for item in _xml(archive, "xl/sharedStrings.xml", path).iter(f"{_MAIN}si"):
-                    shared.append("".join(t.text or "" for t in item.iter(f"{_MAIN}t")))
-            targets = {
-                link.get("Id"): link.get("Target", "")
-                for link in _xml(archive, "xl/_rels/workbook.xml.rels", path).iter(f"{_PACKAGE}Relationship")
-            }
-            sheets = []
-            for entry in _xml(archive, "xl/workbook.xml", path).iter(f"{_MAIN}sheet"):
-                target = targets.get(entry.get(_LINK), "").lstrip("/")
-                part = target if target.startswith("xl/") else f"xl/{target}"
-                if part in names:
-                    rows = tuple(_rows(_xml(archive, part, path), shared, path))
-                    sheets.append(Sheet(name=entry.get("name", ""), rows=rows))
-    except (zipfile.BadZipFile, KeyError, ElementTree.ParseError, EOFError, NotImplementedError):
-        raise InputError(f"{path}: expected a workbook (.xlsx) that can be unpacked, it is damaged") from None
-    if not any(sheet.rows for sheet in sheets):
-        raise InputError(f"{path}: expected a sheet with cells, the workbook is empty")
-    return LabFile(path=path, sheets=tuple(s for s in sheets if s.rows), workbook=True)
+            entries = archive.infolist()
+    except (zipfile.BadZipFile, NotImplementedError, ValueError, EOFError) as error:
+        raise _damaged(path) from error
+    if sum(entry.file_size for entry in entries) > LARGEST_FILE:
+        raise InputError(f"{path}: expected at most {LARGEST_FILE / 1e6:.0f} MB when unpacked")
+    if not any(entry.filename.startswith("xl/") for entry in entries):
+        raise InputError(f"{path}: expected a workbook (.xlsx) or text, it is another kind of archive")
 
 
-def _xml(archive: zipfile.ZipFile, part: str, path: Path) -> ElementTree.Element:
-    content = archive.read(part)
-    if b"<!DOCTYPE" in content[:2000] or b"<!ENTITY" in content:
-        raise InputError(f"{path}: expected a workbook without entities in {part}")
-    return ElementTree.fromstring(content)
+def _damaged(path: Path) -> InputError:
+    return InputError(f"{path}: expected a workbook (.xlsx) that can be unpacked, it is damaged")
 
 
-def _rows(root: ElementTree.Element, shared: list[str], path: Path) -> list[Row]:
-    rows: list[Row] = []
-    for element in root.iter(f"{_MAIN}row"):
-        number = int(element.get("r") or len(rows) + 1)
-        cells: list[str] = []
-        for cell in element.iter(f"{_MAIN}c"):
-            at = _column(cell.get("r", "")) if cell.get("r") else len(cells)
-            if at >= _MOST_COLUMNS:
-                raise InputError(f"{path}: row {number}: expected at most {_MOST_COLUMNS} columns")
-            cells += [""] * (at + 1 - len(cells))
-            cells[at] = _value(cell, shared).strip()
-        rows += [Row(number=k, text="") for k in range(len(rows) + 1, min(number, len(rows) + 1000))]
-        rows.append(Row(number=number, text="\t".join(cells), cells=tuple(cells)))
-    return rows
+def _rows(values: Iterator[tuple[object, ...]], where: str) -> Iterator[Row]:
+    """Rows, counted from 1 as the workbook shows them; of empty ones that follow each other the first."""
+    filled = True
+    for number, row in enumerate(values, 1):
+        if number > _MOST_ROWS:
+            raise InputError(f"{where} expected at most {_MOST_ROWS} rows")
+        if len(row) > _MOST_COLUMNS:
+            raise InputError(f"{where} row {number}: expected at most {_MOST_COLUMNS} columns")
+        cells = tuple(_text(value) for value in row)
+        if filled or any(cells):
+            yield Row(number=number, text="\t".join(cells), cells=cells)
+        filled = any(cells)
 
 
-def _column(reference: str) -> int:
-    """0 of A7, 27 of AB7."""
-    letters = re.match(r"[A-Z]+", reference)
-    at = 0
-    for letter in letters[0][:4] if letters else "A":
-        at = 26 * at + ord(letter) - 64
-    return at - 1
-
-
-def _value(cell: ElementTree.Element, shared: list[str]) -> str:
-    if cell.get("t") == "inlineStr":
-        return "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
-    value = cell.find(f"{_MAIN}v")
-    text = "" if value is None else value.text or ""
-    if cell.get("t") == "s":
-        return shared[int(text)] if text.isdigit() and int(text) < len(shared) else ""
-    if cell.get("t") in ("str", "b", "e"):
-        return text
-    return text
+def _text(value: object) -> str:
+    """A cell as the importers read it: numbers without loss, dates and clock times as text, no numbers."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return str(value).upper()
+        case float():
+            return repr(value)
+        case datetime() | date() | time():
+            return value.isoformat()
+        case _:
+            return str(value).strip()

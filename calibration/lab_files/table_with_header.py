@@ -6,7 +6,7 @@ Where the format is stated, lines above the names are passed over.
 from __future__ import annotations
 
 from calibration.lab_files._formats import Importer, register
-from calibration.lab_files._table import LabTest, blocks, from_block, parameters_of
+from calibration.lab_files._table import LabTest, blocks, from_block, parameters_of, without_numbers
 from calibration.lab_files._text import LabFile
 
 
@@ -14,6 +14,8 @@ def _recognises(file: LabFile) -> bool:
     if file.sections or len(file.sheets) > 1:
         return False
     found, _ = blocks(file, file.sheets[0])
+    if not found:  # a sheet of words
+        return False
     first = next(row for row in file.rows if not row.empty)
     return found[0].header == first and found[0].units is None
 
@@ -23,6 +25,8 @@ def _read(file: LabFile) -> tuple[LabTest, ...]:
         names = ", ".join(s.name for s in file.sheets)[:200]
         raise file.error(f"expected a workbook of one sheet, got {names}")
     found, separator = blocks(file, file.sheets[0])
+    if not found:
+        raise without_numbers(file)
     if len(found) > 1:
         raise file.error("expected one table, a second begins here", found[1].header)
     parameters = parameters_of(found[0].above, (separator,))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import runpy
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -150,65 +149,6 @@ def test_both_text_exports_of_trios(tmp_path: Path) -> None:
     _, (test,) = read_lab_file(write(tmp_path, "plain.txt", text))
     assert test.name == "Stress growth - 1"
     assert column(test, "Strain") == pytest.approx([0.01, 0.02, 0.03])
-
-
-def workbook(path: Path, sheets: dict[str, list[list[str | float]]]) -> Path:
-    """An .xlsx of these cells, texts inline."""
-    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-    office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-    package = "http://schemas.openxmlformats.org/package/2006/relationships"
-    with zipfile.ZipFile(path, "w") as archive:
-        names = "".join(
-            f'<sheet name="{name}" sheetId="{k}" r:id="r{k}"/>' for k, name in enumerate(sheets, 1)
-        )
-        archive.writestr(
-            "xl/workbook.xml",
-            f'<workbook xmlns="{main}" xmlns:r="{office}"><sheets>{names}</sheets></workbook>',
-        )
-        links = "".join(
-            f'<Relationship Id="r{k}" Type="x" Target="worksheets/sheet{k}.xml"/>'
-            for k in range(1, len(sheets) + 1)
-        )
-        archive.writestr(
-            "xl/_rels/workbook.xml.rels", f'<Relationships xmlns="{package}">{links}</Relationships>'
-        )
-        for k, rows in enumerate(sheets.values(), 1):
-            text = ""
-            for number, row in enumerate(rows, 1):
-                cells = "".join(
-                    f'<c r="{chr(65 + at)}{number}"><v>{v}</v></c>'
-                    if isinstance(v, float)
-                    else f'<c r="{chr(65 + at)}{number}" t="inlineStr"><is><t>{v}</t></is></c>'
-                    for at, v in enumerate(row)
-                    if v != ""
-                )
-                text += f'<row r="{number}">{cells}</row>'
-            archive.writestr(
-                f"xl/worksheets/sheet{k}.xml",
-                f'<worksheet xmlns="{main}"><sheetData>{text}</sheetData></worksheet>',
-            )
-    return path
-
-
-def test_zwick_workbooks_have_a_sheet_a_test(tmp_path: Path) -> None:
-    rows: list[list[str | float]] = [["Prüfzeit", "Standardweg", "Standardkraft"], ["s", "mm", "N"]]
-    first = [*rows, *([float(k), 0.5 * k, -0.1 * k] for k in range(5))]
-    path = workbook(
-        tmp_path / "zwick.xlsx",
-        {"Parameter": [["Vorkraft", 0.1, "N"]], "Probe 1": first, "Probe 2": first[:6]},
-    )
-    found, tests = read_lab_file(path)
-    assert (found, [(t.name, len(t.rows)) for t in tests]) == ("zwick", [("Probe 1", 5), ("Probe 2", 4)])
-    assert column(tests[0], "Standardkraft") == pytest.approx([0.0, -0.1, -0.2, -0.3, -0.4])
-    table: list[list[str | float]] = [["Time (s)", "Load (N)"], *([float(k), 2.0 * k] for k in range(4))]
-    found, (test,) = read_lab_file(workbook(tmp_path / "table.xlsx", {"Sheet1": table}))
-    assert found == "csv"
-    assert column(test, "Load") == pytest.approx([0.0, 2.0, 4.0, 6.0])
-    path = workbook(tmp_path / "bad.xlsx", {"Sheet1": [*table, [5.0, "lost"]]})
-    (bad,) = read_lab_file(path)[1]
-    said = "bad.xlsx: sheet Sheet1: row 6: column Load: expected a number, got 'lost'"
-    with pytest.raises(InputError, match=said):
-        bad.numbers(bad.columns[1])
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
