@@ -16,6 +16,8 @@ from learn.data.loaders import epoch_order
 from learn.models import InvariantGnn, Model, Pokes, Response, Scene, pokes_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import OnnxBundle
+from learn.predictor import Predictor
+from learn.real_time import RealTime
 from learn.training import Run
 
 BATCH = 64
@@ -76,6 +78,8 @@ def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[
     data, model, name = MemoryDataset(store, rows), run.model, run.recipe.model
     one, many = pokes_of(data[0]), pokes_of(data.__getitems__(rows))
     encoded = model.encode(scene, model.prepare(scene))
+    shape, level = store.shapes[store.shape[0]], store.softness_names[store.softness[0]]
+    interior = {"shape": shape, "softness": level}
     for threads in (1, 2):
         torch.set_num_threads(threads)
         if isinstance(model, InvariantGnn) and not model.takes_clock:
@@ -88,6 +92,9 @@ def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[
             )
             middle, best = timed(lambda single=single, poke=poke: single(*poke), repeats)  # type: ignore[misc]
             times.append((f"{name}, one at a time", str(threads), middle, best))
+            touch = Predictor(run, store).real_time(interior)
+            middle, best = timed(lambda touch=touch: _touched(touch), repeats)  # type: ignore[misc]
+            times.append((f"{name}, in real time with intervals", str(threads), middle, best))
         middle, best = timed(lambda: model.decode(encoded, one), repeats)
         times.append((f"{name}, as a batch of one", str(threads), middle, best))
         middle, best = timed(lambda: model.decode(encoded, many), max(3, repeats // 10))
@@ -104,6 +111,13 @@ def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[
         times.append((each, "-", middle / len(rows), best / len(rows)))
         model.cpu()
     return times
+
+
+def _touched(touch: RealTime) -> None:
+    """All that a program that asks a thousand times a second may want of a poke."""
+    answer = touch(site=(3e-3, -4e-3), direction=(0.0, 0.6, -0.8), depth=5e-3)
+    assert np.isfinite(answer.distance)
+    assert answer.radius is None or np.isfinite(answer.radius).all()
 
 
 def on_device(

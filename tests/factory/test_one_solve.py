@@ -10,7 +10,7 @@ import pytest
 import zarr
 
 from factory import open_dataset, verify_dataset
-from factory._similar import modulus_ratio, one_solve
+from factory._similar import modulus_ratio, one_solve, scale_with_modulus
 from factory._staging import Staging
 from factory.plan import Plan
 from tests.factory.conftest import Builder
@@ -37,6 +37,18 @@ def test_another_shape_of_the_law_is_no_multiple() -> None:
         assert law.moduli(hard).shear_modulus == pytest.approx(2.0 * law.moduli(soft).shear_modulus)
         found = modulus_ratio(*(Material(law=law.name, parameters=p) for p in (hard, soft)))
         assert found == (factor and pytest.approx(factor))
+
+
+def test_levels_scale_with_the_modulus_unless_something_else_acts(quick: Plan) -> None:
+    scenes = [poke.scene for poke in quick.pokes]
+    assert scale_with_modulus(scenes)
+    heavy = replace(scenes[0], gravity=(0.0, 0.0, -9.81))
+    assert not scale_with_modulus([*scenes, heavy])
+    law = laws.get("ogden")
+    other = Material(law="ogden", parameters=law.from_moduli(1e4, 5e5))
+    assert not scale_with_modulus([*scenes, replace(scenes[0], material=other)])
+    relaxing = replace(scenes[0].material, viscosity=Prony(fractions=(0.1,), times=(1.0,)))
+    assert not scale_with_modulus([replace(scenes[0], material=relaxing)])
 
 
 def test_only_the_modulus_may_differ(quick: Plan) -> None:

@@ -99,6 +99,7 @@ def test_a_poke_comes_back_as_it_was_simulated(plan: Plan, store: Path) -> None:
         expected = planned.scene.material.parameters
         assert table["parameter"][i].tolist() == [*expected["mu"], *expected["alpha"], expected["bulk"]]  # type: ignore[misc]
     assert data.attributes["parameter_names"] == ["mu_1", "alpha_1", "bulk"]
+    assert data.attributes["scales_with_modulus"] is True
 
 
 def test_several_shards_hold_the_same_as_one(

@@ -1,0 +1,125 @@
+"""One interior poke by poke: the predictor's answers, what is outside, and intervals that widen there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import torch
+
+import learn
+from learn.errors import InputError
+from learn.evaluation import Intervals
+from learn.predictor import Predictor
+from learn.real_time import RealTime
+from learn.validity import Domain
+from tests.learn.commands import train_small
+from tests.learn.small_store import write_store
+
+INTERIOR = {"shape": "shape-1", "softness": "S1"}
+# as `learn.evaluate` makes them; in mm, by rings of distance
+WIDTHS = Intervals(
+    level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
+    factors=[1.5] * 5, force_scale=0.02, force=1.7,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def predictor(tmp_path_factory: pytest.TempPathFactory) -> Predictor:
+    torch.set_num_threads(1)
+    folder = tmp_path_factory.mktemp("real-time")
+    store = write_store(folder / "s.zarr", shapes=3, sites=3, frames=3)
+    found = learn.load(train_small(store, folder / "run", "--epochs", 1))
+    found.intervals = WIDTHS
+    return found
+
+
+@pytest.fixture(scope="module")
+def touch(predictor: Predictor) -> RealTime:
+    return predictor.real_time(INTERIOR)
+
+
+def _way(angle_deg: float, heading_deg: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    lean, heading = math.radians(angle_deg), math.radians(heading_deg)
+    return np.array([math.sin(lean) * math.cos(heading), math.sin(lean) * math.sin(heading), -math.cos(lean)])
+
+
+@pytest.mark.parametrize(("depth_mm", "inside"), [(1.5, True), (4.0, False)])
+def test_it_answers_as_the_predictor_does(
+    predictor: Predictor, touch: RealTime, depth_mm: float, inside: bool
+) -> None:
+    angle = sum(predictor.domain.ranges["angle_deg"]) / 2 if predictor.domain else 0.0
+    scene = {"site_mm": [5, -10], "depth_mm": depth_mm, "angle_deg": angle, "heading_deg": 40, **INTERIOR}
+    slow = predictor.predict(scene)
+    fast = touch(site=(5e-3, -10e-3), direction=_way(angle, 40), depth=depth_mm * 1e-3)
+    assert np.abs(fast.displacement - slow.displacement).max() < 3e-6 * np.abs(slow.displacement).max()
+    assert fast.force == pytest.approx(slow.force, rel=1e-5)
+    assert fast.force_interval == pytest.approx(slow.force_interval, rel=1e-5)
+    np.testing.assert_allclose(fast.radius, slow.radius, rtol=1e-4)
+    assert fast.inside is slow.inside
+    if not inside:
+        assert not fast.inside
+
+
+def test_intervals_widen_with_the_distance_from_what_was_trained(touch: RealTime) -> None:
+    """Far outside the radius is the displacement itself, and the force is known to a factor of e."""
+    widths, radii = [], []
+    for depth in (2e-3, 2.5e-3, 4e-3, 12e-3):
+        answer = touch(site=(5e-3, -10e-3), direction=(0.0, 0.0, -1.0), depth=depth)
+        assert answer.force_interval is not None
+        assert answer.radius is not None
+        widths.append(math.log(answer.force_interval[1] / answer.force))
+        radii.append(float((answer.radius / np.linalg.norm(answer.displacement, axis=1)).min()))
+    assert (np.diff(widths) > 0).all()
+    assert widths[-1] == pytest.approx(1.0, abs=0.01)
+    assert radii[-1] > 0.99
+
+
+def test_distance_is_in_units_of_the_trained_ranges() -> None:
+    domain = Domain(
+        ranges={"depth_mm": (1.0, 21.0), "rod_radius_mm": (2.5, 2.5), "site_to_side_mm": (20.0, 50.0)},
+        kinds=("cube",), law="ogden", proportional=("shear_modulus_kPa",),
+    )  # fmt: skip
+    plain = {"depth_mm": 5.0, "rod_radius_mm": 2.5, "site_to_side_mm": 60.0, "shear_modulus_kPa": 1e4}
+
+    def distance(kind: str | None = "cube", **changes: float) -> float:
+        return domain.distance({**plain, **changes}, kind)
+
+    assert distance() == 0.0
+    assert distance(kind=None) == 0.0
+    assert distance(depth_mm=31.0) == pytest.approx(0.5, abs=5e-3)
+    assert distance(rod_radius_mm=4.0) == pytest.approx(0.6, abs=5e-3)
+    assert distance(site_to_side_mm=5.0) == pytest.approx(0.5, abs=0.01)
+    assert distance(kind="sphere", depth_mm=31.0) == pytest.approx(math.hypot(1.0, 0.5), abs=5e-3)
+    assert all(check.inside for check in domain.check(plain, "cube"))
+
+
+def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
+    answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=-1e-3)
+    assert answer.force == 0.0
+    assert not answer.displacement.any()
+    assert answer.force_interval is None
+
+
+@pytest.mark.parametrize(
+    ("poke", "words"),
+    [
+        ({"direction": (0.0, 0.0, -2.0)}, "direction: expected a unit vector"),
+        ({"direction": (0.0, 0.0, 1.0)}, "direction: expected a unit vector"),
+        ({"direction": (0.0, math.nan, -1.0)}, "direction: expected a unit vector"),
+        ({"depth": math.nan}, "finite site and depth"),
+        ({"site": (math.inf, 0.0)}, "finite site and depth"),
+    ],
+)
+def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: str) -> None:
+    plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
+    with pytest.raises(InputError, match=words):
+        touch(**{**plain, **poke})  # type: ignore[arg-type]
+
+
+def test_an_interior_has_no_poke_and_no_unknown_keys(predictor: Predictor) -> None:
+    with pytest.raises(InputError, match="unexpected key depth_mm"):
+        predictor.real_time({**INTERIOR, "depth_mm": 3})
+    with pytest.raises(InputError, match="key shape"):
+        predictor.real_time({**INTERIOR, "shape": "shape-9"})
