@@ -32,6 +32,7 @@ _USUAL = 45
 # package: the extra of tisim that brings it
 EXTRAS = {
     "cv2": "photo",
+    "openpyxl": "lab",
     "pooch": "fetch",
     "trimesh": "mesh",
     "rtree": "mesh",
@@ -40,6 +41,7 @@ EXTRAS = {
 }
 
 VERBS = {
+    "new": "an experiment from photographs, outlines or files of testing machines",
     "reconstruct": "photographs to outlines, mid lines and bodies",
     "fit": "material parameters of constitutive laws, with error bars, cards and a report",
     "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",

@@ -26,6 +26,7 @@ OPTIONAL = {
     "dask",
     "xarray",
     "pooch",
+    "openpyxl",
 }
 
 
@@ -70,11 +71,11 @@ def test_what_only_an_extra_needs_is_in_the_extra() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     assert not names(PROJECT["project"]["dependencies"]) & OPTIONAL
     assert set().union(*(names(requirements) for requirements in extras.values())) >= OPTIONAL
-    assert set(extras["all"]) == {"tisim[mesh,photo,learn,export,cluster,xarray,fetch]"}
+    assert set(extras["all"]) == {"tisim[mesh,photo,learn,export,cluster,xarray,fetch,lab]"}
 
 
 @pytest.mark.parametrize(
-    "extra", ["mesh", "photo", "learn", "export", "cluster", "xarray", "fetch", "all", "test", "bench"]
+    "extra", ["mesh", "photo", "learn", "export", "cluster", "xarray", "fetch", "lab", "all", "test", "bench"]
 )
 def test_each_extra_is_documented(extra: str) -> None:
     assert extra in PROJECT["project"]["optional-dependencies"]

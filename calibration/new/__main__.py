@@ -1,0 +1,6 @@
+"""`python -m calibration.new`."""
+
+from calibration.new import app
+
+if __name__ == "__main__":
+    app()
