@@ -30,7 +30,7 @@ def areas(points: Floats) -> Floats:
     n = len(points)
     if n <= _AROUND + 1:
         return np.ones(n)
-    away = KDTree(points).query(points, k=_AROUND + 1)[0]
+    away = np.asarray(KDTree(points).query(points, k=_AROUND + 1)[0])
     h = away[:, -1]
     area = h**2 / ((1 - (away / h[:, None]) ** 2) ** 2).sum(axis=1)
     return np.asarray(area / area.mean())
