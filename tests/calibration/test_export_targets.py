@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CARDS = ROOT / "datasets" / "materials"
 CLEAN = ROOT / "datasets" / "measured" / "bench" / "clean"
 SHORT = "S0-cantilever-050"
+CCX = shutil.which("ccx")
 PROGRAMS = ("sofa", "febio", "abaqus", "calculix", "mujoco", "newton")
 
 
@@ -59,19 +61,18 @@ def test_every_law_of_a_card_is_written_or_refused(program: str, tmp_path: Path)
             assert any("differs" in s and "%" in s for s in done.lost)
 
 
-def test_a_beam_in_calculix_form_is_read_again(tmp_path: Path) -> None:
-    """Mesh and sets, by tisim.read; and the screen says what is lost."""
-    words = [
-        str(CARDS / "S0.yaml"),
-        "--to",
-        "calculix",
-        "--out",
-        str(tmp_path / "out"),
-        "--refinement",
-        "0.5",
-    ]
-    done = CliRunner().invoke(app, [*words, "--experiment", str(CLEAN), "--trial", SHORT])
+def test_a_beam_in_calculix_form_runs_and_is_read_again(tmp_path: Path) -> None:
+    """It gives the stated beam, where ccx is; mesh and sets by tisim.read; the screen says what is lost."""
+    words = [str(CARDS / "S0.yaml"), "--to", "calculix", "--out", str(tmp_path / "out")]
+    words += ["--refinement", "0.75", "--experiment", str(CLEAN), "--trial", SHORT]
+    done = CliRunner().invoke(app, [*words, *(["--check"] if CCX else [])])
     assert done.exit_code == 0, done.output
+    if CCX:
+        found = re.search(
+            r"Run: the beam's end is ([0-9.]+) % from what was expected, as stated", done.output
+        )
+        assert found is not None
+        assert float(found[1]) < 3.5
     assert "volumetric part, which is K/2 (J - 1)^2 there" in done.output
     assert f"trial {SHORT} of experiment 'clean'" in done.output
     mesh = tisim.read(tmp_path / "out" / "beam.inp")
@@ -90,7 +91,7 @@ def test_a_beam_in_calculix_form_is_read_again(tmp_path: Path) -> None:
 def test_linear_tetrahedra_are_told_with_their_error(tmp_path: Path) -> None:
     """Newton and SOFA: the beam by tisim with their law, elements and mesh."""
     done = export.export_card(
-        CARDS / "S0.yaml", to="newton", out=tmp_path / "n", experiment=CLEAN, trial=SHORT, refinement=0.6
+        CARDS / "S0.yaml", to="newton", out=tmp_path / "n", experiment=CLEAN, trial=SHORT, refinement=0.4
     )
     p = done.job.prediction
     assert p is not None
@@ -202,19 +203,8 @@ def test_scenes_hold_the_beam(program: str, tmp_path: Path, monkeypatch: pytest.
         assert flex.get("body", "").split().count("world") == len(scene.held)
 
 
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="needs ccx (apt-get install calculix-ccx)")
-def test_calculix_gives_the_stated_beam(tmp_path: Path) -> None:
-    done = export.export_card(
-        CARDS / "S0.yaml", to="calculix", out=tmp_path / "out", experiment=CLEAN, trial=SHORT,
-        refinement=0.75, check=True,
-    )  # fmt: skip
-    assert done.checked is not None
-    assert done.within
-    assert done.checked.from_reference < 0.035
-
-
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="needs ccx (apt-get install calculix-ccx)")
+@pytest.mark.skipif(CCX is None, reason="needs ccx (apt-get install calculix-ccx)")
 @pytest.mark.parametrize("law", ["ogden", "arruda-boyce"])
 def test_calculix_gives_the_papers_beam(law: str, tmp_path: Path) -> None:
     done = export.export_card(CARDS / "S1.yaml", to="calculix", out=tmp_path / "out", law=law, check=True)
@@ -307,7 +297,6 @@ def test_the_command_starts_light_and_names_all_programs() -> None:
         (["--refinement", "9"], "error: --refinement 9: expected a factor of 0.3 to 4"),
         (["--most-loss", "0"], "error: --most-loss 0: expected a fraction above 0"),
         (["--to", "sofa", "--check"], "error: --check: expected a scene for one of calculix, mujoco, newton"),
-        (["--no-scene", "--law", "st-venant-kirchhoff", "--most-loss", "0.1"], "error: --to calculix: st-v"),
     ],
 )  # fmt: skip
 def test_bad_input_is_one_sentence(words: list[str], sentence: str, tmp_path: Path) -> None:
