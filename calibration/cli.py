@@ -46,6 +46,7 @@ VERBS = {
     "fit": "material parameters of constitutive laws, with error bars, cards and a report",
     "diagnose": "what the simulation of an experiment lacks: names the cause, or says why not",
     "predict": "measured against predicted for trials that were not used, with intervals and skill",
+    "export": "a material card for SOFA, FEBio, Abaqus, CalculiX, MuJoCo or Newton, with what is lost",
     "fetch": "public measurements from their sources, as experiments",
     "table": "the paper's table of calibration results for an experiment",
 }

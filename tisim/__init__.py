@@ -12,7 +12,8 @@ A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 converged: the end sinks by 7 mm
 converged: the end sinks by 69 mm
 
-`tisim.write(result, "beam.vtu")` exports a frame, `tisim.picture(result, "beam.png")` draws it. Laws,
+`tisim.write(result, "beam.vtu")` exports a frame, `tisim.picture(result, "beam.png")` draws it,
+`tisim.read("body.inp")` takes a mesh of another program (.inp, .msh, .vtu) with its sets. Laws,
 inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, `tisim.inclusions`,
 `tisim.problems`.
 """
@@ -32,6 +33,7 @@ from tisim.course import Course
 from tisim.io import export
 from tisim.io.export import frame_index, surface_triangles, write
 from tisim.io.picture import picture
+from tisim.io.read import read
 from tisim.laws import Moduli
 from tisim.mesh import Mesh
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
@@ -95,6 +97,7 @@ __all__ = [
     "parts",
     "picture",
     "problems",
+    "read",
     "rest_positions",
     "simulate",
     "surface_triangles",

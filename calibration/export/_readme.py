@@ -1,0 +1,161 @@
+"""What an export lost, with its size: README.md of its folder, and the screen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.export._forms import COUPLED, VOLUMES, Form
+from calibration.export._job import PARTS, Job, Target, Written
+from calibration.export._response import (
+    elastic,
+    fibre_loss,
+    percent,
+    relaxation,
+    softening_loss,
+    worst,
+)
+
+TITLES = {
+    "polynomial": "polynomial in the isochoric invariants",
+    "ogden": "Ogden",
+    "arruda-boyce": "Arruda-Boyce",
+    "neo-hookean": "neo-Hookean, coupled",
+    "stable-neo-hookean": "stable neo-Hookean",
+    "st-venant-kirchhoff": "St Venant-Kirchhoff",
+}
+
+
+def losses(job: Job, high: float) -> list[str]:
+    """What the target does not have, a sentence each with its size; high: the largest stretch of interest."""
+    found = _law(job)
+    m = job.material
+    plain = elastic(m)
+    if m.viscosity is not None and "viscosity" not in job.keeps:
+        sizes = ", ".join(f"{v:.3g} {k}" for k, v in relaxation(m).items())
+        found.append(
+            f"{m.viscosity.title} is left out: the moduli are long-time ones. The card's, as multiples of"
+            f" these: {sizes}."
+        )
+    if m.softening is not None and "softening" not in job.keeps:
+        loss = softening_loss(replace(plain, softening=m.softening), high)
+        found.append(
+            f"{m.softening.title} softening is left out: the law is that of first loading. Unloading from a"
+            f" stretch of {high:.3g} the card's stress is up to {percent(loss)} smaller."
+        )
+    if m.fibres is not None and "fibres" not in job.keeps:
+        loss = fibre_loss(plain, high)
+        found.append(
+            f"{m.fibres.title} are left out: along them, at a stretch of {high:.3g}, the card's stress is"
+            f" {percent(loss)} larger."
+        )
+    return found
+
+
+def _law(job: Job) -> list[str]:
+    c = job.conversion
+    found = []
+    off = worst(c.differences)
+    spread = "; ".join(
+        f"{d.mode}, stretches {d.low:.3g} to {d.high:.3g}: {percent(d.rms)} rms, {percent(d.largest)} of the"
+        " largest stress at most"
+        for d in c.differences
+    )
+    law = job.material.law
+    if c.how == "volume" and c.poisson is None:
+        volume = VOLUMES[c.form.volume] if c.form.kind not in COUPLED else "its own"
+        found.append(
+            f"The law is {law} but for its volumetric part, which is {volume} there. Stress differs by"
+            f" {percent(off.rms)} ({spread}); the pressure at a volume of 0.99 by {percent(c.pressure)}."
+        )
+    elif c.how == "volume":
+        found.append(f"The law is {law} with a smaller Poisson's ratio, see below. Stress differs: {spread}.")
+    elif c.how == "fit":
+        fitted = (
+            "" if c.form.kind in COUPLED else ", its further constants fitted to stress in the three tests"
+        )
+        found.append(
+            f"There is no {law} there: {TITLES[c.form.kind]} stands for it, with the same Young's modulus at"
+            f" small strain{fitted}. Stress differs: {spread}."
+        )
+    if c.poisson is not None:
+        found.append(
+            f"Poisson's ratio is {c.form.poisson:.4g} in place of the card's {c.poisson:.4g}, Young's modulus"
+            " is kept: linear tetrahedra lock where the volume hardly changes. The pressure at a volume of"
+            " 0.99"
+            f" differs by {percent(c.pressure)}."
+        )
+    return found
+
+
+def scene_lines(job: Job, target: Target) -> list[str]:
+    """What to expect of the scene."""
+    if job.scene is None or job.prediction is None:
+        return []
+    p, share = job.prediction, target.element_share(job.scene.refinement)
+    found = [
+        f"Scene: {job.scene.name}. In tisim its end (or middle) moves by {_mm(p.reference)} mm;"
+        f" {job.scene.mesh.n_nodes} nodes, {job.scene.mesh.n_elements} {target.element}."
+    ]
+    if p.expected is not None and target.element == "tet4":
+        ratio = float(np.linalg.norm(p.expected) / np.linalg.norm(p.reference) - 1.0)
+        found.append(
+            f"Expected there: {_mm(p.expected)} mm, by tisim with the same law, elements and mesh: the beam"
+            f" moves {percent(abs(ratio))} {'less' if ratio < 0 else 'more'}, its end is {percent(p.error)}"
+            " off."
+        )
+        if p.elements is not None:
+            found.append(
+                f"Of that the linear tetrahedra of this mesh make {percent(abs(p.elements))}"
+                f" ({'too stiff' if p.elements < 0 else 'too soft'}); the rest is the law. --refinement makes"
+                " the mesh finer."
+            )
+    elif p.expected is not None:
+        found.append(
+            f"Expected there: {_mm(p.expected)} mm, at most {percent(p.error)} off: what this mesh's elements"
+            f" make of it ({percent(max(p.error - share, 0.0))} in tisim, and up to"
+            f" {percent(share)} between the program's element and tisim's)."
+        )
+    return [*found, *(f"{r[0].upper()}{r[1:]}." for r in p.remarks)]
+
+
+def _mm(x: np.ndarray) -> str:
+    return "(" + ", ".join(f"{1e3 * v + 0.0:.4g}" for v in np.round(x, 9)) + ")"
+
+
+def constants(form: Form) -> str:
+    """The form and its constants in a line."""
+    values = [f"C{i}{j} = {c:.6g} Pa" for (i, j), c in form.terms]
+    if form.kind == "ogden":
+        values = [f"mu = {m:.6g} Pa, alpha = {a:.6g}" for m, a in zip(form.mu, form.alpha, strict=True)]
+    elif form.mu:
+        values = [f"mu = {form.mu[0]:.6g} Pa"] + ([f"L = {form.locking:.6g}"] if form.locking else [])
+    return f"{TITLES[form.kind]}: {', '.join(values)}, K = {form.bulk:.6g} Pa"
+
+
+def readme(job: Job, target: Target, written: Written, lost: list[str], notes: list[str]) -> str:
+    """The text of README.md."""
+    out = [f"# {job.name} for {target.title}", "", "SI units. Written by `python -m calibration.export`.", ""]
+    out += [f"- `{p.name}`: {what}" for p, what in written.files.items()]
+    if written.run:
+        out += ["", f"Run the beam: `{written.run}`"]
+    form = job.form
+    out += ["", "## Material", ""]
+    out += [f"{constants(form)}.", ""]
+    out.append(
+        f"Shear modulus {form.shear_modulus:.6g} Pa, Young's modulus {form.young:.6g} Pa, Poisson's ratio"
+        f" {form.poisson:.6g}, density {job.material.density:.6g} kg/m3."
+    )
+    kept = [getattr(job.material, part).title for part in PARTS if part in job.keeps]
+    if kept:
+        out += ["", f"With {', '.join(kept)}."]
+    out += ["", "## What is lost", ""]
+    out += [f"- {s}" for s in lost] or ["- Nothing of the law and its parts."]
+    out += [f"- {r[0].upper()}{r[1:]}." for r in written.remarks]
+    scene = scene_lines(job, target)
+    if scene:
+        out += ["", "## The beam", ""] + [f"- {s}" for s in scene]
+    if notes:
+        out += ["", "## The card", ""] + [f"- {n[0].upper()}{n[1:]}." for n in notes]
+    return "\n".join([*out, ""])

@@ -1,0 +1,89 @@
+"""`python -m calibration.export`: a material card for another program, with what is lost on the way."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from calibration.cli import Version, command, plain_ends
+
+app = command()
+
+EXAMPLES = """
+[bold]Examples[/bold]
+
+The paper's beam of card S1 in CalculiX, run there and compared:
+
+  python -m calibration.export datasets/materials/S1.yaml --to calculix --out S1-calculix --check
+
+The beam that a card was calibrated on, for MuJoCo:
+
+  python -m calibration.export fitted/cards/S0.yaml --to mujoco --out S0-mujoco
+    --experiment datasets/measured/bench/clean
+
+Exit codes: 0 written, 1 written but --check found another beam than stated, 2 bad input, 130 stopped.
+"""
+TARGETS = "sofa, febio, abaqus, calculix, mujoco, newton"
+
+
+@app.command(epilog=EXAMPLES)
+def main(
+    card: Annotated[Path, typer.Argument(help="A material card, MATERIAL.yaml.")],
+    to: Annotated[str, typer.Option(help=f"The program: {TARGETS}.")],
+    out: Annotated[Path, typer.Option(help="Folder to write: empty, or not there yet.")],
+    law: Annotated[
+        str | None, typer.Option(help="One of the card's laws. Default: the one that the card names.")
+    ] = None,
+    experiment: Annotated[
+        Path | None,
+        typer.Option(help="Folder with experiment.yaml: its beam is the scene. Default: the paper's."),
+    ] = None,
+    trial: Annotated[
+        str | None, typer.Option(help="The beam's trial. Default: the first of the card's material.")
+    ] = None,
+    scene: Annotated[bool, typer.Option(help="Write the beam too.")] = True,
+    refinement: Annotated[float, typer.Option(help="Elements of the beam get smaller by this factor.")] = 1.0,
+    most_loss: Annotated[
+        float,
+        typer.Option(
+            help="Largest difference of stress (rms, a fraction) at which another law may stand for it."
+        ),
+    ] = 0.5,
+    check: Annotated[bool, typer.Option(help="Run it on the beam: calculix, mujoco, newton.")] = False,
+    overwrite: Annotated[bool, typer.Option(help="Write into a folder that is not empty.")] = False,
+    version: Version = False,  # noqa: ARG001 - shown before anything else
+) -> None:
+    """Write a material card, and its beam, for another program; say what is lost, and how much."""
+    console = Console()
+    with plain_ends():
+        from calibration.export._export import export_card
+        from calibration.export._readme import constants
+        from calibration.export._response import percent
+
+        found = export_card(
+            card, to=to, out=out, law=law, experiment=experiment, trial=trial, scene=scene,
+            refinement=refinement, most_loss=most_loss, check=check, overwrite=overwrite,
+        )  # fmt: skip
+
+        def show(text: str, style: str = "") -> None:
+            console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+        show(f"{found.job.name} for {to}: {constants(found.job.form)}", "bold")
+        for sentence in found.lost or ("Nothing of the law and its parts is lost.",):
+            show(f"- {sentence}")
+        for remark in found.remarks:
+            show(f"- {remark[0].upper()}{remark[1:].removesuffix('.')}.")
+        show(f"Written: {', '.join(map(str, found.files))}")
+        if (run := found.checked) is not None:
+            words = "as stated" if found.within else "BEYOND what is stated"
+            show(
+                f"Run: the beam's end is {percent(run.from_expected)} from what was expected, {words} (at"
+                f" most {percent(run.limit)}), and {percent(run.from_reference)} from the card's beam in"
+                " tisim.",
+                "bold",
+            )
+    if not found.within:
+        raise typer.Exit(1)

@@ -1,0 +1,1 @@
+"""Programs that cards are exported to: a file each."""

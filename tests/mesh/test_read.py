@@ -1,0 +1,218 @@
+"""Meshes of other programs: .inp, .msh and .vtu with their sets, and what cannot be read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import tisim
+from tisim.mesh import Mesh, MeshError, beam_mesh
+
+CUBE = """*HEADING
+ a cube of 20 mm, its top a surface, CalculiX or Abaqus
+*Node, nset=Nall
+10, 0., 0., 0.
+ 1, 2.0D1, 0., 0.
+ 2, 20., 20., 0.
+ 3, 0., 20., 0.
+ 4, 0., 0., 20.
+ 5, 20., 0., 20.
+ 6, 20., 20., 20.
+ 7, 0., 20., 20.
+99, 5., 5., 5.
+*ELEMENT, TYPE=c3d8r,
+ ELSET=Block
+4, 10, 1, 2, 3,
+4, 5, 6, 7
+*NSET, NSET=Clamp, GENERATE
+1, 3, 1
+*NSET, NSET=clamp
+10
+*NSET, NSET=both, INSTANCE=Part-1-1
+Part-1-1.clamp, Part-1-1.7
+** a comment
+*SURFACE, NAME=Top, TYPE=ELEMENT
+Block, S2
+*MATERIAL, NAME=SOFT
+*STEP
+*NODE PRINT, NSET=Nall
+U
+*END STEP
+"""
+
+
+def small(kind: str = "tet10") -> Mesh:
+    return beam_mesh(length=0.02, section=tisim.Circle(radius=0.01), kind=kind, radial_elements=1)  # type: ignore[arg-type]
+
+
+def written(folder: Path, text: str, name: str = "cube.inp") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_an_input_file_with_its_sets(tmp_path: Path) -> None:
+    mesh = tisim.read(written(tmp_path, CUBE), unit="mm")
+    assert (mesh.kind, mesh.n_nodes, mesh.n_elements) == ("hex8", 8, 1)  # node 99 belongs to no element
+    assert tisim.mesh.volumes(mesh) == pytest.approx(8e-6)
+    assert sorted(mesh.node_sets) == ["block", "both", "clamp", "nall", "top"]
+    assert np.all(mesh.nodes[mesh.node_sets["clamp"], 2] == 0.0)
+    assert len(mesh.node_sets["clamp"]) == 4
+    assert len(mesh.node_sets["both"]) == 5
+    (top,) = mesh.facet_sets["top"]
+    a, b, c = mesh.nodes[top[:3]]
+    assert np.cross(b - a, c - b) @ [0, 0, 1] > 0  # outward
+    assert np.all(mesh.nodes[top, 2] == 0.02)
+    assert len(mesh.facet_sets["surface"]) == 6
+
+
+@pytest.mark.parametrize("face", [1, 2, 3, 4])
+def test_faces_of_tetrahedra_have_abaqus_numbers(tmp_path: Path, face: int) -> None:
+    """S1 to S4 are opposite to nodes 4, 3, 1, 2 (its manual, solid elements)."""
+    nodes = "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 0., 1., 0.\n4, 0., 0., 1.\n"
+    text = f"{nodes}*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n"
+    mesh = tisim.read(written(tmp_path, f"{text}*SURFACE, NAME=F\n7, S{face}\n"))
+    (facet,) = mesh.facet_sets["f"]
+    assert set(range(4)) - set(facet.tolist()) == {(4, 3, 1, 2)[face - 1] - 1}
+
+
+def test_included_files_are_read(tmp_path: Path) -> None:
+    begin, rest = CUBE.split("*NSET", 1)
+    written(tmp_path, begin, "mesh.inp")
+    mesh = tisim.read(written(tmp_path, f"*INCLUDE, INPUT=mesh.inp\n*NSET{rest}"), unit="mm")
+    assert len(mesh.node_sets["clamp"]) == 4
+
+
+@pytest.mark.parametrize("kind", ["tet4", "tet10"])
+def test_a_gmsh_file_with_physical_groups(tmp_path: Path, kind: str) -> None:
+    """Faces are cells of their own, a group each, here numbered so that they look inwards."""
+    mesh = small(kind)
+    solid, face = {"tet4": ("tetra", "triangle"), "tet10": ("tetra10", "triangle6")}[kind]
+    tip = mesh.facet_sets["tip"].astype(np.int64)
+    path = tmp_path / "beam.msh"
+    meshio.Mesh(
+        1e3 * mesh.nodes,
+        [(solid, mesh.elements.astype(np.int64)), (face, tip[:, [1, 0, 2, 3, 5, 4][: tip.shape[1]]])],
+        cell_data={"gmsh:physical": [np.full(mesh.n_elements, 1, np.int32), np.full(len(tip), 2, np.int32)],
+                   "gmsh:geometrical": [np.ones(mesh.n_elements, np.int32), np.ones(len(tip), np.int32)]},
+        field_data={"body": np.array([1, 3]), "tip": np.array([2, 2])},
+    ).write(path, file_format="gmsh22", binary=False)  # fmt: skip
+    read = tisim.read(path, unit="mm", elements="body")
+    assert read.kind == kind
+    np.testing.assert_allclose(read.nodes, mesh.nodes, atol=1e-15)
+    np.testing.assert_array_equal(read.elements, mesh.elements)
+    assert {tuple(sorted(f)) for f in read.facet_sets["tip"]} == {tuple(sorted(f)) for f in tip}
+    np.testing.assert_array_equal(read.node_sets["tip"], mesh.node_sets["tip"])
+    with pytest.raises(MeshError, match=r"elements 'bone': expected an element set of the file: body"):
+        tisim.read(path, elements="bone")
+    with pytest.raises(MeshError, match=r"up to 10 m, got 2[0-9.]+ m: give unit='mm'"):
+        tisim.read(path)
+
+
+GMSH_41 = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 5 "base"
+3 6 "body"
+$EndPhysicalNames
+$Entities
+0 0 1 1
+1 0 0 0 1 1 0 1 5 0
+1 0 0 0 1 1 1 1 6 0
+$EndEntities
+$Nodes
+1 5 1 5
+3 1 0 5
+1
+2
+3
+4
+5
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+9 9 9
+$EndNodes
+$Elements
+2 2 1 2
+2 1 2 1
+1 1 2 3
+3 1 4 1
+2 1 2 3 4
+$EndElements
+"""
+
+
+def test_gmsh_as_it_is_written_today(tmp_path: Path) -> None:
+    mesh = tisim.read(written(tmp_path, GMSH_41, "tet.msh"))
+    assert (mesh.kind, mesh.n_nodes, sorted(mesh.node_sets)) == ("tet4", 4, ["base", "body"])
+    np.testing.assert_array_equal(mesh.node_sets["base"], [0, 1, 2])
+    assert mesh.facet_sets["base"].tolist() == [[0, 2, 1]]  # outward
+
+
+def test_a_result_read_again_is_its_rest_shape(tmp_path: Path) -> None:
+    mesh = small("hex8")
+    moved = mesh.nodes - np.array([0.0, 0.0, 0.01])
+    result = tisim.Result(
+        scene=None, status=tisim.Status.CONVERGED, mesh=mesh, load=np.ones(1), positions=moved[None],
+        support_force=np.zeros((1, 3)), min_jacobian=np.ones(1), residual=np.zeros(1),
+    )  # fmt: skip
+    read = tisim.read(tisim.write(result, tmp_path / "beam.vtu"))
+    np.testing.assert_allclose(read.nodes, mesh.nodes, atol=1e-15)
+    for name in ("clamp", "tip"):
+        np.testing.assert_array_equal(read.node_sets[name], mesh.node_sets[name])
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("c3d8r", "C3D6"), r"elements of type C3D6: expected one of C3D4, C3D10, C3D8, C3D20"),
+        (("4, 5, 6, 7\n", "4, 5, 6\n"), r"line 14: \*ELEMENT, TYPE=C3D8R: expected 8 nodes an element"),
+        (("2, 20., 20., 0.", "2, 20., x, 0."), r"line 3: \*NODE: numbers are expected there"),
+        (("10, 1, 2, 3,", "10, 1, 2, 8,"), r"element 4: node 8 is named, and there is none"),
+        (("Part-1-1.clamp,", "grip,"), r"node set 'grip' is named, and there is none"),
+        (("Block, S2", "Block, S7"), r"\*SURFACE 'top': expected faces S1 to S6 of elements, got S7"),
+        (("*MATERIAL", "*NGEN\n1, 2\n*MATERIAL"), r"\*NGEN: nodes that are generated cannot be read"),
+        (("*STEP", "*NODE\n3, 1., 1., 1.\n*STEP"), r"\*NODE: node 3 is stated twice, in two places"),
+        (("*STEP", "*INSTANCE, NAME=A, PART=B\n0., 1., 0.\n*STEP"), r"\*INSTANCE: expected one part"),
+        (("*MATERIAL", "*INCLUDE, INPUT=no.inp\n*MATERIAL"), r"\*INCLUDE: there is no file"),
+        ((CUBE[CUBE.index("*ELEMENT") : CUBE.index("*NSET,")], ""), r"expected \*NODE and \*ELEMENT"),
+        (("20., 20., 20.", "nan, 20., 20."), r"expected finite coordinates"),
+    ],
+)  # fmt: skip
+def test_what_an_input_file_may_not_hold(tmp_path: Path, change: tuple[str, str], sentence: str) -> None:
+    assert change[0] in CUBE
+    with pytest.raises(MeshError, match=sentence) as error:
+        tisim.read(written(tmp_path, CUBE.replace(*change, 1)), unit="mm")
+    assert str(error.value).startswith(str(tmp_path))
+    assert "\n" not in str(error.value)
+
+
+def test_other_files_that_cannot_be_read(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    for name in ("beam.msh", "beam.vtu"):
+        with pytest.raises(MeshError, match=r"which it is not"):
+            tisim.read(written(tmp_path, "$Nonsense\n<VTKFile>", name))
+    with pytest.raises(MeshError, match=r"expected a name that ends in \.inp, \.msh, \.vtu"):
+        tisim.read(written(tmp_path, "", "beam.stl"))
+    with pytest.raises(FileNotFoundError):
+        tisim.read(tmp_path / "none.inp")
+    binary = tmp_path / "binary.inp"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(MeshError, match="expected a text file"):
+        tisim.read(binary)
+    mixed = tmp_path / "mixed.vtu"
+    nodes = small().nodes
+    meshio.Mesh(nodes, [("tetra", [[0, 1, 2, 3]]), ("hexahedron", [list(range(8))])]).write(mixed)
+    with pytest.raises(MeshError, match=r"elements of one kind, found 1 tet4 and 1 hex8"):
+        tisim.read(mixed)
+    wedge = tmp_path / "wedge.vtu"
+    meshio.Mesh(nodes, [("wedge", [[0, 1, 2, 3, 4, 5]])]).write(wedge)
+    with pytest.raises(MeshError, match=r"elements of type wedge: expected tetra or"):
+        tisim.read(wedge)
+    assert capfd.readouterr().out == ""
