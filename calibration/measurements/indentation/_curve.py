@@ -23,13 +23,11 @@ Array = NDArray[np.float64]
 ROUND, FLAT = 1.5, 1.08
 LEAST = 3  # frames that a curve needs
 # Refinements of the two meshes.
-COARSE, FINE = 1.0, 1.5
+COARSE, FINE = 0.7, 1.0
 # Width of contact over indenter radius over which a change is taken to be smooth, at refinement 1: about a
 # quarter of a period of the waves that the force has as cells come to touch (0.2 under a ball, 0.4 under a
 # flat indenter).
 SMOOTH = 0.08
-# The same of the mesh error that is extrapolated: half a period of the waves under a flat indenter.
-BROAD = 0.2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -136,26 +134,6 @@ def deepened(fine: Curve, coarse: Curve) -> Curve:
         across=np.concatenate([fine.across, ratio * coarse.across[below] + aside]),
         finer=fine.reached,
     )
-
-
-def extrapolated(fine: Curve, coarse: Curve, radius: float) -> Curve:
-    """The finer mesh's forces where cells had no size, by Richardson from two meshes.
-
-    The error falls with the square of the cell's size. Only its smooth part is taken off: waves as cells come
-    to touch are no power of the size, and stay as they are on the finer mesh.
-
-    Parameters
-    ----------
-    radius : of the indenter [m].
-    """
-    other = coarse.at(fine.depth)
-    pushed = (fine.along > 0.0) & (other > 0.0) & (fine.depth <= coarse.reached)
-    if np.count_nonzero(pushed) < LEAST:
-        return fine
-    width = np.sqrt(fine.depth[pushed] / radius)
-    error = smoothed(width, np.log(other[pushed] / fine.along[pushed]), BROAD) / ((FINE / COARSE) ** 2 - 1.0)
-    factor = np.exp(-np.interp(fine.depth, fine.depth[pushed], error))
-    return replace(fine, along=factor * fine.along, across=factor[:, None] * fine.across)
 
 
 def changed(base: Curve, pairs: Sequence[tuple[Curve, Curve, float]], radius: float) -> Curve:

@@ -21,7 +21,6 @@ from calibration.measurements.indentation._curve import (
     changed,
     curve_of,
     deepened,
-    extrapolated,
 )
 from calibration.measurements.indentation._scene import Geometry
 from tisim import Mesh, Poke, simulate
@@ -78,15 +77,12 @@ class CurveCache:
     Attributes
     ----------
     workers : processes, as in `tisim.simulate`.
-    extrapolated : curves are those of the finer mesh less its error, which the coarser one shows: both are
-        simulated.
     simulated : number of simulations.
     core_seconds : of these.
     """
 
-    def __init__(self, workers: int | None = None, *, extrapolated: bool = False) -> None:
+    def __init__(self, workers: int | None = None) -> None:
         self.workers = workers
-        self.extrapolated = extrapolated
         self.simulated = 0
         self.core_seconds = 0.0
 
@@ -103,11 +99,7 @@ class CurveCache:
         for some in (bases, finer):
             self._simulate([replace(r, depth=min(r.depth, finer_to(r.geometry))) for r in some], FINE)
         short = [r for r in requests if not self._fine_suffices(r)]
-        plain = [
-            b
-            for b, r in zip(bases, requests, strict=True)
-            if self.extrapolated or r in short or not self._fine_suffices(b)
-        ]
+        plain = [b for b, r in zip(bases, requests, strict=True) if r in short or not self._fine_suffices(b)]
         self._simulate(plain, COARSE)
         self._simulate([r for r in short if r.name], COARSE)
         return [self._of(r) for r in requests]
@@ -125,8 +117,6 @@ class CurveCache:
         plain = r.unchanged()
         fine, coarse = self._fine(plain), _KNOWN.get((r.geometry, "", COARSE))
         base = fine
-        if base is not None and coarse is not None and self.extrapolated:
-            base = extrapolated(base, coarse, r.geometry.rod.radius)
         if base is None or not (coarse is None or self._fine_suffices(plain)):
             assert coarse is not None
             base = coarse if base is None else deepened(base, coarse)

@@ -1,10 +1,11 @@
 """Noise of indentation: errors of each point, the simulation's mesh error, and first touch.
 
-Mesh error as measured on flat and round indenters to 5 mm (docs/pokes.md): at refinement 1 the force is
-too high by up to 3 %, with one sign at all depths, and beside that wanders by about 1 %, more at depths below
-0.4 radii, where few cells touch. It wanders as more cells come to touch, thus with the width of the contact,
-which grows as the square root of radius times depth, up and down once a cell; and each geometry has a
-deviation of its own. All fall with the square of the cell size.
+Mesh error as measured on flat and round indenters to 4 mm, K/G 300, against another solver
+(studies/indentation, 2026-11-23): on quadratic hexahedra the force is off by up to 0.7 % at refinement 1 and
+by 1 to 2 % at 0.7, more at depths below 0.4 radii, where few cells touch. It wanders as more cells come to
+touch, thus with the width of the contact, which grows as the square root of radius times depth, up and down
+once a cell; and each geometry has a deviation of its own. All are taken to fall with the square of the cell
+size.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ Follow = Callable[[Callable[[Array], Array]], Array]
 
 # Relative sd at refinement 1: common to all indentations, and of each point by itself (contact points that
 # come and go, the curve between its frames).
-TOGETHER, SCATTER = 0.025, 0.002
+TOGETHER, SCATTER = 0.011, 0.001
 # (relative sd, correlation length in width of contact over the indenter's radius) at refinement 1: up and
 # down once a cell, and a geometry's own deviation at nearly all depths.
-WANDERING = ((0.008, 0.04), (0.006, 0.5))
+WANDERING = ((0.0036, 0.04), (0.0027, 0.5))
 SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wandering grow
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
 # Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,

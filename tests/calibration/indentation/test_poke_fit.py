@@ -44,7 +44,7 @@ def poke() -> ModelObjective[IndentationModel]:
     force = result.rod_force[:, 2] + rng.normal(0.0, 3e-3, result.load.shape)
     trial = made.trial(np.r_[0.0, result.load], np.r_[0.0, force], force_sd=3e-3)
     model = IndentationModel(
-        made.experiment(trial), baseline=Baseline.of_law([trial], LAW), refinement=0.5, workers=1
+        made.experiment(trial), baseline=Baseline.of_law([trial], LAW), refinement=0.75, workers=1
     )
     return ModelObjective(model, name="poke p1")
 

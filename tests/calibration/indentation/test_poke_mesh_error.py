@@ -22,10 +22,7 @@ SHEAR = 1e4
 
 @pytest.mark.parametrize("name", ["ball", "thin"])
 def test_the_stated_error_holds_what_another_solver_says(name: str) -> None:
-    """Per depth at most 1.5 of the squared deviation that is stated.
-
-    What is stated was measured on linear elements; quadratic ones are better than it says.
-    """
+    """Per depth at most 1.5 of the squared deviation that is stated."""
     entry = TABLE[name]
     setup = entry["setup"]
     tip, radius = setup["tip"], 1e-3 * setup["rod"]
