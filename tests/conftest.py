@@ -28,6 +28,7 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
 # of a run shows which they are
 LONG = (
     "packaging/test_pages.py",
+    "calibration/study/test_fit_and_diagnosis.py",
     "blind/test_beams.py",
     "tisim/test_time_in_scenes.py",
     "tisim/test_law_registry.py",
@@ -40,6 +41,11 @@ LONG = (
     "factory/test_interruption.py",
     "factory/test_timed.py",
     "calibration/photo/test_trace_photo.py",
+    "calibration/photo/test_bad_photographs.py",
+    "tisim/test_poke_protocol.py",
+    "learn/test_commands.py",
+    "factory/test_command.py",
+    "calibration/interface/test_commands.py",
     "tisim/test_parts_point.py",
     "calibration/indentation/test_poke_objective.py",
     "tisim/test_dynamics.py",
