@@ -1,4 +1,4 @@
-"""`python -m learn.bench`: see `learn.cli.bench`."""
+"""`python -m learn.bench`: latency of a surrogate, throughput of the loaders."""
 
 from learn import cli
 

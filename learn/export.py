@@ -1,4 +1,4 @@
-"""`python -m learn.export`: see `learn.cli.export`."""
+"""`python -m learn.export`: a trained surrogate as ONNX files, checked."""
 
 from learn import cli
 

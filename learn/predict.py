@@ -1,4 +1,4 @@
-"""`python -m learn.predict`: see `learn.cli.predict`."""
+"""`python -m learn.predict`: one poke by a trained surrogate, with a picture."""
 
 from learn import cli
 

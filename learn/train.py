@@ -1,4 +1,4 @@
-"""`python -m learn.train`: see `learn.cli.train`."""
+"""`python -m learn.train`: train a surrogate on a dataset of pokes."""
 
 from learn import cli
 

@@ -1,4 +1,4 @@
-"""From a lab's own files to an experiment: `python -m calibration.new`."""
+"""`python -m calibration.new`: from a lab's own files to an experiment."""
 
 from calibration.new._command import EXAMPLES, app, main
 
