@@ -33,7 +33,7 @@ def test_the_papers_recipe() -> None:
     assert [card.stiffness for card in plan.cards] == [0.8, 0.4, 0.0]
     scene = plan.pokes[0].scene
     assert (scene.depth, scene.frame_spacing, scene.rod.radius, scene.rod.length) == (
-        0.03,
+        0.02,
         0.001,
         0.0025,
         0.04,

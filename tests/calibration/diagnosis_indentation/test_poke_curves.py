@@ -95,4 +95,4 @@ def test_the_common_mesh_error_is_smaller_where_the_finer_mesh_reaches() -> None
     curve = made(DEEP, 1e-2 * DEEP, side=0.0, finer=3e-3)
     follow = [partial(at_depths, record, 1.0)]
     together = nuisances([record], [curve], [force], [0.0 * force], follow, [0.0])[0][:, 0]
-    assert together == pytest.approx(2.0 * TOGETHER / np.where(record.depth <= 3e-3, FINE, 1.0) ** 2)
+    assert together == pytest.approx(2.0 * TOGETHER / np.where(record.depth <= 3e-3, FINE, COARSE) ** 2)
