@@ -99,8 +99,7 @@ class RealTime:
         for key in ("site_mm", "depth_mm", "angle_deg", "heading_deg"):
             if key in interior:
                 raise InputError(f"scene: unexpected key {key}: it is given with each poke")
-        middle = (store.points[:, :2].min(axis=0) + store.points[:, :2].max(axis=0)) / 2
-        file = load_poke({**interior, "site_mm": (middle * 1e3).tolist(), "depth_mm": 1e-3})
+        file = load_poke({**interior, "site_mm": (store.middle * 1e3).tolist(), "depth_mm": 1e-3})
         scene, pokes = scene_and_poke(file, store)
         with torch.no_grad():
             encoded = run.model.encode(scene, run.model.prepare(scene))

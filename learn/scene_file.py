@@ -222,7 +222,7 @@ def kind_of(file: PokeScene, store: Store) -> str | None:
 
 def _check_fit(file: PokeScene, store: Store, where: str) -> None:
     size = np.array(store.block_size) * 1e3
-    middle = (store.points[:, :2].min(axis=0) + store.points[:, :2].max(axis=0)) / 2 * 1e3
+    middle = store.middle * 1e3
     low, high = middle - size[:2] / 2, middle + size[:2] / 2
     radius = store.rod_radius * 1e3
     for k, value in enumerate(file.site_mm):

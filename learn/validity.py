@@ -295,8 +295,7 @@ def poke_values(
     near = away <= max(store.rod_radius, float(away.min()))
     cover, level = float(interior.soft[near].min()), height / len(store.level_depth)
     cosine = min(1.0, float(-direction[2]))
-    middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
-    to_side = float((np.array([length, width]) / 2 - np.abs(site - middle)).min())
+    to_side = float((np.array([length, width]) / 2 - np.abs(site - store.middle)).min())
     timed = {}
     if clock is not None and len(clock):
         timed = dict(zip(CLOCK_QUANTITIES, (clock * np.array([1.0, 1e3, 1e3])).tolist(), strict=True))

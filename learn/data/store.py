@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -141,7 +142,12 @@ class Store:
     def softness_names(self) -> list[str]:
         return [str(name) for name in self.attributes["softness"]]
 
-    @property
+    @cached_property
+    def middle(self) -> Floats:
+        """Middle of the top face, (x, y) [m]."""
+        return np.asarray((self.points[:, :2].min(axis=0) + self.points[:, :2].max(axis=0)) / 2)
+
+    @cached_property
     def block_size(self) -> tuple[float, float, float]:
         """Length, width and height of the block [m]; the grid's points are the centres of equal cells."""
         low, high = self.points.min(axis=0), self.points.max(axis=0)
