@@ -229,3 +229,20 @@ def test_nearly_incompressible_far_tissue_does_not_hold_steps_back(monkeypatch: 
     condensed = solve_poke(poke).cost.newton_iterations
     monkeypatch.setattr(condensed_module, "REACH", -1.0)
     assert condensed <= 1.5 * solve_poke(poke).cost.newton_iterations
+
+
+def test_a_poke_that_fails_ends_after_three_times_the_iterations_of_a_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """And says so: no frame is made up."""
+    asked: list[float] = []
+
+    def fails(block: CondensedBlock, x: Array, **_: Any) -> Outcome:
+        asked.append(block._system.depth)
+        return Outcome(x, Status.NOT_CONVERGED, 1.0, 120)  # three times Solver.max_iterations
+
+    monkeypatch.setattr(CondensedBlock, "solve", fails)
+    found = solve_poke(scene())
+    assert len(asked) == 1  # smaller steps would be tried otherwise
+    assert found.status is Status.NOT_CONVERGED
+    assert len(found.load) == 0
