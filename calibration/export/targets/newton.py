@@ -3,7 +3,7 @@
 SolverVBD's volumetric energy is the stable neo-Hookean one by Lame's parameters k_mu and k_lambda (it adds
 k_mu to k_lambda itself, as Smith et al. 2018 do), tisim's law `stable-neo-hookean`, on linear tetrahedra.
 SolverSemiImplicit has another energy of the same two numbers. Block descent stops short of equilibrium: a
-beam bends too far unless steps are small and iterations many (docs/export.md).
+beam bends too far unless steps are small and iterations many (docs/how-to/export.md).
 """
 
 from __future__ import annotations
