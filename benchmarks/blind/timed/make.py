@@ -7,7 +7,8 @@
 
 An experiment is a folder `DIR/KIND-SEED` (docs/reference/experiment-format.md); no command under test reads
 its `truth.yaml`: the material's law and parts in SI units, and beams' true sizes. The forces of
-indentations are solved by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and stored in `indentation.json`.
+indentations are solved by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and
+stored in `indentation.json`.
 """
 
 from __future__ import annotations
