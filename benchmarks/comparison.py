@@ -9,8 +9,8 @@ Abaqus are in no registry.
 
 Beams: the paper's (a cylinder of 10 mm radius, 100 mm long, 1000 kg/m3, G = 40 kPa), and the Dragon Skin
 bar of the released-bar measurements (30 x 30 x 100 mm, 1070 kg/m3, G = 85 kPa). One end clamped, under
-their weight; Neo-Hookean with K = 100 G where the program has it. Error: mean displacement of the end
-face against a converged reference, in % of its size; below 0 is too stiff. References: the paper's beam
+their weight; Neo-Hookean with K = 100 G where the program has it. Error: displacement at the
+middle of the end face against a converged reference, in % of its size; below 0 is too stiff. References: the paper's beam
 from references/beams.json (centre of the face), the bar solved here in the same way, FElupe's mixed
 Q2/P-1 hexahedra, the last difference of two levels stated. Seconds: of one core, from mesh to
 equilibrium. Lines of input: what a user writes, mesh not counted.
@@ -61,7 +61,7 @@ for level in np.linspace(0.2, 1.0, 5):
 
 @dataclass(frozen=True)
 class Case:
-    """A beam. reference: mean displacement of its end face [m], (3,); stated: its own error [%]."""
+    """A beam. reference: displacement at the middle of its end face [m], (3,); stated: its own error [%]."""
 
     name: str
     section: tisim.Circle | tisim.Rectangle
@@ -83,7 +83,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Line:
-    """What a program made of a beam. end: mean displacement of the end face [m], (3,)."""
+    """What a program made of a beam. end: displacement at the middle of the end face [m], (3,)."""
 
     program: str
     how: str
