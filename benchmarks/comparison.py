@@ -9,11 +9,11 @@ Abaqus are in no registry.
 
 Beams: the paper's (a cylinder of 10 mm radius, 100 mm long, 1000 kg/m3, G = 40 kPa), and the Dragon Skin
 bar of the released-bar measurements (30 x 30 x 100 mm, 1070 kg/m3, G = 85 kPa). One end clamped, under
-their weight; Neo-Hookean with K = 100 G where the program has it. Error: displacement at the
-middle of the end face against a converged reference, in % of its size; below 0 is too stiff. References: the paper's beam
-from references/beams.json (centre of the face), the bar solved here in the same way, FElupe's mixed
-Q2/P-1 hexahedra, the last difference of two levels stated. Seconds: of one core, from mesh to
-equilibrium. Lines of input: what a user writes, mesh not counted.
+their weight; Neo-Hookean with K = 100 G where the program has it. Error: displacement at the middle of
+the end face against a converged reference, in % of its size; below 0 is too stiff. References: the
+paper's beam from references/beams.json (centre of the face), the bar solved here in the same way,
+FElupe's mixed Q2/P-1 hexahedra, the last difference of two levels stated. Seconds: of one core, from mesh
+to equilibrium. Lines of input: what a user writes, mesh not counted.
 """
 
 from __future__ import annotations

@@ -115,7 +115,8 @@ def write(job: Job, folder: Path) -> Written:
     beam.write_text(
         SCENE.format(
             title=f"{job.name}: {scene.name}".replace("\\", "/").replace('"', "'"),
-            density=f"{density:.10g}", mu=f"{form.mu[0]:.10g}", lam=f"{form.lam:.10g}", damp=f"{DAMPING * form.mu[0]:.10g}",
+            density=f"{density:.10g}", mu=f"{form.mu[0]:.10g}", lam=f"{form.lam:.10g}",
+            damp=f"{DAMPING * form.mu[0]:.10g}",
             gravity=tuple(float(g) for g in scene.beam.gravity), clamped=[int(n) for n in scene.held],
             end=[int(n) for n in scene.watched], loaded=[int(n) for n in loaded],
             forces=[[float(x) for x in scene.forces[n]] for n in loaded],
