@@ -132,9 +132,7 @@ def check(folder: Path) -> NDArray[np.float64]:
         raise InputError("--check: newton is not installed: pip install newton")
     moved, still = runpy.run_path(str(folder / "beam.py"))["main"]()
     if not still:
-        raise InputError(
-            "--check: Newton's beam still swings after 1 s: it is too soft for the scene's damping"
-        )
+        raise InputError("--check: Newton's beam still swings after 1 s: too soft for the damping")
     return np.asarray(moved, dtype=float)
 
 
