@@ -92,6 +92,7 @@ def second(store: Path, run: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
     """Each run's intervals come from the other folds' test parts, in the tables and in its folder."""
     runs = [tmp_path / f"fold{k}" for k in range(3)]

@@ -62,6 +62,7 @@ def test_what_sliding_takes_agrees_with_axisymmetric_elements() -> None:
     assert missing(result, 1e-3 * depth[:-1][at]) == pytest.approx(theirs, abs=0.013)
 
 
+@pytest.mark.slow
 def test_where_nothing_slides_the_way_back_is_the_way_there() -> None:
     """To 0.1 % of the force at 1.2 times the default refinement."""
     result = poke(0.6, refinement=1.2)
