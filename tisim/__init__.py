@@ -30,8 +30,9 @@ from tisim.bodies import (
     SphereInclusion,
 )
 from tisim.course import Course
+from tisim.fields import Fields, Quantities, fields, fields_of_frames
 from tisim.io import export
-from tisim.io.export import frame_index, surface_triangles, write
+from tisim.io.export import surface_triangles, write
 from tisim.io.picture import picture
 from tisim.io.read import read
 from tisim.laws import Moduli
@@ -39,7 +40,7 @@ from tisim.mesh import Mesh
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 from tisim.problems.beam.rest_shape import rest_positions
 from tisim.problems.dynamics.paper_stop import PaperStop, paper_stop
-from tisim.result import Cost, Result, Status
+from tisim.result import Cost, Result, Status, frame_index
 from tisim.scene import (
     Beam,
     ClampImperfections,
@@ -67,6 +68,7 @@ __all__ = [
     "Coupon",
     "Course",
     "CylinderInclusion",
+    "Fields",
     "HolzapfelGasserOgden",
     "Imperfections",
     "Inclusion",
@@ -78,6 +80,7 @@ __all__ = [
     "Poke",
     "Press",
     "Prony",
+    "Quantities",
     "Rectangle",
     "Result",
     "Rod",
@@ -88,6 +91,8 @@ __all__ = [
     "Void",
     "__version__",
     "export",
+    "fields",
+    "fields_of_frames",
     "frame_index",
     "inclusions",
     "laws",

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from tisim import laws
 from tisim.bodies import Rod
-from tisim.io.export import checked_path, frame_index
+from tisim.io.export import checked_path
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
 from tisim.problems.indentation.turning import axis_at
-from tisim.result import Result
+from tisim.result import Result, frame_index
 from tisim.scene import Poke
 
 Array = NDArray[np.float64]
@@ -241,7 +241,7 @@ def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array
 
 def _profile(rod: Rod) -> tuple[Array, Array]:
     """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
-    edge = rod.radius if rod.tip == "hemisphere" else min(rod.edge_radius, rod.radius)
+    edge = rod.edge
     angle = np.linspace(0.0, 0.5 * np.pi, 9)
     # short pieces along the shaft, so that a painter's order of their centres is right
     shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / 1e-3)) + 1))[1:]
