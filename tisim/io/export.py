@@ -71,7 +71,8 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
         `volume_ratio` (element volume over rest volume) and, constant over the body, `load` and
         `support_force` (see `Result`), `time` [s] where there is one and, of a poke, `rod_force` [N],
         `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length, radius of the tip's edge [m]). Both: the
-        `FIELDS` (`tisim.fields`), whose names end in their units; tensors as nine components, row by row.
+        `FIELDS` (`tisim.fields`), whose names end in their units; tensors as nine components, row by row; a
+        result without a scene has none.
         .pvd: all frames, a .vtu each in a folder of the same name beside it, as ParaView opens them.
         .ply, .stl: the deformed surface as triangles [m].
     frame : int
@@ -97,7 +98,7 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
     if ending == ".pvd":
         _write_series(result, path)
     elif ending == ".vtu":
-        _write_vtu(result, fields(result, frame), path)
+        _write_vtu(result, frame, None if result.scene is None else fields(result, frame), path)
     else:
         import trimesh
 
@@ -115,7 +116,7 @@ def _write_series(result: Result, path: Path) -> None:
     rows = []
     for found, moment in zip(fields_of_frames(result), moments, strict=True):
         name = f"{path.stem}-{found.frame:03d}.vtu"
-        _write_vtu(result, found, folder / name)
+        _write_vtu(result, found.frame, found, folder / name)
         rows.append(
             f'    <DataSet timestep="{moment:.9g}" part="0" file="{escape(f"{folder.name}/{name}")}"/>'
         )
@@ -123,10 +124,10 @@ def _write_series(result: Result, path: Path) -> None:
     path.write_text("\n".join([*lines, *rows, "  </Collection>", "</VTKFile>", ""]), encoding="utf-8")
 
 
-def _write_vtu(result: Result, found: Fields, path: Path) -> None:
+def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> None:
     import meshio
 
-    half, frame = result.mesh, found.frame
+    half = result.mesh
     mesh, x = unfold(half, result.positions[frame])
     moved = Mesh(kind=mesh.kind, nodes=x, elements=mesh.elements)
     point_data: dict[str, NDArray] = {"displacement": x - mesh.nodes, "rest_position": mesh.nodes}
@@ -134,7 +135,6 @@ def _write_vtu(result: Result, found: Fields, path: Path) -> None:
         mask = np.zeros(mesh.n_nodes, dtype=np.int8)
         mask[nodes] = 1
         point_data[f"set_{name}"] = mask
-    point_data |= _flat(unfold_quantities(half, found.nodes, nodes=True))
     m = mesh.n_elements
     constant = {"load": result.load[frame], "support_force": result.support_force[frame]}
     if result.time is not None:
@@ -149,7 +149,9 @@ def _write_vtu(result: Result, found: Fields, path: Path) -> None:
     cell_data |= {
         name: np.tile(value, (m, 1)) if value.ndim else np.full(m, value) for name, value in constant.items()
     }
-    cell_data |= _flat(unfold_quantities(half, found.elements, nodes=False))
+    if found is not None:
+        point_data |= _flat(unfold_quantities(half, found.nodes, nodes=True))
+        cell_data |= _flat(unfold_quantities(half, found.elements, nodes=False))
     meshio.Mesh(
         x,
         [(_VTK[mesh.kind], mesh.elements.astype(np.int64))],

@@ -92,9 +92,9 @@ def picture(
     scene = result.scene
     poke = scene if result.rod_tip is not None else None
     cut = poke is not None if cut is None else cut
-    across = _across(poke)
-    camera = _camera(across, poke)
-    facets = _visible_facets(mesh, across, poke, cut=cut)
+    sideways = across(poke)
+    camera = _camera(sideways, poke)
+    facets = _visible_facets(mesh, sideways, poke, cut=cut)
     moved = 1e3 * np.linalg.norm(x - mesh.nodes, axis=1)
     scale = Normalize(0.0, max(float(moved.max()), 1e-9))
 
@@ -138,14 +138,14 @@ def _colour_map() -> Any:
     return colormaps[_COLOURS]
 
 
-def _across(poke: Poke | None) -> Array:
+def across(poke: Poke | None) -> Array:
     """Horizontal unit vector across the plane of a push; the cut is square to it."""
     if poke is None or np.hypot(poke.direction[0], poke.direction[1]) < 1e-9:
         return np.array([0.0, 1.0, 0.0])
     d = np.array([poke.direction[0], poke.direction[1], 0.0])
     d /= np.linalg.norm(d)
-    across = np.array([-d[1], d[0], 0.0])
-    return across if across[1] >= 0 else -across
+    sideways = np.array([-d[1], d[0], 0.0])
+    return sideways if sideways[1] >= 0 else -sideways
 
 
 def _camera(across: Array, poke: Poke | None) -> _Camera:
@@ -224,9 +224,12 @@ def _finish(figure: Any, axes: Any, flat: list[Array], scale: Any, title: str, *
     figure.colorbar(mappable, ax=axes, label="displacement [mm]", shrink=0.75, pad=0.02)
 
 
-def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array:
-    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`."""
-    radius, height = _profile(rod)
+def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40, piece: float = 1e-3) -> Array:
+    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`.
+
+    around: how many at its circumference. piece: longest along the shaft [m].
+    """
+    radius, height = _profile(rod, piece)
     axis = axis / np.linalg.norm(axis)
     u = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])
     u /= np.linalg.norm(u)
@@ -239,12 +242,12 @@ def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array
     return quads.reshape(-1, 4, 3)
 
 
-def _profile(rod: Rod) -> tuple[Array, Array]:
+def _profile(rod: Rod, piece: float) -> tuple[Array, Array]:
     """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
     edge = rod.edge
     angle = np.linspace(0.0, 0.5 * np.pi, 9)
     # short pieces along the shaft, so that a painter's order of their centres is right
-    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / 1e-3)) + 1))[1:]
+    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / piece)) + 1))[1:]
     radius = np.concatenate([
         [0.0], rod.radius - edge + edge * np.sin(angle), np.full(len(shaft), rod.radius), [0.0],
     ])  # fmt: skip

@@ -1,0 +1,171 @@
+"""A result of `tisim.simulate` as a view."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.fields import Quantities, fields_of_frames, unfold_quantities
+from tisim.io.export import triangles
+from tisim.io.picture import across, describe, rod_surface
+from tisim.mesh import Mesh, boundary_facets, unfold
+from tisim.problems.indentation.turning import axis_at
+from tisim.result import Result
+from tisim.view._view import REST, STEEL, Array, Curve, Field, Ints, Surface, View
+
+MOST_FRAMES = 120
+_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
+# name, attribute of `Quantities`, component, unit in SI
+COLOURINGS: tuple[tuple[str, str, int | None, str], ...] = (
+    ("von Mises stress", "von_mises", None, "Pa"),
+    ("strain energy density", "energy_density", None, "J/m³"),
+    ("pressure", "pressure", None, "Pa"),
+    ("largest principal stress", "principal_stresses", 0, "Pa"),
+    ("largest principal stretch", "principal_stretches", 0, ""),
+    ("smallest principal stretch", "principal_stretches", 2, ""),
+)
+
+
+def view_of_result(result: Result, *, title: str | None = None) -> View:
+    """The result in three dimensions, see `tisim.show`."""
+    count = len(result.positions)
+    if not count:
+        why = f": {result.message}" if result.message else ""
+        raise ValueError(f"the result has no frame{why}")
+    kept = frames_shown(count)
+    mesh, positions = unfold(result.mesh, result.positions[kept])
+    poke = result.scene if result.rod_tip is not None else None
+    sideways = across(poke)
+    centre = np.array([*poke.site, 0.0]) if poke is not None else mesh.nodes.mean(axis=0)
+    found = [
+        unfold_quantities(result.mesh, f.nodes, nodes=True) for f in fields_of_frames(result) if f.frame in kept
+    ]
+    surfaces = body_surfaces(mesh, positions, colourings(mesh.nodes, positions, found), sideways, centre)
+    if result.rod_tip is not None:
+        times = np.zeros(count) if result.time is None else result.time
+        axes = [axis_at(result.scene, float(times[k])) for k in kept]
+        surfaces.append(rod(result.scene.rod, result.rod_tip[kept], np.array(axes)))
+    along = np.cross(sideways, [0.0, 0.0, 1.0])
+    towards = -sideways + 0.35 * along + (0.6 if poke is not None else 0.35) * np.array([0.0, 0.0, 1.0])
+    notes = [thinned(count)] if len(kept) < count else []
+    if result.message:
+        notes.append(f"The simulation ended early: {result.message}.")
+    return View(
+        title=title or describe(result),
+        labels=tuple(_label(result, int(k)) for k in kept),
+        surfaces=tuple(surfaces),
+        curve=_curve(result, kept),
+        towards=(float(towards[0]), float(towards[1]), float(towards[2])),
+        opened=poke is not None,
+        rest=poke is None and count == 1,
+        notes=tuple(notes),
+    )
+
+
+def frames_shown(count: int) -> NDArray[np.intp]:
+    """Frames of a view: all, or MOST_FRAMES of them, evenly, the last among them."""
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_FRAMES))).astype(np.intp))
+
+
+def thinned(count: int) -> str:
+    return f"{MOST_FRAMES} of {count} frames are shown."
+
+
+def body_surfaces(
+    mesh: Mesh, positions: Array, coloured: tuple[Field, ...], sideways: Array, centre: Array
+) -> list[Surface]:
+    """A body, also cut open square to `sideways` through `centre`, and its shape at rest."""
+    whole = mesh.facet_sets.get("surface")
+    whole = boundary_facets(mesh.kind, mesh.elements) if whole is None else whole
+    behind = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ sideways > -1e-9
+    half = boundary_facets(mesh.kind, mesh.elements[behind])
+    used, place = np.unique(np.concatenate([whole.ravel(), half.ravel()]), return_inverse=True)
+    place = place.astype(np.int32)
+    whole, half = place[: whole.size].reshape(whole.shape), place[whole.size :].reshape(half.shape)
+    body = Surface(
+        positions=positions[:, used],
+        triangles=triangles(whole),
+        edges=outlines(whole),
+        opened=triangles(half),
+        opened_edges=outlines(half),
+        fields=tuple(Field(name=f.name, unit=f.unit, values=f.values[:, used]) for f in coloured),
+    )
+    rest = Surface(positions=mesh.nodes[None, used], triangles=body.triangles, colour=REST, rest=True)
+    return [body, rest]
+
+
+def outlines(facets: Ints) -> Ints:
+    """Edges of facets as lines (e, 2), each once."""
+    ring = facets[:, _OUTLINE[facets.shape[1]]]
+    lines = np.sort(np.stack([ring, np.roll(ring, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    return np.unique(lines[lines[:, 0] != lines[:, 1]], axis=0).astype(np.int32)
+
+
+def colourings(rest: Array, positions: Array, found: list[Quantities]) -> tuple[Field, ...]:
+    """Displacement [mm], and what `COLOURINGS` names, in units that make handy numbers."""
+    moved = [Field(name="displacement", unit="mm", values=1e3 * np.linalg.norm(positions - rest, axis=2))]
+    for name, attribute, component, unit in COLOURINGS:
+        rows = [getattr(q, attribute) for q in found]
+        values = np.array(rows if component is None else [r[:, component] for r in rows])
+        moved.append(handy(name, unit, values))
+    return tuple(moved)
+
+
+def handy(name: str, unit: str, values: Array) -> Field:
+    """A field in SI with a prefix that suits its size."""
+    if not unit:
+        return Field(name=name, unit=unit, values=values)
+    size = float(np.percentile(np.abs(values), 99.0))
+    factor, prefix = next(((f, p) for f, p in ((1e6, "M"), (1e3, "k")) if size >= f), (1.0, ""))
+    return Field(name=name, unit=prefix + unit, values=values / factor)
+
+
+def rod(shape: object, tips: Array, axes: Array) -> Surface:
+    """A rod at its poses: centres of its tip (f, 3) [m] and unit vectors towards it (f, 3)."""
+    quads = np.array([rod_surface(shape, tip, axis, around=24, piece=1.0) for tip, axis in zip(tips, axes, strict=True)])  # type: ignore[arg-type]
+    corners = quads.reshape(len(quads), -1, 3)
+    index = np.arange(corners.shape[1], dtype=np.int32).reshape(-1, 4)
+    return Surface(positions=corners, triangles=triangles(index), colour=STEEL)
+
+
+def _label(result: Result, frame: int) -> str:
+    return " · ".join(
+        f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in (*_place(result, frame), _force(result, frame))
+    )
+
+
+def _place(result: Result, frame: int) -> list[tuple[str, float, str]]:
+    """What a frame is counted by, and its time."""
+    load = float(result.load[frame])
+    found: list[tuple[str, float, str]] = []
+    if result.rod_tip is not None:
+        found.append(("depth", 1e3 * load, "mm"))
+    elif result.nominal_stress is not None:
+        found.append(("stretch", load, ""))
+    elif result.time is None:
+        found.append(("part of the load", load, ""))
+    if result.time is not None:
+        found.append(("time", float(result.time[frame]), "s"))
+    return found
+
+
+def _force(result: Result, frame: int) -> tuple[str, float, str]:
+    if result.rod_force is not None:
+        return "force on the rod", float(np.linalg.norm(result.rod_force[frame])), "N"
+    if result.nominal_stress is not None:
+        return "nominal stress", 1e-3 * float(result.nominal_stress[frame]), "kPa"
+    return "force of the supports", float(np.linalg.norm(result.support_force[frame])), "N"
+
+
+def _curve(result: Result, kept: NDArray[np.intp]) -> Curve:
+    places = [_place(result, int(k)) for k in kept]
+    forces = [_force(result, int(k)) for k in kept]
+    along = -1 if result.time is not None and result.rod_tip is None else 0
+    return Curve(
+        x=np.array([p[along][1] for p in places]),
+        x_name=places[0][along][0],
+        x_unit=places[0][along][2],
+        y=np.array([f[1] for f in forces]),
+        y_name=forces[0][0],
+        y_unit=forces[0][2],
+    )
