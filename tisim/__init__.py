@@ -12,8 +12,8 @@ A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 converged: the end sinks by 7 mm
 converged: the end sinks by 69 mm
 
-`tisim.show(result, "beam.html")` writes a page to turn it around, `tisim.picture(result, "beam.png")` draws it,
-`tisim.write(result, "beam.vtu")` exports a frame, `tisim.fields(result)` has stress, strain and stretch,
+`tisim.show(result, "beam.html")` writes a page to turn it around, `tisim.picture(result, "beam.png")` draws
+it, `tisim.write(result, "beam.vtu")` exports a frame, `tisim.fields(result)` has stress, strain and stretch,
 `tisim.read("body.inp")` takes a mesh of another program (.inp, .msh, .vtu) with its sets. Laws,
 inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, `tisim.inclusions`,
 `tisim.problems`.

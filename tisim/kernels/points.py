@@ -3,7 +3,7 @@
 Arguments as in `tisim.kernels.elements`, whose forces are the sum of these stresses.
 """
 
-# mypy: disable-error-code="no-untyped-def,valid-type"
+# mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
 # (Taichi compiles these functions; their annotations mean something to Taichi only)
 
 from functools import cache

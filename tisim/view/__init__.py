@@ -7,9 +7,9 @@
 >>> shown.colourings[:2]
 ('displacement', 'von Mises stress')
 
-`shown.save("beam.html")` writes the page, `shown.animate("beam.gif")` a moving picture, and a notebook shows it
-by itself. Files are shown by `python -m tisim.view FILE`; `view_of_file` is the same from Python. Views of one's
-own are made of `Surface`, `Field` and `Curve`; `section`, `style` and `script` put them into another page.
+`shown.save("beam.html")` writes the page, `shown.animate("beam.gif")` a moving picture, and a notebook shows
+it by itself. Files are shown by `python -m tisim.view FILE`; `view_of_file` is the same from Python. Views of
+one's own are made of `Surface`, `Field` and `Curve`.
 """
 
 from __future__ import annotations

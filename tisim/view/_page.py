@@ -18,7 +18,9 @@ from tisim.view._view import Array, Field, Surface, View
 COLOURS = "viridis"
 LEVELS = 255
 SECONDS = 4.0  # of all frames played
-OUTSIDE = 0.5  # [percent] of a field's values that may lie beyond either end of the colours
+# Part of a field's values [percent] that may lie beyond either end of the colours, where they reach further
+# than BEYOND of the colours' range: a few nodes at a rod's edge are not to take all colours.
+OUTSIDE, BEYOND = 2.0, 0.25
 
 
 @cache
@@ -120,7 +122,7 @@ def content(view: View) -> dict[str, Any]:
 
 
 def _rounded(values: Array) -> list[float]:
-    return [float(f"{v:.6g}") for v in np.asarray(values, dtype=float)]
+    return [float(f"{v:.8g}") for v in np.asarray(values, dtype=float)]
 
 
 def _box(surfaces: Any) -> tuple[Array, Array]:
@@ -130,13 +132,19 @@ def _box(surfaces: Any) -> tuple[Array, Array]:
     return low, np.maximum(high - low, 1e-9)
 
 
+def drawn_positions(view: View, *, rest: bool) -> list[Array]:
+    """Of each surface that is shown at first, the positions (f, k, 3) of what is drawn of it [m]."""
+    found = []
+    for s in view.surfaces:
+        if not s.rest or rest:
+            drawn = s.opened if view.opened and s.opened is not None else s.triangles
+            found.append(s.positions[:, np.unique(drawn)])
+    return found
+
+
 def _extremes(view: View) -> Array:
     """Points (k, 3) of what is shown at first that lie farthest out in many directions [m]."""
-    points = []
-    for s in view.surfaces:
-        if not s.rest or view.rest:
-            drawn = s.opened if view.opened and s.opened is not None else s.triangles
-            points.append(s.positions[:, np.unique(drawn)].reshape(-1, 3))
+    points = [p.reshape(-1, 3) for p in drawn_positions(view, rest=view.rest)]
     turn = 2.4 * np.arange(100)  # the golden angle: directions all around
     height = np.linspace(-1.0, 1.0, len(turn))
     width = np.sqrt(1.0 - height**2)
@@ -153,6 +161,8 @@ def colour_ranges(view: View) -> dict[str, tuple[Field, tuple[float, float]]]:
         values = np.concatenate([f.values.ravel() for f in of_name])
         low, high = (float(v) for v in np.percentile(values, [OUTSIDE, 100.0 - OUTSIDE]))
         least, most = float(values.min()), float(values.max())
+        reach = BEYOND * (high - low)
+        low, high = (least if low - least <= reach else low), (most if most - high <= reach else high)
         if least >= 0.0 and low < 0.2 * high:
             low = 0.0
         if high - low < 1e-12 * max(abs(high), 1e-30):

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tisim.bodies import Rod
 from tisim.fields import Quantities, fields_of_frames, unfold_quantities
 from tisim.io.export import triangles
 from tisim.io.picture import across, describe, rod_surface
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
-from tisim.view._view import REST, STEEL, Array, Curve, Field, Ints, Surface, View
+from tisim.view._told import Told, curve, frames_shown, label, thinned
+from tisim.view._view import REST, STEEL, Array, Field, Ints, Surface, View
 
-MOST_FRAMES = 120
 _OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
+PIECE = 2e-3  # of a rod's shaft: what is drawn from the farthest to the nearest needs short ones [m]
 # name, attribute of `Quantities`, component, unit in SI
 COLOURINGS: tuple[tuple[str, str, int | None, str], ...] = (
     ("von Mises stress", "von_mises", None, "Pa"),
@@ -35,40 +36,36 @@ def view_of_result(result: Result, *, title: str | None = None) -> View:
     kept = frames_shown(count)
     mesh, positions = unfold(result.mesh, result.positions[kept])
     poke = result.scene if result.rod_tip is not None else None
-    sideways = across(poke)
+    sideways = across(None if poke is None else poke.direction)
     centre = np.array([*poke.site, 0.0]) if poke is not None else mesh.nodes.mean(axis=0)
     found = [
-        unfold_quantities(result.mesh, f.nodes, nodes=True) for f in fields_of_frames(result) if f.frame in kept
+        unfold_quantities(result.mesh, f.nodes, nodes=True)
+        for f in fields_of_frames(result)
+        if f.frame in kept
     ]
     surfaces = body_surfaces(mesh, positions, colourings(mesh.nodes, positions, found), sideways, centre)
     if result.rod_tip is not None:
         times = np.zeros(count) if result.time is None else result.time
         axes = [axis_at(result.scene, float(times[k])) for k in kept]
         surfaces.append(rod(result.scene.rod, result.rod_tip[kept], np.array(axes)))
-    along = np.cross(sideways, [0.0, 0.0, 1.0])
-    towards = -sideways + 0.35 * along + (0.6 if poke is not None else 0.35) * np.array([0.0, 0.0, 1.0])
-    notes = [thinned(count)] if len(kept) < count else []
-    if result.message:
-        notes.append(f"The simulation ended early: {result.message}.")
+    ended = (f"The simulation ended early: {result.message}.",) if result.message else ()
+    places, forces = [_place(result, int(k)) for k in kept], [_force(result, int(k)) for k in kept]
     return View(
         title=title or describe(result),
-        labels=tuple(_label(result, int(k)) for k in kept),
+        labels=tuple(label([*at, force]) for at, force in zip(places, forces, strict=True)),
         surfaces=tuple(surfaces),
-        curve=_curve(result, kept),
-        towards=(float(towards[0]), float(towards[1]), float(towards[2])),
+        curve=curve([at[0] for at in places], forces),
+        towards=towards(sideways, steep=poke is not None),
         opened=poke is not None,
         rest=poke is None and count == 1,
-        notes=tuple(notes),
+        notes=thinned(count) + ended,
     )
 
 
-def frames_shown(count: int) -> NDArray[np.intp]:
-    """Frames of a view: all, or MOST_FRAMES of them, evenly, the last among them."""
-    return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_FRAMES))).astype(np.intp))
-
-
-def thinned(count: int) -> str:
-    return f"{MOST_FRAMES} of {count} frames are shown."
+def towards(sideways: Array, *, steep: bool) -> tuple[float, float, float]:
+    """From a body to who looks across its cut, from above where there is a rod."""
+    x, y, z = -sideways + 0.35 * np.cross(sideways, [0.0, 0.0, 1.0]) + [0.0, 0.0, 0.6 if steep else 0.35]
+    return float(x), float(y), float(z)
 
 
 def body_surfaces(
@@ -80,8 +77,8 @@ def body_surfaces(
     behind = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ sideways > -1e-9
     half = boundary_facets(mesh.kind, mesh.elements[behind])
     used, place = np.unique(np.concatenate([whole.ravel(), half.ravel()]), return_inverse=True)
-    place = place.astype(np.int32)
-    whole, half = place[: whole.size].reshape(whole.shape), place[whole.size :].reshape(half.shape)
+    number = np.asarray(place, dtype=np.int32).ravel()
+    whole, half = number[: whole.size].reshape(whole.shape), number[whole.size :].reshape(half.shape)
     body = Surface(
         positions=positions[:, used],
         triangles=triangles(whole),
@@ -120,24 +117,21 @@ def handy(name: str, unit: str, values: Array) -> Field:
     return Field(name=name, unit=prefix + unit, values=values / factor)
 
 
-def rod(shape: object, tips: Array, axes: Array) -> Surface:
+def rod(shape: Rod, tips: Array, axes: Array) -> Surface:
     """A rod at its poses: centres of its tip (f, 3) [m] and unit vectors towards it (f, 3)."""
-    quads = np.array([rod_surface(shape, tip, axis, around=24, piece=1.0) for tip, axis in zip(tips, axes, strict=True)])  # type: ignore[arg-type]
+    poses = zip(tips, axes, strict=True)
+    quads = np.array([rod_surface(shape, tip, axis, around=24, piece=PIECE) for tip, axis in poses])
     corners = quads.reshape(len(quads), -1, 3)
-    index = np.arange(corners.shape[1], dtype=np.int32).reshape(-1, 4)
-    return Surface(positions=corners, triangles=triangles(index), colour=STEEL)
-
-
-def _label(result: Result, frame: int) -> str:
-    return " · ".join(
-        f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in (*_place(result, frame), _force(result, frame))
+    _, kept, place = np.unique(np.round(corners[0], 9), axis=0, return_index=True, return_inverse=True)
+    return Surface(
+        positions=corners[:, kept], triangles=triangles(place.reshape(-1, 4).astype(np.int32)), colour=STEEL
     )
 
 
-def _place(result: Result, frame: int) -> list[tuple[str, float, str]]:
+def _place(result: Result, frame: int) -> list[Told]:
     """What a frame is counted by, and its time."""
     load = float(result.load[frame])
-    found: list[tuple[str, float, str]] = []
+    found: list[Told] = []
     if result.rod_tip is not None:
         found.append(("depth", 1e3 * load, "mm"))
     elif result.nominal_stress is not None:
@@ -149,23 +143,9 @@ def _place(result: Result, frame: int) -> list[tuple[str, float, str]]:
     return found
 
 
-def _force(result: Result, frame: int) -> tuple[str, float, str]:
+def _force(result: Result, frame: int) -> Told:
     if result.rod_force is not None:
         return "force on the rod", float(np.linalg.norm(result.rod_force[frame])), "N"
     if result.nominal_stress is not None:
         return "nominal stress", 1e-3 * float(result.nominal_stress[frame]), "kPa"
     return "force of the supports", float(np.linalg.norm(result.support_force[frame])), "N"
-
-
-def _curve(result: Result, kept: NDArray[np.intp]) -> Curve:
-    places = [_place(result, int(k)) for k in kept]
-    forces = [_force(result, int(k)) for k in kept]
-    along = -1 if result.time is not None and result.rod_tip is None else 0
-    return Curve(
-        x=np.array([p[along][1] for p in places]),
-        x_name=places[0][along][0],
-        x_unit=places[0][along][2],
-        y=np.array([f[1] for f in forces]),
-        y_name=forces[0][0],
-        y_unit=forces[0][2],
-    )

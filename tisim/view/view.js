@@ -154,7 +154,10 @@
       this.controls();
       this.pointers();
       this.show();
-      new ResizeObserver(() => this.ask()).observe(this.canvas);
+      new ResizeObserver(() => {
+        this.curve();
+        this.show();
+      }).observe(this.canvas);
       // a page of many views: only those on the screen hold a context
       new IntersectionObserver((seen) => {
         const here = seen.at(-1).isIntersecting;
@@ -369,7 +372,6 @@
         item.append(m.name);
         key.hidden = false;
       }
-      this.curve();
     }
 
     start() {
@@ -417,13 +419,16 @@
       if (!c) return;
       svg.removeAttribute("hidden");
       svg.setAttribute("aria-label", `${c.y_name} over ${c.x_name}`);
+      svg.replaceChildren();
+      const width = svg.clientWidth || 480;
+      svg.setAttribute("viewBox", `0 0 ${width} 130`);
       const put = (name, attributes, text) => {
         const e = document.createElementNS("http://www.w3.org/2000/svg", name);
         for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
         if (text !== undefined) e.textContent = text;
         return svg.appendChild(e);
       };
-      const [left, right, top, bottom] = [52, 470, 22, 104];
+      const [left, right, top, bottom] = [52, width - 10, 22, 104];
       const span = (v) => [Math.min(0, ...v), Math.max(0, ...v)];
       const [x0, x1] = c.x_from_zero ? span(c.x) : [Math.min(...c.x), Math.max(...c.x)], [y0, y1] = span(c.y);
       const u = (x) => left + ((x - x0) / (x1 - x0 || 1)) * (right - left);
