@@ -9,7 +9,7 @@
 
 `shown.save("beam.html")` writes the page, `shown.animate("beam.gif")` a moving picture, and a notebook shows
 it by itself. Files are shown by `python -m tisim.view FILE`; `view_of_file` is the same from Python. Views of
-one's own are made of `Surface`, `Field` and `Curve`.
+one's own are made of `Surface`, `Field` and `Curve`; `tisim.view.page` puts them into other pages.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from tisim.result import Result
-from tisim.view._view import Curve, Field, Surface, View
+from tisim.view._view import Curve, Field, Surface, View, outlines
 
-__all__ = ["Curve", "Field", "Surface", "View", "show", "view_of_file"]
+__all__ = ["Curve", "Field", "Surface", "View", "outlines", "show", "view_of_file"]
 
 
 def show(result: Result, path: str | Path | None = None, *, title: str | None = None) -> View:

@@ -14,8 +14,8 @@ import numpy as np
 
 from tisim.io.export import checked_path
 from tisim.io.picture import Camera, painted, shaded
-from tisim.view._page import COLOURS, colour_ranges, drawn_positions
 from tisim.view._view import Array, Surface, View
+from tisim.view.page import COLOURS, colour_ranges, drawn_positions
 
 if TYPE_CHECKING:
     from PIL.Image import Image

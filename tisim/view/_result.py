@@ -12,9 +12,8 @@ from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
 from tisim.view._told import Told, curve, frames_shown, label, thinned
-from tisim.view._view import REST, STEEL, Array, Field, Ints, Surface, View
+from tisim.view._view import REST, STEEL, Array, Field, Surface, View, outlines
 
-_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 PIECE = 2e-3  # of a rod's shaft: what is drawn from the farthest to the nearest needs short ones [m]
 # name, attribute of `Quantities`, component, unit in SI
 COLOURINGS: tuple[tuple[str, str, int | None, str], ...] = (
@@ -89,13 +88,6 @@ def body_surfaces(
     )
     rest = Surface(positions=mesh.nodes[None, used], triangles=body.triangles, colour=REST, rest=True)
     return [body, rest]
-
-
-def outlines(facets: Ints) -> Ints:
-    """Edges of facets as lines (e, 2), each once."""
-    ring = facets[:, _OUTLINE[facets.shape[1]]]
-    lines = np.sort(np.stack([ring, np.roll(ring, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    return np.unique(lines[lines[:, 0] != lines[:, 1]], axis=0).astype(np.int32)
 
 
 def colourings(rest: Array, positions: Array, found: list[Quantities]) -> tuple[Field, ...]:

@@ -19,6 +19,8 @@ Colour = tuple[float, float, float, float]
 STEEL: Colour = (0.55, 0.58, 0.63, 1.0)
 REST: Colour = (0.55, 0.60, 0.66, 0.28)
 
+_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Field:
@@ -125,7 +127,7 @@ class View:
 
     def html(self) -> str:
         """One page that needs no other file and no network."""
-        from tisim.view._page import page
+        from tisim.view.page import page
 
         return page(self)
 
@@ -181,3 +183,10 @@ class View:
         """The page in a frame of its own, for notebooks."""
         style = "width:100%;height:820px;border:0"
         return f'<iframe style="{style}" sandbox="allow-scripts" srcdoc="{escape(self.html())}"></iframe>'
+
+
+def outlines(facets: Ints) -> Ints:
+    """Edges of facets as lines (e, 2), each once."""
+    ring = facets[:, _OUTLINE[facets.shape[1]]]
+    lines = np.sort(np.stack([ring, np.roll(ring, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    return np.unique(lines[lines[:, 0] != lines[:, 1]], axis=0).astype(np.int32)

@@ -423,7 +423,7 @@
       const width = svg.clientWidth || 480;
       svg.setAttribute("viewBox", `0 0 ${width} 130`);
       const put = (name, attributes, text) => {
-        const e = document.createElementNS("http://www.w3.org/2000/svg", name);
+        const e = document.createElementNS(svg.namespaceURI, name);
         for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
         if (text !== undefined) e.textContent = text;
         return svg.appendChild(e);
