@@ -163,7 +163,7 @@ def colour_ranges(view: View) -> dict[str, tuple[Field, tuple[float, float]]]:
         least, most = float(values.min()), float(values.max())
         reach = BEYOND * (high - low)
         low, high = (least if low - least <= reach else low), (most if most - high <= reach else high)
-        if least >= 0.0 and low < 0.2 * high:
+        if 0.0 <= least < 0.2 * high:
             low = 0.0
         if high - low < 1e-12 * max(abs(high), 1e-30):
             low, high = least, most if most > least else least + 1.0

@@ -26,6 +26,7 @@
   const FIELD = 0.5; // of view, up and down [rad]
 
   const unpack = async (text) => {
+    if (!("DecompressionStream" in globalThis)) throw new Error("This picture needs a browser of 2023 or later.");
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Response(stream).arrayBuffer();

@@ -14,7 +14,7 @@ from tisim.view import Field, Surface, View, outlines
 
 Array = NDArray[np.float64]
 
-MOST = 24  # photographs of a page
+MOST = 36  # photographs of a page
 MEASURED = (0.835, 0.369, 0.0, 1.0)  # vermilion of the other pictures
 THICK = 0.004  # radius of the drawn outline, in lengths of the beam
 AROUND = 6
