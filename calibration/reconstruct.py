@@ -29,7 +29,7 @@ EXAMPLES = """
 
   python -m calibration.fit traced
 
-How to photograph: docs/photographs.md. Stopped or killed, the same command goes on where it was.
+How to photograph: docs/how-to/photograph.md. Stopped or killed, the same command goes on where it was.
 
 Exit codes: 0 done, 2 bad input or photographs that cannot be used, 130 stopped by Ctrl-C.
 """

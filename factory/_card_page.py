@@ -209,8 +209,8 @@ def _accuracy(facts: Facts) -> Iterator[str]:
     )
     yield (
         "That is equilibrium of the discrete model, not its distance from the truth: `studies/depth` of "
-        "tisim compares the force with independent solvers by depth, `docs/simulation.md` says how far each "
-        "kind of scene can be trusted."
+        "tisim compares the force with independent solvers by depth, `docs/explanation/simulation.md` says "
+        "how far each kind of scene can be trusted."
     )
 
 
@@ -237,7 +237,8 @@ def _load(facts: Facts) -> Iterator[str]:
     yield (
         "The zip is read without unpacking: "
         f'`zarr.open_group(zarr.storage.ZipStore("{name}.zip"), mode="r")`. '
-        "Positions and forces are in m and N; `docs/dataset-format.md` of tisim explains every array. "
+        "Positions and forces are in m and N; `docs/reference/dataset-format.md` of tisim explains "
+        "every array. "
         "`sha256sum -c SHA256SUMS` in the store's folder checks every file; "
         f"`python -m factory.verify {name}` the physics too."
     )

@@ -126,7 +126,7 @@ def fields(result: Result, frame: int = -1) -> Fields:
     -----
     A material with viscosity or softening remembers: its history is followed from frame to frame, in one time
     step each, with stresses that change at a constant rate between. Frames that lie far apart in a hold make
-    it coarse (docs/viewing.md says by how much); `Course(frames=...)` asks for more of them.
+    it coarse (docs/how-to/viewing.md says by how much); `Course(frames=...)` asks for more of them.
     """
     return next(_frames(result, [frame_index(result, frame)]))
 

@@ -8,6 +8,6 @@
     python -m benchmarks.blind.make_examples               # the examples in datasets/measured
 
 The laboratory shares no code with the packages under test, only the format of an experiment
-(docs/experiment-format.md): its own solvers, laws, noise and causes. `under_test` is the one module that
-calls the diagnosis. `python -m pytest tests/blind` tests the laboratory itself.
+(docs/reference/experiment-format.md): its own solvers, laws, noise and causes. `under_test` is the one
+module that calls the diagnosis. `python -m pytest tests/blind` tests the laboratory itself.
 """

@@ -1,8 +1,8 @@
 """Photographs of known beams, made by casting rays: an own camera (perspective, radial distortion), light,
 blur and noise.
 
-Frame as in docs/experiment-format.md, in mm: x along the beam, z up, y away from the camera; the board is at
-y = board_y.
+Frame as in docs/reference/experiment-format.md, in mm: x along the beam, z up, y away from the camera;
+the board is at y = board_y.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""diagnosis.json read back, format 2 (docs/diagnosis.md) and format 1.
+"""diagnosis.json read back, format 2 (docs/explanation/diagnosis.md) and format 1.
 
 Names of the file that hold a unit (`rms_kPa`, `rms_kPa_before`) become `rms` and `unit` here. What format 1
 did not write is None, or empty.

@@ -90,6 +90,7 @@ def dice(
     method: "boolean" intersects the surfaces exactly (manifold3d); "winding" integrates the winding numbers
         along parallel lines `spacing` [m] apart, which also works where a surface crosses itself. The choice
         is the caller's: one never stands in for the other.
+
     Raises InputError where a surface is not closed, or the boolean fails.
     Source: L. R. Dice, Measures of the amount of ecologic association between species, Ecology 26 (1945), on
     volumes; Taha and Hanbury, BMC Medical Imaging 15:29 (2015).
@@ -128,7 +129,7 @@ DICE = Metric(name="dice", title="Dice", unit="1", higher_is_better=True, comput
 
 
 def volume_difference(simulated: trimesh.Trimesh, measured: trimesh.Trimesh) -> float:
-    """|V(simulated) - V(measured)| / V(measured), a ratio (0.01 is 1 %); the order of the bodies matters.
+    """``|V(simulated) - V(measured)| / V(measured)``, a ratio (0.01 is 1 %); the order of the bodies matters.
 
     It says whether the bodies are of one size, not whether they lie at one place: for a beam it is a matter
     of the reference geometry (section, facets, stretch of the mid line) more than of the material law.

@@ -1,6 +1,6 @@
 """The checkerboard to photograph, as a PDF page in true size, written without any library.
 
-How it is used: docs/photographs.md. Around the squares stays white paper of at least one square.
+How it is used: docs/how-to/photograph.md. Around the squares stays white paper of at least one square.
 """
 
 from __future__ import annotations

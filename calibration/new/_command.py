@@ -38,7 +38,7 @@ Exit codes: 0 done, 2 bad input and nothing written, 130 stopped by Ctrl-C.
 def main(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Photographs, traced outlines, records of machines (docs/lab-files.md)."),
+        typer.Argument(help="Photographs, traced outlines, records of machines (docs/how-to/lab-files.md)."),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write: empty, or none yet.")] = None,
     yes: Annotated[

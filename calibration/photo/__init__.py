@@ -3,7 +3,7 @@
     camera = calibrate([find_board(image, checkerboard) for image in images])
     trace(image, board, camera, specimen, settings).outline
 
-How it has to be photographed (`docs/photographs.md` for the lab):
+How it has to be photographed (`docs/how-to/photograph.md` for the lab):
 
 - The camera stands before the beam, x to the right, z up; the board hangs behind it, parallel to the plane
   y = 0, its first side along x, whole in the picture and not covered. The rear of the specimen touches the

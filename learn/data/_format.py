@@ -73,6 +73,8 @@ TIMED: dict[str, Needed] = {
     "course_time": Needed(rows="poke", row=None, units="s"),
     "course_depth": Needed(rows="poke", row=None, units="m"),
 }
+# of datasets in which pokes that differ by the modulus alone are one solve: the poke that was solved
+SIMILAR: dict[str, Needed] = {"solved_as": Needed(rows="poke", kinds="i")}
 # fmt: on
 
 

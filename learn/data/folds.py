@@ -40,8 +40,9 @@ def split_pokes(
     2509.10125 and its successor): no tested shape was trained on. by "site": groups are sites (in random
     order), for stores of few shapes; pokes of one site under several softness levels stay together, since
     they move alike. train_softness, train_depth [m]: training and validation see only these; the test
-    part keeps everything. Frames in which the rod, drawn back, does not press are in no part: there is no
-    force to predict. InputError where a part would be empty.
+    part keeps everything. Of pokes that are one solve, scaled by the modulus (`Store.copies`), training
+    and validation see one, the test part all. Frames in which the rod, drawn back, does not press are
+    in no part: there is no force to predict. InputError where a part would be empty.
     """
     if not 0 <= fold < FOLDS:
         raise InputError(f"fold {fold}: expected 0 to {FOLDS - 1}")
@@ -57,6 +58,7 @@ def split_pokes(
     parts = {"train": order[2 * held :], "validation": order[held : 2 * held], "test": order[:held]}
     seen = _seen(store, train_softness, train_depth)
     of_frame = np.where(store.presses, group[store.frame_poke], -1)
+    seen &= ~store.copies[store.frame_poke]
     rows = {}
     for part, members in parts.items():
         keep = np.isin(of_frame, members) & (seen if part != "test" else True)

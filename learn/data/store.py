@@ -24,6 +24,7 @@ from learn.data._format import (
     GRID,
     LEVELS,
     RIGID,
+    SIMILAR,
     TIMED,
     check_arrays,
     check_attributes,
@@ -77,6 +78,7 @@ class Store:
     frame_poke : poke of each frame, shape (f,).
     depth : travel since first contact [m], shape (f,).
     rod_force : force on the indenter [N], shape (f, 3).
+    solved_as : poke whose solve each poke is, its own or that of one that differs by the modulus alone, (p,).
     clock : time of the frames and what goes with it; None where the dataset has no time.
     """
 
@@ -100,7 +102,14 @@ class Store:
     frame_poke: Ints
     depth: Floats
     rod_force: Floats
+    solved_as: Ints
     clock: Clock | None = None
+
+    @property
+    def copies(self) -> NDArray[np.bool_]:
+        """Pokes (p,) that say nothing new: another's solve, its forces scaled by the modulus, where the
+        dataset says that at all its material levels pokes move alike."""
+        return (self.solved_as != np.arange(self.pokes)) & self.scales_with_modulus
 
     def clocks(self, rows: NDArray[np.int64]) -> Floats:
         """Time since contact [s], the rod's speed and its speed of approach [m/s] of frames, shape (b, 3).
@@ -237,7 +246,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
             f"{attributes.get('format')}"
         )
     check_attributes(source.location, attributes)
-    arrays = {**ARRAYS, **TIMED} if "time" in group else ARRAYS
+    arrays = ARRAYS | (TIMED if "time" in group else {}) | (SIMILAR if "solved_as" in group else {})
     check_arrays(source.location, group, attributes, arrays)
     if verify:
         source.check_manifest(list(arrays))
@@ -277,6 +286,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
         frame_poke=table["frame_poke"].astype(np.int64),
         depth=table["depth"].astype(np.float64),
         rod_force=table["rod_force"].astype(np.float64),
+        solved_as=table.get("solved_as", np.arange(len(done))).astype(np.int64),
         clock=_clock(source.location, group, table),
     )
 

@@ -53,8 +53,8 @@ class Recipe(BaseModel):
         [mm].
     depth_power : a frame has the weight depth^-depth_power in it: 0 counts millimetres, 1 fractions of the
     depth.
-    force_loss, force_weight : "log" is |ln(predicted / true)|, "square" the squared error over the training
-        part's mean square; its weight against the displacement's loss.
+    force_loss, force_weight : "log" is ``|ln(predicted / true)|``, "square" the squared error over the
+        training part's mean square; its weight against the displacement's loss.
     point_dropout : fraction of the batches that see a random 40 to 100 % of the points, for other clouds.
     point_jitter : fraction of the batches in which each point is moved at random within its cell of the grid,
     with

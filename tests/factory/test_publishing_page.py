@@ -1,4 +1,4 @@
-"""The commands of docs/publishing.md run, in order, on a dataset of the README's first command."""
+"""The commands of docs/how-to/publish.md run, in order, on a dataset of the README's first command."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from tests.packaging.blocks import Block, blocks
 from tests.packaging.test_pages import run_here
 
-PAGE = "docs/publishing.md"
+PAGE = "docs/how-to/publish.md"
 BLOCKS = [block for block in blocks(PAGE) if not block.slow]
 
 

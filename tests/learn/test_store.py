@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -204,6 +205,22 @@ def test_training_can_be_kept_from_a_softness_and_from_depth(whole: Path) -> Non
         split_pokes(store, train_softness=["S7"])
     with pytest.raises(InputError, match="train part of fold 0 is empty"):
         split_pokes(store, train_depth=1e-4)
+
+
+def test_pokes_that_are_one_solve_are_trained_on_once(whole: Path) -> None:
+    store = open_store(whole)
+    assert not store.copies.any()
+    before = split_pokes(store, fold=1)
+    trained = np.unique(store.frame_poke[before.train])
+    tested = np.unique(store.frame_poke[before.test])
+    solved_as = np.arange(store.pokes)
+    solved_as[[trained[-1], tested[-1]]] = trained[0], tested[0]
+    apart = replace(store, solved_as=solved_as)
+    assert not apart.copies.any()  # their levels may move otherwise
+    alike = replace(apart, attributes={**store.attributes, "scales_with_modulus": True})
+    split = split_pokes(alike, fold=1)
+    assert set(store.frame_poke[split.train]) == set(trained[:-1])
+    np.testing.assert_array_equal(split.test, before.test)
 
 
 def test_too_few_shapes_are_an_error_that_says_what_to_do(tmp_path: Path) -> None:

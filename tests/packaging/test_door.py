@@ -56,7 +56,7 @@ def test_help_shows_all_verbs_with_their_purposes_and_imports_none(folder: Path)
 
 
 def test_every_documented_command_is_a_verb() -> None:
-    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "reference" / "commands.md").read_text(encoding="utf-8")
     documented = set(re.findall(r"^\| `python -m ([\w.]+)`", page, re.MULTILINE))
     behind = {value.partition(":")[0].removesuffix(".command") for value in VERBS.values()}
     assert documented == behind

@@ -11,7 +11,7 @@ import yaml
 import calibration.experiment as experiment
 from tests.packaging.blocks import ROOT
 
-PAGE = (ROOT / "docs" / "experiment-format.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "experiment-format.md").read_text(encoding="utf-8")
 
 
 def models() -> set[type[pydantic.BaseModel]]:

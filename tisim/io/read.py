@@ -47,11 +47,11 @@ def read(path: str | Path, *, unit: Unit = "m", elements: str | None = None) -> 
     of its elements). A facet set gives a node set of its name too, where there is no other of that name; it
     is a facet set of the mesh where all of it lies on the boundary. Nodes that no element uses are left out.
 
-    - .inp (Abaqus, CalculiX): *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE (element faces), *INCLUDE; names in
-      lower case.
+    - .inp (Abaqus, CalculiX): ``*NODE, *ELEMENT, *NSET, *ELSET, *SURFACE`` (element faces), ``*INCLUDE``;
+      names in lower case.
     - .msh (Gmsh 2.2, 4.0 and 4.1): physical groups.
-    - .vtu: arrays of 0 and 1 are sets, by their names less "set_": of points, of solids, of facets. A file by
-      `tisim.write` gives its rest shape.
+    - .vtu: arrays of 0 and 1 are sets, by their names less ``set_``: of points, of solids, of facets. A file
+      by `tisim.write` gives its rest shape.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
-"""An experiment folder (docs/experiment-format.md) from a case's true silhouettes: contour noise and one
-registration error a photograph, drawn from the case's seed when it is written.
+"""An experiment folder (docs/reference/experiment-format.md) from a case's true silhouettes: contour noise
+and one registration error a photograph, drawn from the case's seed when it is written.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """A beam as it truly is, with the faults that are hidden in it, and its mesh: rest shape, moduli, dead load,
 grips.
 
-Coordinates as in docs/experiment-format.md: x out of the clamp face, z up. Signs of the faults stand in
-`Beam`.
+Coordinates as in docs/reference/experiment-format.md: x out of the clamp face, z up. Signs of the faults
+stand in `Beam`.
 """
 
 from __future__ import annotations

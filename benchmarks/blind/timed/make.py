@@ -5,9 +5,10 @@
     python -m benchmarks.blind.timed.make beams --seeds 1 --out DIR          # some 20 s of CPU an experiment
     python -m benchmarks.blind.timed.make indentation --seeds 1 --out DIR    # stored forces
 
-An experiment is a folder `DIR/KIND-SEED` (docs/experiment-format.md); no command under test reads its
-`truth.yaml`: the material's law and parts in SI units, and beams' true sizes. The forces of indentations are
-solved by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and stored in `indentation.json`.
+An experiment is a folder `DIR/KIND-SEED` (docs/reference/experiment-format.md); no command under test reads
+its `truth.yaml`: the material's law and parts in SI units, and beams' true sizes. The forces of
+indentations are solved by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and
+stored in `indentation.json`.
 """
 
 from __future__ import annotations

@@ -178,7 +178,7 @@ class Diagnosis:
         return found
 
     def to_json(self) -> dict[str, Any]:
-        """Content of diagnosis.json (docs/diagnosis.md)."""
+        """Content of diagnosis.json (docs/explanation/diagnosis.md)."""
         unit = self.unit
         return {
             "format": FORMAT,

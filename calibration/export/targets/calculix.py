@@ -96,7 +96,7 @@ TARGET = Target(
     writes=_inp.writes,
     keeps=keeps,
     write=write,
-    # C3D10 has no pressure of its own: 0.5 to 2.7 % too stiff on the beams of docs/export.md
+    # C3D10 has no pressure of its own: 0.5 to 2.7 % too stiff on the beams of docs/how-to/export.md
     element_error=0.04,
     check=check,
 )

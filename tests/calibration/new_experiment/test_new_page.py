@@ -1,4 +1,4 @@
-"""The commands of docs/lab-files.md run as they stand there, and its tables are those of the code."""
+"""The commands of docs/how-to/lab-files.md run as they stand there, and its tables are those of the code."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from calibration.new._plausible import CHECKS
 from tests.packaging.blocks import ROOT, blocks
 from tests.packaging.test_pages import run_here
 
-PAGE = "docs/lab-files.md"
+PAGE = "docs/how-to/lab-files.md"
 
 
 def test_commands_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,83 @@
+"""The documentation, built from the repository's folder: `python -m sphinx -W -b html -c docs . docs/_build`.
+
+Its source is the whole repository, since the manual, the studies and the benchmarks link to one another;
+`include_patterns` says which pages are read. The reference of commands is written from their `--help`, that
+of Python from docstrings (`docs/_reference.py`), and the gallery by running `docs/examples`
+(sphinx-gallery).
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
+
+import tisim  # noqa: E402
+
+project = "tisim"
+author = "The tisim authors"
+project_copyright = author
+version = release = tisim.__version__
+root_doc = "docs/index"
+language = "en"
+default_role = "code"
+html_math_renderer = "mathml"
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "sphinx_gallery.gen_gallery",
+    "_mathml",
+    "_reference",
+]
+include_patterns = [
+    "docs/**",
+    "studies/README.md",
+    "studies/**/*.md",
+    "studies/**/*.png",
+    "benchmarks/README.md",
+    "datasets/measured/README.md",
+    "tests/README.md",
+    "CHANGELOG.md",
+]
+exclude_patterns = ["docs/_build", "docs/examples", "**.zarr"]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 4
+# the gallery's settings hold functions; types of parameters are words ("path"), no names to look up
+suppress_warnings = ["config.cache", "ref.python"]
+
+autosummary_generate = True
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True}
+autodoc_typehints = "none"
+napoleon_use_rtype = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": str(ROOT / "docs" / "examples"),
+    "gallery_dirs": str(ROOT / "docs" / "gallery"),
+    "filename_pattern": r"plot_",
+    "image_scrapers": ("matplotlib",),
+    "capture_repr": ("_repr_html_",),
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "download_all_examples": False,
+    "show_memory": False,
+}
+
+html_theme = "pydata_sphinx_theme"
+html_title = "tisim"
+html_theme_options = {
+    "navigation_with_keys": True,
+    "show_toc_level": 1,
+    "secondary_sidebar_items": ["page-toc"],
+    "header_links_before_dropdown": 6,
+}
+html_show_sourcelink = False
+html_copy_source = False
