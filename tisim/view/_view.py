@@ -181,7 +181,7 @@ class View:
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, for notebooks."""
-        style = "width:100%;height:820px;border:0"
+        style = "width:100%;height:880px;border:0"
         return f'<iframe style="{style}" sandbox="allow-scripts" srcdoc="{escape(self.html())}"></iframe>'
 
 

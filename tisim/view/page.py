@@ -115,7 +115,7 @@ def content(view: View) -> dict[str, Any]:
             "x_unit": curve.x_unit,
             "y_name": curve.y_name,
             "y_unit": curve.y_unit,
-            "x_from_zero": bool(curve.x.min() < 0.3 * curve.x.max()),
+            "x_from_zero": bool(curve.x.min() < 0.5 * curve.x.max()),
         },
         "numbers": numbers.packed(),
     }
