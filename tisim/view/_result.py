@@ -86,7 +86,13 @@ def body_surfaces(
         opened_edges=outlines(half),
         fields=tuple(Field(name=f.name, unit=f.unit, values=f.values[:, used]) for f in coloured),
     )
-    rest = Surface(positions=mesh.nodes[None, used], triangles=body.triangles, colour=REST, rest=True)
+    rest = Surface(
+        positions=mesh.nodes[None, used],
+        triangles=body.triangles,
+        opened=body.opened,
+        colour=REST,
+        rest=True,
+    )
     return [body, rest]
 
 
