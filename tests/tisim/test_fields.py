@@ -85,6 +85,20 @@ def test_stresses_carry_the_supports_force(beam: tisim.Result) -> None:
     assert traction[0] == pytest.approx(force[0], abs=0.02 * abs(force[2]))
 
 
+@pytest.mark.parametrize("element", ["hex20", "hex8"])
+def test_the_base_of_a_poke_carries_what_the_rod_pushes(element: tisim.scene.ElementChoice) -> None:
+    """With stiffness against change of volume at some points, and weights that follow the distortion."""
+    scene = tisim.Poke(material=SOFT, depth=1e-3, retract_to=5e-4, frame_spacing=5e-4, refinement=0.5)
+    poke = tisim.simulate(replace(scene, element=element))
+    assert len(poke.load) == 3
+    for found in tisim.fields_of_frames(poke):
+        base = found.node_forces[poke.mesh.node_sets["base"]].sum(axis=0)
+        size = np.abs(poke.support_force[found.frame]).max()
+        assert base == pytest.approx(poke.support_force[found.frame], abs=1e-9 * size)
+        assert found.nodes.pressure.max() > 0.0
+    assert found.energy < tisim.fields(poke, 1).energy
+
+
 def integral_over(mesh: tisim.Mesh, facets: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Of nodal tensors dotted into the facets' area vectors."""
     n, dn, w = facet_quadrature(facets.shape[1])
