@@ -37,7 +37,7 @@ class Statistics:
     log_force_mean: float
     log_force_sd: float
     force_rms: float
-    log_modulus_mean: float | None
+    log_modulus_mean: float | None = None
     log_time_mean: float | None = None
     log_speed_mean: float | None = None
 

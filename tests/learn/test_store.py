@@ -207,6 +207,15 @@ def test_training_can_be_kept_from_a_softness_and_from_depth(whole: Path) -> Non
         split_pokes(store, train_depth=1e-4)
 
 
+def test_statistics_come_back_from_a_checkpoint_as_they_were(whole: Path) -> None:
+    store = open_store(whole)
+    alike = replace(store, attributes={**store.attributes, "scales_with_modulus": True})
+    for some in (store, alike):
+        found = statistics(MemoryDataset(some, np.arange(some.frames)).batches(64), some)
+        assert (found.log_modulus_mean is None) == (some is alike)
+        assert type(found)(**found.as_dict()) == found
+
+
 def test_pokes_that_are_one_solve_are_trained_on_once(whole: Path) -> None:
     store = open_store(whole)
     assert not store.copies.any()
