@@ -18,7 +18,15 @@ ROOT = Path(__file__).resolve().parent.parent
 REFERENCE = ROOT / "docs" / "reference"
 # Public modules, by package: what a user imports, and where parts of one's own are registered.
 MODULES = {
-    "tisim": ("tisim", "tisim.laws", "tisim.parts", "tisim.inclusions", "tisim.mesh", "tisim.problems"),
+    "tisim": (
+        "tisim",
+        "tisim.laws",
+        "tisim.parts",
+        "tisim.inclusions",
+        "tisim.mesh",
+        "tisim.problems",
+        "tisim.view",
+    ),
     "factory": ("factory",),
     "calibration": (
         "calibration",

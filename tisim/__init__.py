@@ -12,7 +12,8 @@ A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 converged: the end sinks by 7 mm
 converged: the end sinks by 69 mm
 
-`tisim.write(result, "beam.vtu")` exports a frame, `tisim.picture(result, "beam.png")` draws it,
+`tisim.show(result, "beam.html")` writes a page to turn it around, `tisim.picture(result, "beam.png")` draws
+it, `tisim.write(result, "beam.vtu")` exports a frame, `tisim.fields(result)` has stress, strain and stretch,
 `tisim.read("body.inp")` takes a mesh of another program (.inp, .msh, .vtu) with its sets. Laws,
 inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, `tisim.inclusions`,
 `tisim.problems`.
@@ -30,8 +31,9 @@ from tisim.bodies import (
     SphereInclusion,
 )
 from tisim.course import Course
+from tisim.fields import Fields, Quantities, fields, fields_of_frames
 from tisim.io import export
-from tisim.io.export import frame_index, surface_triangles, write
+from tisim.io.export import surface_triangles, write
 from tisim.io.picture import picture
 from tisim.io.read import read
 from tisim.laws import Moduli
@@ -39,7 +41,7 @@ from tisim.mesh import Mesh
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 from tisim.problems.beam.rest_shape import rest_positions
 from tisim.problems.dynamics.paper_stop import PaperStop, paper_stop
-from tisim.result import Cost, Result, Status
+from tisim.result import Cost, Result, Status, frame_index
 from tisim.scene import (
     Beam,
     ClampImperfections,
@@ -54,6 +56,7 @@ from tisim.scene import (
     material_from_moduli,
 )
 from tisim.simulate import simulate
+from tisim.view import show
 
 __version__ = "0.1.0"
 
@@ -67,6 +70,7 @@ __all__ = [
     "Coupon",
     "Course",
     "CylinderInclusion",
+    "Fields",
     "HolzapfelGasserOgden",
     "Imperfections",
     "Inclusion",
@@ -78,6 +82,7 @@ __all__ = [
     "Poke",
     "Press",
     "Prony",
+    "Quantities",
     "Rectangle",
     "Result",
     "Rod",
@@ -88,6 +93,8 @@ __all__ = [
     "Void",
     "__version__",
     "export",
+    "fields",
+    "fields_of_frames",
     "frame_index",
     "inclusions",
     "laws",
@@ -99,6 +106,7 @@ __all__ = [
     "problems",
     "read",
     "rest_positions",
+    "show",
     "simulate",
     "surface_triangles",
     "write",

@@ -23,10 +23,11 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"laws        {', '.join(tisim.laws.all_names())}")
     print(f"inclusions  {', '.join(tisim.inclusions.kinds())}")
     print("meshes      tisim.mesh: structured beams and blocks, bodies from STL and PLY surfaces")
-    print("results     tisim.write: VTU, PLY, STL; tisim.picture: PNG")
+    print("results     tisim.show: a page to turn around; tisim.fields: stress, strain, stretch;")
+    print("            tisim.write: VTU, PVD, PLY, STL; tisim.picture: PNG")
     print()
     print("commands    python -m factory.build, python -m calibration.fit, python -m calibration.diagnose,")
-    print("            python -m learn.train (each with --help)")
+    print("            python -m learn.train, python -m tisim.view (each with --help)")
     return 0
 
 

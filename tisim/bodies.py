@@ -69,6 +69,11 @@ class Rod:
     tip: Literal["flat", "hemisphere"] = "flat"
     edge_radius: float = 0.001
 
+    @property
+    def edge(self) -> float:
+        """Radius of the tip's edge whatever the tip is, that of the rod where it is a hemisphere [m]."""
+        return self.radius if self.tip == "hemisphere" else min(self.edge_radius, self.radius)
+
 
 __all__ = [
     "Block",

@@ -100,6 +100,7 @@ def _compile(name: str) -> None:
     body.internal_forces(mesh.nodes)
     body.stiffness(mesh.nodes)
     body.accept(mesh.nodes)
+    body.point_response(mesh.nodes)
     if not body.remembers:
         march(body, tisim.Solver(method="explicit", duration=1e-5))
     point = MaterialPoints(made)

@@ -144,3 +144,14 @@ class Result:
                 rows.append(("dissipated", f"{self.dissipated[-1]:.4g} J"))
         rows.append(("core seconds", f"{self.cost.core_seconds:.3g}"))
         return rows
+
+
+def frame_index(result: Result, frame: int) -> int:
+    """The frame counted from the start; ValueError where there is none."""
+    count = len(result.positions)
+    if not count:
+        why = f": {result.message}" if result.message else ""
+        raise ValueError(f"the result has no frame{why}")
+    if not -count <= frame < count:
+        raise ValueError(f"frame {frame}: expected one from {-count} to {count - 1}")
+    return frame % count

@@ -16,6 +16,7 @@ from calibration.report._figure import (
 )
 from calibration.report._html import template
 from calibration.report._tables import Cell
+from calibration.report._turned import turned_parts
 from calibration.report._words import NOTHING, headline, listed, significant, with_sd
 from calibration.report.page import write_page
 
@@ -35,6 +36,7 @@ __all__ = [
     "plain",
     "significant",
     "template",
+    "turned_parts",
     "with_sd",
     "write_page",
 ]

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.model import OutlineModel
+from calibration.measurements.outlines.turned import turned
 from calibration.report._figure import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
 from calibration.study.calibration import Calibration
+from tisim.view import View
 
 Array = NDArray[np.float64]
 
@@ -56,13 +58,15 @@ class DrawnPhotograph:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Drawn:
-    """photographs of all trials; simulated: upper and lower edge by trial, free part, (m, 2) each.
+    """photographs of all trials; simulated: upper and lower edge by trial, free part, (m, 2) each; view: the
+    same to turn around.
 
     rms of all points once nuisances are taken out: what the fit calls rms.
     """
 
     photographs: tuple[DrawnPhotograph, ...]
     simulated: Mapping[str, tuple[Array, Array]]
+    view: View
 
     @property
     def rms(self) -> float:
@@ -103,7 +107,8 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
             DrawnPhotograph(name=p.name, trial=p.trial.id, sd=p.outline.sd, upper=upper, lower=lower)
         )
         simulated[p.trial.id] = (s.simulated[0], s.simulated[1])
-    return Drawn(photographs=tuple(photographs), simulated=simulated)
+    view = turned(seen, title=f"Measured outlines over the beams of {chosen.label}")
+    return Drawn(photographs=tuple(photographs), simulated=simulated, view=view)
 
 
 def _along(edge: Array) -> Array:

@@ -82,6 +82,7 @@ PAGE = """\
 .good { color: #00694B; } .unseen { color: #5B6570; }
 code, pre { font: .85rem ui-monospace, monospace; background: #F4F6F8; }
 pre { padding: .6rem; overflow-x: auto; } code { overflow-wrap: anywhere; }
+{{ turned.style }}
 {% endblock %}
 {% block body %}
 <h1>Calibration: {{ experiment.name }}</h1>
@@ -122,6 +123,10 @@ the specimen, the rig and the camera as stated; <code>{{ diagnose }}</code> test
 {% endif %}
 {% if s.beams %}
 <h3>Outlines, traced and simulated</h3>
+{% if s.view is not none %}
+<h4>{{ s.view.title }}</h4>
+{{ turned.sections[s.view] }}
+{% endif %}
 {% for p in s.beams %}
 {{ figure(p) }}
 {% endfor %}
@@ -201,5 +206,6 @@ had no equilibrium.</p>
 <p>To repeat:</p>
 <pre>{{ repeat }}</pre>
 </section>
+{{ turned.script }}
 {% endblock %}
 """

@@ -21,9 +21,11 @@ from calibration.report._draw_records import Coupon, coupon_errors, draw_coupons
 from calibration.report._figure import Picture
 from calibration.report._html import PAGE, template
 from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS, Cell, held_out_rows, law_rows
+from calibration.report._turned import turned_parts
 from calibration.report._words import NOTHING, blind, headline, rule, significant, troubles, unidentified
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import Measurements, measurements
+from tisim.view import View
 
 
 def command(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> str:
@@ -86,6 +88,7 @@ class Section:
     coupons: Rows
     coupon_headings: list[str]
     beams: list[Picture]
+    view: View | None
     residuals: Picture | None
     held_out_picture: Picture | None
     coupon_picture: Picture | None
@@ -112,7 +115,7 @@ def section(results: Sequence[Calibration], experiment: Experiment) -> Section:
     found = compare(results)
     chosen = found.chosen if found else None
     data = measurements(experiment, material, (chosen or results[0]).parametrisation)
-    beams, residuals, note = _beams(data, chosen)
+    beams, view, residuals, note = _beams(data, chosen)
     coupons = _coupons(data)
     fitted = [r for r in results if r.parameters]
     return Section(
@@ -126,6 +129,7 @@ def section(results: Sequence[Calibration], experiment: Experiment) -> Section:
         coupons=_coupon_rows(coupons, fitted),
         coupon_headings=["test", "mode", "points", *(r.label for r in fitted)],
         beams=beams,
+        view=view,
         residuals=residuals,
         held_out_picture=draw_held_out(results, experiment, material),
         coupon_picture=draw_coupons(coupons, results, _label(found), material) if coupons else None,
@@ -142,17 +146,19 @@ def section(results: Sequence[Calibration], experiment: Experiment) -> Section:
     )
 
 
-def _beams(data: Measurements, chosen: Calibration | None) -> tuple[list[Picture], Picture | None, str]:
-    """Pictures of each beam and of all residuals; a sentence where there are none."""
+def _beams(
+    data: Measurements, chosen: Calibration | None
+) -> tuple[list[Picture], View | None, Picture | None, str]:
+    """Pictures of each beam, all to turn around, and all residuals; a sentence where there are none."""
     if data.outlines is None:
-        return [], None, ""
+        return [], None, None, ""
     if chosen is None:
-        return [], None, "No law has parameters, so that no beam could be simulated."
+        return [], None, None, "No law has parameters, so that no beam could be simulated."
     drawn = contours(data.outlines, chosen)
     if drawn is None:
-        return [], None, f"{chosen.label} has no equilibrium at these parameters: nothing to draw."
+        return [], None, None, f"{chosen.label} has no equilibrium at these parameters: nothing to draw."
     trials = [draw_trial(drawn, t, chosen.label) for t in data.outlines.model.trials]
-    return trials, draw_residuals(drawn, data.material, chosen.label), ""
+    return trials, drawn.view, draw_residuals(drawn, data.material, chosen.label), ""
 
 
 def _averaged(experiment: Experiment, material: str) -> list[str]:
@@ -227,6 +233,7 @@ def render(
         held_out_headings=HELD_OUT_HEADINGS,
         rule=rule(),
         repeat=repeat,
+        turned=turned_parts([s.view for s in sections if s.view is not None]),
         counts=", ".join(f"{n} {s}" for s, n in Counter(r.status for r in results).items()),
         total=len(results),
         kinds=Counter(type(t).__name__.removesuffix("Trial").lower() for t in experiment.trials),

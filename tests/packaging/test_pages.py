@@ -38,6 +38,7 @@ PAGES = (
     "docs/tutorials/photographs.md",
     "docs/tutorials/dataset-and-surrogate.md",
     "docs/tutorials/own-body.md",
+    "docs/how-to/viewing.md",
 )
 STORE = Path("datasets", "quick-ogden.zarr")
 _BLOCKS = [b for page in PAGES for b in blocks(page) if not (b.installs or b.slow)]

@@ -193,6 +193,13 @@ class DiscretisedBody:
             self.state[:] = whole.state[elements]
             self._set_scale(whole.history.scale)
 
+    def go_on_from(self, earlier: DiscretisedBody) -> None:
+        """Take over the history of another body of the same material and mesh, which gives it up."""
+        self.history = earlier.history
+        if self.history is not None:
+            self.state = self.history.state
+            self._set_scale(self.history.scale)
+
     def _set_scale(self, scale: float) -> None:
         self._prm[len(self._prm) - self.features.tail_size] = scale
 
@@ -201,6 +208,31 @@ class DiscretisedBody:
         if self.history is None:
             return 0.0
         return float(np.vdot(self._weights, self.history.dissipated)) * self.discretisation.multiplicity
+
+    def point_response(self, x: Array) -> tuple[Array, Array]:
+        """Potential (m, q) [J/m3] and first Piola-Kirchhoff stress (m, q, 3, 3) [Pa] at x, by point.
+
+        Of the material as stated: without the discretisation's factor of stiffness. `internal_forces` is the
+        sum of these stresses.
+        """
+        return self._points(x, self._prm, self.state)
+
+    def stored_energy(self, x: Array) -> Array:
+        """What the accepted state at x can give back, (m, q) [J/m3], without the factor of stiffness."""
+        if self.history is None or not self.features.viscous:
+            return self.point_response(x)[0]
+        state, prm = self.state.copy(), self._prm.copy()
+        state[..., :6] = 0.0
+        prm[len(prm) - self.features.tail_size] = self.history.equilibrium
+        return self._points(x, prm, state)[0] + self.history.stored()
+
+    def _points(self, x: Array, prm: Array, state: Array) -> tuple[Array, Array]:
+        from tisim.kernels.points import point_kernel
+
+        x, conn, gradients, weights, _, _, kp, kb = self._common(x)
+        psi, P = np.empty(weights.shape), np.empty((*weights.shape, 9))
+        point_kernel(self.law, self.features)(x, conn, gradients, weights, prm, state, kp, kb, psi, P)
+        return psi, P.reshape(*weights.shape, 3, 3)
 
     def pressures(self, x: Array, du: Array | None = None) -> Array:
         """Element pressures kb mean(theta) at x, advanced to first order by du (n, 3), shape (m,) [Pa]."""

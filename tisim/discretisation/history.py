@@ -107,11 +107,12 @@ class History:
         if self._softening is not None:
             largest = self.state[..., -1]
             np.maximum(largest, energy, out=largest)
-            lost += self._softening_factor() * self._softening.dissipated(largest)
+            lost += self.equilibrium * self._softening.dissipated(largest)
         self.dissipated = lost
         self.begin(0.0)
 
-    def _softening_factor(self) -> float:
+    @property
+    def equilibrium(self) -> float:
         """Part of the softened energy that is there in the long run; viscous terms count their own work."""
         return 1.0 if self._spectrum is None else self._spectrum.equilibrium
 

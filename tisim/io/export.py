@@ -1,15 +1,18 @@
-"""Results as files for other programs: VTU (the body) and PLY or STL (its surface)."""
+"""Results as files for other programs: VTU and PVD (the body), PLY or STL (its surface)."""
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tisim.fields import Fields, Quantities, fields, fields_of_frames, unfold_quantities
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.mesh.quality import volumes
-from tisim.result import Result
+from tisim.problems.indentation.turning import axis_at
+from tisim.result import Result, frame_index
 
 # Facets as triangles; those of six or eight nodes are cut at their middle nodes.
 _TRIANGLES = {
@@ -17,6 +20,17 @@ _TRIANGLES = {
     4: ((0, 1, 2), (0, 2, 3)),
     6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
     8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
+}
+# Names of fields in files, with their units, and attributes of `tisim.Quantities`.
+FIELDS = {
+    "cauchy_stress_Pa": "cauchy",
+    "first_piola_stress_Pa": "first_piola",
+    "von_mises_stress_Pa": "von_mises",
+    "pressure_Pa": "pressure",
+    "principal_stresses_Pa": "principal_stresses",
+    "green_lagrange_strain": "green_lagrange",
+    "principal_stretches": "principal_stretches",
+    "strain_energy_density_J_per_m3": "energy_density",
 }
 _VTK = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20"}
 
@@ -37,17 +51,6 @@ def triangles(facets: NDArray[np.int32]) -> NDArray[np.int32]:
     return np.ascontiguousarray(cut[(a != b) & (b != c) & (c != a)])
 
 
-def frame_index(result: Result, frame: int) -> int:
-    """The frame counted from the start; ValueError where there is none."""
-    count = len(result.positions)
-    if not count:
-        why = f": {result.message}" if result.message else ""
-        raise ValueError(f"the result has no frame{why}")
-    if not -count <= frame < count:
-        raise ValueError(f"frame {frame}: expected one from {-count} to {count - 1}")
-    return frame % count
-
-
 def checked_path(path: str | Path) -> Path:
     """The path, in a folder that is there; FileNotFoundError otherwise."""
     path = Path(path)
@@ -57,19 +60,23 @@ def checked_path(path: str | Path) -> Path:
 
 
 def write(result: Result, path: str | Path, frame: int = -1) -> Path:
-    """Write one frame for other programs.
+    """Write one frame, or the whole series, for other programs and for `tisim.view`.
 
     Parameters
     ----------
     result : Result
     path : path
         Its ending chooses the format. .vtu: the whole body at its deformed positions [m] (half models are
-        unfolded), with point data `displacement` [m], `rest_position` [m] and one 0/1 mask a node set, and
-        cell data `volume_ratio` (element volume over rest volume) and, constant over the body, `load`,
-        `support_force` and, of a poke, `rod_force` of the frame (see `Result`). .ply, .stl: the deformed
-        surface as triangles [m].
+        unfolded). Point data: `displacement` [m], `rest_position` [m] and one 0/1 mask a node set. Cell data:
+        `volume_ratio` (element volume over rest volume) and, constant over the body, `load` and
+        `support_force` (see `Result`), `time` [s] where there is one and, of a poke, `rod_force` [N],
+        `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length, radius of the tip's edge [m]). Both: the
+        `FIELDS` (`tisim.fields`), whose names end in their units; tensors as nine components, row by row; a
+        result without a scene has none.
+        .pvd: all frames, a .vtu each in a folder of the same name beside it, as ParaView opens them.
+        .ply, .stl: the deformed surface as triangles [m].
     frame : int
-        Negative ones count from the end.
+        Negative ones count from the end; of a .pvd it has no meaning.
 
     Returns
     -------
@@ -84,25 +91,44 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
     """
     path = Path(path)
     ending = path.suffix.lower()
-    if ending not in (".vtu", ".ply", ".stl"):
-        raise ValueError(f"{path.name}: expected a name that ends in .vtu, .ply or .stl")
+    if ending not in (".vtu", ".pvd", ".ply", ".stl"):
+        raise ValueError(f"{path.name}: expected a name that ends in .vtu, .pvd, .ply or .stl")
     checked_path(path)
     frame = frame_index(result, frame)
-    mesh, x = unfold(result.mesh, result.positions[frame])
-    if ending == ".vtu":
-        _write_vtu(result, frame, mesh, x, path)
+    if ending == ".pvd":
+        _write_series(result, path)
+    elif ending == ".vtu":
+        _write_vtu(result, frame, None if result.scene is None else fields(result, frame), path)
     else:
         import trimesh
 
+        mesh, x = unfold(result.mesh, result.positions[frame])
         faces = surface_triangles(mesh)
         used, place = np.unique(faces, return_inverse=True)
         trimesh.Trimesh(x[used], place.reshape(-1, 3), process=False).export(path)
     return path
 
 
-def _write_vtu(result: Result, frame: int, mesh: Mesh, x: NDArray[np.float64], path: Path) -> None:
+def _write_series(result: Result, path: Path) -> None:
+    folder = path.with_suffix("")
+    folder.mkdir(exist_ok=True)
+    moments = result.load if result.time is None else result.time
+    rows = []
+    for found, moment in zip(fields_of_frames(result), moments, strict=True):
+        name = f"{path.stem}-{found.frame:03d}.vtu"
+        _write_vtu(result, found.frame, found, folder / name)
+        rows.append(
+            f'    <DataSet timestep="{moment:.9g}" part="0" file="{escape(f"{folder.name}/{name}")}"/>'
+        )
+    lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "  <Collection>"]
+    path.write_text("\n".join([*lines, *rows, "  </Collection>", "</VTKFile>", ""]), encoding="utf-8")
+
+
+def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> None:
     import meshio
 
+    half = result.mesh
+    mesh, x = unfold(half, result.positions[frame])
     moved = Mesh(kind=mesh.kind, nodes=x, elements=mesh.elements)
     point_data: dict[str, NDArray] = {"displacement": x - mesh.nodes, "rest_position": mesh.nodes}
     for name, nodes in mesh.node_sets.items():
@@ -110,13 +136,31 @@ def _write_vtu(result: Result, frame: int, mesh: Mesh, x: NDArray[np.float64], p
         mask[nodes] = 1
         point_data[f"set_{name}"] = mask
     m = mesh.n_elements
-    cell_data = {
-        "volume_ratio": [volumes(moved) / volumes(mesh)],
-        "load": [np.full(m, result.load[frame])],
-        "support_force": [np.tile(result.support_force[frame], (m, 1))],
+    constant = {"load": result.load[frame], "support_force": result.support_force[frame]}
+    if result.time is not None:
+        constant["time"] = result.time[frame]
+    if result.rod_force is not None and result.rod_tip is not None:
+        rod = result.scene.rod
+        time = 0.0 if result.time is None else float(result.time[frame])
+        constant["rod_force"], constant["rod_tip"] = result.rod_force[frame], result.rod_tip[frame]
+        constant["rod_axis"] = axis_at(result.scene, time)
+        constant["rod_shape"] = np.array([rod.radius, rod.length, rod.edge])
+    cell_data = {"volume_ratio": volumes(moved) / volumes(mesh)}
+    cell_data |= {
+        name: np.tile(value, (m, 1)) if value.ndim else np.full(m, value) for name, value in constant.items()
     }
-    if result.rod_force is not None:
-        cell_data["rod_force"] = [np.tile(result.rod_force[frame], (m, 1))]
+    if found is not None:
+        point_data |= _flat(unfold_quantities(half, found.nodes, nodes=True))
+        cell_data |= _flat(unfold_quantities(half, found.elements, nodes=False))
     meshio.Mesh(
-        x, [(_VTK[mesh.kind], mesh.elements.astype(np.int64))], point_data=point_data, cell_data=cell_data
+        x,
+        [(_VTK[mesh.kind], mesh.elements.astype(np.int64))],
+        point_data=point_data,
+        cell_data={name: [values] for name, values in cell_data.items()},
     ).write(path)
+
+
+def _flat(found: Quantities) -> dict[str, NDArray]:
+    """The `FIELDS` as rows of numbers."""
+    shaped = {name: getattr(found, attribute) for name, attribute in FIELDS.items()}
+    return {name: v.reshape(len(v), 9) if v.ndim == 3 else v for name, v in shaped.items()}

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim import laws
-from tisim.bodies import Rod
-from tisim.io.export import checked_path, frame_index
+from tisim.bodies import Rod, Vector
+from tisim.io.export import checked_path
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
 from tisim.problems.indentation.turning import axis_at
-from tisim.result import Result
+from tisim.result import Result, frame_index
 from tisim.scene import Poke
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ _EDGE = 0.82  # brightness of an element's edges against its face
 
 
 @dataclass(frozen=True, eq=False)
-class _Camera:
+class Camera:
     """Orthographic view: unit vectors to the right, up and towards the viewer."""
 
     right: Array
@@ -36,11 +36,11 @@ class _Camera:
     towards: Array
 
     @staticmethod
-    def at(towards: Array) -> _Camera:
+    def at(towards: Array) -> Camera:
         w = np.asarray(towards, dtype=float) / np.linalg.norm(towards)
         right = np.cross([0.0, 0.0, 1.0], w)
         right /= np.linalg.norm(right)
-        return _Camera(right, np.cross(w, right), w)
+        return Camera(right, np.cross(w, right), w)
 
     def flat(self, points: Array) -> Array:
         return np.stack([points @ self.right, points @ self.up], axis=-1)
@@ -92,19 +92,19 @@ def picture(
     scene = result.scene
     poke = scene if result.rod_tip is not None else None
     cut = poke is not None if cut is None else cut
-    across = _across(poke)
-    camera = _camera(across, poke)
-    facets = _visible_facets(mesh, across, poke, cut=cut)
+    sideways = across(None if poke is None else poke.direction)
+    camera = camera_of(sideways, poke)
+    facets = _visible_facets(mesh, sideways, poke, cut=cut)
     moved = 1e3 * np.linalg.norm(x - mesh.nodes, axis=1)
     scale = Normalize(0.0, max(float(moved.max()), 1e-9))
 
     polygons = x[facets]
     colours = _colour_map()(scale(moved[facets].mean(axis=1)))[:, :3]
-    sheets = [_shaded(polygons, colours, camera, edges=True)]
+    sheets = [shaded(polygons, colours, camera, edges=True)]
     if poke is not None and result.rod_tip is not None:
         time = 0.0 if result.time is None else float(result.time[frame])
         rod = rod_surface(poke.rod, result.rod_tip[frame], axis_at(poke, time))
-        sheets.append(_shaded(rod, np.tile(_STEEL, (len(rod), 1)), camera, edges=False))
+        sheets.append(shaded(rod, np.tile(_STEEL, (len(rod), 1)), camera, edges=False))
     figure = Figure(figsize=(8.0, 5.2), layout="constrained")
     axes = figure.add_subplot()
     if not cut:
@@ -112,7 +112,7 @@ def picture(
         front = _normals(ghost) @ camera.towards > 0
         flat = camera.flat(1e3 * ghost[front])
         axes.add_collection(PolyCollection(list(flat), facecolors="#e9ebee", edgecolors="#e9ebee", zorder=0))
-    flat_polygons, faces, edges = _painted(sheets, camera)
+    flat_polygons, faces, edges = painted(sheets, camera)
     axes.add_collection(
         PolyCollection(flat_polygons, facecolors=faces, edgecolors=edges, linewidths=0.25, zorder=1)
     )
@@ -138,29 +138,29 @@ def _colour_map() -> Any:
     return colormaps[_COLOURS]
 
 
-def _across(poke: Poke | None) -> Array:
-    """Horizontal unit vector across the plane of a push; the cut is square to it."""
-    if poke is None or np.hypot(poke.direction[0], poke.direction[1]) < 1e-9:
+def across(direction: Vector | None) -> Array:
+    """Horizontal unit vector across the plane of a push in a direction; the cut is square to it."""
+    if direction is None or np.hypot(direction[0], direction[1]) < 1e-9:
         return np.array([0.0, 1.0, 0.0])
-    d = np.array([poke.direction[0], poke.direction[1], 0.0])
+    d = np.array([direction[0], direction[1], 0.0])
     d /= np.linalg.norm(d)
-    across = np.array([-d[1], d[0], 0.0])
-    return across if across[1] >= 0 else -across
+    sideways = np.array([-d[1], d[0], 0.0])
+    return sideways if sideways[1] >= 0 else -sideways
 
 
-def _camera(across: Array, poke: Poke | None) -> _Camera:
-    along = np.cross(across, [0.0, 0.0, 1.0])
+def camera_of(sideways: Array, poke: Poke | None) -> Camera:
+    along = np.cross(sideways, [0.0, 0.0, 1.0])
     if poke is not None:
-        return _Camera.at(-across + 0.30 * along + 0.55 * np.array([0.0, 0.0, 1.0]))
-    return _Camera.at(-across + 0.35 * along + 0.35 * np.array([0.0, 0.0, 1.0]))
+        return Camera.at(-sideways + 0.30 * along + 0.55 * np.array([0.0, 0.0, 1.0]))
+    return Camera.at(-sideways + 0.35 * along + 0.35 * np.array([0.0, 0.0, 1.0]))
 
 
-def _visible_facets(mesh: Mesh, across: Array, poke: Poke | None, *, cut: bool) -> NDArray[np.int32]:
+def _visible_facets(mesh: Mesh, sideways: Array, poke: Poke | None, *, cut: bool) -> NDArray[np.int32]:
     if not cut:
         facets = mesh.facet_sets.get("surface")
         return boundary_facets(mesh.kind, mesh.elements) if facets is None else facets
     centre = mesh.nodes.mean(axis=0) if poke is None else np.array([*poke.site, 0.0])
-    side = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ across
+    side = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ sideways
     kept = mesh.elements[side > -1e-9]
     return boundary_facets(mesh.kind, kept)
 
@@ -174,13 +174,13 @@ def _normals(polygons: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Sheet:
+class Sheet:
     polygons: Array
     faces: Array
     edges: Array
 
 
-def _shaded(polygons: Array, colours: Array, camera: _Camera, *, edges: bool) -> _Sheet:
+def shaded(polygons: Array, colours: Array, camera: Camera, *, edges: bool) -> Sheet:
     """The polygons that face the viewer, lit from above his left shoulder."""
     if polygons.shape[1] in _OUTLINE:
         polygons = polygons[:, _OUTLINE[polygons.shape[1]]]
@@ -190,10 +190,10 @@ def _shaded(polygons: Array, colours: Array, camera: _Camera, *, edges: bool) ->
     light /= np.linalg.norm(light)
     lit = 0.55 + 0.45 * np.clip(normals[front] @ light, 0.0, 1.0)
     faces = np.clip(colours[front] * lit[:, None], 0.0, 1.0)
-    return _Sheet(polygons[front], faces, faces * _EDGE if edges else faces)
+    return Sheet(polygons[front], faces, faces * _EDGE if edges else faces)
 
 
-def _painted(sheets: list[_Sheet], camera: _Camera) -> tuple[list[Array], Array, Array]:
+def painted(sheets: list[Sheet], camera: Camera) -> tuple[list[Array], Array, Array]:
     """All polygons from the farthest to the nearest, flat [mm]."""
     depth = np.concatenate([s.polygons.mean(axis=1) @ camera.towards for s in sheets])
     flat = [p for s in sheets for p in camera.flat(1e3 * s.polygons)]
@@ -224,9 +224,12 @@ def _finish(figure: Any, axes: Any, flat: list[Array], scale: Any, title: str, *
     figure.colorbar(mappable, ax=axes, label="displacement [mm]", shrink=0.75, pad=0.02)
 
 
-def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array:
-    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`."""
-    radius, height = _profile(rod)
+def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40, piece: float = 1e-3) -> Array:
+    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`.
+
+    around: how many at its circumference. piece: longest along the shaft [m].
+    """
+    radius, height = _profile(rod, piece)
     axis = axis / np.linalg.norm(axis)
     u = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])
     u /= np.linalg.norm(u)
@@ -239,12 +242,12 @@ def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40) -> Array
     return quads.reshape(-1, 4, 3)
 
 
-def _profile(rod: Rod) -> tuple[Array, Array]:
+def _profile(rod: Rod, piece: float) -> tuple[Array, Array]:
     """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
-    edge = rod.radius if rod.tip == "hemisphere" else min(rod.edge_radius, rod.radius)
+    edge = rod.edge
     angle = np.linspace(0.0, 0.5 * np.pi, 9)
     # short pieces along the shaft, so that a painter's order of their centres is right
-    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / 1e-3)) + 1))[1:]
+    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / piece)) + 1))[1:]
     radius = np.concatenate([
         [0.0], rod.radius - edge + edge * np.sin(angle), np.full(len(shaft), rod.radius), [0.0],
     ])  # fmt: skip

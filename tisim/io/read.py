@@ -22,7 +22,7 @@ Unit = Literal["m", "cm", "mm", "in"]
 
 METRES: Mapping[str, float] = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 LARGEST = 10.0  # of a body [m], as of any length of a scene
-_SOLIDS: Mapping[str, ElementKind] = {
+SOLIDS: Mapping[str, ElementKind] = {
     "tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8", "hexahedron20": "hex20",
 }  # fmt: skip
 _FACETS = ("triangle", "triangle6", "quad", "quad8", "triangle7", "quad9")
@@ -161,28 +161,33 @@ def _faces(
     return corners
 
 
-def _read_meshio(path: Path) -> _Raw:
+def meshio_file(path: Path) -> Any:
+    """A .msh or .vtu as meshio has it. MeshError, one sentence, for what it cannot read."""
     import meshio
 
     shown = io.StringIO()  # meshio prints what it thinks of a file, and ends the process at some
     try:
         with contextlib.redirect_stdout(shown), contextlib.redirect_stderr(shown):
-            m = meshio.read(path, file_format="gmsh" if path.suffix.lower() == ".msh" else "vtu")
+            return meshio.read(path, file_format="gmsh" if path.suffix.lower() == ".msh" else "vtu")
     except (Exception, SystemExit) as error:  # its parsers raise whatever a broken file makes them
         said = " ".join(str(error).split()) or type(error).__name__
         name = "Gmsh mesh (2.2, 4.0 or 4.1)" if path.suffix.lower() == ".msh" else "VTU file"
         raise MeshError(f"expected a {name}, which it is not ({said[:120]})") from None
+
+
+def _read_meshio(path: Path) -> _Raw:
+    m = meshio_file(path)
     points = np.asarray(m.point_data.get("rest_position", m.points), dtype=float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise MeshError("expected nodes in three dimensions")
-    unknown = {b.type for b in m.cells} - set(_SOLIDS) - set(_FACETS) - set(_SMALLER)
+    unknown = {b.type for b in m.cells} - set(SOLIDS) - set(_FACETS) - set(_SMALLER)
     if unknown:
-        raise MeshError(f"elements of type {', '.join(sorted(unknown))}: expected {' or '.join(_SOLIDS)}")
+        raise MeshError(f"elements of type {', '.join(sorted(unknown))}: expected {' or '.join(SOLIDS)}")
     raw = _Raw(nodes=points, solids={})
     start: dict[int, int] = {}  # of a block of solids among its kind
     for k, block in enumerate(m.cells):
-        if block.type in _SOLIDS:
-            kind = _SOLIDS[block.type]
+        if block.type in SOLIDS:
+            kind = SOLIDS[block.type]
             known = raw.solids.get(kind, np.empty((0, NODES_PER_ELEMENT[kind]), dtype=np.int64))
             start[k] = len(known)
             raw.solids[kind] = np.concatenate([known, np.asarray(block.data, dtype=np.int64)])
@@ -191,7 +196,7 @@ def _read_meshio(path: Path) -> _Raw:
             block = m.cells[k]
             if k in start:
                 of_kind = raw.element_sets.setdefault(name, {})
-                kind = _SOLIDS[block.type]
+                kind = SOLIDS[block.type]
                 before = of_kind.get(kind, np.empty(0, dtype=np.int64))
                 of_kind[kind] = np.concatenate([before, rows + start[k]])
             elif block.type in _FACETS:
@@ -201,7 +206,7 @@ def _read_meshio(path: Path) -> _Raw:
                 nodes = np.unique(np.asarray(block.data)[rows])
                 raw.node_sets[name] = np.union1d(raw.node_sets.get(name, nodes), nodes)
     for name, values in m.point_data.items():
-        if _is_mask(values):
+        if is_mask(values):
             raw.node_sets[name.removeprefix("set_")] = np.flatnonzero(values)
     return raw
 
@@ -217,14 +222,14 @@ def _groups(m: Any) -> dict[str, list[tuple[int, Index]]]:
                 name = named.get((block.dim, int(tag)), f"physical-{block.dim}d-{tag}")
                 found.setdefault(name, []).append((k, np.flatnonzero(values == tag)))
     for name, arrays in m.cell_data.items():
-        if not name.startswith("gmsh:") and all(map(_is_mask, arrays)):
+        if not name.startswith("gmsh:") and all(map(is_mask, arrays)):
             for k, values in enumerate(arrays):
                 if np.any(values):
                     found.setdefault(name.removeprefix("set_"), []).append((k, np.flatnonzero(values)))
     return found
 
 
-def _is_mask(values: Any) -> bool:
+def is_mask(values: Any) -> bool:
     values = np.asarray(values)
     return values.ndim == 1 and values.dtype.kind in "iub" and bool(np.isin(values, (0, 1)).all())
 

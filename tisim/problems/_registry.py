@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, is_dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tisim.result import Result
+
+if TYPE_CHECKING:  # scipy is imported when a scene is solved
+    from tisim.discretisation.body import Discretisation
 
 OnStep = Callable[[float], None]
 """Called with the fraction of a scene that is done, 0 to 1."""
@@ -39,6 +44,12 @@ def _type_name(result: Result, frame: int) -> str:
     return f"{type(result.scene).__name__}, frame at {result.load[frame]:.4g}"
 
 
+def _of_mesh(result: Result, _: int) -> Discretisation:
+    from tisim.discretisation.body import Discretisation
+
+    return Discretisation.build(result.mesh, np.zeros(0, dtype=np.int32))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneKind:
     """One kind of scene; `register` adds it.
@@ -68,6 +79,9 @@ class SceneKind:
         Rough cost [core-s], to begin with the longest and to decide on the number of processes.
     describe : callable (result, frame) -> str
         A frame in a few words, for the title of a picture.
+    discretise : callable (result, frame) -> Discretisation
+        What the body was integrated on, for the stress of a frame; its supports do not matter. That of the
+        result's mesh by default.
     """
 
     scene: type
@@ -79,6 +93,7 @@ class SceneKind:
     solve_chain: Callable[[Sequence[Any], OnStep], Iterator[Result]] | None = None
     seconds: Callable[[Any], float] = _ten_seconds
     describe: Callable[[Result, int], str] = _type_name
+    discretise: Callable[[Result, int], Discretisation] = _of_mesh
 
     @property
     def name(self) -> str:

@@ -7,6 +7,8 @@ from typing import Literal
 
 import matplotlib.figure
 
+from tisim.view import View
+
 Section = Literal["shapes", "residuals"]
 
 
@@ -16,10 +18,11 @@ class Figure:
 
     name: of its file, without the ending; what does not fit a file name is replaced. caption: plain text.
     section: "shapes" where measured stands against simulated, "residuals" where what is left is shown before
-    and after the extension.
+    and after the extension. view: the same to turn around, below it.
     """
 
     name: str
     caption: str
     figure: matplotlib.figure.Figure
     section: Section = "shapes"
+    view: View | None = None

@@ -14,6 +14,7 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 .partly { background: #FDF3EA; border-color: #CC79A7; } .partly strong { color: #8A1F5C; }
 .unexplained { background: #F7EAF2; border-color: #A3286F; } .unexplained strong { color: #8A1F5C; }
 .next { background: #EEF4FA; border-left: 4px solid #0072B2; padding: .5rem 1rem; margin: .8rem 0; }
+{{ turned.style }}
 {% endblock %}
 {% block body %}
 <h1>Diagnosis: {{ title }}</h1>
@@ -23,6 +24,10 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 {{ figure(p) }}
 {% else %}
 <p class="note">No pictures of shapes.</p>
+{% endfor %}
+{% for view, part in turned.sections.items() %}
+<h3>{{ view.title }}</h3>
+{{ part }}
 {% endfor %}
 {% if budget %}
 <h2>Where the departure comes from</h2>
@@ -94,5 +99,6 @@ plausible.</p>
 {{ table(test_headings, tests) }}
 {% endif %}
 </section>
+{{ turned.script }}
 {% endblock %}
 """

@@ -14,7 +14,7 @@ from calibration.diagnosis.report._method import alarm, lack_of_fit, method, tro
 from calibration.diagnosis.report._template import PAGE
 from calibration.diagnosis.report._words import headline
 from calibration.measurements._model import MeasurementModel
-from calibration.report import Picture, file_name, picture, template
+from calibration.report import Picture, file_name, picture, template, turned_parts
 
 LONGEST = 60  # letters of a picture's file name
 
@@ -67,6 +67,7 @@ def render(
         troubles=[*troubles(diagnosis), *extra],
         shapes=[p for f, p in pictures if f.section == "shapes"],
         residuals=[p for f, p in pictures if f.section == "residuals"],
+        turned=turned_parts([f.view for f, _ in pictures if f.view is not None]),
         lack_of_fit=lack_of_fit(diagnosis),
         test_headings=tables.TESTS,
         tests=tables.test_rows(diagnosis),

@@ -83,6 +83,7 @@ class SeenPhotograph:
     simulated : upper and lower edge of the beam, as the camera shows them, (m, 2) each [m].
     raw, left : distances of all points [m], (k,), the mesh's error corrected: as traced, and with the most
         likely nuisances removed.
+    result : the simulated beam; images : what the camera does to it.
     """
 
     photograph: TracedPhotograph
@@ -90,6 +91,8 @@ class SeenPhotograph:
     simulated: Sequence[Array]
     raw: Array
     left: Array
+    result: Result
+    images: Sequence[Image]
 
 
 def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = CORNER) -> TracedOutline:

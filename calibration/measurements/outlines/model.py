@@ -311,7 +311,12 @@ class OutlineModel(MeasurementModel):
     def registered(self, state: State) -> list[Array]:
         """Distances of each photograph's points [m], the most likely nuisances removed. ValueError where a
         beam has no equilibrium."""
-        left = {id(s.photograph): s.left for s in self.seen(state)}
+        return self.left_of(self.seen(state))
+
+    def left_of(self, seen: Sequence[SeenPhotograph]) -> list[Array]:
+        """Distances of each photograph's points [m], the most likely nuisances removed; NaN where it is not
+        compared."""
+        left = {id(s.photograph): s.left for s in seen}
         return [left.get(id(p), np.full(len(p.basis), np.nan)) for p in self.records]
 
     def seen(self, state: State) -> list[SeenPhotograph]:
@@ -332,7 +337,13 @@ class OutlineModel(MeasurementModel):
             raw = distances(feet) + p.basis @ self._correction[p.rows]
             found.append(
                 SeenPhotograph(
-                    photograph=p, feet=feet, simulated=lines, raw=raw, left=raw - p.basis @ known[p.rows]
+                    photograph=p,
+                    feet=feet,
+                    simulated=lines,
+                    raw=raw,
+                    left=raw - p.basis @ known[p.rows],
+                    result=r,
+                    images=images,
                 )
             )
         return found

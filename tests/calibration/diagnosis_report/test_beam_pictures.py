@@ -14,10 +14,11 @@ from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.report import write_report
 from calibration.experiment import read
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.pictures._drawn import DrawnTrial, drawn, rms_of
+from calibration.measurements.outlines.pictures._drawn import DrawnTrial, drawn, rms_of, told
 from calibration.measurements.outlines.pictures._grid import grid_of
 from calibration.measurements.outlines.pictures._look import magnification
 from calibration.measurements.outlines.pictures._residuals import middles
+from calibration.measurements.outlines.turned import turned
 
 LEFT = ("residual-curvature", "creep")  # of the catalogue, to keep the test short
 ODD = "a_long(%)-" + 60 * "x"
@@ -33,7 +34,7 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, OutlineMo
 
 @pytest.fixture(scope="module")
 def beams(bent: tuple[Diagnosis, OutlineModel]) -> list[DrawnTrial]:
-    return drawn(bent[1], bent[0])
+    return drawn(bent[1], bent[0], told(bent[1], bent[0]))
 
 
 def test_the_case_is_what_it_should_be(bent: tuple[Diagnosis, OutlineModel]) -> None:
@@ -94,6 +95,28 @@ def test_panels_are_a_grid_of_materials_and_kinds(beams: list[DrawnTrial]) -> No
     assert [[b and b.kind for b in row] for row in grid] == [["cantilever 60 mm", "cantilever 100 mm"]]
 
 
+def test_the_beams_can_be_turned_around(bent: tuple[Diagnosis, OutlineModel]) -> None:
+    """The outline as a tube about its registered points, on the surface of the body of the extension."""
+    found, model = bent
+    seen = told(model, found)
+    view = turned(seen, title="bent")
+    assert len(view.labels) == len(seen) == 4
+    bodies, tubes = view.surfaces[0::2], view.surfaces[1::2]
+    for frame, (s, body, tube) in enumerate(zip(seen, bodies, tubes, strict=True)):
+        assert body.frame == tube.frame == frame
+        feet = np.concatenate([f.foot for f in s.feet])
+        normal = np.concatenate([f.normal for f in s.feet])
+        wanted = feet + s.left[:, None] * normal
+        centres = tube.positions[0].reshape(-1, 6, 3).mean(axis=1)
+        assert np.allclose(centres[:, 1], 0.0, atol=1e-12)
+        if len(centres) == len(wanted):  # of short edges, no point is left out
+            assert centres[:, [0, 2]] == pytest.approx(wanted, abs=1e-9)
+        middle = body.positions[0][np.abs(body.positions[0][:, 1]) < 1e-6]
+        gap = np.linalg.norm(centres[:, None, [0, 2]] - middle[None, :, [0, 2]], axis=2).min(axis=1)
+        assert gap.max() < 0.006  # between the nodes of a mesh of 7 mm
+        assert np.abs(body.positions[0][:, 1]).max() == pytest.approx(0.010, rel=0.05)
+
+
 def test_the_page_has_them(bent: tuple[Diagnosis, OutlineModel], tmp_path: Path) -> None:
     paths = write_report(*bent, tmp_path, title="bent")
     assert [p.name for p in paths] == [
@@ -105,6 +128,8 @@ def test_the_page_has_them(bent: tuple[Diagnosis, OutlineModel], tmp_path: Path)
     ]
     page = Page(paths[0])
     assert len(page.sources) == 4
+    assert page.raw.count('<section class="tisim-view"') == 1
+    assert "Measured outlines over the beams of the baseline extended by residual-curvature" in page.text
     assert "correlated over 5.0 mm" in page.text
     assert "The mesh's error is corrected by a finer mesh" in page.text
     shown = next(f for f in bent[1].pictures(bent[0]) if f.name == "shapes")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tisim._checks import (
     FieldError,
@@ -23,6 +23,9 @@ from tisim.problems._stops import shortest_time
 from tisim.problems.beam.rest_shape import half_sizes, is_ideal, is_planar, skin_profile
 from tisim.result import Result
 from tisim.scene import Beam, ClampImperfections, Imperfections, Void
+
+if TYPE_CHECKING:  # scipy is imported when a scene is solved
+    from tisim.discretisation.body import Discretisation
 
 MOST_LOSS = 0.95  # of stiffness or weight, anywhere in a beam
 MOST_TILT = 0.8  # of a clamp [rad]
@@ -202,6 +205,13 @@ def describe(result: Result, _: int) -> str:
     return f"{name} of {scene.length * 1e3:.0f} mm"
 
 
+def discretise(result: Result, _: int) -> Discretisation:
+    from tisim.problems.beam.rest_shape import specimen_discretisation
+    from tisim.problems.beam.system import beam_discretisation
+
+    return specimen_discretisation(result.scene, beam_discretisation(result.scene))
+
+
 KIND = SceneKind(
     scene=Beam,
     check=check,
@@ -212,4 +222,5 @@ KIND = SceneKind(
     solve=solve,
     solve_chain=solve_chain,
     describe=describe,
+    discretise=discretise,
 )

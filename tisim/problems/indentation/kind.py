@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tisim._checks import (
@@ -22,6 +24,9 @@ from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
 from tisim.scene import Poke
+
+if TYPE_CHECKING:  # scipy is imported when a scene is solved
+    from tisim.discretisation.body import Discretisation
 
 STEEPEST = 45.0  # of a push against the normal [degrees]
 SECONDS = 10.0  # of a default poke [core-s]
@@ -154,4 +159,27 @@ def describe(result: Result, frame: int) -> str:
     return f"Poke to {result.load[frame] * 1e3:.1f} mm at {angle:.0f}°, {force:.2f} N"
 
 
-KIND = SceneKind(scene=Poke, check=check, takes=takes, seconds=seconds, solve=solve, describe=describe)
+def discretise(result: Result, frame: int) -> Discretisation:
+    """With the parts that tetrahedra of hexahedra have come to by that frame, as frames show it."""
+    from tisim.discretisation.body import Discretisation
+    from tisim.discretisation.quadrature import TetrahedralParts
+
+    found = Discretisation.build(result.mesh, result.mesh.node_sets["base"])
+    if result.mesh.kind == "hex8":
+        parts = TetrahedralParts(result.mesh, found.reference)
+        way = np.diff(result.load, prepend=0.0)
+        for back, x in zip(way[: frame + 1] < 0.0, result.positions, strict=False):
+            parts.mends = bool(back) or bool(result.scene.turns)
+            parts.update(x)
+    return found
+
+
+KIND = SceneKind(
+    scene=Poke,
+    check=check,
+    takes=takes,
+    seconds=seconds,
+    solve=solve,
+    describe=describe,
+    discretise=discretise,
+)

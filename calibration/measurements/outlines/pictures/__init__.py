@@ -1,11 +1,14 @@
 """Pictures of photographed beams for the page of a diagnosis."""
 
+from dataclasses import replace
+
 from calibration.diagnosis.drawing import Figure
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.pictures._drawn import drawn, in_time
+from calibration.measurements.outlines.pictures._drawn import drawn, in_time, told
 from calibration.measurements.outlines.pictures._residuals import draw_residuals, draw_rms
 from calibration.measurements.outlines.pictures._shapes import draw_shapes
+from calibration.measurements.outlines.turned import turned
 
 
 def pictures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
@@ -13,10 +16,17 @@ def pictures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
 
     ValueError where a beam has no equilibrium.
     """
-    beams = drawn(model, diagnosis)
+    seen = told(model, diagnosis)
+    beams = drawn(model, diagnosis, seen)
     apart = in_time(model, diagnosis)
     return [
-        draw_shapes(beams, apart=apart),
+        replace(draw_shapes(beams, apart=apart), view=turned(seen, title=_title(diagnosis))),
         draw_residuals(beams, apart=apart),
         draw_rms(beams, diagnosis, noise=model.noise_rms()),
     ]
+
+
+def _title(diagnosis: Diagnosis) -> str:
+    chosen = diagnosis.chosen
+    by = "the baseline" if chosen is None else f"the baseline extended by {' and '.join(chosen.names)}"
+    return f"Measured outlines over the beams of {by}"

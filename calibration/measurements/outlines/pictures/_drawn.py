@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.outlines._edges import edges
-from calibration.measurements.outlines._photographs import feet_of
+from calibration.measurements.outlines._photographs import SeenPhotograph, feet_of
 from calibration.measurements.outlines.model import OutlineModel
 
 Array = NDArray[np.float64]
@@ -96,14 +96,21 @@ def rms_of(photographs: Sequence[DrawnPhotograph], when: Literal["before", "afte
     return float(np.sqrt(np.average(squares[:, 0], weights=squares[:, 1])))
 
 
-def drawn(model: OutlineModel, diagnosis: Diagnosis) -> list[DrawnTrial]:
-    """All trials that have photographs. ValueError where a beam has no equilibrium."""
+def told(model: OutlineModel, diagnosis: Diagnosis) -> list[SeenPhotograph]:
+    """The photographs against the beams that explain them best: the extended ones, where a cause was found.
+    ValueError where one has no equilibrium."""
+    chosen = diagnosis.chosen
+    return model.seen(diagnosis.finding.baseline.state if chosen is None else chosen.fit.state)
+
+
+def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotograph]) -> list[DrawnTrial]:
+    """All trials that have photographs; seen: as `told`. ValueError where a beam has no equilibrium."""
     finding = diagnosis.finding
     base = finding.baseline.state
     results = model.results(base)
-    before = model.registered(base)
-    chosen = diagnosis.chosen
-    after = model.registered(chosen.fit.state) if chosen is not None else [None] * len(before)
+    best = model.left_of(seen)
+    before = best if diagnosis.chosen is None else model.registered(base)
+    after = [None] * len(before) if diagnosis.chosen is None else best
     by_trial: dict[int, list[DrawnPhotograph]] = {}
     bodies: dict[int, tuple[Array, Array]] = {}
     for p, result, left, later in zip(model.records, results, before, after, strict=True):

@@ -1,0 +1,26 @@
+"""A poke of a store in three dimensions, by the format alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from factory._archive import release_store
+from factory.reader import open_dataset
+from tisim.view import view_of_file
+
+
+def test_a_poke_of_a_store_is_shown(finished_store: Path, tmp_path: Path) -> None:
+    shown = view_of_file(finished_store, poke=2)
+    poke = open_dataset(finished_store).poke(2)
+    assert len(shown.labels) == len(poke.depth)
+    assert shown.surfaces[0].positions == pytest.approx(poke.surface, abs=1e-7)
+    assert np.array_equal(shown.surfaces[0].triangles, poke.triangles)
+    assert f"{np.linalg.norm(poke.rod_force[-1]):.4g} N" in shown.labels[-1]
+    zipped = release_store(finished_store, tmp_path / "store.zarr.zip").path
+    assert view_of_file(zipped, poke=2).labels == shown.labels
+    assert "poke 0" in view_of_file(finished_store).title
+    with pytest.raises(ValueError, match="expected one that was simulated, of 4, 9 is none"):
+        view_of_file(finished_store, poke=9)

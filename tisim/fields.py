@@ -1,0 +1,259 @@
+"""Stress, strain, stretch and energy of a result, by element and smoothed to nodes.
+
+They are made of the stresses at the points of integration from which the solver sums its forces, the
+pressure of elements that integrate it apart (tet10, hex8, hex20) with them. Of an element:
+
+- first Piola-Kirchhoff stress, Green-Lagrange strain and energy density are means over its rest volume,
+  Cauchy stress is the mean over its deformed volume: their integrals over the body are the solution's.
+- At nodes, each element's field is first fitted by a linear one (least squares over its points, with their
+  weights: it has the moments of what was integrated, which its single points, of a hex20 with stiffness
+  against change of volume at eight of them, need not show); elements whose gradient is constant keep their
+  mean. Where elements meet, the mean by their volumes counts, without those held rigid in a clamp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.mesh import Mesh, unfold
+from tisim.problems import kind_of
+from tisim.result import Result, frame_index
+
+if TYPE_CHECKING:  # scipy and Taichi are imported when fields are asked for
+    from tisim.discretisation.body import DiscretisedBody
+
+Array = NDArray[np.float64]
+
+_HARDLY = 1e-9  # what a rigid element counts where it meets others
+_LINEAR = ("tet10", "hex20")  # elements in which stress varies
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Quantities:
+    """Fields at k places, elements or nodes.
+
+    Attributes
+    ----------
+    cauchy : ndarray, shape (k, 3, 3)
+        Cauchy stress: force on the deformed area [Pa].
+    first_piola : ndarray, shape (k, 3, 3)
+        First Piola-Kirchhoff stress: force on the rest area, P[i, K] the force along i on an area square to K
+        at rest [Pa].
+    green_lagrange : ndarray, shape (k, 3, 3)
+        Green-Lagrange strain (F^T F - I)/2.
+    energy_density : ndarray, shape (k,)
+        Stored energy per rest volume [J/m3].
+    """
+
+    cauchy: Array
+    first_piola: Array
+    green_lagrange: Array
+    energy_density: Array
+
+    @cached_property
+    def von_mises(self) -> Array:
+        """Von Mises' equivalent of the Cauchy stress, shape (k,) [Pa]."""
+        deviator = self.cauchy + self.pressure[:, None, None] * np.eye(3)
+        return np.asarray(np.sqrt(1.5 * np.einsum("kij,kij->k", deviator, deviator)))
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Minus the mean normal Cauchy stress, shape (k,) [Pa]."""
+        return np.asarray(-np.trace(self.cauchy, axis1=1, axis2=2) / 3.0)
+
+    @cached_property
+    def principal_stresses(self) -> Array:
+        """Of the Cauchy stress, shape (k, 3), the largest first [Pa]."""
+        return np.asarray(np.linalg.eigvalsh(self.cauchy)[:, ::-1])
+
+    @cached_property
+    def principal_stretches(self) -> Array:
+        """Length over rest length along the principal directions of strain, shape (k, 3), largest first."""
+        squares = np.linalg.eigvalsh(np.eye(3) + 2.0 * self.green_lagrange)[:, ::-1]
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Fields:
+    """Stress, strain and energy of one frame on the result's mesh (m elements, n nodes).
+
+    Attributes
+    ----------
+    frame : int
+    mesh : Mesh
+    elements, nodes : Quantities
+        By element (m), and smoothed to nodes (n).
+    node_forces : ndarray, shape (n, 3)
+        What these stresses pull at the nodes with, the sum of P grad N over the points [N]: 0 at free nodes
+        without load, minus the body's force on its supports at held ones. Of a half model those of the half.
+    energy : float
+        Stored in the whole body [J].
+    """
+
+    frame: int
+    mesh: Mesh
+    elements: Quantities
+    nodes: Quantities
+    node_forces: Array
+    energy: float
+
+
+def fields(result: Result, frame: int = -1) -> Fields:
+    """Stress, strain, stretch and energy of one frame.
+
+    Parameters
+    ----------
+    result : Result
+    frame : int
+        Negative ones count from the end.
+
+    Returns
+    -------
+    Fields
+
+    Raises
+    ------
+    ValueError
+        For a frame that the result does not have.
+
+    Notes
+    -----
+    A material with viscosity or softening remembers: its history is followed from frame to frame, in one time
+    step each, with stresses that change at a constant rate between. Frames that lie far apart in a hold make
+    it coarse (docs/how-to/viewing.md says by how much); `Course(frames=...)` asks for more of them.
+    """
+    return next(_frames(result, [frame_index(result, frame)]))
+
+
+def fields_of_frames(result: Result) -> Iterator[Fields]:
+    """`fields` of all frames, one after the other; materials that remember are followed once."""
+    return _frames(result, range(len(result.positions)))
+
+
+def _frames(result: Result, wanted: Sequence[int]) -> Iterator[Fields]:
+    from tisim.discretisation.body import DiscretisedBody
+    from tisim.parallel.threads import one_thread
+
+    kind, material = kind_of(result.scene), result.scene.material
+    memory: DiscretisedBody | None = None
+    before = 0.0
+    for frame in range(max(wanted, default=-1) + 1):
+        if frame not in wanted and not material.remembers:
+            continue
+        x = result.positions[frame]
+        with one_thread():
+            discretisation = kind.discretise(result, frame)
+            body = DiscretisedBody(discretisation, material)
+            if body.history is not None:
+                if memory is not None:
+                    body.go_on_from(memory)
+                now = before if result.time is None else float(result.time[frame])
+                body.begin(now - before)
+                body.accept(x)
+                memory, before = body, now
+            if frame in wanted:
+                yield fields_at(body, x, frame)
+
+
+def fields_at(body: DiscretisedBody, x: Array, frame: int = -1) -> Fields:
+    """Fields of a body at positions x (n, 3) [m], in the state that it has accepted last."""
+    mesh, ref = body.discretisation.mesh, body.discretisation.reference
+    psi, P = body.point_response(x)
+    energy = body.stored_energy(x)
+    F = np.einsum("eai,eqak->eqik", x[mesh.elements], ref.gradients, optimize=True)
+    C = np.swapaxes(F, 2, 3) @ F
+    J = np.linalg.det(F)
+    factor = body.discretisation.stiffness
+    if factor is not None:
+        psi, energy, P = psi * factor, energy * factor, P * factor[..., None, None]
+    forces = np.zeros_like(x)
+    element_forces = np.einsum("eq,eqik,eqak->eai", ref.weights, P, ref.gradients, optimize=True)
+    np.add.at(forces, mesh.elements, element_forces)
+    kirchhoff = P @ np.swapaxes(F, 2, 3)
+    rest, now = ref.weights, ref.weights * np.where(J > 0.0, J, 0.0)
+    parts = {
+        "cauchy": (kirchhoff / np.where(J > 0.0, J, 1.0)[..., None, None], now),
+        "first_piola": (P, rest),
+        "green_lagrange": (0.5 * (C - np.eye(3)), rest),
+        "energy_density": (energy, rest),
+    }
+    rigid = np.isin(mesh.elements, body.discretisation.fixed).all(axis=1)
+    counted = rest.sum(axis=1) * np.where(rigid, _HARDLY, 1.0)
+    whole, smooth = {}, {}
+    for name, (values, weights) in parts.items():
+        flat = values.reshape(*values.shape[:2], -1)
+        mean, corners = _fitted(body, flat, weights)
+        whole[name] = mean.reshape(-1, *values.shape[2:])
+        smooth[name] = _at_nodes(mesh, corners, counted).reshape(-1, *values.shape[2:])
+    for name in ("cauchy", "first_piola", "green_lagrange"):
+        _mirror(mesh, smooth[name])
+    total = float(np.vdot(rest, energy)) * body.discretisation.multiplicity
+    return Fields(
+        frame=frame,
+        mesh=mesh,
+        elements=Quantities(**whole),
+        nodes=Quantities(**smooth),
+        node_forces=forces,
+        energy=total,
+    )
+
+
+def _fitted(body: DiscretisedBody, values: Array, weights: Array) -> tuple[Array, Array]:
+    """Of point values (m, q, c) each element's mean (m, c) and its linear field at its nodes (m, a, c)."""
+    mesh, ref = body.discretisation.mesh, body.discretisation.reference
+    total = weights.sum(axis=1)
+    total = np.where(total > 0.0, total, 1.0)
+    mean = np.einsum("eq,eqc->ec", weights, values) / total[:, None]
+    corners = mesh.nodes[mesh.elements]
+    if mesh.kind not in _LINEAR:
+        return mean, np.repeat(mean[:, None], corners.shape[1], axis=1)
+    points = ref.values @ corners
+    centre = np.einsum("eq,eqi->ei", weights, points) / total[:, None]
+    size = np.cbrt(ref.weights.sum(axis=1))[:, None, None]
+    at = (points - centre[:, None]) / size
+    gram = np.einsum("eq,eqi,eqj->eij", weights, at, at, optimize=True)
+    moments = np.einsum("eq,eqi,eqc->eic", weights, at, values, optimize=True)
+    slope = np.linalg.pinv(gram, hermitian=True) @ moments
+    return mean, mean[:, None] + (corners - centre[:, None]) / size @ slope
+
+
+def _at_nodes(mesh: Mesh, corners: Array, volume: Array) -> Array:
+    """Means by volume (n, c) of what elements have at their nodes (m, a, c)."""
+    found, weight = np.zeros((mesh.n_nodes, corners.shape[2])), np.zeros(mesh.n_nodes)
+    np.add.at(found, mesh.elements, volume[:, None, None] * corners)
+    np.add.at(weight, mesh.elements, np.broadcast_to(volume[:, None], mesh.elements.shape))
+    return found / np.where(weight > 0.0, weight, 1.0)[:, None]
+
+
+def mirrored(tensors: Array, name: str) -> Array:
+    """Tensors (..., 3, 3) as a mirror square to an axis ("x", "y" or "z") shows them."""
+    sign = np.ones(3)
+    sign["xyz".index(name)] = -1.0
+    return np.asarray(tensors * np.outer(sign, sign))
+
+
+def _mirror(mesh: Mesh, tensors: Array) -> None:
+    """On mirror planes, the mean with the other half's."""
+    for name in mesh.symmetry:
+        plane = mesh.node_sets[f"mirror_{name}"]
+        tensors[plane] = 0.5 * (tensors[plane] + mirrored(tensors[plane], name))
+
+
+def unfold_quantities(mesh: Mesh, found: Quantities, *, nodes: bool) -> Quantities:
+    """Quantities of a mesh's nodes or elements on the whole body that `tisim.mesh.unfold` makes of it."""
+    values = {name: getattr(found, name) for name in Quantities.__dataclass_fields__}
+    for name in mesh.symmetry:
+        copied = np.ones(mesh.n_nodes if nodes else mesh.n_elements, dtype=bool)
+        if nodes:
+            copied[mesh.node_sets[f"mirror_{name}"]] = False
+        for key, value in values.items():
+            other = mirrored(value[copied], name) if value.ndim == 3 else value[copied]
+            values[key] = np.concatenate([value, other])
+        mesh, _ = unfold(replace(mesh, symmetry=(name,)), mesh.nodes)
+    return Quantities(**values)

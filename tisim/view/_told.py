@@ -1,0 +1,42 @@
+"""Frames in words and as a curve: where each is, and the force there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tisim.view._view import Curve
+
+Told = tuple[str, float, str]
+"""Name, value and unit of one quantity."""
+
+MOST_FRAMES = 120
+
+
+def frames_shown(count: int) -> NDArray[np.intp]:
+    """Frames of a view: all, or MOST_FRAMES of them, evenly, first and last among them."""
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_FRAMES))).astype(np.intp))
+
+
+def thinned(count: int) -> tuple[str, ...]:
+    """The sentence that says so where not all frames are shown."""
+    return (f"{MOST_FRAMES} of {count} frames are shown.",) if count > MOST_FRAMES else ()
+
+
+def label(told: Sequence[Told]) -> str:
+    """One line of quantities."""
+    return " · ".join(f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in told)
+
+
+def curve(along: Sequence[Told], forces: Sequence[Told]) -> Curve:
+    """Force over what frames are counted by, one of each a frame."""
+    return Curve(
+        x=np.array([value for _, value, _ in along]),
+        x_name=along[0][0],
+        x_unit=along[0][2],
+        y=np.array([value for _, value, _ in forces]),
+        y_name=forces[0][0],
+        y_unit=forces[0][2],
+    )

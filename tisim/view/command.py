@@ -1,0 +1,92 @@
+"""`python -m tisim.view`: results and pokes of datasets in three dimensions: a page, a GIF or an MP4."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+EXAMPLES = """
+[bold]Examples[/bold]
+
+  python -m tisim.view beam.vtu
+
+  python -m tisim.view poke.pvd --out poke.html --open
+
+  python -m tisim.view datasets/quick-ogden.zarr --poke 3 --gif poke-3.gif
+
+  python -m tisim.view poke.pvd --gif poke.gif --colour "von Mises stress"
+
+Exit codes: 0 written, 2 bad input.
+"""
+
+app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        import tisim
+
+        typer.echo(f"tisim {tisim.__version__}")
+        raise typer.Exit
+
+
+@app.command(epilog=EXAMPLES)
+def main(
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...",
+            help="What tisim.write wrote: a .vtu, several (one a frame), or a .pvd; or a dataset's store.",
+        ),
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The page to write. Default: FILE's name with .html, here.")
+    ] = None,
+    poke: Annotated[
+        int | None, typer.Option(help="Of a store: which poke, by index. Default: the first simulated.")
+    ] = None,
+    gif: Annotated[Path | None, typer.Option(help="Write a moving picture (GIF).")] = None,
+    mp4: Annotated[
+        Path | None, typer.Option(help="Write a film (MP4); needs ffmpeg, or tisim[video].")
+    ] = None,
+    colour: Annotated[
+        str | None, typer.Option(help="What colours them, as the page names it. Default: displacement.")
+    ] = None,
+    seconds: Annotated[float, typer.Option(help="How long they take.")] = 4.0,
+    width: Annotated[int, typer.Option(help="Their width in pixels.")] = 800,
+    show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+    version: Annotated[  # noqa: ARG001 - shown before anything else
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit."),
+    ] = False,
+) -> None:
+    """Show results in three dimensions: one HTML page that opens from disk, without server or network.
+
+    With --gif or --mp4 alone, no page is written.
+    """
+    from tisim.view import view_of_file
+
+    try:
+        view = view_of_file(*files, poke=poke)
+        written = [
+            view.animate(path.with_suffix(ending), colour=colour, seconds=seconds, width=width)
+            for path, ending in ((gif, ".gif"), (mp4, ".mp4"))
+            if path is not None
+        ]
+        if out is not None or show or not written:
+            page = out or Path(f"{files[0].resolve().name.split('.')[0]}.html")
+            written.append(view.open(page) if show else view.save(page))
+    except (ValueError, OSError) as error:
+        _fail(error)
+    for path in written:
+        typer.echo(f"{path}: {path.stat().st_size / 1e6:.2f} MB, {view.title}")
+
+
+def _fail(error: ValueError | OSError) -> NoReturn:
+    said = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        said = f"cannot use {error.filename}: {error.strerror}"
+    typer.echo(f"error: {' '.join(said.split())}", err=True)
+    raise typer.Exit(2)
