@@ -150,9 +150,10 @@ class Page {
     const depth = Math.max(poke.depth, 0);
     const now = Array.from(tip, (v, k) => v * 1e3 + direction[k] * depth);
     const rod = { tip: now, push: direction, radius, edge };
-    const halo = answer.radius && byId("halo").checked && depth > 0;
+    const outside = answer.distance?.[0] > 0; // grey, and no halo: the intervals promise nothing there
+    const halo = answer.radius && byId("halo").checked && depth > 0 && !outside;
     if (halo) this._scaled(answer.radius);
-    this.view.show("surrogate", displacement, halo ? this.shade : null, answer.distance?.[0] > 0, rod);
+    this.view.show("surrogate", displacement, halo ? this.shade : null, outside, rod);
     this.view.placeRod(now, direction);
     this.panel.tell(poke, answer);
     if (this.compared) this._compare(poke, answer, rod);

@@ -78,9 +78,11 @@ export class Panel {
     }
     byId("interval").textContent = interval;
     const verdict = this._verdict(poke, answer);
-    const inside = byId("inside");
-    inside.textContent = verdict;
-    inside.dataset.inside = answer.distance ? String(answer.distance[0] === 0) : "unknown";
+    const inside = answer.distance ? answer.distance[0] === 0 : null;
+    byId("inside").textContent = { true: "inside", false: "outside" }[inside] ?? "not known whether inside";
+    byId("inside").textContent += " what it was trained on";
+    byId("verdict").textContent = verdict;
+    document.body.dataset.inside = String(inside);
     about.checks.forEach(({ key, kinds }, k) => {
       const { value, verdict: cell } = this.rows[k];
       value.textContent = kinds ? about.interiors[poke.interior].kind : number(answer.values[k]);

@@ -2,8 +2,8 @@
 
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight, DoubleSide,
-  EdgesGeometry, HemisphereLight, LatheGeometry, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial,
-  PerspectiveCamera, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  EdgesGeometry, HemisphereLight, LatheGeometry, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
+  PerspectiveCamera, Plane, Quaternion, Raycaster, RepeatWrapping, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Surface } from "./surface.js";
@@ -12,7 +12,7 @@ const TISSUE = new Color("#e9c9ae");
 const UNSURE = new Color("#7a1fd1");
 const GREY = new Color("#9a9a9a");
 const UP = new Vector3(0, 0, 1);
-const VIEWS = { slant: [0.75, -1.35, 0.95], above: [0, -0.01, 1.75], side: [0, -1.7, 0.3] };
+const VIEWS = { slant: [0.42, -0.75, 0.52], above: [0, -0.01, 1], side: [0, -0.98, 0.2], close: [0.35, -0.8, 0.5] };
 
 export class View {
   constructor(canvas, about, inclusions) {
@@ -26,9 +26,10 @@ export class View {
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enablePan = false;
-    this.controls.minDistance = 40;
+    this.controls.minDistance = 25;
     this.controls.maxDistance = 500;
     this.controls.maxPolarAngle = Math.PI * 0.6;
+    this.controls.addEventListener("start", () => { this.standpoint = null; }); // turned by hand
     this.beside = false;
     this._light();
     this._block();
@@ -49,8 +50,8 @@ export class View {
   _block() {
     const { size, middle, top } = this.about.block;
     const box = new BoxGeometry(...size);
-    const sides = new Mesh(box, new MeshStandardMaterial({
-      color: TISSUE, transparent: true, opacity: 0.28, depthWrite: false, roughness: 0.9,
+    const sides = new Mesh(box, new MeshLambertMaterial({
+      color: TISSUE, transparent: true, opacity: 0.28, depthWrite: false,
     }));
     sides.position.set(middle[0], middle[1], top - size[2] / 2);
     sides.renderOrder = 1;
@@ -76,8 +77,8 @@ export class View {
       uv[2 * k + 1] = (surface.rest[3 * k + 1] - middle[1]) / 5;
     }
     geometry.setAttribute("uv", new BufferAttribute(uv, 2));
-    const material = new MeshStandardMaterial({
-      vertexColors: true, map: lines(), roughness: 0.62, side: DoubleSide, transparent: true, opacity: 0.86,
+    const material = new MeshLambertMaterial({
+      vertexColors: true, map: lines(), side: DoubleSide, forceSinglePass: true, transparent: true, opacity: 0.86,
     });
     const mesh = new Mesh(geometry, material);
     mesh.frustumCulled = false;
@@ -95,7 +96,7 @@ export class View {
     }
     profile.push(new Vector2(radius, 45), new Vector2(0, 45));
     const geometry = new LatheGeometry(profile, 48).rotateX(Math.PI / 2); // its axis along z
-    const mesh = new Mesh(geometry, new MeshStandardMaterial({ color: "#5c6f82", metalness: 0.25, roughness: 0.4 }));
+    const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: "#5c6f82" }));
     this.scene.add(mesh);
     return mesh;
   }
@@ -107,7 +108,7 @@ export class View {
       this.inclusion.geometry.dispose();
     }
     const geometry = columns(this.about, this.inclusions[index]);
-    this.inclusion = new Mesh(geometry, new MeshStandardMaterial({ color: "#35506b", roughness: 0.8, flatShading: true }));
+    this.inclusion = new Mesh(geometry, new MeshLambertMaterial({ color: "#35506b", flatShading: true }));
     this.scene.add(this.inclusion);
   }
 
@@ -133,16 +134,19 @@ export class View {
     this.rod.quaternion.copy(new Quaternion().setFromUnitVectors(UP, new Vector3(-push[0], -push[1], -push[2])));
   }
 
-  /** A standpoint by its name in VIEWS. */
+  /** A standpoint by its name in VIEWS; "close" looks at where the rod is. */
   look(name) {
     const { size, middle, top } = this.about.block;
-    const far = Math.max(size[0], size[1]) * 1.32;
-    this.controls.target.set(middle[0], middle[1], top - size[2] * 0.3);
-    this.standpoint = new Vector3(...VIEWS[name]).multiplyScalar(far);
+    const close = name === "close";
+    if (close) this.controls.target.copy(this.rod.position);
+    else this.controls.target.set(middle[0], middle[1], top - size[2] * 0.45);
+    const half = close ? 14 : Math.hypot(size[0], size[1]) / 2; // of what is to be seen, across
+    this.standpoint = { way: new Vector3(...VIEWS[name]).normalize(), half };
     this.resize();
   }
 
   zoom(factor) {
+    this.standpoint = null;
     const { target } = this.controls;
     this.camera.position.sub(target).multiplyScalar(factor).add(target);
     this.controls.update();
@@ -153,10 +157,11 @@ export class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     if (this.standpoint) {
-      // a narrow window stands farther off, so that the block stays whole
       const { width: w, height: h } = this._panes()[0];
-      const back = Math.max(1, 1.25 / (w / h));
-      this.camera.position.copy(this.controls.target).addScaledVector(this.standpoint, back);
+      const { way, half } = this.standpoint;
+      const slope = Math.tan((this.camera.fov * Math.PI) / 360);
+      const far = half * Math.max(1.16 / (slope * (w / h)), 0.98 / slope);
+      this.camera.position.copy(this.controls.target).addScaledVector(way, far);
       this.controls.update();
     }
   }
@@ -215,9 +220,9 @@ function lines() {
   pen.lineWidth = 5;
   pen.strokeRect(0, 0, 128, 128);
   const texture = new CanvasTexture(canvas);
-  texture.wrapS = texture.wrapT = 1000; // RepeatWrapping
-  texture.anisotropy = 8;
-  texture.colorSpace = "srgb";
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  texture.anisotropy = 2;
+  texture.colorSpace = SRGBColorSpace;
   return texture;
 }
 
