@@ -8,7 +8,7 @@ Inputs, SI units, of one poke over one interior:
 
 - poke (6,), float64: site x, y [m]; angle between push and vertical, heading of its horizontal part [rad];
   depth [m]; shear modulus [Pa];
-- code, vectors, clear, soft, about: of the interior (`interior_inputs`).
+- base, looked, vectors, clear, soft, about: of the interior (`interior_inputs`).
 
 Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push. Where
 the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of inclusion
@@ -31,11 +31,12 @@ from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN, LENGTH
 from learn.metrics import RING_EDGES_MM
 from learn.models import InvariantGnn, Scene
-from learn.models._encoder import Stencil, gathered
-from learn.onnx_bundle import PokePart, need_packages, write_graph
+from learn.models._encoder import Stencil
+from learn.onnx_bundle import need_packages, write_graph
+from learn.page.network import RowNetwork, interior_codes
 from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
 
-INPUTS = ["poke", "code", "vectors", "clear", "soft", "about"]
+INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
 _FAR = 1e30  # of a side of a range that does not matter
 _LEAST_DEPTH = 1e-6  # [m]: a logarithm has to be taken of a rod that does not touch, too
 
@@ -61,18 +62,17 @@ def interior_inputs(
 
     Returns
     -------
-    code (n, 1, c), vectors (3, n, 1, v), clear (n, 1), float32; soft (n,): thickness of the soft tissue above
-    the inclusion [m]; about (3,): width and height of the inclusion [mm], 1 for a kind that was not trained.
+    base, looked, vectors, clear: see `learn.page.network.interior_codes`; soft (n,): thickness of the soft
+    tissue above the inclusion [m]; about (3,): width and height of the inclusion [mm], 1 for a kind that was
+    not trained.
     """
     rigid = torch.from_numpy(profile == 255).float()
     with torch.no_grad():
         one = replace(scene, rigid=rigid[None], rigid_index=torch.zeros(1, dtype=torch.int64))
-        encoded = model.encode(one, stencils)
+        codes = interior_codes(model, model.encode(one, stencils))
     inside = interior_of(store, profile)
     return {
-        "code": encoded.code.numpy(),
-        "vectors": encoded.vectors.numpy(),
-        "clear": encoded.clear.numpy(),
+        **{name: code.numpy() for name, code in codes.items()},
         "soft": inside.soft.astype(np.float64),
         "about": np.array([inside.width, inside.height, 0.0 if trained_kind else 1.0]),
     }
@@ -91,8 +91,7 @@ class PagePart(nn.Module):
         intervals: Intervals | None,
     ) -> None:
         super().__init__()
-        one = replace(scene, rigid_index=torch.zeros(1, dtype=torch.int64))
-        self.network = PokePart(model, one, tuple(gathered(s) for s in stencils))
+        self.network = RowNetwork(model, scene, stencils)
         self.points = torch.from_numpy(store.points)
         self.radius, self.edge = store.rod_radius, store.rod_edge
         self.top = float(store.points[0, 2])
@@ -114,7 +113,14 @@ class PagePart(nn.Module):
         return names + (["factor", "radius"] if self.intervals is not None else [])
 
     def forward(
-        self, poke: Tensor, code: Tensor, vectors: Tensor, clear: Tensor, soft: Tensor, about: Tensor
+        self,
+        poke: Tensor,
+        base: Tensor,
+        looked: Tensor,
+        vectors: Tensor,
+        clear: Tensor,
+        soft: Tensor,
+        about: Tensor,
     ) -> tuple[Tensor, ...]:
         x, y, angle, heading, depth, modulus = poke.unbind(0)
         sine, cosine = torch.sin(angle), torch.cos(angle)
@@ -122,7 +128,7 @@ class PagePart(nn.Module):
         # as in `learn.scene_file.first_touch`
         above = self.edge * (1 - cosine) + (self.radius - self.edge) * sine
         tip = torch.stack([x, y, torch.full_like(x, self.top)]) - push * (above / cosine)
-        u, force = self.network(code, vectors, clear, tip, push, depth, modulus)
+        u, force = self.network(base, looked, vectors, clear, tip, push, depth, modulus)
         found = [u, force, tip, push]
         distance = torch.zeros_like(depth)
         if self.ranges is not None:
