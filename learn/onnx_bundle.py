@@ -128,7 +128,25 @@ def write_graph(
         torch.onnx.export(
             part.eval(), inputs, str(path), input_names=names, output_names=out, dynamo=True,
             external_data=False, verbose=False,
+            custom_translation_table={torch.ops.aten.scalar_tensor.default: _whole_number()},
         )  # fmt: skip
+
+
+def _whole_number() -> Any:
+    """How a Python number beside a tensor is written: as it is. The exporter's own way is single precision, then a
+    cast, which takes half of the digits from numbers beside double tensors."""
+    onnx, script = _package("onnx"), _package("onnxscript")
+    kinds = {int(onnx.TensorProto.FLOAT): np.float32, int(onnx.TensorProto.DOUBLE): np.float64}
+
+    def scalar_tensor(
+        s: float, dtype: int = 1, layout: str = "", device: str = "", pin_memory: bool = False
+    ) -> Any:
+        op = script.opset18
+        if dtype not in kinds:
+            return op.Cast(s, to=dtype)
+        return op.Constant(value=onnx.numpy_helper.from_array(np.array(s, dtype=kinds[dtype])))
+
+    return scalar_tensor
 
 
 def need_packages() -> None:

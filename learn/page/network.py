@@ -52,7 +52,7 @@ class RowNetwork(nn.Module):
         self.radius, self.edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
         self.points = (scene.points / self.radius).T.contiguous()
         self.normals = scene.normals.T.contiguous()
-        self.log_area = torch.log(scene.area).float()
+        self.log_area = torch.log(scene.area)
         weight = model.from_point.weight.detach().T
         order = [*_PLAIN, *_EXP, *_TANH, *_UNDER]
         self.own = torch.stack([sign * weight[column] for column, sign in order])
@@ -61,9 +61,9 @@ class RowNetwork(nn.Module):
         self.toward = weight[first : first + looked].contiguous()
         self.of_vectors = weight[first + looked :].contiguous()
         self.of_depth = weight[list(_OF_POKE)].contiguous()
-        self.widths = torch.tensor([[-0.5 * (self.radius / w) ** 2] for w in WIDTHS], dtype=torch.float32)
-        self.moments = torch.tensor([[[2.5e-3 / w]] for w in WIDTHS], dtype=torch.float32)
-        self.rings = RINGS[:, None] * len(RINGS)
+        self.widths = torch.tensor([[-0.5 * (self.radius / w) ** 2] for w in WIDTHS], dtype=torch.float64)
+        self.moments = torch.tensor([[[2.5e-3 / w]] for w in WIDTHS], dtype=torch.float64)
+        self.rings = RINGS[:, None].double() * len(RINGS)
         self.cores = torch.tensor([[a * a] for a in _prior.CORES], dtype=torch.float64)
         self.ranges = torch.tensor([[-1 / length] for length in _prior.RANGES], dtype=torch.float64)
         used = sorted({k for scales in SCALES for k in scales})
@@ -78,33 +78,35 @@ class RowNetwork(nn.Module):
         model = self.model
         r64 = self.points - (start / self.radius)[:, None]
         deep64 = (depth / self.radius).clamp(min=_contact.TOUCH)
-        r, push, deep = r64.float(), push64.float(), deep64.float()
-        normals = self.normals.float()
-        square = (r * r).sum(dim=0)
-        near = torch.softmax(self.widths * square + self.log_area, dim=1)  # (w, n)
-        here = near[:1] @ normals.T  # (1, 3)
-        log_deep = torch.log(deep + _contact.SHALLOW)
-        facing = (here[0] * push).sum()
-        toward = ((self.moments * near[:, None] * r).reshape(-1, r.shape[1]) @ looked).reshape(
-            len(WIDTHS), 3, -1
-        )
-        toward = toward.permute(1, 0, 2).reshape(3, -1)
-        both = torch.cat([push[None], here]) @ toward
-        about = [torch.stack([deep / 4, log_deep, facing, facing * deep / 4]), (near @ looked).reshape(-1)]
+        square = (r64 * r64).sum(dim=0)
+        # in float64 up to where the network begins: all points hang on these sums, and rounding is the runtime's
+        near64 = torch.softmax(self.widths * square + self.log_area, dim=1)  # (w, n)
+        here = near64[:1] @ self.normals.T  # (1, 3)
+        looked64 = looked.double()
+        moments = (self.moments * near64[:, None] * r64).reshape(-1, r64.shape[1]) @ looked64
+        toward = moments.reshape(len(WIDTHS), 3, -1).permute(1, 0, 2).reshape(3, -1)
+        log_deep = torch.log(deep64 + _contact.SHALLOW)
+        facing = (here[0] * push64).sum()
+        both = torch.cat([push64[None], here]) @ toward
+        about = [
+            torch.stack([deep64 / 4, log_deep, facing, facing * deep64 / 4]),
+            (near64 @ looked64).reshape(-1),
+        ]
         about.append(both.reshape(-1))
         if model.log_modulus is not None:
-            about.append((torch.log(modulus) - model.log_modulus).float()[None])
-        of_poke = torch.cat(about)[None]
+            about.append((torch.log(modulus) - model.log_modulus)[None])
+        of_poke = torch.cat(about)[None].float()
 
         far = torch.rsqrt(square + 1)
-        unit = r * far
-        along = (push[:, None] * r).sum(dim=0)
-        off = r - along * push[:, None]
+        unit64 = r64 * far
+        along = (push64[:, None] * r64).sum(dim=0)
+        off = r64 - along * push64[:, None]
         aside = torch.sqrt((off * off).sum(dim=0) + 1e-6)
-        rows = self._features(square, far, unit, normals, push, along, off, aside, deep)
+        rows = self._features(square, far, unit64, push64, along, off, aside, deep64)
+        unit, push, near, normals = unit64.float(), push64.float(), near64.float(), self.normals.float()
         seen = [*rows, unit, (vectors * unit[:, None]).sum(dim=0), (vectors * push[:, None, None]).sum(dim=0)]
-        weight = torch.cat([self.own, toward @ self.toward, self.of_vectors])
-        depths = torch.stack([deep / 4, log_deep])[None] @ self.of_depth
+        weight = torch.cat([self.own, toward.float() @ self.toward, self.of_vectors])
+        depths = torch.stack([deep64 / 4, log_deep])[None].float() @ self.of_depth
         h = silu(torch.cat(seen).T @ weight + (base + (model.from_poke(of_poke) + depths)))
         h = silu(model.enter(h))
         frame = torch.stack([unit.T, push.expand(len(h), 3)], dim=1)  # (n, 2, 3)
@@ -120,12 +122,12 @@ class RowNetwork(nn.Module):
         basis = torch.cat(
             [normals[:, None], unit[:, None], push[:, None, None].expand(3, 1, len(h)), vectors, *turned], 1
         )
-        own = (basis * amounts[: -_contact.N_GATES]).sum(dim=1) * far
-        soft = (near[0].double() * clear).sum()
-        lean = (here[0].double() * push64).sum() + 0.8
+        own = (basis * amounts[: -_contact.N_GATES]).sum(dim=1) * far.float()
+        soft = (near64[0] * clear).sum()
+        lean = (here[0] * push64).sum() + 0.8
         smooth = self._smooth(r64, push64, deep64, soft, lean)
-        at = Place(r.T, push, deep[None], along, aside, self.edge)
-        u = _contact.held(at, smooth.T, own.T, gates)
+        at = Place(r64.T, push64, deep64[None], along, aside, self.edge)
+        u = _contact.held(at, smooth.T, own.T.double(), gates.double()).float()
 
         pooled = (near[:2] @ out).reshape(1, -1)
         kappa = model.force_head(torch.cat([pooled, of_poke], dim=1))[0, 0]
@@ -134,24 +136,24 @@ class RowNetwork(nn.Module):
         return u * pressed.float(), unit_force * softplus(kappa)
 
     def _features(
-        self, square: Tensor, far: Tensor, unit: Tensor, normals: Tensor, push: Tensor, along: Tensor, off: Tensor,
-        aside: Tensor, deep: Tensor,
+        self, square: Tensor, far: Tensor, unit: Tensor, push: Tensor, along: Tensor, off: Tensor, aside: Tensor,
+        deep: Tensor,
     ) -> list[Tensor]:  # fmt: skip
-        """Rows of the invariants of `Contact.point`, in the order of `_PLAIN` and so on."""
-        lift, lean = (unit * normals).sum(dim=0), (push[:, None] * normals).sum(dim=0)
+        """Rows of the invariants of `Contact.point`, in the order of `_PLAIN` and so on; arguments in float64."""
+        lift, lean = (unit * self.normals).sum(dim=0), (push[:, None] * self.normals).sum(dim=0)
         turn = along * far
         flat = turn - lift * lean
         plain = torch.stack([far, torch.log(far), lift, lean, turn, flat, far * deep, flat * far])
         ring = torch.log1p(torch.sqrt(square + 1e-6) * (self.radius * 500)) * (len(RINGS) / math.log1p(20.0))
         narrow = (aside / 1.5) ** 2
         beside = torch.stack([aside, aside * 0.5, aside / (1 + 0.5 * deep), narrow])
-        exp = torch.exp(-0.5 * torch.cat([ring - self.rings, beside]) ** 2)
-        go, over = deep - along, (off * normals).sum(dim=0)
+        exp = torch.exp((-0.5 * torch.cat([ring - self.rings, beside]) ** 2).float())
+        go, over = deep - along, (off * self.normals).sum(dim=0)
         tanh = torch.tanh(
-            torch.stack([go, go * 0.25, 2 - 2 * aside, over, go, 4 * go, go / deep, 3 * over / aside])
+            torch.stack([go, go * 0.25, 2 - 2 * aside, over, go, 4 * go, go / deep, 3 * over / aside]).float()
         )
         near = exp[-1:]
-        return [plain, exp[:-1], tanh[:4], near, near * tanh[4:]]
+        return [plain.float(), exp[:-1], tanh[:4], near, near * tanh[4:]]
 
     def _round(self, part: _Messages, h: Tensor, frame: Tensor, near: Tensor) -> tuple[Tensor, list[Tensor]]:
         """`_Messages` of one poke: new h (n, hidden), and the slopes (n, 3, directions) of each scale."""
@@ -167,7 +169,7 @@ class RowNetwork(nn.Module):
         return h + part.back(silu(part.mix(torch.cat(parts, dim=1)) + whole)), slopes
 
     def _smooth(self, r: Tensor, push: Tensor, deep: Tensor, soft: Tensor, lean: Tensor) -> Tensor:
-        """The closed form (3, n), as `Prior.forward`, in float64 until its large terms have cancelled."""
+        """The closed form (3, n), as `Prior.forward`: large terms nearly cancel."""
         square = (r * r).sum(dim=0)
         cores = torch.rsqrt(square + self.cores)
         falls = torch.exp(torch.sqrt(square + 1e-6) * self.ranges)
@@ -181,7 +183,7 @@ class RowNetwork(nn.Module):
         amounts = torch.cat([mixed, c[:, -1].T]) @ radial
         unit = r * torch.rsqrt(square + 1)
         a = amounts[:3] + amounts[3:] * (push[:, None] * unit).sum(dim=0)
-        return (a[:1] * self.normals + a[1:2] * unit + a[2:] * push[:, None]).float()
+        return a[:1] * self.normals + a[1:2] * unit + a[2:] * push[:, None]
 
 
 class _Near(nn.Module):

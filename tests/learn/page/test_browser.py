@@ -106,10 +106,13 @@ def test_the_browser_says_what_python_says(page: Any, written: Written, predicto
             of_torch = dict(zip(names, content.graph(torch.from_numpy(pose), *tensors), strict=True))
         assert set(found) == set(names)
         for name in names:
-            for true in (np.asarray(runtime[name]), of_torch[name].numpy()):
-                largest = max(np.abs(true).max(), 1e-12)
-                wrong = np.abs(np.array(found[name]).reshape(true.shape) - true).max()
-                assert wrong <= 1e-6 * largest, (name, wrong / largest)
+            for source, true in (("onnxruntime", runtime[name]), ("torch", of_torch[name].numpy())):
+                sizes = np.linalg.norm(true, axis=1) if np.ndim(true) == 2 else np.abs(true)
+                wrong = np.abs(np.array(found[name]).reshape(np.shape(true)) - true).max()
+                relative = wrong / max(sizes.max(), 1e-12)
+                if name in ("displacement", "force"):
+                    print(f"{name} at {poke['depth']} mm: {relative:.1e} off {source}")
+                assert relative <= 1e-6, (name, source, poke)
 
 
 def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
@@ -120,7 +123,10 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
         return found
 
     def answered() -> None:
-        page.wait_for_function("async () => { const t = await tisim; return !t.awake && !t.asked; }")
+        page.evaluate(
+            "async () => { const t = await tisim;"
+            " while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 5)); }"
+        )
 
     page.evaluate("async (poke) => (await tisim).change(poke)", POKES[0])
     page.get_by_label("Depth").fill("2.5")
@@ -147,8 +153,9 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
     assert now()["x"] != pytest.approx(2.0)
 
     page.evaluate("async (poke) => (await tisim).change(poke)", POKES[2])
-    page.wait_for_selector("body[data-inside=false]")
-    assert "depth 6.00 mm (trained: 1 to 2" in page.locator("#verdict").inner_text()
+    answered()
+    assert page.locator("body").get_attribute("data-inside") == "false"
+    assert "depth 4.50 mm (trained: 1 to 2" in page.locator("#verdict").inner_text()
     page.get_by_role("button", name="Show the FEM poke beside it").click()
     page.wait_for_function("document.getElementById('compared-text').textContent.startsWith('FEM: ')")
     assert "of the points lie within their intervals" in page.locator("#compared-text").inner_text()
