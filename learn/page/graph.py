@@ -94,9 +94,11 @@ class PagePart(nn.Module):
         self.network = RowNetwork(model, scene, stencils)
         self.points = torch.from_numpy(store.points)
         self.radius, self.edge = store.rod_radius, store.rod_edge
-        self.top = float(store.points[0, 2])
+        # a tensor, since the exporter fills arrays with single precision
+        self.top = torch.tensor(store.points[0, 2], dtype=torch.float64)
         self.middle = torch.from_numpy(store.middle)
-        self.size = store.block_size
+        lengths = [1e3 * v for v in (self.radius, self.edge, *store.block_size)]
+        self.lengths = torch.tensor(lengths, dtype=torch.float64)
         self.reach = torch.tensor(store.block_size[:2], dtype=torch.float64) / 2
         self.level = store.block_size[2] / len(store.level_depth)
         self.ranges = None if domain is None else _Ranges(domain)
@@ -127,7 +129,7 @@ class PagePart(nn.Module):
         push = torch.stack([sine * torch.cos(heading), sine * torch.sin(heading), -cosine])
         # as in `learn.scene_file.first_touch`
         above = self.edge * (1 - cosine) + (self.radius - self.edge) * sine
-        tip = torch.stack([x, y, torch.full_like(x, self.top)]) - push * (above / cosine)
+        tip = torch.stack([x, y, self.top]) - push * (above / cosine)
         u, force = self.network(base, looked, vectors, clear, tip, push, depth, modulus)
         found = [u, force, tip, push]
         distance = torch.zeros_like(depth)
@@ -152,11 +154,11 @@ class PagePart(nn.Module):
             "cover_mm": cover * 1e3,
             "depth_over_cover": depth * torch.cos(angle) / cover.clamp(min=self.level),
             "shear_modulus_kPa": modulus * 1e-3,
-            "rod_radius_mm": torch.full_like(depth, self.radius * 1e3),
-            "rod_edge_mm": torch.full_like(depth, self.edge * 1e3),
-            "block_x_mm": torch.full_like(depth, self.size[0] * 1e3),
-            "block_y_mm": torch.full_like(depth, self.size[1] * 1e3),
-            "block_z_mm": torch.full_like(depth, self.size[2] * 1e3),
+            "rod_radius_mm": self.lengths[0],
+            "rod_edge_mm": self.lengths[1],
+            "block_x_mm": self.lengths[2],
+            "block_y_mm": self.lengths[3],
+            "block_z_mm": self.lengths[4],
             "site_to_side_mm": to_side * 1e3,
             "inclusion_width_mm": about[0],
             "inclusion_height_mm": about[1],
