@@ -133,14 +133,15 @@ def write_graph(
 
 
 def _whole_number() -> Any:
-    """How a Python number beside a tensor is written: as it is. The exporter's own way is single precision, then a
-    cast, which takes half of the digits from numbers beside double tensors."""
+    """How a Python number beside a tensor is written: as it is.
+
+    The exporter's own way is single precision and a cast, which takes half of the digits from numbers beside
+    double tensors.
+    """
     onnx, script = _package("onnx"), _package("onnxscript")
     kinds = {int(onnx.TensorProto.FLOAT): np.float32, int(onnx.TensorProto.DOUBLE): np.float64}
 
-    def scalar_tensor(
-        s: float, dtype: int = 1, layout: str = "", device: str = "", pin_memory: bool = False
-    ) -> Any:
+    def scalar_tensor(s: float, dtype: int = 1, **_where: Any) -> Any:
         op = script.opset18
         if dtype not in kinds:
             return op.Cast(s, to=dtype)

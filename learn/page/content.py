@@ -1,7 +1,7 @@
 """What a page shows, from a run and its dataset: a description, written as JSON, and arrays by name.
 
-The description is as the page's controls have it, in millimetres, degrees and kilopascals; displacements and the
-interiors' codes stay in the units of the graph (`learn.page.graph`).
+The description is as the page's controls have it, in millimetres, degrees and kilopascals; displacements
+and the interiors' codes stay in the units of the graph (`learn.page.graph`).
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
         content.arrays[f"spans-{number}"] = _spans(profile)
         content.inputs.append(inputs)
         content.about["interiors"].append({"name": name, "label": label, "kind": kind or "not known"})
-    shown = []
+    shown: list[dict[str, Any]] = []
     for poke in simulated.choose(store, tested, names, pokes):
         about, moved = simulated.described(store, poke, names.index(store.shapes[store.shape[poke]]))
         content.arrays[f"simulated-{len(shown)}"] = moved

@@ -16,7 +16,7 @@ DEGREES = "\N{DEGREE SIGN}"
 
 
 def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
-    """By key of the page's poke: limits, units, and what of it was trained ({range, text}; None: not known)."""
+    """By key of the page's poke: limits, units, what of it was trained ({range, text}; None: not known)."""
     half = np.array(store.block_size[:2]) / 2 - store.rod_radius
     low, high = ((store.middle - half) * 1e3).tolist(), ((store.middle + half) * 1e3).tolist()
     moduli = store.modulus[store.done] * 1e-3
@@ -75,7 +75,7 @@ def checks(domain: Domain | None) -> list[dict[str, Any]]:
         return []
     found = domain.check(dict.fromkeys(QUANTITIES, 0.0), "none")
     units = [quantity.units for quantity in QUANTITIES.values()]
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"key": check.key, "name": check.name, "units": unit, "trained": check.trained or "not known"}
         for check, unit in zip(found, [*units, ""], strict=True)
     ]

@@ -1,7 +1,7 @@
 """One HTML file from a page's content: bundled script, network, arrays and onnxruntime, all of it inside.
 
-The script and onnxruntime's WebAssembly come from `bundle/`, made by `js/build.mjs` and shipped with the package.
-What is large is gzipped and in base64; the browser unpacks it.
+The script and onnxruntime's WebAssembly come from `bundle/`, made by `js/build.mjs` and shipped with the
+package. What is large is gzipped and in base64; the browser unpacks it.
 """
 
 from __future__ import annotations
@@ -116,15 +116,15 @@ def _html(predictor: Predictor, content: Content, network: bytes) -> str:
 
 
 def _packed(raw: bytes) -> str:
-    return base64.b64encode(gzip.compress(raw, 9, mtime=0)).decode()
+    return base64.b64encode(gzip.compress(raw, 6, mtime=0)).decode()
 
 
 def _lead(predictor: Predictor) -> str:
     run, store = predictor.run, predictor.store
     length, width, height = (1e3 * v for v in store.block_size)
     return (
-        f"{length:.0f} x {width:.0f} x {height:.0f} mm of {store.law} silicone with a rigid inclusion, a rod of "
-        f"{2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in this browser."
+        f"{length:.0f} x {width:.0f} x {height:.0f} mm of {store.law} silicone with a rigid inclusion, a "
+        f"rod of {2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in this browser."
     )
 
 
@@ -133,26 +133,28 @@ def _about(predictor: Predictor, content: Content) -> list[str]:
     bundle = json.loads((files("learn.page") / "bundle" / "bundle.json").read_text(encoding="utf-8"))
     versions = bundle["versions"]
     lines = [
-        f"Model {run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}, trained on {run.statistics.frames} "
-        f"frames of dataset {store.uuid} ({store.law}, {int(store.done.sum())} simulated pokes).",
-        f"The network answers at {len(store.points)} points; between them the surface is interpolated, and where that "
-        "would lie in the rod it is drawn on it. Inclusions are drawn as the network knows them, in columns.",
+        f"Model {run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}, trained on "
+        f"{run.statistics.frames} frames of dataset {store.uuid} ({store.law}, {int(store.done.sum())} "
+        "simulated pokes).",
+        f"The network answers at {len(store.points)} points; between them the surface is interpolated, and "
+        "where that would lie in the rod it is drawn on it. Inclusions are drawn as the network knows them, "
+        "in columns.",
     ]
     if predictor.intervals is not None:
         level = predictor.intervals.level
         lines.append(
-            f"Intervals: split-conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; calibrated "
-            "inside what was trained, wider outside, where they promise nothing."
+            f"Intervals: split-conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; "
+            "calibrated inside what was trained, wider outside, where they promise nothing."
         )
     steps = [step for poke in content.about["simulated"] for step in poke["steps"]]
     if steps:
         lines.append(
-            f"FEM pokes are of the test part, which the model was not trained on; displacements in steps of "
+            "FEM pokes are of the test part, which the model was not trained on; displacements in steps of "
             f"{max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits), so that they are off by half of that."
         )
     lines.append(
-        f"No network, no server: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and three.js "
-        f"{versions['three']} (three.js authors, MIT licence) are inside this file."
+        f"No network, no server: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and "
+        f"three.js {versions['three']} (three.js authors, MIT licence) are inside this file."
     )
     return lines
 

@@ -1,8 +1,8 @@
 """What a page asks at every frame, as one ONNX graph: network, domain of validity, intervals.
 
-The same as `learn.real_time.RealTime` (`tests/learn/page` holds it to that), but for the interior, whose codes
-are inputs: the encoder does not travel with the page. All of it is here, so that the page's JavaScript has
-nothing to work out.
+The same as `learn.real_time.RealTime` (`tests/learn/page` holds it to that), but for the interior, whose
+codes are inputs: the encoder does not travel with the page. All of it is here, so that the page's
+JavaScript has nothing to work out.
 
 Inputs, SI units, of one poke over one interior:
 
@@ -10,9 +10,10 @@ Inputs, SI units, of one poke over one interior:
   depth [m]; shear modulus [Pa];
 - base, looked, vectors, clear, soft, about: of the interior (`interior_inputs`).
 
-Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push. Where
-the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of inclusion
-last, and distance (). Where the run has intervals: factor (), of the force's 90 % interval, and radius (n,) [m].
+Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push.
+Where the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of
+inclusion last, and distance (). Where the run has intervals: factor (), of the force's 90 % interval, and
+radius (n,) [m].
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """`InvariantGnn.decode` of one poke over one interior, in the operations that a browser is quickest at.
 
-The same numbers but for rounding. A browser's runtime spends most of its time on the number of operations and on
-arrays of a few columns, so: quantities of all points are rows (k, n); features are joined once and go through one
-product; a round of messages gathers its neighbours once for means and slopes. See `learn.models.single_poke` for the
-same on NumPy.
+The same numbers but for rounding. A browser's runtime spends most of its time on the number of operations
+and on arrays of a few columns, so: quantities of all points are rows (k, n); features are joined once and
+go through one product; a round of messages gathers its neighbours once for means and slopes. See
+`learn.models.single_poke` for the same on NumPy.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class RowNetwork(nn.Module):
         r64 = self.points - (start / self.radius)[:, None]
         deep64 = (depth / self.radius).clamp(min=_contact.TOUCH)
         square = (r64 * r64).sum(dim=0)
-        # in float64 up to where the network begins: all points hang on these sums, and rounding is the runtime's
+        # in float64 up to where the network begins: rounding there would be the runtime's own
         near64 = torch.softmax(self.widths * square + self.log_area, dim=1)  # (w, n)
         here = near64[:1] @ self.normals.T  # (1, 3)
         looked64 = looked.double()
@@ -136,10 +136,10 @@ class RowNetwork(nn.Module):
         return u * pressed.float(), unit_force * softplus(kappa)
 
     def _features(
-        self, square: Tensor, far: Tensor, unit: Tensor, push: Tensor, along: Tensor, off: Tensor, aside: Tensor,
-        deep: Tensor,
+        self, square: Tensor, far: Tensor, unit: Tensor, push: Tensor, along: Tensor, off: Tensor,
+        aside: Tensor, deep: Tensor,
     ) -> list[Tensor]:  # fmt: skip
-        """Rows of the invariants of `Contact.point`, in the order of `_PLAIN` and so on; arguments in float64."""
+        """Rows of the invariants of `Contact.point`, in the order of `_PLAIN` and so on; from float64."""
         lift, lean = (unit * self.normals).sum(dim=0), (push[:, None] * self.normals).sum(dim=0)
         turn = along * far
         flat = turn - lift * lean

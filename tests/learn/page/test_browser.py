@@ -1,7 +1,7 @@
 """The page in a real Chromium, opened from disk: values, controls, two widths, no error.
 
-The median time of a frame is printed (`-rP`) and kept as a property: machines of tests share their cores, so that no
-bound is set here (docs/live-page.md has figures).
+The median time of a frame is printed (`-rP`) and kept as a property: machines of tests share their cores,
+so that no bound is set here (docs/live-page.md has figures).
 """
 
 from __future__ import annotations
@@ -180,10 +180,12 @@ def test_it_is_readable(page: Any) -> None:
 # of text against the first opaque ground behind it, white where a ground is translucent: WCAG 2.2, 1.4.3
 CONTRAST = """() => {
   const parse = (c) => c.match(/[\\d.]+/g).map(Number);
-  const light = ([r, g, b]) => [r, g, b].map((v) => v / 255).map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+  const linear = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+  const light = (colour) => colour.slice(0, 3).map((v) => linear(v / 255))
     .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
   const found = {};
-  for (const e of document.querySelectorAll('p, label, output, small, button, summary, h1, th, td, option, span')) {
+  const names = 'p, label, output, small, button, summary, h1, th, td, option, span';
+  for (const e of document.querySelectorAll(names)) {
     if (!e.textContent.trim() || !e.checkVisibility()) continue;
     let ground = [255, 255, 255];
     for (let up = e; up; up = up.parentElement) {
@@ -210,7 +212,10 @@ def test_the_picture_and_the_time_of_a_frame(
     times = page.evaluate("""async () => {
       const t = await tisim;
       t.times.length = 0;
-      while (t.times.length < 10) { t.change({ x: t.poke.x === 5 ? 6 : 5 }); await new Promise((r) => setTimeout(r, 5)); }
+      while (t.times.length < 10) {
+        t.change({ x: t.poke.x === 5 ? 6 : 5 });
+        await new Promise((r) => setTimeout(r, 5));
+      }
       return t.times;
     }""")
     for name in ("inference", "whole"):
