@@ -6,7 +6,8 @@ Reads the dataset's file format and imports none of the programs that write it.
 >>> predictor = learn.load("runs/quick")
 >>> predictor.predict("datasets/scenes/poke.yaml")
 
-The commands are `python -m learn.train`, `learn.evaluate`, `learn.predict`, `learn.export` and `learn.bench`.
+The commands are `python -m learn.train`, `learn.evaluate`, `learn.predict`, `learn.export`,
+`learn.page` and `learn.bench`.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from learn.errors import InputError
 
 app = typer.Typer(
     name="learn",
-    help="Surrogates of the poke response: train, evaluate, predict, export, bench.",
+    help="Surrogates of the poke response: train, evaluate, predict, export, page, bench.",
     add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",

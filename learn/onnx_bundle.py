@@ -85,15 +85,14 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
 
     InputError where a package is missing, or the model has no export.
     """
-    for name in ("onnx", "onnxscript", "onnxruntime"):
-        _package(name)
+    need_packages()
     if not isinstance(run.model, Cegnn | InvariantGnn):
         raise InputError(f"{run.folder}: model {run.recipe.model} has no ONNX export")
     folder.mkdir(parents=True, exist_ok=True)
     if isinstance(run.model, Cegnn):
         files = {"poke": folder / "poke.onnx"}
         part = CegnnPart(_in_double(run.model), scene)
-        _write(part, _example(scene), files["poke"], INPUTS, ["displacement", "force"])
+        write_graph(part, _example(scene), files["poke"], INPUTS, ["displacement", "force"])
         return files
     sparse = run.model.prepare(scene)
     stencils = tuple(gathered(s) for s in sparse)
@@ -101,7 +100,7 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     with torch.no_grad():
         encoded = run.model.encode(one, stencils)
     files = {"encoder": folder / "encoder.onnx", "poke": folder / "poke.onnx"}
-    _write(
+    write_graph(
         EncoderPart(run.model, one, stencils), (one.rigid[0],), files["encoder"],
         ["rigid"], ["code", "vectors", "clear"],
     )  # fmt: skip
@@ -113,18 +112,48 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     if run.model.takes_clock:
         names.append("clock")
         inputs.append(torch.tensor([1.0, 2e-3, 2e-3], dtype=torch.float64))
-    _write(PokePart(run.model, one, stencils), tuple(inputs), files["poke"], names, ["displacement", "force"])
+    write_graph(
+        PokePart(run.model, one, stencils), tuple(inputs), files["poke"], names, ["displacement", "force"]
+    )
     return files
 
 
-def _write(part: nn.Module, inputs: tuple[Tensor, ...], path: Path, names: list[str], out: list[str]) -> None:
+def write_graph(
+    part: nn.Module, inputs: tuple[Tensor, ...], path: Path, names: list[str], out: list[str]
+) -> None:
+    """A module as an ONNX file, with its inputs' and outputs' names."""
     logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it names packages that nothing here needs
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the exporter warns of its own future
         torch.onnx.export(
             part.eval(), inputs, str(path), input_names=names, output_names=out, dynamo=True,
             external_data=False, verbose=False,
+            custom_translation_table={torch.ops.aten.scalar_tensor.default: _whole_number()},
         )  # fmt: skip
+
+
+def _whole_number() -> Any:
+    """How a Python number beside a tensor is written: as it is.
+
+    The exporter's own way is single precision and a cast, which takes half of the digits from numbers beside
+    double tensors.
+    """
+    onnx, script = _package("onnx"), _package("onnxscript")
+    kinds = {int(onnx.TensorProto.FLOAT): np.float32, int(onnx.TensorProto.DOUBLE): np.float64}
+
+    def scalar_tensor(s: float, dtype: int = 1, **_where: Any) -> Any:
+        op = script.opset18
+        if dtype not in kinds:
+            return op.Cast(s, to=dtype)
+        return op.Constant(value=onnx.numpy_helper.from_array(np.array(s, dtype=kinds[dtype])))
+
+    return scalar_tensor
+
+
+def need_packages() -> None:
+    """InputError where a package that export needs is missing."""
+    for name in ("onnx", "onnxscript", "onnxruntime"):
+        _package(name)
 
 
 def _package(name: str) -> Any:

@@ -58,8 +58,8 @@ CLOCK_QUANTITIES: dict[str, Quantity] = {
     "approach_speed_mm_per_s": Quantity("speed of approach", "mm/s", "both", 1e-2),
 }
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
-_RELATIVE = 1e-3  # tolerance besides the slack
-_NARROW = 0.01  # of the value: a range narrower than this is none
+RELATIVE_SLACK = 1e-3  # tolerance besides the slack
+NARROW = 0.01  # of the value: a range narrower than this is none
 KINDS = ("cube", "cylinder", "sphere", "none")
 
 
@@ -146,7 +146,7 @@ class Domain(BaseModel):
             if key in self.ranges:
                 low, high = self.ranges[key]
                 size = max(abs(low), abs(high))
-                width = high - low if high - low > _NARROW * size else size
+                width = high - low if high - low > NARROW * size else size
                 total += (max(_excess(_ALL[key], low, high, value), 0.0) / width) ** 2 if width else 0.0
         return math.sqrt(total)
 
@@ -189,7 +189,7 @@ class Domain(BaseModel):
 
 def _excess(quantity: Quantity, low: float, high: float, value: float) -> float:
     """How far a value lies beyond the sides of its range that matter; 0 or less inside."""
-    slack = quantity.slack + _RELATIVE * max(abs(low), abs(high))
+    slack = quantity.slack + RELATIVE_SLACK * max(abs(low), abs(high))
     under = -math.inf if quantity.sides == "high" else low - value
     over = -math.inf if quantity.sides == "low" else value - high
     return max(under, over) - slack

@@ -1,0 +1,61 @@
+"""The command `python -m learn.page`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from learn._options import Dataset, Plugins, Version, load_plugins
+from learn._terminal import make_console, plain_errors
+from learn.cli import app as all_commands
+from learn.cli import single
+
+EXAMPLES = """
+[bold]Examples[/bold]
+
+  python -m learn.page runs/quick --out poke.html
+
+Only some of the dataset's inclusions to choose from, and more simulated pokes to compare with:
+
+  python -m learn.page runs/quick --shape cube-18 --shape sphere-9 --pokes 8
+
+The file opens from disk in any browser with WebAssembly and WebGL 2: no server, no network.
+
+Needs the packages of 'tisim\\[export]'.
+
+Exit codes: 0 written, 2 bad input, or a page of more than 10 MB gzipped.
+"""
+
+
+@all_commands.command(epilog=EXAMPLES)
+def page(
+    run: Annotated[Path, typer.Argument(help="Folder of a run of invariant-gnn or invariant-gnn-small.")],
+    dataset: Dataset = None,
+    shape: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--shape", metavar="NAME", help="An inclusion to choose from; repeatable. Default: all."
+        ),
+    ] = None,
+    pokes: Annotated[int, typer.Option(min=0, max=100, help="Simulated pokes of the test part.")] = 4,
+    out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("poke.html"),
+    plugin: Plugins = None,
+    _version: Version = False,
+) -> None:
+    """Write a run as one HTML file that opens from disk: poke the block with the mouse."""
+    console = make_console()
+    with plain_errors():
+        from learn.page.document import write_page
+        from learn.predictor import load
+
+        load_plugins(plugin or [])
+        made = write_page(load(run, dataset=dataset), out, shapes=shape, pokes=pokes)
+        console.print(
+            f"{made.path}: {made.size / 1e6:.1f} MB, {made.gzipped / 1e6:.1f} MB gzipped; {made.interiors} "
+            f"interiors, {made.pokes} simulated pokes of the test part"
+        )
+
+
+app = single(page, EXAMPLES)

@@ -1,0 +1,98 @@
+"""The page's sliders and its table of what was trained, in millimetres, degrees and kilopascals."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from learn.data import Store
+from learn.scene_file import STEEPEST
+from learn.validity import QUANTITIES, Domain
+
+_BEYOND = 1.5  # by which sliders reach beyond what was trained, so that one sees where it ends
+DEGREES = "\N{DEGREE SIGN}"
+
+
+def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
+    """By key of the page's poke: limits, units, what of it was trained ({range, text}; None: not known)."""
+    half = np.array(store.block_size[:2]) / 2 - store.rod_radius
+    low, high = ((store.middle - half) * 1e3).tolist(), ((store.middle + half) * 1e3).tolist()
+    moduli = store.modulus[store.done] * 1e-3
+    least, most = float(moduli.min()), float(moduli.max())
+    deepest, depth = float(store.depth.max()) * 1e3, _trained(domain, "depth_mm")
+    modulus = _trained(domain, "shear_modulus_kPa")
+    if depth and depth["range"]:
+        deepest = max(deepest, depth["range"][1])
+    if modulus and modulus["range"]:
+        least, most = min(least, modulus["range"][0]), max(most, modulus["range"][1])
+    lowest = min(deepest * _BEYOND, store.block_size[2] * 1e3 * 0.95)
+    return {
+        "depth": {"low": 0.0, "high": lowest, "step": 0.05, "units": "mm", "trained": depth},
+        "x": _along(0, low, high, store, domain),
+        "y": _along(1, low, high, store, domain),
+        "angle": {
+            "low": 0.0,
+            "high": STEEPEST,
+            "step": 0.5,
+            "units": DEGREES,
+            "trained": _trained(domain, "angle_deg"),
+        },
+        "heading": {"low": -180.0, "high": 180.0, "step": 1.0, "units": DEGREES, "trained": None},
+        "modulus": {"low": least / 2, "high": most * 2, "scale": "log", "units": "kPa", "trained": modulus},
+    }
+
+
+def _along(
+    k: int, low: list[float], high: list[float], store: Store, domain: Domain | None
+) -> dict[str, Any]:
+    """The slider of x or y: what was trained is a distance from the block's sides."""
+    trained = None
+    if domain is not None and "site_to_side_mm" in domain.ranges:
+        reach = store.block_size[k] * 5e2 - domain.ranges["site_to_side_mm"][0]
+        middle = float(store.middle[k]) * 1e3
+        ends = [middle - reach, middle + reach]
+        trained = {"range": ends, "text": f"{ends[0]:.3g} to {ends[1]:.3g} mm"}
+    return {"low": low[k], "high": high[k], "step": 0.1, "units": "mm", "trained": trained}
+
+
+def _trained(domain: Domain | None, key: str) -> dict[str, Any] | None:
+    if domain is None:
+        return None
+    if key in domain.proportional:
+        return {"range": None, "text": "at any: the force is in proportion"}
+    if key not in domain.ranges:
+        return None
+    low, high = domain.ranges[key]
+    units = QUANTITIES[key].units.replace("degrees", DEGREES)
+    return {"range": [low, high], "text": f"{low:.3g} to {high:.3g} {units}"}
+
+
+def checks(domain: Domain | None) -> list[dict[str, Any]]:
+    """Rows of the table, in the order of the graph's `beyond`; empty where nothing is known."""
+    if domain is None:
+        return []
+    found = domain.check(dict.fromkeys(QUANTITIES, 0.0), "none")
+    units = [quantity.units for quantity in QUANTITIES.values()]
+    rows: list[dict[str, Any]] = [
+        {"key": check.key, "name": check.name, "units": unit, "trained": check.trained or "not known"}
+        for check, unit in zip(found, [*units, ""], strict=True)
+    ]
+    rows[-1]["kinds"] = True
+    return rows
+
+
+def levels(store: Store) -> list[dict[str, Any]]:
+    """The dataset's softness levels with their shear moduli [kPa]."""
+    found = []
+    for k, name in enumerate(store.softness_names):
+        mine = (store.softness == k) & store.done
+        if mine.any():
+            found.append({"name": name, "modulus": float(store.modulus[mine][0]) * 1e-3})
+    return found
+
+
+def middle_modulus(store: Store) -> float:
+    """Geometric mean of the levels' moduli [kPa]."""
+    return math.exp(np.log(store.modulus[store.done]).mean()) * 1e-3

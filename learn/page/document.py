@@ -1,0 +1,191 @@
+"""One HTML file from a page's content: bundled script, network, arrays and onnxruntime, all of it inside.
+
+The script and onnxruntime's WebAssembly come from `bundle/`, made by `js/build.mjs` and shipped with the
+package. What is large is gzipped and in base64; the browser unpacks it.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import lzma
+import tempfile
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jinja2 import Environment, StrictUndefined
+
+from learn.errors import InputError
+from learn.page.content import Content, content_of
+from learn.page.graph import write_page_graph
+from learn.predictor import Predictor
+from learn.training.run_folder import write_whole
+
+LARGEST = 10e6  # bytes of the file, gzipped
+_SLIDERS = {
+    "depth": "Depth",
+    "x": "Site x",
+    "y": "Site y",
+    "angle": "Angle from the vertical",
+    "heading": "Heading",
+    "modulus": "Shear modulus",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """A page that was written: its file, its size and its size gzipped [bytes], what can be chosen in it."""
+
+    path: Path
+    size: int
+    gzipped: int
+    interiors: int
+    pokes: int
+
+
+def write_page(
+    predictor: Predictor, path: Path, *, shapes: list[str] | None = None, pokes: int = 4
+) -> Written:
+    """Write a run's live page.
+
+    Parameters
+    ----------
+    predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    path : of the HTML file.
+    shapes, pokes : see `learn.page.content.content_of`.
+
+    Raises
+    ------
+    InputError
+        A model or a shape that has no page, a package that is missing, or a page larger than `LARGEST`.
+    """
+    content = content_of(predictor, shapes=shapes, pokes=pokes)
+    with tempfile.TemporaryDirectory() as folder:
+        graph = Path(folder) / "poke.onnx"
+        write_page_graph(content.graph, content.inputs[0], graph)
+        network = graph.read_bytes()
+    content.about["halo"] = _halo(content)
+    text = _html(predictor, content, network).encode()
+    gzipped = len(gzip.compress(text, 6))
+    if gzipped > LARGEST:
+        raise InputError(
+            f"{path}: {gzipped / 1e6:.1f} MB gzipped, more than {LARGEST / 1e6:.0f}: choose fewer of the "
+            f"{len(content.inputs) - 1} inclusions with --shape, or fewer --pokes"
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, text)
+    shown = content.about["simulated"]
+    return Written(
+        path=path, size=len(text), gzipped=gzipped, interiors=len(content.inputs), pokes=len(shown)
+    )
+
+
+def _html(predictor: Predictor, content: Content, network: bytes) -> str:
+    here = files("learn.page")
+    bundle, template = here / "bundle", here / "template"
+    about, arrays = content.packed()
+    wasm = lzma.decompress((bundle / "onnxruntime.wasm.xz").read_bytes())
+    parts = {
+        "about": json.dumps(about, allow_nan=False).encode(),
+        "arrays": arrays,
+        "graph": network,
+        "wasm": wasm,
+    }
+    script = (bundle / "page.js").read_text(encoding="utf-8")
+    if "</script" in script.lower():
+        raise InputError("learn/page/bundle/page.js: ends its own element; build it again")
+    halo = about["halo"]
+    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    source = (template / "page.html").read_text(encoding="utf-8")
+    return page.from_string(source).render(
+        title="Poke the block",
+        lead=_lead(predictor),
+        style=(template / "page.css").read_text(encoding="utf-8"),
+        script=script,
+        sliders=[{"key": key, "label": label} for key, label in _SLIDERS.items()],
+        halo=halo and [f"{halo['low']:g}", f"{halo['high']:g}"],
+        checks=bool(about["checks"]),
+        about=_about(predictor, content),
+        parts=[(name, _packed(raw)) for name, raw in parts.items()],
+    )
+
+
+def _packed(raw: bytes) -> str:
+    return base64.b64encode(gzip.compress(raw, 6, mtime=0)).decode()
+
+
+def _lead(predictor: Predictor) -> str:
+    run, store = predictor.run, predictor.store
+    length, width, height = (1e3 * v for v in store.block_size)
+    return (
+        f"{length:.0f} x {width:.0f} x {height:.0f} mm of {store.law} silicone with a rigid inclusion, a "
+        f"rod of {2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in this browser."
+    )
+
+
+def _about(predictor: Predictor, content: Content) -> list[str]:
+    run, store = predictor.run, predictor.store
+    bundle = json.loads((files("learn.page") / "bundle" / "bundle.json").read_text(encoding="utf-8"))
+    versions = bundle["versions"]
+    lines = [
+        f"Model {run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}, trained on "
+        f"{run.statistics.frames} frames of dataset {store.uuid} ({store.law}, {int(store.done.sum())} "
+        "simulated pokes).",
+        f"The network answers at {len(store.points)} points; between them the surface is interpolated, and "
+        "where that would lie in the rod it is drawn on it. Inclusions are drawn as the network knows them, "
+        "in columns.",
+    ]
+    if predictor.intervals is not None:
+        level = predictor.intervals.level
+        lines.append(
+            f"Intervals: split-conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; "
+            "calibrated inside what was trained, wider outside, where they promise nothing."
+        )
+    steps = [step for poke in content.about["simulated"] for step in poke["steps"]]
+    if steps:
+        lines.append(
+            "FEM pokes are of the test part, which the model was not trained on; displacements in steps of "
+            f"{max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits), so that they are off by half of that."
+        )
+    lines.append(
+        f"No network, no server: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and "
+        f"three.js {versions['three']} (three.js authors, MIT licence) are inside this file."
+    )
+    return lines
+
+
+def _halo(content: Content) -> dict[str, float] | None:
+    """Ends of the halo's scale [mm], round numbers: radii beside and near the contact of the pokes shown."""
+    part = content.graph
+    if part.intervals is None:
+        return None
+    pokes = [{**shown["poke"], "depth": shown["depths"][-1]} for shown in content.about["simulated"]]
+    radii = []
+    for poke in pokes or [content.about["start"]]:
+        found = dict(zip(part.outputs(), _ask(content, poke), strict=True))
+        radii.append(found["radius"].numpy() * 1e3)
+    every = np.concatenate(radii)
+    low, high = _round(float(np.median(every))), _round(float(every.max()))
+    return {"low": low, "high": high if high > low else 10 * low}
+
+
+@torch.no_grad()
+def _ask(content: Content, poke: dict[str, Any]) -> tuple[torch.Tensor, ...]:
+    turn = np.pi / 180
+    values = [poke["x"] * 1e-3, poke["y"] * 1e-3, poke["angle"] * turn, poke["heading"] * turn]
+    values += [poke["depth"] * 1e-3, poke["modulus"] * 1e3]
+    inputs = content.inputs[poke["interior"]]
+    answer: tuple[torch.Tensor, ...] = content.graph(
+        torch.tensor(values, dtype=torch.float64), *(torch.from_numpy(array) for array in inputs.values())
+    )
+    return answer
+
+
+def _round(value: float) -> float:
+    """To one significant digit."""
+    return float(f"{value:.0e}")

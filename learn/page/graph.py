@@ -1,0 +1,220 @@
+"""What a page asks at every frame, as one ONNX graph: network, domain of validity, intervals.
+
+The same as `learn.real_time.RealTime` (`tests/learn/page` holds it to that), but for the interior, whose
+codes are inputs: the encoder does not travel with the page. All of it is here, so that the page's
+JavaScript has nothing to work out.
+
+Inputs, SI units, of one poke over one interior:
+
+- poke (6,), float64: site x, y [m]; angle between push and vertical, heading of its horizontal part [rad];
+  depth [m]; shear modulus [Pa];
+- base, looked, vectors, clear, soft, about: of the interior (`interior_inputs`).
+
+Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push.
+Where the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of
+inclusion last, and distance (). Where the run has intervals: factor (), of the force's 90 % interval, and
+radius (n,) [m].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from learn.data import Store
+from learn.evaluation import Intervals
+from learn.evaluation.intervals import FORCE_UNKNOWN, LENGTH
+from learn.metrics import RING_EDGES_MM
+from learn.models import InvariantGnn, Scene
+from learn.models._encoder import Stencil
+from learn.onnx_bundle import need_packages, write_graph
+from learn.page.network import RowNetwork, interior_codes
+from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
+
+INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
+_FAR = 1e30  # of a side of a range that does not matter
+_LEAST_DEPTH = 1e-6  # [m]: a logarithm has to be taken of a rod that does not touch, too
+
+Inputs = dict[str, NDArray[np.float32] | NDArray[np.float64]]
+
+
+def interior_inputs(
+    model: InvariantGnn,
+    scene: Scene,
+    stencils: tuple[Stencil, ...],
+    profile: NDArray[np.uint8],
+    store: Store,
+    *,
+    trained_kind: bool,
+) -> Inputs:
+    """Inputs of the graph that depend on the interior alone.
+
+    Parameters
+    ----------
+    scene, stencils : the store's points, and what `model.prepare` made of them.
+    profile : stiffness under each point as stored, shape (n, levels).
+    trained_kind : False where this kind of inclusion was not trained on.
+
+    Returns
+    -------
+    base, looked, vectors, clear: see `learn.page.network.interior_codes`; soft (n,): thickness of the soft
+    tissue above the inclusion [m]; about (3,): width and height of the inclusion [mm], 1 for a kind that was
+    not trained.
+    """
+    rigid = torch.from_numpy(profile == 255).float()
+    with torch.no_grad():
+        one = replace(scene, rigid=rigid[None], rigid_index=torch.zeros(1, dtype=torch.int64))
+        codes = interior_codes(model, model.encode(one, stencils))
+    inside = interior_of(store, profile)
+    return {
+        **{name: code.numpy() for name, code in codes.items()},
+        "soft": inside.soft.astype(np.float64),
+        "about": np.array([inside.width, inside.height, 0.0 if trained_kind else 1.0]),
+    }
+
+
+class PagePart(nn.Module):
+    """One poke with plain tensors in and out; see the module."""
+
+    def __init__(
+        self,
+        model: InvariantGnn,
+        scene: Scene,
+        stencils: tuple[Stencil, ...],
+        store: Store,
+        domain: Domain | None,
+        intervals: Intervals | None,
+    ) -> None:
+        super().__init__()
+        self.network = RowNetwork(model, scene, stencils)
+        self.points = torch.from_numpy(store.points)
+        self.radius, self.edge = store.rod_radius, store.rod_edge
+        # a tensor, since the exporter fills arrays with single precision
+        self.top = torch.tensor(store.points[0, 2], dtype=torch.float64)
+        self.middle = torch.from_numpy(store.middle)
+        lengths = [1e3 * v for v in (self.radius, self.edge, *store.block_size)]
+        self.lengths = torch.tensor(lengths, dtype=torch.float64)
+        self.reach = torch.tensor(store.block_size[:2], dtype=torch.float64) / 2
+        self.level = store.block_size[2] / len(store.level_depth)
+        self.ranges = None if domain is None else _Ranges(domain)
+        self.intervals = intervals
+        if intervals is not None:
+            self.scale = torch.tensor(intervals.scale, dtype=torch.float64)
+            self.factors = torch.tensor(intervals.factors, dtype=torch.float64)
+            self.rings = torch.tensor(RING_EDGES_MM[1:-1], dtype=torch.float64)
+
+    def outputs(self) -> list[str]:
+        """Names of what `forward` returns."""
+        names = ["displacement", "force", "tip", "direction"]
+        names += ["values", "beyond", "distance"] if self.ranges is not None else []
+        return names + (["factor", "radius"] if self.intervals is not None else [])
+
+    def forward(
+        self,
+        poke: Tensor,
+        base: Tensor,
+        looked: Tensor,
+        vectors: Tensor,
+        clear: Tensor,
+        soft: Tensor,
+        about: Tensor,
+    ) -> tuple[Tensor, ...]:
+        x, y, angle, heading, depth, modulus = poke.unbind(0)
+        sine, cosine = torch.sin(angle), torch.cos(angle)
+        push = torch.stack([sine * torch.cos(heading), sine * torch.sin(heading), -cosine])
+        # as in `learn.scene_file.first_touch`
+        above = self.edge * (1 - cosine) + (self.radius - self.edge) * sine
+        tip = torch.stack([x, y, self.top]) - push * (above / cosine)
+        u, force = self.network(base, looked, vectors, clear, tip, push, depth, modulus)
+        found = [u, force, tip, push]
+        distance = torch.zeros_like(depth)
+        if self.ranges is not None:
+            values = self._values(poke, soft, about)
+            beyond, distance = self.ranges(values, about[2])
+            found += [values, beyond, distance]
+        if self.intervals is not None:
+            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), distance)
+        return tuple(found)
+
+    def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
+        """The quantities of `learn.validity.poke_values`, in their order."""
+        site, angle, depth, modulus = poke[:2], poke[2], poke[4], poke[5]
+        away = torch.sqrt((self.points[:, :2] - site).square().sum(dim=1))
+        near = away <= away.min().clamp(min=self.radius)
+        cover = torch.where(near, soft, torch.full_like(soft, _FAR)).min()
+        to_side = (self.reach - (site - self.middle).abs()).min()
+        values = {
+            "depth_mm": depth * 1e3,
+            "angle_deg": angle * (180 / math.pi),
+            "cover_mm": cover * 1e3,
+            "depth_over_cover": depth * torch.cos(angle) / cover.clamp(min=self.level),
+            "shear_modulus_kPa": modulus * 1e-3,
+            "rod_radius_mm": self.lengths[0],
+            "rod_edge_mm": self.lengths[1],
+            "block_x_mm": self.lengths[2],
+            "block_y_mm": self.lengths[3],
+            "block_z_mm": self.lengths[4],
+            "site_to_side_mm": to_side * 1e3,
+            "inclusion_width_mm": about[0],
+            "inclusion_height_mm": about[1],
+        }
+        return torch.stack([values[key] for key in QUANTITIES])
+
+    def _intervals(self, u: Tensor, tip: Tensor, depth: Tensor, distance: Tensor) -> list[Tensor]:
+        """Factor around the force and radius at each point [m], as `learn.evaluation.Intervals` has them."""
+        assert self.intervals is not None
+        away = torch.sqrt((self.points - tip).square().sum(dim=1))
+        size = torch.sqrt(u.square().sum(dim=1))
+        far, deep = torch.log1p(away / 2.5e-3), torch.log(depth / 5e-3).expand_as(away)
+        moved = torch.log(size / depth + 1e-4)
+        parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
+        logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
+        ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
+        # 1 - exp(-t) as -expm1(-t), which no runtime has in double: small t loses digits that no one sees
+        unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
+        inside = self.factors[ring] * torch.exp(logs)
+        radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
+        log = torch.sqrt(
+            (self.intervals.force * self.intervals.force_scale) ** 2 + unknown * FORCE_UNKNOWN**2
+        )
+        return [torch.exp(log), radius]
+
+
+class _Ranges(nn.Module):
+    """`learn.validity.Domain`: how far each quantity is beyond its range, and the distance of all."""
+
+    def __init__(self, domain: Domain) -> None:
+        super().__init__()
+        low, high, slack, width = [], [], [], []
+        for key, quantity in QUANTITIES.items():
+            a, b = domain.ranges.get(key, (-_FAR, _FAR))
+            known = key in domain.ranges
+            largest = max(abs(a), abs(b))
+            low.append(a if quantity.sides != "high" else -_FAR)
+            high.append(b if quantity.sides != "low" else _FAR)
+            slack.append(quantity.slack + RELATIVE_SLACK * largest if known else 0.0)
+            across = b - a if b - a > NARROW * largest else largest
+            width.append(across or _FAR)
+        self.low, self.high, self.slack, self.width = (
+            torch.tensor(column, dtype=torch.float64) for column in (low, high, slack, width)
+        )
+
+    def forward(self, values: Tensor, kind: Tensor) -> tuple[Tensor, Tensor]:
+        """Beyond (q + 1,), in widths of the ranges, 0 inside; and its length."""
+        excess = torch.maximum(self.low - values, values - self.high) - self.slack
+        beyond = torch.cat([excess.clamp(min=0.0) / self.width, kind[None]])
+        return beyond, torch.sqrt(beyond.square().sum())
+
+
+def write_page_graph(part: PagePart, example: Inputs, path: Path) -> None:
+    """The graph as an ONNX file; example: the inputs of any interior."""
+    need_packages()
+    poke = torch.tensor([0.0, 0.0, 0.1, 0.3, 5e-3, 1e4], dtype=torch.float64)
+    inputs = (poke, *(torch.from_numpy(example[name]) for name in INPUTS[1:]))
+    write_graph(part, inputs, path, INPUTS, part.outputs())

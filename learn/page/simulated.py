@@ -1,0 +1,55 @@
+"""Simulated pokes of the test part, quantised, for the page to show beside the surrogate's answers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learn.data import Store
+from learn.validity import contact_site
+
+STEPS = 32767  # of the largest component of a frame: a displacement is off by half a step at most
+
+
+def choose(store: Store, tested: NDArray[np.int64], shapes: list[str], most: int) -> list[int]:
+    """Pokes of the test part over these shapes, at most so many, from all over their order."""
+    shown = np.array([p for p in tested if store.shapes[store.shape[p]] in shapes], dtype=np.int64)
+    picked = np.linspace(0, len(shown) - 1, min(most, len(shown))).round().astype(int)
+    return shown[picked].tolist() if len(shown) else []
+
+
+def quantised(moved: NDArray[np.float32]) -> tuple[NDArray[np.int16], list[float]]:
+    """Displacements (f, n, 3) as 16-bit steps, and a step of each frame [m]."""
+    largest = np.abs(moved).max(axis=(1, 2)).astype(np.float64)
+    step = np.where(largest > 0, largest, 1.0) / STEPS
+    return np.rint(moved / step[:, None, None]).astype(np.int16), step.tolist()
+
+
+def described(store: Store, poke: int, interior: int) -> tuple[dict[str, Any], NDArray[np.int16]]:
+    """A poke as the page's controls have it (mm, degrees, kPa), with depths [mm], forces [N] and steps [m] of
+    its frames; and its displacements."""
+    rows = slice(int(store.frame_start[poke]), int(store.frame_start[poke] + store.frame_count[poke]))
+    keep = store.presses[rows]
+    moved, steps = quantised(store.displacement(rows)[keep])
+    push = store.direction[poke]
+    angle = math.degrees(math.acos(min(1.0, -float(push[2]))))
+    x, y = (contact_site(store, store.path_start[poke], push) * 1e3).tolist()
+    shape, level = store.shapes[store.shape[poke]], store.softness_names[store.softness[poke]]
+    about = {
+        "label": f"{shape}, {level}, {angle:.0f}\N{DEGREE SIGN} (poke {poke})",
+        "poke": {
+            "interior": interior,
+            "x": x,
+            "y": y,
+            "angle": angle,
+            "heading": math.degrees(math.atan2(push[1], push[0])),
+            "modulus": float(store.modulus[poke]) * 1e-3,
+        },
+        "depths": (store.depth[rows][keep] * 1e3).tolist(),
+        "forces": np.linalg.norm(store.rod_force[rows][keep], axis=1).tolist(),
+        "steps": steps,
+    }
+    return about, moved

@@ -1,0 +1,225 @@
+"""The page in a real Chromium, opened from disk: values, controls, two widths, no error.
+
+The median time of a frame is printed (`-rP`) and kept as a property: machines of tests share their cores,
+so that no bound is set here (docs/how-to/live-page.md has figures).
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import importlib.util
+import io
+import re
+import shutil
+import statistics
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from learn.page.content import Content, content_of
+from learn.page.document import LARGEST, Written, write_page
+from learn.predictor import Predictor
+
+CHROMIUM = shutil.which("chromium")
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+NEEDED = ("onnx", "onnxscript", "onnxruntime", "playwright")
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on the path"),
+    pytest.mark.skipif(
+        any(importlib.util.find_spec(name) is None for name in NEEDED),
+        reason=f"one of {', '.join(NEEDED)} is not installed",
+    ),
+]
+# mm, degrees, kPa: inside, steep, beyond what was trained
+POKES = [
+    {"interior": 0, "x": 3.0, "y": -8.0, "angle": 12.0, "heading": 40.0, "depth": 2.0, "modulus": 12.0},
+    {"interior": 1, "x": -20.0, "y": 15.5, "angle": 33.0, "heading": -120.0, "depth": 1.3, "modulus": 25.0},
+    {"interior": 0, "x": 0.0, "y": 0.0, "angle": 0.0, "heading": 0.0, "depth": 6.0, "modulus": 9.0},
+]
+
+
+@pytest.fixture(scope="module")
+def written(predictor: Predictor, tmp_path_factory: pytest.TempPathFactory) -> Written:
+    return write_page(predictor, tmp_path_factory.mktemp("html") / "poke.html", shapes=["shape-0"], pokes=1)
+
+
+@pytest.fixture(scope="module")
+def page(written: Written) -> Iterator[Any]:
+    """The page when it is ready, at a phone's width; its errors in `page.faults`."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = browser.new_page(viewport={"width": 390, "height": 700})
+        page.faults = []
+        page.on("pageerror", lambda error: page.faults.append(str(error)))
+        page.on("console", lambda said: page.faults.append(said.text) if said.type == "error" else None)
+        page.on("request", lambda asked: page.faults.append(asked.url) if "http" in asked.url[:5] else None)
+        page.goto(written.path.as_uri())
+        page.wait_for_function("document.documentElement.dataset.ready", timeout=60_000)
+        yield page
+        browser.close()
+
+
+def _graph(path: Path) -> Any:
+    """The graph in the file, run by onnxruntime in this process."""
+    import onnxruntime
+
+    found = re.search(r'id="graph">([^<]*)<', path.read_text(encoding="utf-8"))
+    assert found is not None
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    model = gzip.decompress(base64.b64decode(found[1]))
+    return onnxruntime.InferenceSession(model, options, providers=["CPUExecutionProvider"])
+
+
+def _pose(poke: dict[str, float]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    turn = np.pi / 180
+    values = [poke["x"] * 1e-3, poke["y"] * 1e-3, poke["angle"] * turn, poke["heading"] * turn]
+    return np.array([*values, poke["depth"] * 1e-3, poke["modulus"] * 1e3])
+
+
+def test_it_is_one_small_file(written: Written) -> None:
+    assert written.gzipped < LARGEST
+    assert written.size == written.path.stat().st_size
+    assert not re.search(r"""(src|href)\s*=\s*["']""", written.path.read_text(encoding="utf-8")[:20_000])
+
+
+def test_the_browser_says_what_python_says(page: Any, written: Written, predictor: Predictor) -> None:
+    """To 1e-6 of the largest displacement and of the force: onnxruntime and torch in this process."""
+    content: Content = content_of(predictor, shapes=["shape-0"], pokes=1)
+    session, names = _graph(written.path), content.graph.outputs()
+    ask = "async (poke) => { const r = await (await tisim).surrogate.ask(poke);"
+    ask += " return Object.fromEntries(Object.entries(r).map(([k, v]) => [k, Array.from(v)])); }"
+    for poke in POKES:
+        inputs, pose = content.inputs[int(poke["interior"])], _pose(poke)
+        found = page.evaluate(ask, poke)
+        runtime = dict(zip(names, session.run(None, {"poke": pose, **inputs}), strict=True))
+        with torch.no_grad():
+            tensors = [torch.from_numpy(array) for array in inputs.values()]
+            of_torch = dict(zip(names, content.graph(torch.from_numpy(pose), *tensors), strict=True))
+        assert set(found) == set(names)
+        for name in names:
+            for source, true in (("onnxruntime", runtime[name]), ("torch", of_torch[name].numpy())):
+                sizes = np.linalg.norm(true, axis=1) if np.ndim(true) == 2 else np.abs(true)
+                wrong = np.abs(np.array(found[name]).reshape(np.shape(true)) - true).max()
+                relative = wrong / max(sizes.max(), 1e-12)
+                if name in ("displacement", "force"):
+                    print(f"{name} at {poke['depth']} mm: {relative:.1e} off {source}")
+                assert relative <= 1e-6, (name, source, poke)
+
+
+def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
+    """Sliders, keys, mouse; beyond what was trained it says so, and the FEM poke is beside on request."""
+
+    def now() -> dict[str, float]:
+        found: dict[str, float] = page.evaluate("async () => (await tisim).poke")
+        return found
+
+    def answered() -> None:
+        page.evaluate(
+            "async () => { const t = await tisim;"
+            " while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 5)); }"
+        )
+
+    page.evaluate("async (poke) => (await tisim).change(poke)", POKES[0])
+    page.get_by_label("Depth").fill("2.5")
+    answered()
+    assert now()["depth"] == 2.5
+    force = float(page.locator("#force").inner_text())
+    assert force > 0
+    assert re.fullmatch(r"90 % interval [\d.]+ to [\d.]+ N", page.locator("#interval").inner_text())
+    picture = page.locator("#picture")
+    picture.focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("+")
+    answered()
+    assert now()["x"] == pytest.approx(2.0)
+    assert now()["depth"] == pytest.approx(3.0)
+    assert float(page.locator("#force").inner_text()) > force
+
+    box = picture.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2 + 30, box["y"] + box["height"] * 0.55)
+    page.mouse.up()
+    answered()
+    assert now()["x"] != pytest.approx(2.0)
+
+    page.evaluate("async (poke) => (await tisim).change(poke)", POKES[2])
+    answered()
+    assert page.locator("body").get_attribute("data-inside") == "false"
+    assert "depth 4.50 mm (trained: 1 to 2" in page.locator("#verdict").inner_text()
+    page.get_by_role("button", name="Show the FEM poke beside it").click()
+    page.wait_for_function("document.getElementById('compared-text').textContent.startsWith('FEM: ')")
+    assert "of the points lie within their intervals" in page.locator("#compared-text").inner_text()
+    page.wait_for_function("/^Force [0-9.]+ newtons/.test(document.getElementById('spoken').textContent)")
+
+
+def test_it_is_readable(page: Any) -> None:
+    """Each control has a name, the force is spoken, and a phone's width needs no scrolling sideways."""
+    nameless = page.evaluate(
+        "() => [...document.querySelectorAll('input, select, button, canvas')]"
+        ".filter((e) => !(e.labels?.length || e.textContent.trim() || e.ariaLabel)).map((e) => e.id)"
+    )
+    assert nameless == []
+    assert page.locator("[aria-live=polite]").count() == 2
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("document.documentElement.lang") == "en"
+    contrast = page.evaluate(CONTRAST)
+    assert contrast, "no text was measured"
+    assert min(contrast.values()) >= 4.5, min(contrast.items(), key=lambda item: item[1])
+
+
+# of text against the first opaque ground behind it, white where a ground is translucent: WCAG 2.2, 1.4.3
+CONTRAST = """() => {
+  const parse = (c) => c.match(/[\\d.]+/g).map(Number);
+  const linear = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+  const light = (colour) => colour.slice(0, 3).map((v) => linear(v / 255))
+    .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+  const found = {};
+  const names = 'p, label, output, small, button, summary, h1, th, td, option, span';
+  for (const e of document.querySelectorAll(names)) {
+    if (!e.textContent.trim() || !e.checkVisibility()) continue;
+    let ground = [255, 255, 255];
+    for (let up = e; up; up = up.parentElement) {
+      const c = parse(getComputedStyle(up).backgroundColor);
+      if (c.length === 3 || c[3] === 1) { ground = c; break; }
+    }
+    const [a, b] = [light(parse(getComputedStyle(e).color)), light(ground)];
+    found[e.textContent.trim().slice(0, 40)] = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+  }
+  return found;
+}"""
+
+
+def test_the_picture_and_the_time_of_a_frame(
+    page: Any, tmp_path: Path, record_property: pytest.RecordProperty
+) -> None:
+    """A screenshot that shows something, the median time, and not one error in all that was done."""
+    from PIL import Image
+
+    shot = page.locator("#picture").screenshot(path=tmp_path / "poke.png")
+    colours = Image.open(io.BytesIO(shot)).convert("RGB").getcolors(maxcolors=1 << 20)
+    assert colours is not None
+    assert len(colours) > 500
+    times = page.evaluate("""async () => {
+      const t = await tisim;
+      t.times.length = 0;
+      while (t.times.length < 10) {
+        t.change({ x: t.poke.x === 5 ? 6 : 5 });
+        await new Promise((r) => setTimeout(r, 5));
+      }
+      return t.times;
+    }""")
+    for name in ("inference", "whole"):
+        median = statistics.median(frame[name] for frame in times)
+        record_property(f"median_{name}_ms", median)
+        print(f"median of {len(times)} frames, {name}: {median:.1f} ms")
+    assert page.faults == []
