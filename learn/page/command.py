@@ -1,4 +1,4 @@
-"""The command `python -m learn.page`."""
+"""`python -m learn.page`: a page in which one pokes the block that a surrogate was trained on."""
 
 from __future__ import annotations
 
