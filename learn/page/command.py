@@ -1,4 +1,4 @@
-"""The command `python -m learn.page`."""
+"""`python -m learn.page`: a trained surrogate as one HTML file, to poke the block in without a server."""
 
 from __future__ import annotations
 
