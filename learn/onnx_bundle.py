@@ -119,15 +119,24 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
 
 
 def write_graph(
-    part: nn.Module, inputs: tuple[Tensor, ...], path: Path, names: list[str], out: list[str]
+    part: nn.Module,
+    inputs: tuple[Tensor, ...],
+    path: Path,
+    names: list[str],
+    out: list[str],
+    *,
+    simplify: bool = True,
 ) -> None:
-    """A module as an ONNX file, with its inputs' and outputs' names."""
+    """A module as an ONNX file, with its inputs' and outputs' names.
+
+    simplify: fold what is constant, which onnxruntime does as well when it loads the file.
+    """
     logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it names packages that nothing here needs
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the exporter warns of its own future
         torch.onnx.export(
             part.eval(), inputs, str(path), input_names=names, output_names=out, dynamo=True,
-            external_data=False, verbose=False,
+            external_data=False, verbose=False, optimize=simplify,
             custom_translation_table={torch.ops.aten.scalar_tensor.default: _whole_number()},
         )  # fmt: skip
 

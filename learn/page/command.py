@@ -1,4 +1,4 @@
-"""`python -m learn.page`: a page in which one pokes the block that a surrogate was trained on."""
+"""`python -m learn.page`: a trained surrogate as one HTML file, to poke the block in without a server."""
 
 from __future__ import annotations
 

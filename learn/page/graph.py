@@ -217,4 +217,4 @@ def write_page_graph(part: PagePart, example: Inputs, path: Path) -> None:
     need_packages()
     poke = torch.tensor([0.0, 0.0, 0.1, 0.3, 5e-3, 1e4], dtype=torch.float64)
     inputs = (poke, *(torch.from_numpy(example[name]) for name in INPUTS[1:]))
-    write_graph(part, inputs, path, INPUTS, part.outputs())
+    write_graph(part, inputs, path, INPUTS, part.outputs(), simplify=False)

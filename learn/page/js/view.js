@@ -140,7 +140,7 @@ export class View {
     const close = name === "close";
     if (close) this.controls.target.copy(this.rod.position);
     else this.controls.target.set(middle[0], middle[1], top - size[2] * 0.45);
-    const half = close ? 14 : Math.hypot(size[0], size[1]) / 2; // of what is to be seen, across
+    const half = close ? 24 : Math.hypot(size[0], size[1]) / 2; // of what is to be seen, across
     this.standpoint = { way: new Vector3(...VIEWS[name]).normalize(), half };
     this.resize();
   }

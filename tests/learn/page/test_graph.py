@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 import torch
 
 from learn.errors import InputError
+from learn.page import command
 from learn.page.content import Content, content_of
 from learn.page.simulated import quantised
 from learn.predictor import Predictor
+from tests.learn.commands import call, refused
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +112,9 @@ def test_the_sliders_reach_beyond_what_was_trained(predictor: Predictor, content
         assert limits["low"] <= start[key] <= limits["high"], key
 
 
-def test_what_has_no_page_is_refused(predictor: Predictor) -> None:
+def test_what_has_no_page_is_refused(predictor: Predictor, tmp_path: Path) -> None:
+    refused(call(command.app, tmp_path, "--out", tmp_path / "poke.html"), str(tmp_path))
+    assert not (tmp_path / "poke.html").exists()
     with pytest.raises(InputError, match="--shape shape-9: expected one of shape-0"):
         content_of(predictor, shapes=["shape-9"])
     other = Predictor(dataclasses.replace(predictor.run, model=torch.nn.Linear(1, 1)), predictor.store)
