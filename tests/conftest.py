@@ -44,6 +44,7 @@ LONG = (
     "calibration/photo/test_bad_photographs.py",
     "tisim/test_poke_protocol.py",
     "learn/test_commands.py",
+    "learn/page/test_browser.py",
     "factory/test_command.py",
     "calibration/interface/test_commands.py",
     "tisim/test_parts_point.py",
