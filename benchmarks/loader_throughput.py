@@ -65,7 +65,7 @@ def store_of(folder: Path, data: np.ndarray[Any, Any]) -> Store:
         rod_radius=2.5e-3, rod_edge=1e-3, done=one.astype(bool), shape=zero, softness=zero, geometry=zero,
         modulus=one, direction=three, path_start=three, frame_start=zero, frame_count=np.array([frames]),
         frame_poke=np.zeros(frames, dtype=np.int64), depth=np.full(frames, 1e-3),
-        rod_force=np.repeat(three, frames, axis=0),
+        rod_force=np.repeat(three, frames, axis=0), solved_as=zero,
     )  # fmt: skip
 
 

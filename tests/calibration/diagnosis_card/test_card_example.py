@@ -11,7 +11,7 @@ from card_cases import bench, diagnosis
 from calibration.diagnosis import Candidate
 from calibration.diagnosis.card import write_cards
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "extended-cards.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "extended-cards.md"
 
 
 def test_tisim_takes_an_extended_card(
