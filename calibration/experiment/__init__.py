@@ -1,6 +1,7 @@
 """A measured experiment: experiment.yaml and its files, read, checked and in SI."""
 
 from calibration.experiment._fields import Strict, say
+from calibration.experiment._photographs import PHOTOGRAPHS, PhotoSettings, read_photo_settings
 from calibration.experiment._read import read
 from calibration.experiment._yaml import load, parse
 from calibration.experiment.model import (
@@ -23,6 +24,7 @@ from calibration.experiment.model import (
 )
 
 __all__ = [
+    "PHOTOGRAPHS",
     "BeamTrial",
     "Capture",
     "Checkerboard",
@@ -31,6 +33,7 @@ __all__ = [
     "Experiment",
     "Marker",
     "MaterialBelief",
+    "PhotoSettings",
     "PokeRecord",
     "PokeTrial",
     "Registration",
@@ -43,5 +46,6 @@ __all__ = [
     "load",
     "parse",
     "read",
+    "read_photo_settings",
     "say",
 ]

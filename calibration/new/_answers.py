@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, model_validator
 
 from calibration.errors import InputError
+from calibration.experiment import PhotoSettings
 from calibration.experiment._beam import CheckerboardEntry, Section
 from calibration.experiment._fields import (
     Component,
@@ -158,6 +159,7 @@ class Answers(Strict):
     notes: str = ""
     materials: dict[Name, MaterialEntry] = Field(default_factory=dict)
     board: BoardAnswers | None = None
+    photographs: PhotoSettings | None = None
     trials: Annotated[tuple[TrialAnswers, ...], Field(min_length=1)]
 
     @model_validator(mode="after")

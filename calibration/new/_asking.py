@@ -125,7 +125,7 @@ def note(raw: dict[str, Any], where: str, key: str, value: Any) -> None:
     raw : dict
         The answers; its trials are there already.
     where : str
-        id of a trial, which "captures[#2]" may follow, or "materials." and a name.
+        id of a trial, which "captures[#2]" may follow, "materials." and a name, or "photographs".
     key : str
         Its parts are separated by dots; a column's name behind "units." may hold some.
     """
@@ -148,6 +148,9 @@ def _place(raw: dict[str, Any], where: str) -> dict[str, Any]:
         if where.startswith(f"{name}.captures[#"):
             capture: dict[str, Any] = trial["captures"][int(where[len(name) + 11 : -1]) - 1]
             return capture
+    if where == "photographs":
+        board: dict[str, Any] = raw.setdefault(where, {})
+        return board
     raise ValueError(where)
 
 

@@ -13,12 +13,13 @@ from typing import Any
 import yaml
 
 from calibration.errors import InputError
-from calibration.experiment import Experiment, read
+from calibration.experiment import PHOTOGRAPHS, Experiment, read, read_photo_settings
 from calibration.new._answers import Answers, BeamAnswers, CouponAnswers, PokeAnswers
 from calibration.new._asking import Asker, some_text
 from calibration.new._beam import bar, density, make_beam
 from calibration.new._board import board_pdf
 from calibration.new._coupon import make_coupon
+from calibration.new._photographs import WHERE, photo_settings
 from calibration.new._plausible import CHECKS, Made
 from calibration.new._poke import make_poke
 from calibration.new._trial import Work
@@ -86,6 +87,8 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
     trials = [_trial(work, entry, materials) for entry in answers.trials]
     for trial in trials:
         materials.setdefault(trial["material"], {})
+    photographed = any("photo" in c for trial in trials for c in trial.get("captures", ()))
+    settings = photo_settings(work, answers.photographs) if photographed else {}
     board = None if answers.board is None else board_pdf(answers.board)
     notes = answers.notes
     if work.defaults:
@@ -101,7 +104,11 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
     own = _plain(raw)
     for trial in own["trials"]:
         _move_paths(trial, base, {path: name for name, path in work.copies.items()})
+    if settings:
+        own[WHERE] = settings
     texts = {"experiment.yaml": _head(work.defaults) + dump(content), ANSWERS: dump(own), **work.tables}
+    if settings:
+        texts[PHOTOGRAPHS] = dump(settings)
     with _beside(out) as folder:
         for name, text in texts.items():
             _file(folder, name).write_text(text, encoding="utf-8")
@@ -111,6 +118,7 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
             (folder / BOARD).write_bytes(board)
         try:
             read(folder)
+            read_photo_settings(folder)
         except InputError as error:
             raise InputError(str(error).replace(str(folder), str(out))) from None
         out.parent.mkdir(parents=True, exist_ok=True)

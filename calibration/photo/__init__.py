@@ -18,9 +18,9 @@ Board frame inside this package [m]: x right, z up, y away from the camera, orig
 outer corner; the specimen's mid plane lies at y = -distance.
 """
 
+from calibration.experiment import PhotoSettings
 from calibration.photo._board import Board, find_board
 from calibration.photo._camera import Camera, View, calibrate, locate
-from calibration.photo._files import PhotoSettings, read_settings
 from calibration.photo._image import PhotoProblem, read_photograph
 from calibration.photo._picture import strip
 from calibration.photo._trace import Specimen, Trace, trace
@@ -37,7 +37,6 @@ __all__ = [
     "find_board",
     "locate",
     "read_photograph",
-    "read_settings",
     "strip",
     "trace",
 ]

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_lsq_spline
 
+from calibration.experiment import PhotoSettings
 from calibration.experiment.model import Registration, Supports, TracedOutline
 from calibration.photo._board import Board
 from calibration.photo._camera import Camera, View, locate
 from calibration.photo._contour import Contour, trace_contour
-from calibration.photo._files import PhotoSettings
 from calibration.photo._foreground import Body, Foreground, find_body, lay_out, segment, show_body
 from calibration.photo._frame import Face, Scale, axis_height, find_face, settle
 from calibration.photo._image import Grey, PhotoProblem

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import InputError
-from calibration.experiment import BeamTrial, Checkerboard, read
+from calibration.experiment import BeamTrial, Checkerboard, PhotoSettings, read, read_photo_settings
 from calibration.photo._board import Board, find_board
 from calibration.photo._camera import Camera, calibrate
 from calibration.photo._chain import LEDGER, Job, digest, kept, run
-from calibration.photo._files import PhotoSettings, png, read_settings, write_copy, write_whole
+from calibration.photo._files import png, write_copy, write_whole
 from calibration.photo._image import PhotoProblem, UnusablePhotographs, read_photograph
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import Reconstruction
@@ -27,7 +27,7 @@ def reconstruct(
     on_progress: OnProgress = to_log,
 ) -> Reconstruction:
     """Trace every photograph; see `calibration.reconstruct`."""
-    read_in, settings = read(experiment), read_settings(experiment)
+    read_in, settings = read(experiment), read_photo_settings(experiment)
     target = out or Path(f"{experiment.resolve().name}-traced")
     _check_target(target, experiment)
     jobs = [

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from calibration.cli import VERBS
 from calibration.errors import InputError
-from calibration.experiment import BeamTrial, CouponTrial, PokeTrial, read
+from calibration.experiment import BeamTrial, CouponTrial, PhotoSettings, PokeTrial, read, read_photo_settings
 from calibration.experiment.model import Checkerboard
 from calibration.new import app
 from calibration.new._answers import BoardAnswers
@@ -155,6 +155,7 @@ def test_photographs_become_captures_of_one_beam(tmp_path: Path) -> None:
     typed = ["two", "bar", "silicone", "bar"]  # name, id, material, the second of the same beam
     typed += ["circle", "10", "", "100", "", "20", "clamped-free", ""]
     typed += ["60", "9 6", "8", "120", "9x6", "8", "1000", "5"]
+    typed += ["", "12 26"]  # the beam's rear lies on the board; where the corner of its squares is
     out = tmp_path / "lab"
     code, shown, said = new(first, second, "--out", out, typed="\n".join(typed) + "\n")
     assert code == 0, (shown, said)
@@ -164,7 +165,42 @@ def test_photographs_become_captures_of_one_beam(tmp_path: Path) -> None:
     assert [c.time for c in beam.captures] == [60.0, 120.0]
     assert beam.captures[1].photo == out / "photos" / "cantilever-100.jpg"
     assert beam.captures[1].photo.read_bytes() == second.read_bytes()
+    assert read_photo_settings(out) == PhotoSettings(board_corner_mm=(12.0, 26.0))
+    assert "photographs.board_distance_mm touches" in (out / "experiment.yaml").read_text(encoding="utf-8")
     assert new("--yes", out / "answers.yaml", "--out", tmp_path / "again")[0] == 0
+    assert read_photo_settings(tmp_path / "again") == read_photo_settings(out)
+
+
+def test_further_photographs_of_the_board_come_along(tmp_path: Path) -> None:
+    photos = ROOT / "datasets" / "measured" / "photographs" / "photos"
+    capture = {"time_s": 60.0, "photo": str(photos / "cantilever-060.jpg")}
+    capture["photo_checkerboard"] = {"squares": [9, 6], "square_mm": 8.0}
+    beam = {"id": "bar", "kind": "beam", "material": "gel", "section": {"circle": {"radius_mm": 10.0}}}
+    beam |= {
+        "free_length_mm": 60.0,
+        "grip_length_mm": 20.0,
+        "supports": "clamped-free",
+        "captures": [capture],
+    }
+    boards = {"calibration_photos": [str(photos / "cantilever-100.jpg")], "board_distance_mm": 12.0}
+    answers = {"name": "one", "materials": {"gel": {"density_kg_m3": 1000.0}}, "photographs": boards}
+    path = tmp_path / "answers.yaml"
+    path.write_text(yaml.safe_dump(answers | {"trials": [beam]}), encoding="utf-8")
+    out = tmp_path / "lab"
+    code, _, said = new("--yes", path, "--out", out)
+    assert code == 0, said
+    settings = read_photo_settings(out)
+    assert settings == PhotoSettings(
+        board_distance_mm=12.0, calibration_photos=("photos/cantilever-100.jpg",)
+    )
+    assert (out / settings.calibration_photos[0]).read_bytes() == (photos / "cantilever-100.jpg").read_bytes()
+    path.write_text(
+        yaml.safe_dump(answers | {"photographs": {"board_distance_mm": -1.0}, "trials": [beam]}),
+        encoding="utf-8",
+    )
+    code, _, said = new("--yes", path, "--out", tmp_path / "bad")
+    assert code == 2
+    assert "photographs.board_distance_mm" in said
 
 
 def test_the_printed_board_is_found_at_its_true_size() -> None:
