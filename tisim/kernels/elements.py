@@ -214,25 +214,29 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
                             n = conn[e, b]
                             for i in ti.static(range(3)):
                                 f[n, i] = f[n, i] + w * (P[i, 0] * g[0] + P[i, 1] * g[1] + P[i, 2] * g[2])
+                            g = w * g
                             H = ti.Matrix.zero(f64, 9, 3)
                             for r in ti.static(range(9)):
                                 for j in ti.static(range(3)):
-                                    H[r, j] = w * (
+                                    H[r, j] = (
                                         A[r, 3 * j] * g[0] + A[r, 3 * j + 1] * g[1] + A[r, 3 * j + 2] * g[2]
                                     )
                             for a in range(b + 1):
                                 takes = slot[e, a, b] >= 0
                                 if sparse != 0:
                                     takes = takes and takes_part(grad, e, q, a)
-                                if takes:
-                                    for i in ti.static(range(3)):
-                                        for j in ti.static(range(3)):
-                                            ke[a, 9 * b + 3 * i + j] = (
-                                                ke[a, 9 * b + 3 * i + j]
-                                                + grad[e, q, a, 0] * H[3 * i, j]
-                                                + grad[e, q, a, 1] * H[3 * i + 1, j]
-                                                + grad[e, q, a, 2] * H[3 * i + 2, j]
-                                            )
+                                if takes:  # all loads before all stores: the compiler may pair them then
+                                    d = ti.Vector([grad[e, q, a, 0], grad[e, q, a, 1], grad[e, q, a, 2]])
+                                    block = ti.Vector.zero(f64, 9)
+                                    for r in ti.static(range(9)):
+                                        i, j = ti.static(r // 3, r % 3)
+                                        block[r] = ke[a, 9 * b + r] + (
+                                            d[0] * H[3 * i, j]
+                                            + d[1] * H[3 * i + 1, j]
+                                            + d[2] * H[3 * i + 2, j]
+                                        )
+                                    for r in ti.static(range(9)):
+                                        ke[a, 9 * b + r] = block[r]
                 for b in range(na):
                     for a in range(b + 1):
                         s = slot[e, a, b]
