@@ -263,7 +263,7 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
         with staging.opened(index) as arrays:
             for poke in derived[index]:
                 keep(in_proportion(dict(arrays), poke))
-    own = [poke for poke in missing if not poke.derived]
+    own = [poke for poke in in_turns(plan) if poke.index not in done and not poke.derived]
     if not own:
         return simulated
     with closing(means.run(own)) as outcomes:
@@ -278,6 +278,17 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
                 else:
                     keep(replace(outcome, index=poke.index, wall=0.0, core=0.0))
     return simulated
+
+
+def in_turns(plan: Plan) -> list[PlannedPoke]:
+    """The pokes in the order in which they are simulated: one of each shape and material level at a time.
+
+    What is there after an interruption is then a smaller dataset of the same kind, not the first shapes alone.
+    """
+    shared = plan.recipe.protocol.shared_sites
+    return sorted(
+        plan.pokes, key=lambda poke: (poke.site if poke.shared else poke.site - shared, poke.index)
+    )
 
 
 def _changed(state: str, old: dict[str, object], plan: Plan, target: Path) -> InputError:
