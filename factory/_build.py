@@ -61,7 +61,9 @@ class Built:
     errors : dict of int to str
         Why pokes failed, by their index.
     damaged : tuple of int
-        Pokes whose staged result was damaged, and which were simulated again.
+        Pokes whose staged result was damaged: simulated again, or, in a partial store, set aside.
+    missing : int
+        Pokes of a partial store that are not done.
     """
 
     store: Path
@@ -69,6 +71,7 @@ class Built:
     simulated: int
     errors: dict[int, str] = field(default_factory=dict)
     damaged: tuple[int, ...] = ()
+    missing: int = 0
 
 
 OnProgress = Callable[[BuildProgress], None]
@@ -100,6 +103,7 @@ def build_dataset(
     target: Path,
     *,
     overwrite: bool = False,
+    partial: bool = False,
     workers: int = 2,
     cluster: str | None = None,
     cluster_timeout: float = CLUSTER_TIMEOUT,
@@ -115,6 +119,9 @@ def build_dataset(
         The store to write; it is built in the folder TARGET.building beside it.
     overwrite : bool
         Simulate everything again; an old store stays until the new one is complete.
+    partial : bool
+        Simulate nothing: write a store of the pokes that earlier runs finished, in which the others are marked
+        as not done. Staged results stay, so that a later call goes on.
     workers : int
         Worker processes on this machine.
     cluster : str, optional
@@ -141,6 +148,8 @@ def build_dataset(
         with Staging(target) as staging:
             if _is_complete(plan, target, staging, overwrite):
                 return Built(target, len(plan.pokes), 0)
+            if partial:
+                return _written_so_far(plan, target, staging)
             means = _Means(
                 workers=workers, cluster=cluster, cluster_timeout=cluster_timeout, simulator=simulator
             )
@@ -167,6 +176,19 @@ def build_dataset(
             describe_os_error(error, f"{target}: the build stopped at")
             + "; every finished poke is kept, and the same command goes on from there"
         ) from error
+
+
+def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
+    """The store of what is staged; InputError where that is nothing."""
+    damaged = set_damaged_aside(staging, plan.pokes)
+    missing = len(plan.pokes) - len(staging.finished())
+    if missing == len(plan.pokes):
+        staging.remove()
+        raise InputError(f"{target}: --partial: no poke of it is finished yet: build it without --partial first")
+    assemble(plan, staging, target)
+    if not missing and not staging.errors():
+        staging.remove()
+    return Built(target, len(plan.pokes), 0, staging.errors(), tuple(damaged), missing)
 
 
 def check_target(target: Path, *, overwrite: bool = False) -> None:

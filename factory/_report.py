@@ -283,15 +283,18 @@ class Screen:
         new = f"{built.simulated} simulated now"
         if not built.simulated:
             new = "none simulated with success now" if built.errors else "nothing was left to simulate"
+        if built.missing:
+            new = "partial: the others are marked as not done; without --partial the same command goes on"
         if built.damaged:
             count = len(built.damaged)
             pokes = ", ".join(str(i) for i in built.damaged[:8]) + (" ..." if count > 8 else "")
             self._console.print(
-                f"{count} staged {'results were' if count > 1 else 'result was'} damaged and set aside, "
-                f"and simulated again (poke {pokes})."
+                f"{count} staged {'results were' if count > 1 else 'result was'} damaged and set aside"
+                f"{'' if built.missing else ', and simulated again'} (poke {pokes})."
             )
+        done = built.total - (built.missing or len(built.errors))
         self._console.print(
-            f"{self._target}: {built.total - len(built.errors)} of {built.total} pokes ({new}); "
+            f"{self._target}: {done} of {built.total} pokes ({new}); "
             f"preview {preview_path(self._target).name}"
         )
 

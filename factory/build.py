@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
-from factory._input import shipped_folder
+from factory._input import InputError, shipped_folder
 from tisim import laws
 from tisim.parallel.termination import terminable
 
@@ -43,7 +43,10 @@ Elsewhere, or on the workers of a dask cluster (tisim must be installed there):
 
   python -m factory.build --model ogden --cluster tcp://10.0.0.5:8786
 
-Stopped or killed, the same command goes on where it was.
+Stopped or killed, the same command goes on where it was. With what there is so far, one of each shape and
+material level after another, to look at or to train on:
+
+  python -m factory.build --model ogden --partial
 
 Exit codes: 0 built, 1 built but some pokes failed, 2 bad input or target, 130 stopped by Ctrl-C.
 """
@@ -85,6 +88,14 @@ def main(
             "(an old store stays until the new one is complete).",
         ),
     ] = True,
+    partial: Annotated[
+        bool,
+        typer.Option(
+            "--partial",
+            help="Simulate nothing: write the store of the pokes that a stopped run has finished, the others "
+            "marked as not done. The same command without it goes on.",
+        ),
+    ] = False,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Worker processes. Default: one a core.", show_default=False)
     ] = None,
@@ -123,6 +134,8 @@ def main(
             target = (out or default_target(plan.recipe.name, model, materials)).absolute()
             count = workers or cores()
             expected = estimate(plan, target, count)
+            if partial and not resume:
+                raise InputError("--partial: expected without --overwrite, which would discard what is there")
             check_target(target, overwrite=not resume)
             if dry_run:
                 console.print(plan_table(plan, target, expected, count))
@@ -137,6 +150,7 @@ def main(
                     plan,
                     target,
                     overwrite=not resume,
+                    partial=partial,
                     workers=count,
                     cluster=cluster,
                     cluster_timeout=cluster_timeout,
