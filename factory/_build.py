@@ -120,8 +120,8 @@ def build_dataset(
     overwrite : bool
         Simulate everything again; an old store stays until the new one is complete.
     partial : bool
-        Simulate nothing: write a store of the pokes that earlier runs finished, in which the others are marked
-        as not done. Staged results stay, so that a later call goes on.
+        Simulate nothing: write a store of the pokes that earlier runs finished, the others marked as not done.
+        Staged results stay, so that a later call goes on.
     workers : int
         Worker processes on this machine.
     cluster : str, optional
@@ -184,7 +184,7 @@ def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
     missing = len(plan.pokes) - len(staging.finished())
     if missing == len(plan.pokes):
         staging.remove()
-        raise InputError(f"{target}: --partial: no poke of it is finished yet: build it without --partial first")
+        raise InputError(f"{target}: --partial: no poke of it is finished yet: begin it without --partial")
     assemble(plan, staging, target)
     if not missing and not staging.errors():
         staging.remove()
@@ -308,9 +308,7 @@ def in_turns(plan: Plan) -> list[PlannedPoke]:
     What is there after an interruption is then a smaller dataset of the same kind, not the first shapes alone.
     """
     shared = plan.recipe.protocol.shared_sites
-    return sorted(
-        plan.pokes, key=lambda poke: (poke.site if poke.shared else poke.site - shared, poke.index)
-    )
+    return sorted(plan.pokes, key=lambda poke: (poke.site if poke.shared else poke.site - shared, poke.index))
 
 
 def _changed(state: str, old: dict[str, object], plan: Plan, target: Path) -> InputError:
