@@ -120,7 +120,7 @@ def build_dataset(
     overwrite : bool
         Simulate everything again; an old store stays until the new one is complete.
     partial : bool
-        Simulate nothing: write a store of the pokes that earlier runs finished, the others marked as not done.
+        Simulate nothing: write a store of what earlier runs finished, the other pokes marked as not done.
         Staged results stay, so that a later call goes on.
     workers : int
         Worker processes on this machine.
@@ -305,7 +305,7 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
 def in_turns(plan: Plan) -> list[PlannedPoke]:
     """The pokes in the order in which they are simulated: one of each shape and material level at a time.
 
-    What is there after an interruption is then a smaller dataset of the same kind, not the first shapes alone.
+    What is there after an interruption is a smaller dataset of the same kind, not the first shapes alone.
     """
     shared = plan.recipe.protocol.shared_sites
     return sorted(plan.pokes, key=lambda poke: (poke.site if poke.shared else poke.site - shared, poke.index))
