@@ -124,6 +124,11 @@ def duration(seconds: float) -> str:
     return f"{seconds / 3600:.1f} h"
 
 
+def counted(number: int, noun: str) -> str:
+    """ "1 poke", "2 pokes"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def size_text(count: float) -> str:
     """Bytes as people read them."""
     for unit in ("B", "kB", "MB"):

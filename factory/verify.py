@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
+from factory._cli import Plugins, Version, counted, import_plugins, make_app, make_console, shown_errors
+from factory._input import InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 EXAMPLES = """
-[bold]Example[/bold]
+[bold]Examples[/bold]
 
   python -m factory.verify datasets/quick-ogden.zarr
+
+Every frame's equilibrium by an assembly of its own, from the stored surface (as long as the build took),
+or those of some pokes:
+
+  python -m factory.verify datasets/quick-ogden.zarr --assembly
+
+  python -m factory.verify datasets/paper-ogden.zarr --assembly --pokes 20
 
 Exit codes: 0 no fault, 1 faults found, 2 bad input.
 """
@@ -21,6 +33,25 @@ Exit codes: 0 no fault, 1 faults found, 2 bad input.
 def main(
     dataset: Annotated[Path, typer.Argument(help="The finished store.")],
     show: Annotated[int, typer.Option(min=1, help="Faults to print for each check.")] = 5,
+    assembly: Annotated[
+        bool,
+        typer.Option(
+            "--assembly",
+            help="Check frames as equilibria, too: forces at the nodes, summed up apart from the solver.",
+        ),
+    ] = False,
+    pokes: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="With --assembly: so many pokes, spread over the dataset.", show_default="all"
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="With --assembly: worker processes. Default: one a core.", show_default=False
+        ),
+    ] = None,
     plugin: Plugins = None,
     version: Version = False,
 ) -> None:
@@ -33,6 +64,8 @@ def main(
 
         from factory._checks import verify_dataset
 
+        if not assembly and (pokes is not None or workers is not None):
+            raise InputError("--pokes and --workers: expected with --assembly")
         found = verify_dataset(dataset)
         console = make_console()
         table = Table(title=str(dataset))
@@ -46,10 +79,59 @@ def main(
                 console.print(f"{name}: {fault}")
             if len(faults) > show:
                 console.print(f"{name}: and {len(faults) - show} more")
-    if found.total:
+        sound = not found.total
+        if sound:
+            console.print(f"{counted(found.pokes, 'poke')}, {counted(found.frames, 'frame')}: no fault")
+        if sound and assembly:
+            sound = _assembled(dataset, pokes, workers, plugin or [], show, console)
+    if not sound:
         raise typer.Exit(1)
-    plural = "" if found.pokes == 1 else "s"
-    console.print(f"{found.pokes} poke{plural}, {found.frames} frames: no fault")
+
+
+def _assembled(
+    dataset: Path, pokes: int | None, workers: int | None, plugins: list[str], show: int, console: Console
+) -> bool:
+    """Check by assembly, with progress on stderr, and print what came out; whether it is sound."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from factory._assembly import check_assembly
+    from factory.reader import open_dataset
+    from tisim.parallel.pool import cores
+
+    bar = Progress(
+        TextColumn("assembly"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    )
+    with bar:
+        task = bar.add_task("assembly", total=None)
+        found = check_assembly(
+            open_dataset(dataset),
+            pokes=pokes,
+            workers=workers or cores(),
+            plugins=plugins,
+            on_progress=lambda done, total: bar.update(task, completed=done, total=total),
+        )
+    for fault in found.faults[:show]:
+        console.print(f"equilibrium by assembly: {fault}")
+    if len(found.faults) > show:
+        console.print(f"equilibrium by assembly: and {len(found.faults) - show} more")
+    for index, reason in itertools.islice(found.not_checked.items(), show):
+        console.print(f"equilibrium by assembly: poke {index} is not checked: {reason}")
+    if len(found.not_checked) > show:
+        console.print(f"equilibrium by assembly: {len(found.not_checked) - show} more pokes are not checked")
+    worst = found.largest
+    if worst is not None:
+        console.print(
+            f"equilibrium by assembly of {counted(found.pokes, 'poke')}, {counted(found.frames, 'frame')}: "
+            f"{counted(len(found.faults), 'fault')}; largest parts of the rod's force: "
+            f"inside {worst.inside:.1g}, free surface {worst.free:.1g}, sum at the rod {worst.rod:.1g}, "
+            f"at the base {worst.base:.1g}"
+        )
+    return not found.faults and worst is not None
 
 
 app = make_app(main, EXAMPLES)

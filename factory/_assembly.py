@@ -1,0 +1,417 @@
+"""Stored frames as equilibria: nodal forces by an assembly of their own, from the stored surface alone.
+
+A frame stores where the surface is. Held there, the body has one equilibrium inside (found with the tangent
+of the solver, along the poke). What its stresses pull at the nodes with is then summed up here, by shape
+functions and integration points that share no code with the solver's; the law's stress at a point is that of
+`tisim.laws`. In a true equilibrium these forces vanish inside and where the surface is free, and their sums
+are the stored force on the rod and that of the fixed nodes.
+"""
+
+from __future__ import annotations
+
+import itertools
+import multiprocessing
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from factory._cli import import_plugins
+from factory._features import own_solves
+from factory.reader import Dataset, open_dataset
+from tisim import Block, Material, Rod, laws
+from tisim.mesh import Mesh
+from tisim.mesh.indentation import poke_mesh
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.integer[Any]]
+
+# What a hex20's energy is made of (tisim.discretisation): so much at 27 points, the rest at 8; of the bulk
+# stiffness so many shear moduli at all points, the rest at the 8.
+FINE_PART, BULK_EVERYWHERE = 0.3, 2.0
+# Parts of the rod's force, in units of the solver's tolerance, that nodes without contact may miss: single
+# precision of the stored surface, and the inside, which is solved to a tenth of that.
+SLACK = 2.0
+# Part of the rod's force by which the sums may differ from the stored forces.
+SUMS = 0.005
+TOUCHES = 5e-6  # m: facets nearer to the rod than this may carry its force
+INSIDE = 0.1  # of the solver's tolerance: how well the inside is solved
+_ITERATIONS, _HALVINGS = 25, 5
+
+
+class NotCheckedError(Exception):
+    """Why a poke cannot be checked."""
+
+
+@dataclass(frozen=True)
+class FrameForces:
+    """Nodal forces of one frame, in parts of the rod's force.
+
+    Attributes
+    ----------
+    frame : int
+    inside, free : float
+        Root of the sum of squares over the nodes inside, and over those of the surface that neither the rod
+        nor the support holds.
+    rod, base : float
+        Size of the difference between the sums and the stored forces.
+    """
+
+    frame: int
+    inside: float
+    free: float
+    rod: float
+    base: float
+
+    def faults(self, tolerance: float) -> list[str]:
+        """What is not as in an equilibrium, to the solver's tolerance."""
+        found = []
+        for what, value, limit in (
+            ("forces inside", self.inside, SLACK * tolerance),
+            ("forces on the free surface", self.free, SLACK * tolerance),
+            ("the nodes' sum less the rod's force", self.rod, SUMS),
+            ("the fixed nodes' sum less the base's force", self.base, SUMS),
+        ):
+            if not value <= limit:
+                found.append(f"{what}: {value:.2g} of the rod's force, expected at most {limit:.2g}")
+        return found
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """What the assembly found in a dataset.
+
+    Attributes
+    ----------
+    pokes, frames : int
+        How many were checked.
+    faults : list of str
+        Sentences, by poke.
+    not_checked : dict of int to str
+        Why a poke could not be checked, by its index.
+    largest : FrameForces or None
+        Largest values over all frames, with the frame's number 0; None where none was checked.
+    """
+
+    pokes: int
+    frames: int
+    faults: list[str]
+    not_checked: dict[int, str]
+    largest: FrameForces | None
+
+
+def check_assembly(
+    data: Dataset,
+    *,
+    pokes: int | None = None,
+    workers: int = 1,
+    plugins: Sequence[str] = (),
+    on_progress: Callable[[int, int], None] | None = None,
+) -> Assembled:
+    """Check frames of the pokes that have a solve of their own by `nodal_forces`, in worker processes.
+
+    Parameters
+    ----------
+    data : Dataset
+    pokes : int, optional
+        So many of them, spread over the dataset; default: all.
+    workers : int
+    plugins : sequence of str
+        Modules that a worker imports first: they register laws or inclusion shapes.
+    on_progress : callable, optional
+        Called with the pokes done and their number.
+    """
+    chosen = np.flatnonzero(own_solves(data) & data.table["done"])
+    if pokes is not None and pokes < len(chosen):
+        chosen = chosen[np.linspace(0, len(chosen) - 1, pokes).round().astype(int)]
+    tolerance = float(data.attributes["solver_tolerance"])
+    found: dict[int, list[FrameForces]] = {}
+    reasons: dict[int, str] = {}
+    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        waiting = {
+            pool.submit(_checked, data.path, int(index), tuple(plugins)): int(index) for index in chosen
+        }
+        for count, one in enumerate(as_completed(waiting), 1):
+            answer = one.result()
+            if isinstance(answer, str):
+                reasons[waiting[one]] = answer
+            else:
+                found[waiting[one]] = answer
+            if on_progress is not None:
+                on_progress(count, len(chosen))
+    frames = [frame for poke in found.values() for frame in poke]
+    faults = [
+        f"poke {index}, frame {frame.frame}: {fault}"
+        for index in sorted(found)
+        for frame in found[index]
+        for fault in frame.faults(tolerance)
+    ]
+    largest = None
+    if frames:
+        names = ("inside", "free", "rod", "base")
+        largest = FrameForces(0, *(max(getattr(frame, name) for frame in frames) for name in names))
+    return Assembled(len(found), len(frames), faults, dict(sorted(reasons.items())), largest)
+
+
+def _checked(path: Path, index: int, plugins: tuple[str, ...]) -> list[FrameForces] | str:
+    """What a worker process answers: the frames of a poke, or why it cannot be checked."""
+    from tisim.parallel.threads import one_thread
+
+    import_plugins(plugins)
+    with one_thread():
+        try:
+            return check_poke(open_dataset(path), index)
+        except NotCheckedError as reason:
+            return str(reason)
+
+
+def check_poke(data: Dataset, index: int) -> list[FrameForces]:
+    """Nodal forces of every frame of a poke.
+
+    Raises
+    ------
+    NotCheckedError
+        Where the material has more than its law, the mesh cannot be made again, or no equilibrium is found
+        inside a stored surface.
+    """
+    poke = data.poke(index)
+    material = _material(data, index)
+    mesh = _mesh(data, index)
+    surface = np.unique(mesh.facet_sets["surface"])
+    if len(surface) != len(poke.surface_rest) or not np.allclose(
+        mesh.nodes[surface], poke.surface_rest, rtol=0.0, atol=1e-9
+    ):
+        raise NotCheckedError("its mesh is not the one that this version of tisim makes")
+    rod = _rod(data)
+    tolerance = float(data.attributes["solver_tolerance"])
+    load = np.linalg.norm(poke.rod_force, axis=1)
+    found = []
+    inside = _Inside(mesh, material, surface, poke.surface - poke.surface_rest, INSIDE * tolerance * load)
+    held = np.zeros(mesh.n_nodes, dtype=bool)
+    held[mesh.node_sets["base"]] = True
+    on_surface = np.zeros(mesh.n_nodes, dtype=bool)
+    on_surface[surface] = True
+    for frame, x in enumerate(inside):
+        forces = nodal_forces(mesh, material, x)
+        touched = _touched(mesh, x, poke.rod_tip[frame], poke.direction, rod) & ~held
+        size = load[frame]
+
+        def part(nodes: NDArray[np.bool_], forces: Array = forces, size: float = size) -> float:
+            return float(np.linalg.norm(forces[nodes])) / size
+
+        found.append(
+            FrameForces(
+                frame=frame,
+                inside=part(~on_surface),
+                free=part(on_surface & ~held & ~touched),
+                rod=float(np.linalg.norm(forces[touched].sum(axis=0) + poke.rod_force[frame])) / size,
+                base=float(np.linalg.norm(forces[held].sum(axis=0) - poke.base_force[frame])) / size,
+            )
+        )
+    return found
+
+
+def nodal_forces(mesh: Mesh, material: Material, x: Array) -> Array:
+    """Forces (n, 3) [N] that the stresses at positions x (n, 3) [m] pull at a hex20 mesh's nodes with."""
+    law = laws.get(material.law)
+    moduli, kappa = law.moduli(material.parameters), law.kappa(material.parameters)
+    everywhere = min(max(BULK_EVERYWHERE * moduli.shear_modulus - (moduli.bulk_modulus - kappa), 0.0), kappa)
+    at_eight = (kappa - FINE_PART * everywhere) / (1.0 - FINE_PART)
+    forces = np.zeros_like(x)
+    for order, share, bulk in ((2, 1.0 - FINE_PART, at_eight), (3, FINE_PART, everywhere)):
+        slopes, weights = _hex20(order)
+        rest = np.einsum("qad,eai->eqid", slopes, mesh.nodes[mesh.elements], optimize=True)
+        now = np.einsum("qad,eai->eqid", slopes, x[mesh.elements], optimize=True)
+        inverse = np.linalg.inv(rest)
+        F = now @ inverse
+        stress = _stress(material, F.reshape(-1, 3, 3), bulk - kappa).reshape(F.shape)
+        volume = share * weights * np.linalg.det(rest)
+        # f_a = sum_q V_q P dN_a/dX
+        pulled = (volume[..., None, None] * stress) @ np.swapaxes(inverse, 2, 3)
+        np.add.at(forces, mesh.elements, np.einsum("eqid,qad->eai", pulled, slopes, optimize=True))
+    return forces
+
+
+def _stress(material: Material, F: Array, more: float) -> Array:
+    """First Piola-Kirchhoff stress (n, 3, 3) [Pa] of the law, with `more` bulk modulus than its own [Pa]."""
+    stress = np.empty_like(F)
+    for begin in range(0, len(F), 8192):  # the law's tangents come along: 0.6 kB a point
+        some = slice(begin, begin + 8192)
+        stress[some] = laws.evaluate(material.law, material.parameters, F[some])[1]
+    J = np.linalg.det(F)
+    theta = laws.get(material.law).theta
+    if theta == "trace":  # theta = tr E, d theta / dF = F
+        trace = 0.5 * (np.einsum("nij,nij->n", F, F) - 3.0)
+        return stress + more * trace[:, None, None] * F
+    slope = np.log(J) if theta == "log" else (J - 1.0) * J  # theta d theta / dJ times J
+    return stress + more * slope[:, None, None] * np.swapaxes(np.linalg.inv(F), 1, 2)
+
+
+@cache
+def _hex20(order: int) -> tuple[Array, Array]:
+    """Slopes (q, 20, 3) of a hex20's shape functions at order^3 Gauss points, and their weights (q,).
+
+    The functions are those combinations of the twenty monomials r^i s^j t^k with at most one square that are
+    1 at one node and 0 at the others.
+    """
+    corners = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
+    corners += [(r, s, 1) for r, s, _ in corners]
+    edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    places = np.array(corners + [tuple(np.add(corners[a], corners[b]) / 2) for a, b in edges], dtype=float)
+    powers = np.array([p for p in itertools.product(range(3), repeat=3) if sum(k == 2 for k in p) < 2])
+    to_nodes = np.linalg.inv(_monomials(places, powers))  # (monomial, node)
+    g, w = np.polynomial.legendre.leggauss(order)
+    points = np.array(list(itertools.product(g, repeat=3)))
+    weights = np.array([a * b * c for a, b, c in itertools.product(w, repeat=3)])
+    slopes = []
+    for axis in range(3):
+        lower = powers.copy()
+        lower[:, axis] = np.maximum(lower[:, axis] - 1, 0)
+        slopes.append((powers[:, axis] * _monomials(points, lower)) @ to_nodes)
+    return np.stack(slopes, axis=2), weights
+
+
+def _monomials(places: Array, powers: Ints) -> Array:
+    return np.asarray((places[:, None, :] ** powers).prod(axis=2))
+
+
+class _Inside:
+    """Positions of all nodes of each frame: the surface where it is stored, the inside in equilibrium."""
+
+    def __init__(self, mesh: Mesh, material: Material, surface: Ints, moved: Array, tolerance: Array) -> None:
+        """moved (frames, k, 3) [m]: displacement of the surface's nodes (k,); tolerance (frames,) [N]."""
+        from tisim.discretisation.body import Discretisation, DiscretisedBody
+
+        self._mesh, self._surface, self._moved, self._tolerance = mesh, surface, moved, tolerance
+        self._discretisation = Discretisation.build(mesh, surface.astype(np.int32))
+        self._body = DiscretisedBody(self._discretisation, material)
+        self._free = self._discretisation.pattern.free
+
+    def __iter__(self) -> Iterator[Array]:
+        x, before = self._mesh.nodes.copy(), np.zeros_like(self._moved[0])
+        for frame, moved in enumerate(self._moved):
+            x = self._to(frame, x, before, moved)
+            before = moved
+            yield x
+
+    def _to(self, frame: int, x: Array, before: Array, moved: Array) -> Array:
+        """The inside follows from one surface to the next, in more steps where one fails."""
+        for halving in range(_HALVINGS):
+            parts = 2**halving
+            at = x
+            for part in range(1, parts + 1):
+                aim = before + (part / parts) * (moved - before)
+                last = part == parts
+                found = self._step(at, aim, self._tolerance[frame] * (1.0 if last else 10.0))
+                if found is None:
+                    break
+                at = found
+            else:
+                return at
+        raise NotCheckedError(f"no equilibrium was found inside the surface of frame {frame}")
+
+    def _step(self, x: Array, aim: Array, tolerance: float) -> Array | None:
+        """Equilibrium inside a surface displaced by `aim`, from x on; None where none is found."""
+        from tisim.linear.direct import LinearSolveError
+
+        body, solver, free = self._body, self._discretisation.solver, self._free
+        start = np.zeros_like(x)
+        start[self._surface] = self._mesh.nodes[self._surface] + aim - x[self._surface]
+        small = 1e-6 / max(float(np.abs(start).max()), 1e-12)
+        blocks, force, _ = body.stiffness(x)
+        try:
+            solver.factorise(blocks)
+            # K_is du_s by a difference quotient
+            change = (body.internal_forces(x + small * start)[0] - force) / small
+            start[free] = -solver.solve(change[free] + force[free])
+            x = x + start
+            for iteration in range(_ITERATIONS):
+                force, least = body.internal_forces(x)
+                residual = force[free]
+                if least <= 0.0 or not np.isfinite(residual).all():
+                    return None
+                if float(np.linalg.norm(residual)) <= tolerance:
+                    return x
+                if iteration % 3 == 2:  # until then the factor of the step's start serves
+                    solver.factorise(body.stiffness(x)[0])
+                x = x.copy()
+                x[free] -= solver.solve(residual)
+        except LinearSolveError:
+            return None
+        return None
+
+
+def _touched(mesh: Mesh, x: Array, tip: Array, direction: Array, rod: Rod) -> NDArray[np.bool_]:
+    """Nodes (n,) of facets of the top that the rod touches."""
+    facets = mesh.facet_sets["top"]
+    side = np.linspace(-1.0, 1.0, 9)
+    r, s = (values.ravel() for values in np.meshgrid(side, side))
+    corner = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
+    along = 1.0 + r[:, None] * corner[:, 0], 1.0 + s[:, None] * corner[:, 1]
+    at_corner = along[0] * along[1] * (along[0] + along[1] - 3.0) / 4.0
+    in_r, in_s = 0.5 * (1 - r**2), 0.5 * (1 - s**2)
+    shape = np.column_stack([at_corner, in_r * (1 - s), (1 + r) * in_s, in_r * (1 + s), (1 - r) * in_s])
+    points = np.einsum("qa,fai->fqi", shape, x[facets])
+    near = (_distance(points, tip, direction, rod) < TOUCHES).any(axis=1)
+    touched = np.zeros(len(x), dtype=bool)
+    touched[facets[near].ravel()] = True
+    return touched
+
+
+def _distance(points: Array, tip: Array, direction: Array, rod: Rod) -> Array:
+    """Signed distance (...,) [m] of points (..., 3) from a rod whose tip's lowest point is `tip`."""
+    away = points - tip
+    up = -(away @ direction)
+    off = np.linalg.norm(away + up[..., None] * direction, axis=-1)
+    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
+    core = rod.radius - edge
+    below, beyond = np.maximum(edge - up, 0.0), np.maximum(off - core, 0.0)
+    rounded = np.hypot(below, beyond) - edge
+    within = np.maximum(-up, off - rod.radius)  # where it is nearer to the flat end or the shaft
+    corner = (up < edge) & (off > core)
+    return np.asarray(np.where(corner, rounded, within))
+
+
+def _rod(data: Dataset) -> Rod:
+    rod = data.attributes["identity"]["recipe"]["rod"]
+    return Rod(
+        radius=rod["radius_mm"] * 1e-3,
+        length=rod["length_mm"] * 1e-3,
+        tip=rod["tip"],
+        edge_radius=rod["edge_radius_mm"] * 1e-3,
+    )
+
+
+def _mesh(data: Dataset, index: int) -> Mesh:
+    recipe = data.attributes["identity"]["recipe"]
+    element = data.attributes["identity"].get("element")
+    if element != "hex20":
+        raise NotCheckedError(f"its elements are {element}, not hex20")
+    inclusion = data.inclusion(int(data.table["poke_geometry"][index]))
+    width, length, height = (side * 1e-3 for side in recipe["block_mm"])
+    site, direction = data.table["site"][index], data.table["direction"][index]
+    return poke_mesh(
+        block=Block(size=(width, length, height), inclusion=inclusion),
+        site=(float(site[0]), float(site[1])),
+        direction=(float(direction[0]), float(direction[1]), float(direction[2])),
+        rod=_rod(data),
+        refinement=recipe["refinement"],
+    )
+
+
+def _material(data: Dataset, index: int) -> Material:
+    level = data.levels[int(data.table["poke_softness"][index])]
+    stated = data.attributes["identity"]["materials"][level]
+    beside = stated.keys() - {"law", "parameters", "density", "stiffness", "effects"}
+    if beside:
+        raise NotCheckedError(f"its material has {', '.join(sorted(beside))} beside its law")
+    parameters = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in stated["parameters"].items()
+    }
+    return Material(law=stated["law"], parameters=parameters, density=stated["density"])

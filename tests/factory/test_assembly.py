@@ -1,0 +1,139 @@
+"""Stored frames as equilibria, by an assembly that shares no code with the solver's."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from factory import _assembly, _build
+from factory._assembly import NotCheckedError, check_assembly, check_poke, nodal_forces
+from factory._build import build_dataset
+from factory._execution import run_poke
+from factory.plan import make_plan
+from factory.reader import Dataset, PokeData, open_dataset
+from factory.recipe import load_recipe
+from factory.verify import app
+from tests.factory.conftest import TINY, run_app
+from tisim import Block, Rod
+from tisim.discretisation.body import Discretisation, DiscretisedBody
+from tisim.inclusions.sphere import SphereInclusion
+from tisim.mesh.indentation import poke_mesh
+
+Change = Callable[[PokeData], PokeData]
+
+COARSE = (
+    TINY.replace("depth_mm: 30", "depth_mm: 2")
+    .replace("own_sites: 2", "own_sites: 1")
+    .replace("softness: [S0, S1]", "softness: [S0]\nrefinement: 0.5")
+)
+
+
+@pytest.fixture(scope="module")
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One poke to 2 mm by the solver itself."""
+    folder = tmp_path_factory.mktemp("assembly")
+    (folder / "coarse.yaml").write_text(COARSE)
+    plan = make_plan(load_recipe(folder / "coarse.yaml"), "ogden")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_build, "run_local", lambda pokes, **_: (run_poke(poke) for poke in pokes))
+        build_dataset(plan, folder / "store.zarr", workers=1)
+    return folder / "store.zarr"
+
+
+@pytest.mark.parametrize("law", ["ogden", "stable-neo-hookean", "st-venant-kirchhoff", "neo-hookean"])
+def test_nodal_forces_are_the_solvers(law: str) -> None:
+    from factory.materials import load_card
+
+    material = load_card("S0.5").for_law(law)
+    mesh = poke_mesh(
+        block=Block(
+            size=(0.1, 0.1, 0.032), inclusion=SphereInclusion(radius=0.009, centre=(0.012, 0.0, 0.007))
+        ),
+        site=(0.0, 0.0),
+        rod=Rod(radius=2.5e-3, length=0.04, tip="flat", edge_radius=1e-3),
+        refinement=0.5,
+    )
+    random = np.random.default_rng(4)
+    shear = np.eye(3) + 0.15 * random.uniform(-1, 1, (3, 3))
+    x = mesh.nodes @ shear.T + 2e-5 * random.standard_normal(mesh.nodes.shape)
+    body = DiscretisedBody(Discretisation.build(mesh, mesh.node_sets["base"]), material)
+    expected, least = body.internal_forces(x)
+    assert least > 0.3
+    error = np.abs(nodal_forces(mesh, material, x) - expected).max()
+    assert error < 1e-9 * np.abs(expected).max()
+
+
+def test_a_simulated_poke_is_an_equilibrium(simulated: Path) -> None:
+    found = check_poke(open_dataset(simulated), 0)
+    assert len(found) == 2
+    tolerance = 5e-4  # the solver's
+    assert [frame.faults(tolerance) for frame in found] == [[], []]
+    assert max(frame.free for frame in found) < tolerance
+
+
+def _lifted(poke: PokeData) -> PokeData:
+    """A corner of the top a hundredth of a millimetre higher in the second frame."""
+    surface = poke.surface.copy()
+    surface[1, np.argmax(poke.surface_rest @ [1.0, 1.0, 10.0])] += [0.0, 0.0, 1e-5]
+    return dataclasses.replace(poke, surface=surface)
+
+
+@pytest.mark.parametrize(
+    ("change", "frames", "fault"),
+    [
+        (_lifted, [1], "forces on the free surface"),
+        (lambda p: dataclasses.replace(p, rod_force=1.02 * p.rod_force), [0, 1], "less the rod's force"),
+        (lambda p: dataclasses.replace(p, base_force=0.98 * p.base_force), [0, 1], "less the base's force"),
+        (
+            lambda p: dataclasses.replace(p, rod_tip=p.rod_tip + 2e-3 * np.eye(3)[2]),
+            [0, 1],
+            "on the free surface",
+        ),
+    ],
+)
+def test_what_is_no_equilibrium_is_a_fault(
+    simulated: Path, monkeypatch: pytest.MonkeyPatch, change: Change, frames: list[int], fault: str
+) -> None:
+    whole = Dataset.poke
+    monkeypatch.setattr(Dataset, "poke", lambda data, index: change(whole(data, index)))
+    found = check_poke(open_dataset(simulated), 0)
+    assert [f.frame for f in found if any(fault in text for text in f.faults(5e-4))] == frames
+
+
+def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
+    simulated: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data = open_dataset(simulated)
+    whole = _assembly.poke_mesh
+    with monkeypatch.context() as patch:
+        patch.setattr(_assembly, "poke_mesh", lambda **k: whole(**{**k, "refinement": 0.7}))
+        with pytest.raises(NotCheckedError, match="not the one that this version of tisim makes"):
+            check_poke(data, 0)
+    stated = data.attributes["identity"]["materials"]["S0"]
+    monkeypatch.setitem(stated, "viscosity", {"kind": "prony"})
+    with pytest.raises(NotCheckedError, match="has viscosity beside its law"):
+        check_poke(data, 0)
+
+
+def test_the_command_counts_what_it_checked(simulated: Path) -> None:
+    done = run_app(app, simulated, "--assembly", "--pokes", 1, "--workers", 1)
+    assert done.exit_code == 0, done.output
+    assert "1 poke, 2 frames: no fault" in done.output
+    assert "equilibrium by assembly of 1 poke, 2 frames: 0 faults" in done.output
+    refused = run_app(app, simulated, "--pokes", 1)
+    assert refused.exit_code == 2
+    assert "--pokes and --workers: expected with --assembly" in refused.output
+
+
+def test_pokes_that_cannot_be_checked_are_listed(finished_store: Path) -> None:
+    """The stand-in's meshes are not tisim's."""
+    found = check_assembly(open_dataset(finished_store), pokes=2, workers=1)
+    assert (found.pokes, found.frames, found.faults, found.largest) == (0, 0, [], None)
+    assert len(found.not_checked) == 2
+    done = run_app(app, finished_store, "--assembly", "--pokes", 1, "--workers", 1)
+    assert done.exit_code == 1
+    assert "poke 0 is not checked: its mesh is not the one" in done.output
