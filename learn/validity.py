@@ -248,6 +248,28 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
     return Domain(ranges=ranges, kinds=known, law=store.law, proportional=proportional)
 
 
+def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
+    """How far frames of a store lie outside a domain (`Domain.distance`), (f,).
+
+    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside.
+    """
+    found = np.empty(len(poke))
+    for index in np.unique(poke):
+        interior = interior_of(store, store.profile[int(store.geometry[index])])
+        kind = shape_kind(store, store.shapes[store.shape[index]])
+        for frame in np.flatnonzero(poke == index):
+            values = poke_values(
+                store,
+                interior,
+                start=store.path_start[index],
+                direction=store.direction[index],
+                depth=float(depth[frame]),
+                modulus=float(store.modulus[index]),
+            )
+            found[frame] = domain.distance(values, kind)
+    return found
+
+
 class Interior(NamedTuple):
     """What of an interior the quantities of a poke depend on.
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
 from learn.data import MemoryDataset, Split, Store, split_of
@@ -34,10 +36,15 @@ from learn.metrics import METRICS, Metric, Predictions
 from learn.models import Ensemble, pokes_of, scene_of
 from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run
+from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
 CLOUD_SEEDS = 3  # clouds of each size: one cloud has a single point near the tip
 _CLOUD_POKES = 6
+DEPTH_BAND_MM = 5.0
+# of the distance outside what was trained, in widths of its ranges
+DISTANCE_BANDS = (0.0, 0.1, 0.3, 1.0, np.inf)
+Floats = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 
@@ -70,6 +77,45 @@ def by_softness(predictions: Predictions) -> dict[str, Row]:
     names = sorted({str(s) for s in predictions.softness})
     rows = {name: summarise(predictions.where(predictions.softness == name)) for name in names}
     return {**rows, "all": summarise(predictions)}
+
+
+def by_depth(predictions: Predictions) -> dict[str, Row]:
+    """The same for bands of depth of `DEPTH_BAND_MM`, those that have frames."""
+    band = np.ceil(predictions.depth * 1e3 / DEPTH_BAND_MM - 1e-6).astype(int)
+    return {
+        f"{DEPTH_BAND_MM * (k - 1):g} to {DEPTH_BAND_MM * k:g} mm": summarise(predictions.where(band == k))
+        for k in np.unique(band).tolist()
+    }
+
+
+def by_distance(
+    predictions: Predictions, distance: Floats, intervals: Intervals | None
+) -> dict[str, Outside]:
+    """Frames inside what was trained, and outside in bands of `DISTANCE_BANDS`; those that there are.
+
+    distance: of the frames, (f,).
+    """
+    bands = {"inside": distance == 0.0}
+    for low, high in itertools.pairwise(DISTANCE_BANDS):
+        name = f"{low:g} to {high:g}" if np.isfinite(high) else f"beyond {low:g}"
+        bands[name] = (distance > low) & (distance <= high)
+    return {
+        name: _outside(predictions.where(mine), distance[mine], intervals)
+        for name, mine in bands.items()
+        if mine.any()
+    }
+
+
+def _outside(predictions: Predictions, distance: Floats, intervals: Intervals | None) -> Outside:
+    return Outside(
+        frames=len(distance),
+        pokes=predictions.pokes,
+        distance=float(distance.mean()),
+        mean_mm=float(predictions.distance_mm.mean()),
+        force=float(np.abs(predictions.force_predicted / predictions.force - 1.0).mean()),
+        calibrated=None if intervals is None else coverage(intervals, predictions),
+        widened=None if intervals is None else coverage(intervals, predictions, distance=distance),
+    )
 
 
 def over_folds(folds: list[Row]) -> Row:
@@ -128,6 +174,28 @@ class Covered:
     radius_mm: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class Outside:
+    """Frames of another dataset by how far they lie outside what was trained.
+
+    Attributes
+    ----------
+    frames, pokes : how many.
+    distance : mean (`learn.validity.Domain.distance`).
+    mean_mm, force : mean distance error, and mean error of the force relative to the true one.
+    calibrated, widened : coverage of the intervals as inside, and of those that widen with the distance; None
+        where the run has no intervals.
+    """
+
+    frames: int
+    pokes: int
+    distance: float
+    mean_mm: float
+    force: float
+    calibrated: Coverage | None
+    widened: Coverage | None
+
+
 @dataclass(eq=False, kw_only=True)
 class Evaluation:
     """Results of `evaluate`.
@@ -143,7 +211,9 @@ class Evaluation:
     no_intervals : by run, the sentence that says why it has none.
     intervals : of each run (or ensemble): those across folds where there are any.
     clouds : metrics by point cloud; interpolation_mm: error of their truth alone.
+    depths : metrics by model and band of depth, one entry a fold.
     deeper : metrics up to and beyond the depth that was trained on.
+    outside : by run and distance outside what was trained, on another dataset than that.
     predictions : of the first run, for pictures.
     """
 
@@ -161,7 +231,9 @@ class Evaluation:
     intervals: list[tuple[Run, Intervals]] = field(default_factory=list)
     clouds: dict[str, Row] = field(default_factory=dict)
     interpolation_mm: float = float("nan")
+    depths: dict[str, list[Row]] = field(default_factory=dict)
     deeper: dict[str, Row] = field(default_factory=dict)
+    outside: dict[str, Outside] = field(default_factory=dict)
     predictions: Predictions | None = None
 
     @property
@@ -213,6 +285,8 @@ def evaluate(
             found.pokes += predictions.pokes
         if found.predictions is None:
             found.predictions = predictions
+        for band, row in by_depth(predictions).items():
+            found.depths.setdefault(f"{name}, {band}", []).append(row)
         predicted.append(Predicted(run, name, predictions))
         _look_closer(found, run, name, split, predictions, clouds=clouds and not found.clouds)
         key = _part(run.recipe)
@@ -301,6 +375,10 @@ def _look_closer(
     if intervals is not None:
         found.intervals.append((run, intervals))
         found.covered[name] = _covered(intervals, predictions)
+    if not own and run.domain is not None:
+        distance = frame_distances(run.domain, store, predictions.poke, predictions.depth)
+        for band, one in by_distance(predictions, distance, intervals).items():
+            found.outside[f"{name}, {band}"] = one
     if run.recipe.train_depth_mm is not None:
         limit = run.recipe.train_depth_mm * 1e-3
         found.deeper[f"{name}, to {run.recipe.train_depth_mm:g} mm"] = summarise(

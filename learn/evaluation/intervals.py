@@ -19,7 +19,6 @@ Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -67,22 +66,22 @@ class Intervals:
     force_scale: float
     force: float
 
-    def radius_mm(self, predictions: Predictions, *, distance: float = 0.0) -> Floats:
+    def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
 
-        distance: how far the pokes are outside what was trained (`learn.validity.Domain.distance`); far
-        outside the radius is as large as the predicted displacement itself.
+        distance: how far the frames are outside what was trained, one number or (f,)
+        (`learn.validity.Domain.distance`); far outside the radius is as large as the predicted displacement.
         """
         radius = np.array(self.factors)[_ring(predictions)] * _scale_mm(predictions, np.array(self.scale))
-        if distance > 0.0:
+        if np.any(np.asarray(distance) > 0.0):
             size = 1e3 * np.linalg.norm(predictions.predicted, axis=2)
-            radius = np.hypot(radius, math.sqrt(_unknown(distance)) * size)
+            radius = np.hypot(radius, np.sqrt(_unknown(distance))[..., None] * size)
         return np.asarray(radius)
 
-    def force_log(self, predictions: Predictions, *, distance: float = 0.0) -> Floats:
+    def force_log(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """The true force lies within predicted e^-x and predicted e^x, (f,); distance: as above."""
         inside = self.force * np.hypot(self.force_scale, predictions.force_spread)
-        return np.asarray(np.hypot(inside, math.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
+        return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -135,14 +134,16 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
     )
 
 
-def coverage(intervals: Intervals, predictions: Predictions) -> Coverage:
-    """Coverage of the intervals on these predictions."""
-    inside = predictions.distance_mm <= intervals.radius_mm(predictions)
+def coverage(intervals: Intervals, predictions: Predictions, *, distance: float | Floats = 0.0) -> Coverage:
+    """Coverage of the intervals on these predictions; distance: outside what was trained, as `radius_mm`."""
+    inside = predictions.distance_mm <= intervals.radius_mm(predictions, distance=distance)
     ring = _ring(predictions)
     each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
     return Coverage(
         points=float(inside.mean()),
-        force=float((_force_error(predictions) <= intervals.force_log(predictions)).mean()),
+        force=float(
+            (_force_error(predictions) <= intervals.force_log(predictions, distance=distance)).mean()
+        ),
         rings=[
             float(inside[ring == k].mean()) if (ring == k).any() else float("nan")
             for k in range(len(RING_EDGES_MM) - 1)
@@ -167,13 +168,13 @@ def rank_correlation(intervals: Intervals, predictions: Predictions) -> float:
     return float(np.corrcoef(radius, error)[0, 1])
 
 
-def _unknown(distance: float) -> float:
+def _unknown(distance: float | Floats) -> Floats:
     """Share of what is not known of an answer outside the training, beside an answer of nothing known.
 
     1 - exp(-(d / LENGTH)^2): the variance of a Gaussian process with a squared exponential covariance goes
     to its prior in this way with the distance from its data (Rasmussen and Williams 2006, eqs 2.26, 4.9).
     """
-    return -math.expm1(-((distance / LENGTH) ** 2))
+    return np.asarray(-np.expm1(-((np.asarray(distance) / LENGTH) ** 2)))
 
 
 def _ring(predictions: Predictions) -> NDArray[np.int64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+from dataclasses import asdict
 from itertools import pairwise
 from math import inf, isfinite
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any
 
 import jinja2
 
-from learn.evaluation.evaluation import Covered, Evaluation, Row, Value, parts_of
+from learn.evaluation.evaluation import Covered, Evaluation, Row, Value, over_folds, parts_of
 from learn.evaluation.pictures import draw_forces, draw_learning, draw_poke, encoded, ranked_pokes
 from learn.metrics import METRICS, RING_EDGES_MM
 from learn.training import read_log
@@ -179,6 +180,20 @@ def interval_table(found: Evaluation) -> Table:
     return heads, rows
 
 
+def outside_table(found: Evaluation) -> Table:
+    """Errors and coverage by distance outside what was trained."""
+    heads = ["", "frames", "pokes", "mean distance", "mean [mm]", "force [%]"]
+    heads += [f"{what} covered{how}" for how in (", as inside", ", widened") for what in ("points", "forces")]
+    rows = []
+    for name, one in found.outside.items():
+        row = [name, str(one.frames), str(one.pokes), f"{one.distance:.2f}", f"{one.mean_mm:.3f}"]
+        row.append(f"{100 * one.force:.1f}")
+        for covered in (one.calibrated, one.widened):
+            row += ["-", "-"] if covered is None else [f"{covered.points:.1%}", f"{covered.force:.1%}"]
+        rows.append(row)
+    return heads, rows
+
+
 def no_intervals(found: Evaluation) -> list[str]:
     """A sentence for each run without intervals: why it has none."""
     return [f"{name}: {reason}." for name, reason in found.no_intervals.items()]
@@ -220,6 +235,16 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
             f"{found.interpolation_mm:.4f} mm off the grid's stored values."
         )
         result["Other clouds"] = full_table(found.clouds, "points"), [note]
+    if found.depths:
+        rows = {name: over_folds(folds) for name, folds in found.depths.items()}
+        note = "Test frames by depth" + (", means over folds." if len(found.runs) > 1 else ".")
+        result["By depth"] = full_table(rows, "model, depth"), [note]
+    if found.outside:
+        note = (
+            "Frames by how far they lie outside what was trained, in widths of the trained ranges "
+            "(docs/explanation/learning.md, Domain of validity). Widened: as learn.predict states them there."
+        )
+        result["Outside what was trained"] = outside_table(found), [note]
     if found.deeper:
         note = "Test frames up to and beyond the depth that was trained on."
         result["Deeper than trained"] = full_table(found.deeper, "frames"), [note]
@@ -296,6 +321,8 @@ def as_json(found: Evaluation) -> dict[str, Any]:
         },
         "no_intervals": found.no_intervals,
         "clouds": {n: plain(v) for n, v in found.clouds.items()},
+        "depths": {n: plain(over_folds(v)) for n, v in found.depths.items()},
+        "outside": {n: asdict(one) for n, one in found.outside.items()},
         "deeper": {n: plain(v) for n, v in found.deeper.items()},
         "cloud_interpolation_mm": found.interpolation_mm,
     }

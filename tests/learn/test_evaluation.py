@@ -282,6 +282,11 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     tables = json.loads((tmp_path / "out" / "tables.json").read_text())
     assert list(tables["tables"]) == ["invariant-gnn"]
     assert list(tables["intervals"]) == ["invariant-gnn, fold 0"]
+    # its training part has one interior
+    assert list(tables["outside"]) == ["invariant-gnn, fold 0, 0.3 to 1", "invariant-gnn, fold 0, beyond 1"]
+    frames = sum(one["frames"] for one in tables["outside"].values())
+    assert frames == tables["test_frames"]
+    assert "Outside what was trained" in (tmp_path / "out" / "report.html").read_text()
     assert (run / "intervals.json").read_bytes() == kept
     store, loaded = open_store(other), load_run(run)
     tested = np.unique(store.shape[store.frame_poke[parts_of(store, loaded).test]])

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from learn.errors import InputError
+from learn.evaluation.evaluation import by_distance
 from learn.evaluation.intervals import coverage, fit_intervals, pooled_quantile, rank_correlation
-from learn.metrics import Predictions
+from learn.metrics import Predictions, join_predictions
 
 
 def _noisy(pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0) -> Predictions:
@@ -107,3 +108,36 @@ def test_a_worse_model_is_not_covered() -> None:
 def test_one_poke_is_not_enough() -> None:
     with pytest.raises(InputError, match="at least two validation pokes"):
         fit_intervals(_noisy(1, 0))
+
+
+def test_each_frame_is_widened_by_its_own_distance() -> None:
+    predictions = _noisy(4, seed=3)
+    intervals = fit_intervals(_noisy(30, seed=1))
+    distance = np.linspace(0.0, 2.0, len(predictions.depth))
+    radius = intervals.radius_mm(predictions, distance=distance)
+    factor = intervals.force_log(predictions, distance=distance)
+    for frame in (0, 3, len(distance) - 1):
+        alone = predictions.where(np.arange(len(distance)) == frame)
+        assert np.array_equal(radius[frame], intervals.radius_mm(alone, distance=distance[frame])[0])
+        assert factor[frame] == intervals.force_log(alone, distance=float(distance[frame]))[0]
+    assert np.array_equal(radius[0], intervals.radius_mm(predictions)[0])
+    assert (np.diff(factor) > 0.0).all()
+
+
+def test_frames_are_told_apart_by_how_far_outside_they_are() -> None:
+    """Errors that grow outside are covered by intervals that widen, not by those of the inside."""
+    intervals = fit_intervals(_noisy(40, seed=1))
+    within, beyond = _noisy(20, seed=2), _noisy(20, seed=5, more=12.0)
+    predictions = join_predictions([within, beyond])
+    distance = np.concatenate([np.zeros(len(within.depth)), np.full(len(beyond.depth), 0.5)])
+    found = by_distance(predictions, distance, intervals)
+    assert list(found) == ["inside", "0.3 to 1"]
+    inside, outside = found["inside"], found["0.3 to 1"]
+    assert inside.calibrated == inside.widened is not None
+    assert outside.calibrated is not None
+    assert outside.widened is not None
+    assert inside.calibrated.points > 0.85
+    # near the tip; far away these errors are larger than the displacement
+    assert outside.calibrated.rings[0] < 0.5 < 0.9 < outside.widened.rings[0]
+    assert outside.mean_mm > 8 * inside.mean_mm
+    assert [one.frames for one in found.values()] == [len(within.depth), len(beyond.depth)]
