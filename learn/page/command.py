@@ -21,6 +21,12 @@ Only some of the dataset's inclusions to choose from, and more simulated pokes t
 
   python -m learn.page runs/quick --shape cube-18 --shape sphere-9 --pokes 8
 
+The run's own part of the page alone, a zip of a megabyte or two, and the page from it:
+
+  python -m learn.page runs/quick --parts poke.zip
+
+  python -m learn.page poke.zip --out poke.html
+
 The file opens from disk in any browser with WebAssembly and WebGL 2: no server, no network.
 
 Needs the packages of 'tisim\\[export]'.
@@ -31,7 +37,12 @@ Exit codes: 0 written, 2 bad input, or a page of more than 10 MB gzipped.
 
 @all_commands.command(epilog=EXAMPLES)
 def page(
-    run: Annotated[Path, typer.Argument(help="Folder of a run of invariant-gnn or invariant-gnn-small.")],
+    run: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder of a run of invariant-gnn or invariant-gnn-small, or the zip of --parts."
+        ),
+    ],
     dataset: Dataset = None,
     shape: Annotated[
         list[str] | None,
@@ -41,17 +52,32 @@ def page(
     ] = None,
     pokes: Annotated[int, typer.Option(min=0, max=100, help="Simulated pokes of the test part.")] = 4,
     out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("poke.html"),
+    parts: Annotated[
+        Path | None,
+        typer.Option(help="Write the zip of the run's own part, in place of the page.", show_default=False),
+    ] = None,
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
     """Write a run as one HTML file that opens from disk: poke the block with the mouse."""
     console = make_console()
     with plain_errors():
-        from learn.page.document import write_page
+        from learn.errors import InputError
+        from learn.page.document import Parts, parts_of
         from learn.predictor import load
 
         load_plugins(plugin or [])
-        made = write_page(load(run, dataset=dataset), out, shapes=shape, pokes=pokes)
+        if run.suffix == ".zip":
+            if parts is not None or shape or dataset is not None:
+                raise InputError(f"{run}: expected no --parts, --shape or --dataset: its content is settled")
+            own = Parts.load(run)
+        else:
+            own = parts_of(load(run, dataset=dataset), shapes=shape, pokes=pokes)
+        if parts is not None:
+            own.save(parts)
+            console.print(f"{parts}: {parts.stat().st_size / 1e6:.1f} MB")
+            return
+        made = own.write(out)
         console.print(
             f"{made.path}: {made.size / 1e6:.1f} MB, {made.gzipped / 1e6:.1f} MB gzipped; {made.interiors} "
             f"interiors, {made.pokes} simulated pokes of the test part"

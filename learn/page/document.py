@@ -1,5 +1,7 @@
 """One HTML file from a page's content: bundled script, network, arrays and onnxruntime, all of it inside.
 
+What is the run's own (`Parts`) is a tenth of it, and can be kept to make the page from later.
+
 The script and onnxruntime's WebAssembly come from `bundle/`, made by `js/build.mjs` and shipped with the
 package. What is large is gzipped and in base64; the browser unpacks it.
 """
@@ -8,9 +10,12 @@ from __future__ import annotations
 
 import base64
 import gzip
+import io
 import json
 import lzma
 import tempfile
+import zipfile
+import zlib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -19,7 +24,9 @@ from typing import Any
 import numpy as np
 import torch
 from jinja2 import Environment, StrictUndefined
+from pydantic import BaseModel, ConfigDict, ValidationError
 
+from learn._yaml import first_fault
 from learn.errors import InputError
 from learn.page.content import Content, content_of
 from learn.page.graph import write_page_graph
@@ -27,6 +34,7 @@ from learn.predictor import Predictor
 from learn.training.run_folder import write_whole
 
 LARGEST = 10e6  # bytes of the file, gzipped
+_MEMBERS = ("page.json", "arrays.bin", "poke.onnx")
 _SLIDERS = {
     "depth": "Depth",
     "x": "Site x",
@@ -48,21 +56,88 @@ class Written:
     pokes: int
 
 
-def write_page(
-    predictor: Predictor, path: Path, *, shapes: list[str] | None = None, pokes: int = 4
-) -> Written:
-    """Write a run's live page.
+class _Stated(BaseModel):
+    """What a page says in words, and its description for the script: `page.json` of the parts' zip."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    title: str
+    lead: str
+    notes: tuple[str, ...]
+    about: dict[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parts:
+    """All of a page that is its run's own: with the script and onnxruntime of the package it is the page.
+
+    Attributes
+    ----------
+    title, lead, notes : in words.
+    about : description for the script, with the place of each array.
+    arrays, graph : bytes of the arrays, and of the network (ONNX).
+    """
+
+    title: str
+    lead: str
+    notes: tuple[str, ...]
+    about: dict[str, Any]
+    arrays: bytes
+    graph: bytes
+
+    def save(self, path: Path) -> None:
+        """Write them as one zip, of a megabyte or two, that `load` reads."""
+        stated = _Stated(title=self.title, lead=self.lead, notes=self.notes, about=self.about)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        whole = io.BytesIO()
+        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as file:
+            members = stated.model_dump_json(indent=1).encode(), self.arrays, self.graph
+            for name, content in zip(_MEMBERS, members, strict=True):
+                file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), content, zipfile.ZIP_DEFLATED)
+        write_whole(path, whole.getvalue())
+
+    @staticmethod
+    def load(path: Path) -> Parts:
+        """From the zip that `save` wrote; InputError where it is no such file."""
+        try:
+            with zipfile.ZipFile(path) as file:
+                text, arrays, graph = (file.read(name) for name in _MEMBERS)
+            stated = _Stated.model_validate_json(text)
+        except ValidationError as error:
+            raise InputError(f"{path}: page.json: {first_fault(error)}") from None
+        except (OSError, KeyError, zipfile.BadZipFile, zlib.error, EOFError) as error:
+            raise InputError(
+                f"{path}: expected the parts of a page, as learn.page --parts writes them ({error})"
+            ) from None
+        return Parts(**dict(stated), arrays=arrays, graph=graph)
+
+    def write(self, path: Path) -> Written:
+        """Write the page; InputError where it is larger than `LARGEST`."""
+        text = _html(self).encode()
+        gzipped = len(gzip.compress(text, 6))
+        interiors, shown = self.about["interiors"], self.about["simulated"]
+        if gzipped > LARGEST:
+            raise InputError(
+                f"{path}: {gzipped / 1e6:.1f} MB gzipped, more than {LARGEST / 1e6:.0f}: choose fewer of the "
+                f"{len(interiors) - 1} inclusions with --shape, or fewer --pokes"
+            )
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, text)
+        return Written(path=path, size=len(text), gzipped=gzipped, interiors=len(interiors), pokes=len(shown))
+
+
+def parts_of(predictor: Predictor, *, shapes: list[str] | None = None, pokes: int = 4) -> Parts:
+    """The parts of a run's page.
 
     Parameters
     ----------
     predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
-    path : of the HTML file.
     shapes, pokes : see `learn.page.content.content_of`.
 
     Raises
     ------
     InputError
-        A model or a shape that has no page, a package that is missing, or a page larger than `LARGEST`.
+        A model or a shape that has no page, or a package that is missing.
     """
     content = content_of(predictor, shapes=shapes, pokes=pokes)
     with tempfile.TemporaryDirectory() as folder:
@@ -70,47 +145,51 @@ def write_page(
         write_page_graph(content.graph, content.inputs[0], graph)
         network = graph.read_bytes()
     content.about["halo"] = _halo(content)
-    text = _html(predictor, content, network).encode()
-    gzipped = len(gzip.compress(text, 6))
-    if gzipped > LARGEST:
-        raise InputError(
-            f"{path}: {gzipped / 1e6:.1f} MB gzipped, more than {LARGEST / 1e6:.0f}: choose fewer of the "
-            f"{len(content.inputs) - 1} inclusions with --shape, or fewer --pokes"
-        )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, text)
-    shown = content.about["simulated"]
-    return Written(
-        path=path, size=len(text), gzipped=gzipped, interiors=len(content.inputs), pokes=len(shown)
+    about, arrays = content.packed()
+    return Parts(
+        title="Poke the block",
+        lead=_lead(predictor),
+        notes=tuple(_notes(predictor, content)),
+        about=about,
+        arrays=arrays,
+        graph=network,
     )
 
 
-def _html(predictor: Predictor, content: Content, network: bytes) -> str:
+def write_page(
+    predictor: Predictor, path: Path, *, shapes: list[str] | None = None, pokes: int = 4
+) -> Written:
+    """Write a run's live page: the `parts_of` it, written to an HTML file."""
+    return parts_of(predictor, shapes=shapes, pokes=pokes).write(path)
+
+
+def _html(page: Parts) -> str:
     here = files("learn.page")
     bundle, template = here / "bundle", here / "template"
-    about, arrays = content.packed()
     wasm = lzma.decompress((bundle / "onnxruntime.wasm.xz").read_bytes())
     parts = {
-        "about": json.dumps(about, allow_nan=False).encode(),
-        "arrays": arrays,
-        "graph": network,
+        "about": json.dumps(page.about, allow_nan=False).encode(),
+        "arrays": page.arrays,
+        "graph": page.graph,
         "wasm": wasm,
     }
     script = (bundle / "page.js").read_text(encoding="utf-8")
     if "</script" in script.lower():
         raise InputError("learn/page/bundle/page.js: ends its own element; build it again")
-    halo = about["halo"]
-    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    halo = page.about["halo"]
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     source = (template / "page.html").read_text(encoding="utf-8")
-    return page.from_string(source).render(
-        title="Poke the block",
-        lead=_lead(predictor),
+    return environment.from_string(source).render(
+        title=page.title,
+        lead=page.lead,
         style=(template / "page.css").read_text(encoding="utf-8"),
         script=script,
         sliders=[{"key": key, "label": label} for key, label in _SLIDERS.items()],
         halo=halo and [f"{halo['low']:g}", f"{halo['high']:g}"],
-        checks=bool(about["checks"]),
-        about=_about(predictor, content),
+        checks=bool(page.about["checks"]),
+        about=page.notes,
         parts=[(name, _packed(raw)) for name, raw in parts.items()],
     )
 
@@ -128,7 +207,7 @@ def _lead(predictor: Predictor) -> str:
     )
 
 
-def _about(predictor: Predictor, content: Content) -> list[str]:
+def _notes(predictor: Predictor, content: Content) -> list[str]:
     run, store = predictor.run, predictor.store
     bundle = json.loads((files("learn.page") / "bundle" / "bundle.json").read_text(encoding="utf-8"))
     versions = bundle["versions"]

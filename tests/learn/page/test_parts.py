@@ -1,0 +1,70 @@
+"""The run's own part of a page: kept as a zip, from which the same page is made later."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from learn.page import command
+from learn.page.document import Parts, parts_of
+from learn.predictor import Predictor
+from tests.learn.commands import call, refused
+
+NEEDED = ("onnx", "onnxscript", "onnxruntime")
+pytestmark = pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in NEEDED),
+    reason=f"one of {', '.join(NEEDED)} is not installed",
+)
+
+
+@pytest.fixture(scope="module")
+def saved(predictor: Predictor, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("parts") / "poke.zip"
+    done = call(command.app, predictor.run.folder, "--shape", "shape-0", "--pokes", 1, "--parts", path)
+    assert done.exit_code == 0, done.output
+    return path
+
+
+def test_the_page_from_the_zip_is_the_page_from_the_run(
+    predictor: Predictor, saved: Path, tmp_path: Path
+) -> None:
+    done = call(command.app, saved, "--out", tmp_path / "later.html")
+    assert done.exit_code == 0, done.output
+    assert "2 interiors, 1 simulated pokes" in done.output
+    now = parts_of(predictor, shapes=["shape-0"], pokes=1).write(tmp_path / "now.html")
+    assert now.path.read_bytes() == (tmp_path / "later.html").read_bytes()
+    assert saved.stat().st_size < 0.3 * now.gzipped
+    again = tmp_path / "again.zip"
+    Parts.load(saved).save(again)
+    assert again.read_bytes() == saved.read_bytes()
+
+
+def _without(saved: Path, path: Path, name: str, content: bytes | None) -> Path:
+    """The zip with another content of one member, or without it."""
+    with zipfile.ZipFile(saved) as old, zipfile.ZipFile(path, "w") as new:
+        for member in old.namelist():
+            found = old.read(member) if member != name else content
+            if found is not None:
+                new.writestr(member, found)
+    return path
+
+
+def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None:
+    with zipfile.ZipFile(saved) as file:
+        stated = json.loads(file.read("page.json"))
+    (tmp_path / "text.zip").write_text("no zip")
+    cases = {
+        tmp_path / "none.zip": "expected the parts of a page",
+        tmp_path / "text.zip": "expected the parts of a page",
+        _without(saved, tmp_path / "less.zip", "poke.onnx", None): "expected the parts of a page",
+        _without(saved, tmp_path / "more.zip", "page.json", json.dumps({**stated, "x": 1}).encode()): "key x",
+        _without(saved, tmp_path / "bad.zip", "page.json", b"{"): "page.json",
+    }
+    for path, sentence in cases.items():
+        refused(call(command.app, path, "--out", tmp_path / "out.html"), str(path), sentence)
+    refused(call(command.app, saved, "--shape", "shape-0"), "its content is settled")
+    assert not (tmp_path / "out.html").exists()
