@@ -28,6 +28,7 @@ from factory._schema import (
     FIRST_DIMENSION,
     FIXED_DIMENSION,
     MESSAGE_BYTES,
+    NOT_SIMULATED,
     STORED_KINDS,
     STORED_LAWS,
     Rows,
@@ -282,7 +283,7 @@ def _poke_arrays(
             arrays["force_factor"][i] = poke.force_factor
         if scene.course is not None:
             arrays["course_time"][i], arrays["course_depth"][i] = scene.course.times, scene.course.values
-        text = errors.get(i, "").encode()
+        text = errors.get(i, NOT_SIMULATED).encode()
         if i in done:
             with staging.opened(i) as result:
                 arrays["done"][i] = True

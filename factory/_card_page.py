@@ -96,6 +96,7 @@ def _holds(facts: Facts) -> Iterator[str]:
     each = protocol["shared_sites"] + protocol["own_sites"]
     yield "## What it holds"
     failed = f", of which {len(summary.failed)} failed" if summary.failed else ""
+    failed += f", of which {summary.waiting} are not simulated yet" if summary.waiting else ""
     yield (
         f"Recipe `{recipe['name']}`: {recipe.get('description', '')}. {len(summary.shapes)} shapes x "
         f"{len(summary.levels)} material levels x {each} contact points = {summary.pokes} pokes{failed}. "

@@ -37,12 +37,15 @@ class Verification:
         Sentences by the name of the check; all checks are there.
     pokes, frames : int
         How many were checked; 0 where the dataset could not be opened.
+    waiting : int
+        Pokes that a partial store lacks.
     """
 
     path: Path
     faults: dict[str, list[str]]
     pokes: int = 0
     frames: int = 0
+    waiting: int = 0
 
     @property
     def total(self) -> int:
@@ -72,8 +75,10 @@ def verify_dataset(path: str | Path) -> Verification:
         return Verification(folder, faults)
     for name, check in CHECKS.items():
         faults[name] = _caught(lambda check=check: check(data))  # type: ignore[misc]
-    frames = 0 if any(faults.values()) else len(data.table["frame_poke"])
-    return Verification(folder, faults, data.n_pokes, frames)
+    if any(faults.values()):
+        return Verification(folder, faults, data.n_pokes)
+    waiting = len(data.waiting)
+    return Verification(folder, faults, data.n_pokes - waiting, len(data.table["frame_poke"]), waiting)
 
 
 def _caught(check: Callable[[], list[str]]) -> list[str]:
@@ -145,8 +150,10 @@ def finite(data: Dataset) -> list[str]:
 def statuses(data: Dataset) -> list[str]:
     """Every poke is done or has an error text, and says why it ended."""
     faults = []
-    table = data.table
+    table, waiting = data.table, set(data.waiting)
     for index in range(data.n_pokes):
+        if index in waiting:
+            continue
         if not table["done"][index]:
             faults.append(f"poke {index}: failed: {data.message(index) or 'without an error text'}")
         elif table["status"][index] >= len(STATUSES):

@@ -19,7 +19,8 @@ from factory.reader import Dataset
 
 MEASURES = ("deepest", "largest_force", "frame_depth", "frame_force")  # the columns of the paper's table
 UNITS = ("mm", "N", "mm", "N")
-FAILED = "failed"  # beside the statuses: a poke that has no result
+# beside the statuses: pokes without a result, and those that a partial store lacks
+FAILED, NOT_YET = "failed", "not simulated yet"
 Pair = tuple[float, float]
 
 
@@ -47,7 +48,7 @@ class Features:
     reached : float or None
         Mean of deepest frame / depth asked for.
     ended : dict of str to int
-        Pokes by why they ended: a status, or "failed".
+        Pokes by why they ended: a status, "failed" or "not simulated yet".
     """
 
     shape: str
@@ -95,7 +96,9 @@ def features(data: Dataset, pokes: Sequence[PokeSummary]) -> list[Features]:
             deepest = np.array([poke.depth.max() for poke in kept])
             wanted = np.array([asked[poke.index] for poke in kept])
             ended = Counter(poke.status for poke in those)
-            ended[FAILED] += int(here.sum()) - len(those)
+            lacking = int(here[list(data.waiting)].sum())
+            ended[NOT_YET] += lacking
+            ended[FAILED] += int(here.sum()) - len(those) - lacking
             found.append(
                 Features(
                     shape=shape,
@@ -120,11 +123,11 @@ def own_solves(data: Dataset) -> NDArray[np.bool_]:
 
 def write_features(rows: Sequence[Features], path: Path) -> None:
     """features.csv: one line a shape and softness."""
-    ends = [*(str(s) for s in STATUSES), FAILED]
+    ends = [*(str(s) for s in STATUSES), FAILED, NOT_YET]
     parts = ("mean", "sd", "min", "max")
     head = ["shape", "softness", "pokes", "solves", "frames"]
     head += [f"deepest_{part}_mm" for part in parts] + [f"largest_force_{part}_N" for part in parts]
-    head += ["reached_fraction", *(f"ended_{name.replace('-', '_')}" for name in ends)]
+    head += ["reached_fraction", *(f"ended_{name.replace('-', '_').replace(' ', '_')}" for name in ends)]
     lines: list[list[Any]] = []
     for row in rows:
         line: list[Any] = [row.shape, row.level, row.pokes, row.solves, row.frames]

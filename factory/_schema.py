@@ -18,6 +18,7 @@ from factory._sampling import LEVELS, SIZE
 # what the first dimension counts; "value" = surface nodes of all frames of all pokes
 Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"]
 MESSAGE_BYTES = 512
+NOT_SIMULATED = "not simulated yet"  # message of the pokes that a partial store lacks
 # Laws and inclusion kinds that every store lists. Another one follows them in the stores that have it,
 # so that a new law or shape changes no other store.
 STORED_LAWS = (*LAWS, "yeoh", "eight-chain")

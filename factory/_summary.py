@@ -58,6 +58,8 @@ class Summary:
         Error text, or damage of the staged result, by index.
     ledger : dict of int to dict
         Wall times by index.
+    waiting : int
+        Pokes that a partial store lacks.
     """
 
     path: Path
@@ -72,6 +74,7 @@ class Summary:
     failed: dict[int, str]
     ledger: dict[int, dict[str, Any]]
     damaged: dict[int, str] = field(default_factory=dict)
+    waiting: int = 0
 
 
 def summarise(path: str | Path) -> Summary:
@@ -91,7 +94,10 @@ def summarise(path: str | Path) -> Summary:
     table, attributes = data.table, data.attributes
     force = np.linalg.norm(table["rod_force"], axis=1)
     done, failed = [], {}
+    waiting = set(data.waiting)
     for i in range(data.n_pokes):
+        if i in waiting:
+            continue
         if not table["done"][i]:
             failed[i] = data.message(i)
             continue
@@ -119,6 +125,7 @@ def summarise(path: str | Path) -> Summary:
         levels=data.levels,
         done=done,
         failed=failed,
+        waiting=len(waiting),
         ledger=read_ledger(data.root / LEDGER),
     )
 

@@ -79,8 +79,12 @@ def _overview(summary: Summary) -> Table:
     from rich.table import Table
 
     table = Table(title=str(summary.path), show_header=False)
-    state = "finished" if summary.finished else "being built, or stopped on the way"
+    state = "being built, or stopped on the way"
+    if summary.finished:
+        state = "partial" if summary.waiting else "finished"
     counts = f"{len(summary.done)} of {summary.pokes} pokes, {len(summary.failed)} failed"
+    if summary.waiting:
+        counts += f", {summary.waiting} not simulated yet"
     if summary.damaged:
         counts += f", {len(summary.damaged)} damaged"
     table.add_row("state", f"{state}: {counts}")

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from factory._course import PHASES
 from factory._input import InputError, describe_os_error, one_line
 from factory._record import STATUSES
-from factory._schema import Spec, specs_of
+from factory._schema import NOT_SIMULATED, Spec, specs_of
 from factory._staging import building_folder
 from factory._store import DamagedError, plain_files, root_attributes
 from factory.plan import FORMAT
@@ -182,6 +182,12 @@ class Dataset:
     def levels(self) -> list[str]:
         """Names of the material levels."""
         return list(self.attributes["softness"])
+
+    @cached_property
+    def waiting(self) -> tuple[int, ...]:
+        """Pokes that a partial store (`factory.build --partial`) lacks."""
+        lacking = np.flatnonzero(~self.table["done"].astype(bool)).tolist()
+        return tuple(index for index in lacking if self.message(index) == NOT_SIMULATED)
 
     def message(self, index: int) -> str:
         """What stopped a poke, or its error."""

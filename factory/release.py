@@ -45,11 +45,14 @@ def main(
             with terminable():
                 released = release_store(dataset, out)
             console = make_console()
-            missing = data.n_pokes - int(data.attributes["pokes_done"])
+            waiting = len(data.waiting)
+            missing = data.n_pokes - int(data.attributes["pokes_done"]) - waiting
             if missing:
                 console.print(
                     f"{dataset}: {missing} of {data.n_pokes} pokes failed; the zip has their errors"
                 )
+            if waiting:
+                console.print(f"{dataset}: {waiting} of {data.n_pokes} pokes are not simulated yet")
             console.print(
                 f"{released.path}: {released.files} files, {size_text(released.size)}, as the manifest says"
             )

@@ -81,7 +81,8 @@ def main(
                 console.print(f"{name}: and {len(faults) - show} more")
         sound = not found.total
         if sound:
-            console.print(f"{counted(found.pokes, 'poke')}, {counted(found.frames, 'frame')}: no fault")
+            more = f"; {counted(found.waiting, 'poke')} not simulated yet" if found.waiting else ""
+            console.print(f"{counted(found.pokes, 'poke')}, {counted(found.frames, 'frame')}: no fault{more}")
         if sound and assembly:
             sound = _assembled(dataset, pokes, workers, plugin or [], show, console)
     if not sound:

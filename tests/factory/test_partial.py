@@ -7,12 +7,16 @@ from pathlib import Path
 import pytest
 
 from factory._build import build_dataset, in_turns
+from factory._features import features
 from factory._input import InputError
 from factory._staging import Staging, building_folder
+from factory._summary import summarise
 from factory.build import app
+from factory.inspect import app as inspect_app
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset
 from factory.recipe import load_recipe
+from factory.verify import app as verify_app
 from tests.factory.conftest import Builder, digest, run_app
 
 
@@ -47,6 +51,22 @@ def test_a_partial_store_without_a_poke_is_refused(plan: Plan, tmp_path: Path) -
     with pytest.raises(InputError, match="--partial: no poke of it is finished yet"):
         build_dataset(plan, tmp_path / "none.zarr", partial=True)
     assert list(tmp_path.glob("none*")) == []
+
+
+def test_what_a_partial_store_lacks_is_no_fault(plan: Plan, stopped: Path) -> None:
+    build_dataset(plan, stopped, partial=True)
+    (lacking,) = open_dataset(stopped).waiting
+    verified = run_app(verify_app, stopped)
+    assert verified.exit_code == 0, verified.output
+    assert "3 pokes" in verified.output
+    assert "no fault; 1 poke not simulated yet" in verified.output
+    shown = " ".join(run_app(inspect_app, stopped).output.split())
+    assert "partial: 3 of 4 pokes, 0 failed, 1 not simulated yet" in shown
+    rows = features(open_dataset(stopped), summarise(stopped).done)
+    assert sum(row.ended.get("not simulated yet", 0) for row in rows) == 1
+    assert sum(row.ended.get("failed", 0) for row in rows) == 0
+    refused = run_app(inspect_app, stopped, "--poke", lacking)
+    assert "Traceback" not in refused.output
 
 
 def test_the_command_says_that_the_store_is_partial(stopped: Path, tiny_file: Path) -> None:

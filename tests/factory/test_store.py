@@ -235,7 +235,7 @@ def test_inspect_shows_how_far_a_build_is(
     plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "b.zarr"
-    monkeypatch.setenv("STANDIN_FAIL", f"{round(plan.pokes[1].scene.site[0] * 1e6)}")
+    monkeypatch.setenv("STANDIN_FAIL", f"{round(plan.pokes[2].scene.site[0] * 1e6)}")
 
     def stop(state: BuildProgress) -> None:
         if state.done == 2:
@@ -246,7 +246,7 @@ def test_inspect_shows_how_far_a_build_is(
     result = run(inspect_app, [str(target)])
     assert result.exit_code == 0, result.output
     assert "2 of 4 pokes, 1 failed" in result.output
-    assert "poke 1 failed: RuntimeError: the stand-in was told to fail" in result.output
+    assert "poke 2 failed: RuntimeError: the stand-in was told to fail" in result.output
     assert "still being built" in run(verify_app, [str(target)]).stderr
 
 
