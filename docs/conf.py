@@ -10,11 +10,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 
 import tisim  # noqa: E402
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 project = "tisim"
 author = "The tisim authors"
@@ -81,3 +85,17 @@ html_theme_options = {
 }
 html_show_sourcelink = False
 html_copy_source = False
+
+
+def setup(app: Sphinx) -> None:
+    """The released surrogate's page is made from its parts, beside the pages."""
+    app.connect("build-finished", _write_live_page)
+
+
+def _write_live_page(app: Sphinx, error: Exception | None) -> None:
+    from learn.page.document import Parts
+
+    if error is None and app.builder.name == "html":
+        Parts.load(ROOT / "docs" / "live" / "released.zip").write(
+            Path(app.outdir) / "docs" / "live" / "poke.html"
+        )
