@@ -40,8 +40,8 @@ LEVEL = 0.9
 LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
 LEAST_FOLDS = 3
 # Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
-# known to a factor of e^FORCE_UNKNOWN = 4. Chosen so that nine tenths are covered on thin covers, the worst of
-# the questions of studies/learning/outside.
+# known to a factor of e^FORCE_UNKNOWN = 4: nine tenths on thin covers, the worst of the questions of
+# studies/learning/outside.
 LENGTH, FORCE_UNKNOWN = 0.5, 1.4
 
 
