@@ -13,7 +13,7 @@ import yaml
 
 from factory import _paper
 from factory._card import Facts, beside_the_paper, size_category, solves
-from factory._cli import duration, size_text
+from factory._cli import counted, duration, size_text
 from factory._features import Features, Spread, measures
 
 _SNIPPET = """```python
@@ -70,8 +70,8 @@ def _head(facts: Facts) -> Iterator[str]:
     yield f"# {_title(facts)}"
     yield (
         "A rod is pushed into blocks of soft tissue with a rigid inclusion: "
-        f"{len(facts.summary.done)} simulated pokes with {_frames(facts)} states in equilibrium, each with "
-        "depth, forces and the deformed surface. "
+        f"{counted(len(facts.summary.done), 'simulated poke')} with {_frames(facts)} states in equilibrium, "
+        "each with depth, forces and the deformed surface. "
         "Made by `python -m factory.card` of tisim from the store itself."
     )
     date = facts.date.isoformat() if facts.date else "not recorded"
@@ -186,8 +186,8 @@ def _reached(facts: Facts) -> Iterator[str]:
     yield _table(("material level", "pokes", *measured), rows)
     if beside_the_paper(facts):
         snapshots = _paper.SNAPSHOTS.get(summary.model)
-        counted = f" It has {snapshots} snapshots of this law, from pokes asked to {_paper.DEPTH_MM:g} mm."
-        yield f"Rows of the paper: {_paper.SOURCE}.{counted if snapshots else ''}"
+        theirs = f" It has {snapshots} snapshots of this law, from pokes asked to {_paper.DEPTH_MM:g} mm."
+        yield f"Rows of the paper: {_paper.SOURCE}.{theirs if snapshots else ''}"
     yield _table(
         ("shape", "softness", "pokes", "deepest [mm]", "largest force [N]", "reached of asked", "ended"),
         [_row(row) for row in facts.rows],

@@ -78,9 +78,10 @@ def page(
             console.print(f"{parts}: {parts.stat().st_size / 1e6:.1f} MB")
             return
         made = own.write(out)
+        shown = f"{made.pokes} simulated poke{'' if made.pokes == 1 else 's'}"
         console.print(
             f"{made.path}: {made.size / 1e6:.1f} MB, {made.gzipped / 1e6:.1f} MB gzipped; {made.interiors} "
-            f"interiors, {made.pokes} simulated pokes of the test part"
+            f"interiors, {shown} of the test part"
         )
 
 

@@ -110,6 +110,25 @@ def test_block_without_a_size_is_refused():
         block_around(None, size=(0.1, 0.1, 0.0), edge_length=0.005)
 
 
+def flat_body(height: float) -> Mesh:
+    """A tetrahedron on the base whose fourth node lies at `height` [m]."""
+    nodes = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0.002, 0.002, height]])
+    return Mesh(kind="tet4", nodes=nodes, elements=np.array([[0, 1, 2, 3]], dtype=np.int32))
+
+
+def test_a_block_with_a_flat_element_is_made_anew(monkeypatch):
+    made = iter([flat_body(2e-5), flat_body(-0.01), flat_body(0.008)])
+    monkeypatch.setitem(block_around.__globals__, "body_from_surface", lambda *_, **__: next(made))
+    mesh = block_around(None, size=SIZE, edge_length=1e-3, tolerance=1e-6)
+    assert quality(mesh).min_scaled_jacobian > 0.1
+
+
+def test_a_block_that_is_flat_each_time_is_refused(monkeypatch):
+    monkeypatch.setitem(block_around.__globals__, "body_from_surface", lambda *_, **__: flat_body(2e-5))
+    with pytest.raises(MeshError, match=r"turn an element over or flatten it: ask for a smaller tolerance"):
+        block_around(None, size=SIZE, edge_length=1e-3, tolerance=1e-6)
+
+
 def test_slivers_in_a_plane_are_left_out():
     """Two tetrahedra below the top and one within the tolerance of it, as fTetWild makes them at times."""
     nodes = np.array([[0, 0, 1.0], [1, 0, 1 - 1e-4], [1, 1, 1.0], [0, 1, 1 - 1e-4], [0.4, 0.5, 0.2]])

@@ -34,7 +34,7 @@ def test_the_page_from_the_zip_is_the_page_from_the_run(
 ) -> None:
     done = call(command.app, saved, "--out", tmp_path / "later.html")
     assert done.exit_code == 0, done.output
-    assert "2 interiors, 1 simulated pokes" in done.output
+    assert "2 interiors, 1 simulated poke of" in done.output
     now = parts_of(predictor, shapes=["shape-0"], pokes=1).write(tmp_path / "now.html")
     assert now.path.read_bytes() == (tmp_path / "later.html").read_bytes()
     assert saved.stat().st_size < 0.3 * now.gzipped
