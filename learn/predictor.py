@@ -27,7 +27,6 @@ from learn.data import Store, open_store, split_of
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
-from learn.metrics import Predictions
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeScene, kind_of, load_poke, scene_and_poke
@@ -271,22 +270,15 @@ class Predictor:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
             return None, None
-        u, force = response.displacement.numpy(), response.force.double().numpy()
-        none = np.zeros(0)
-        predictions = Predictions(
-            truth=u,
-            predicted=u,
-            force=force,
-            force_predicted=force,
-            away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1)[None],
-            depth=pokes.depth.numpy(),
-            poke=np.zeros(1, dtype=np.int64),
-            softness=np.array([""]),
-            spread=none if response.spread is None else response.spread.double().numpy(),
-            force_spread=none if response.force_spread is None else response.force_spread.double().numpy(),
+        radius = self.intervals.radius_at_mm(
+            np.linalg.norm(response.displacement[0].numpy(), axis=1),
+            away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1),
+            depth=float(pokes.depth[0]),
+            spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
+            distance=distance,
         )
-        factor = float(np.exp(self.intervals.force_log(predictions, distance=distance)[0]))
-        return self.intervals.radius_mm(predictions, distance=distance)[0] * 1e-3, factor
+        spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
+        return radius * 1e-3, float(np.exp(self.intervals.force_log(spread, distance=distance)))
 
     @cached_property
     def intervals(self) -> Intervals | None:

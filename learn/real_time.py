@@ -21,7 +21,6 @@ import torch
 from numpy.typing import NDArray
 
 from learn.errors import InputError
-from learn.metrics import Predictions
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
 from learn.scene_file import first_touch, kind_of, load_poke, scene_and_poke
@@ -53,7 +52,8 @@ class Answer:
     force_interval: tuple[float, float] | None
     distance: float
     _intervals: Intervals | None
-    _asked: Predictions | None
+    _away: Floats | None
+    _depth: float
 
     @property
     def inside(self) -> bool | None:
@@ -63,10 +63,12 @@ class Answer:
     @cached_property
     def radius(self) -> Floats | None:
         """Radius of the 90 % interval at each point [m], shape (n,); None without intervals."""
-        if self._intervals is None or self._asked is None:
+        if self._intervals is None or self._away is None:
             return None
+        size = np.sqrt(np.einsum("nk,nk->n", self.displacement, self.displacement))
         distance = 0.0 if math.isnan(self.distance) else self.distance
-        return np.asarray(self._intervals.radius_mm(self._asked, distance=distance)[0] * 1e-3)
+        away, depth = self._away, self._depth
+        return self._intervals.radius_at_mm(size, away=away, depth=depth, distance=distance) * 1e-3
 
 
 class RealTime:
@@ -109,6 +111,7 @@ class RealTime:
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         self._interior = interior_of(store, profile)
         self.points, self.modulus = store.points, float(pokes.modulus[0])
+        self._points = np.ascontiguousarray(self.points.T)
 
     def __call__(
         self,
@@ -141,11 +144,11 @@ class RealTime:
         start = first_touch(self._store, site, push)
         u, force = self._single(start, push, depth, self.modulus)
         distance = self._distance(start, push, depth)
-        asked, interval = None, None
+        away, interval = None, None
         if self._intervals is not None and depth > 0.0:
-            asked = self._predictions(u, force, start, depth)
-            far = 0.0 if math.isnan(distance) else distance
-            factor = math.exp(float(self._intervals.force_log(asked, distance=far)[0]))
+            r = self._points - start[:, None]
+            away = np.sqrt((r * r).sum(axis=0))
+            factor = math.exp(self._intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
             interval = (force / factor, force * factor)
         return Answer(
             displacement=u,
@@ -153,7 +156,8 @@ class RealTime:
             force_interval=interval,
             distance=distance,
             _intervals=self._intervals,
-            _asked=asked,
+            _away=away,
+            _depth=depth,
         )
 
     def _distance(self, start: Floats, push: Floats, depth: float) -> float:
@@ -163,19 +167,3 @@ class RealTime:
             self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
         )
         return self._domain.distance(values, self._kind)
-
-    def _predictions(self, u: NDArray[np.float32], force: float, start: Floats, depth: float) -> Predictions:
-        none = np.zeros(0)
-        size = np.array([force])
-        return Predictions(
-            truth=u[None],
-            predicted=u[None],
-            force=size,
-            force_predicted=size,
-            away=np.linalg.norm(self.points - start, axis=1)[None],
-            depth=np.array([depth]),
-            poke=np.zeros(1, dtype=np.int64),
-            softness=np.array([""]),
-            spread=none,
-            force_spread=none,
-        )

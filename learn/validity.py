@@ -313,8 +313,9 @@ def poke_values(
     points = store.points
     length, width, height = store.block_size
     site = contact_site(store, start, direction)
-    away = np.linalg.norm(points[:, :2] - site, axis=1)
-    near = away <= max(store.rod_radius, float(away.min()))
+    x, y = points[:, 0] - site[0], points[:, 1] - site[1]
+    square = x * x + y * y
+    near = square <= max(store.rod_radius**2, float(square.min()))
     cover, level = float(interior.soft[near].min()), height / len(store.level_depth)
     cosine = min(1.0, float(-direction[2]))
     to_side = float((np.array([length, width]) / 2 - np.abs(site - store.middle)).min())

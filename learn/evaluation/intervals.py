@@ -73,15 +73,35 @@ class Intervals:
         distance: how far the frames are outside what was trained, one number or (f,)
         (`learn.validity.Domain.distance`); far outside the radius is as large as the predicted displacement.
         """
-        radius = np.array(self.factors)[_ring(predictions)] * _scale_mm(predictions, np.array(self.scale))
+        return self.radius_at_mm(
+            _size(predictions),
+            away=predictions.away,
+            depth=predictions.depth[:, None],
+            spread=predictions.spread,
+            distance=np.asarray(distance)[..., None],
+        )
+
+    def radius_at_mm(
+        self,
+        size: Floats,
+        *,
+        away: Floats,
+        depth: float | Floats,
+        spread: float | Floats = 0.0,
+        distance: float | Floats = 0.0,
+    ) -> Floats:
+        """The same from the size of the predicted displacement [m]; see `Predictions` for the others."""
+        radius = np.array(self.factors).take(_ring(away)) * _scale_mm(size, away, depth, spread, self.scale)
         if np.any(np.asarray(distance) > 0.0):
-            size = 1e3 * np.linalg.norm(predictions.predicted, axis=2)
-            radius = np.hypot(radius, np.sqrt(_unknown(distance))[..., None] * size)
+            radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
         return np.asarray(radius)
 
-    def force_log(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
-        """The true force lies within predicted e^-x and predicted e^x, (f,); distance: as above."""
-        inside = self.force * np.hypot(self.force_scale, predictions.force_spread)
+    def force_log(self, spread: float | Floats = 0.0, *, distance: float | Floats = 0.0) -> Floats:
+        """The true force lies within predicted e^-x and predicted e^x.
+
+        spread: of an ensemble, as `Predictions.force_spread`; distance: as above.
+        """
+        inside = self.force * np.hypot(self.force_scale, spread)
         return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
 
     def as_dict(self) -> dict[str, Any]:
@@ -114,10 +134,10 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
     first = np.isin(predictions.poke, order[: len(order) // 2])
     fitting, held = predictions.where(first), predictions.where(~first)
     scale = _fit_scale(fitting)
-    scores = held.distance_mm / _scale_mm(held, scale)
+    scores = held.distance_mm / _scale_mm(_size(held), held.away, held.depth[:, None], held.spread, scale)
     force_scale = float(np.sqrt((_force_error(fitting) ** 2).mean()))
     force = _force_error(held) / np.hypot(force_scale, held.force_spread)
-    ring, poke = _ring(held), np.broadcast_to(held.poke[:, None], scores.shape)
+    ring, poke = _ring(held.away), np.broadcast_to(held.poke[:, None], scores.shape)
     anywhere = pooled_quantile(scores.reshape(-1), poke.reshape(-1), level)
     factors = [
         pooled_quantile(scores[ring == k], poke[ring == k], level) if (ring == k).any() else anywhere
@@ -138,12 +158,14 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
 def coverage(intervals: Intervals, predictions: Predictions, *, distance: float | Floats = 0.0) -> Coverage:
     """Coverage of the intervals on these predictions; distance: outside what was trained, as `radius_mm`."""
     inside = predictions.distance_mm <= intervals.radius_mm(predictions, distance=distance)
-    ring = _ring(predictions)
+    ring = _ring(predictions.away)
     each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
     return Coverage(
         points=float(inside.mean()),
         force=float(
-            (_force_error(predictions) <= intervals.force_log(predictions, distance=distance)).mean()
+            (
+                _force_error(predictions) <= intervals.force_log(predictions.force_spread, distance=distance)
+            ).mean()
         ),
         rings=[
             float(inside[ring == k].mean()) if (ring == k).any() else float("nan")
@@ -178,28 +200,38 @@ def _unknown(distance: float | Floats) -> Floats:
     return np.asarray(-np.expm1(-((np.asarray(distance) / LENGTH) ** 2)))
 
 
-def _ring(predictions: Predictions) -> NDArray[np.int64]:
-    return np.asarray(np.searchsorted(np.array(RING_EDGES_MM[1:-1]), predictions.away * 1e3, side="right"))
+def _ring(away: Floats) -> NDArray[np.int64]:
+    return np.asarray(np.searchsorted(np.array(RING_EDGES_MM[1:-1]), away * 1e3, side="right"))
 
 
 def _force_error(predictions: Predictions) -> Floats:
     return np.asarray(np.abs(np.log(predictions.force_predicted / predictions.force)))
 
 
-def _scale_mm(predictions: Predictions, scale: Floats) -> Floats:
-    return np.asarray(np.hypot(np.exp(_features(predictions) @ scale), predictions.spread * 1e3))
+def _size(predictions: Predictions) -> Floats:
+    return np.asarray(np.linalg.norm(predictions.predicted, axis=2))
 
 
-def _features(predictions: Predictions) -> Floats:
-    away = np.log1p(predictions.away / 2.5e-3)
-    depth = np.broadcast_to(np.log(predictions.depth / 5e-3)[:, None], away.shape)
-    size = np.log(np.linalg.norm(predictions.predicted, axis=2) / predictions.depth[:, None] + 1e-4)
-    parts = [np.ones_like(away), away, away**2, away**3, depth, depth**2, depth * away, size, size**2]
-    return np.stack(parts, axis=-1)
+def _scale_mm(
+    size: Floats, away: Floats, depth: float | Floats, spread: float | Floats, scale: Sequence[float] | Floats
+) -> Floats:
+    """The error to expect at each point [mm], by the coefficients of `_fit_scale` (Horner's scheme)."""
+    c, (x, t, s) = scale, _logarithms(size, away, depth)
+    of_x = x * (c[1] + c[6] * t + x * (c[2] + x * c[3]))
+    fitted = np.exp(c[0] + t * (c[4] + t * c[5]) + of_x + s * (c[7] + s * c[8]))
+    return np.asarray(fitted if np.ndim(spread) == 0 and spread == 0.0 else np.hypot(fitted, spread * 1e3))
+
+
+def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floats, Floats, Floats]:
+    """Of distance and depth over a rod's size, and of displacement over depth."""
+    return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
 
 
 def _fit_scale(predictions: Predictions) -> Floats:
-    a = _features(predictions).reshape(-1, _features(predictions).shape[-1])
+    x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
+    t = np.broadcast_to(t, x.shape)
+    parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2]
+    a = np.stack(parts, axis=-1).reshape(-1, _N_FEATURES)
     target = np.log(np.maximum(predictions.distance_mm.reshape(-1), _LEAST_MM))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
     return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ target))
@@ -267,7 +299,7 @@ def load_intervals(run: Run) -> Intervals | None:
 
 _Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 _Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
-_N_FEATURES = 9  # of `_features`
+_N_FEATURES = 9  # of `_fit_scale`
 
 
 class _File(BaseModel):

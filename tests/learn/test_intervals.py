@@ -115,11 +115,11 @@ def test_each_frame_is_widened_by_its_own_distance() -> None:
     intervals = fit_intervals(_noisy(30, seed=1))
     distance = np.linspace(0.0, 2.0, len(predictions.depth))
     radius = intervals.radius_mm(predictions, distance=distance)
-    factor = intervals.force_log(predictions, distance=distance)
+    factor = intervals.force_log(predictions.force_spread, distance=distance)
     for frame in (0, 3, len(distance) - 1):
         alone = predictions.where(np.arange(len(distance)) == frame)
         assert np.array_equal(radius[frame], intervals.radius_mm(alone, distance=distance[frame])[0])
-        assert factor[frame] == intervals.force_log(alone, distance=float(distance[frame]))[0]
+        assert factor[frame] == intervals.force_log(alone.force_spread, distance=float(distance[frame]))[0]
     assert np.array_equal(radius[0], intervals.radius_mm(predictions)[0])
     assert (np.diff(factor) > 0.0).all()
 
