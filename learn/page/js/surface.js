@@ -1,7 +1,7 @@
 // The drawn surface: the network's grid of points, interpolated to a finer one, with a number a point for its colour.
 // Drawing alone: no number that the page states comes from here.
 
-const FINER = 6; // parts of a cell of the grid
+const FINER = 4; // parts of a cell of the grid
 
 /** Catmull-Rom weights of a fine line of points over n cell centres, ends continued straight. */
 function line(n) {
@@ -84,14 +84,14 @@ export class Surface {
     const { n, rows } = this;
     const { count, at, weights } = this.line;
     for (let r = 0; r < n; r++) {
-      for (let k = 0; k < count; k++) {
-        for (let d = 0; d < wide; d++) {
-          let sum = 0;
-          for (let j = 0; j < 4; j++) {
-            const w = weights[4 * k + j];
-            if (w !== 0) sum += w * values[(r * n + at[k] + j) * wide + d];
-          }
-          rows[(r * count + k) * wide + d] = sum * scale;
+      for (let k = 0, p = r * count * wide; k < count; k++) {
+        // beyond the ends weights are 0
+        const first = (r * n + Math.max(at[k], 0)) * wide;
+        const one = (r * n + at[k] + 1) * wide;
+        const last = (r * n + Math.min(at[k] + 3, n - 1)) * wide;
+        const [wa, wb, wc, we] = [weights[4 * k], weights[4 * k + 1], weights[4 * k + 2], weights[4 * k + 3]];
+        for (let d = 0; d < wide; d++, p++) {
+          rows[p] = scale * (wa * values[first + d] + wb * values[one + d] + wc * values[one + wide + d] + we * values[last + d]);
         }
       }
     }

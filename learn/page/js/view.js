@@ -14,12 +14,21 @@ const GREY = new Color("#9a9a9a");
 const UP = new Vector3(0, 0, 1);
 const VIEWS = { slant: [0.42, -0.75, 0.52], above: [0, -0.01, 1], side: [0, -0.98, 0.2], close: [0.35, -0.8, 0.5] };
 
+/** Whether WebGL runs on the processor: it then shares it with the network, and smoothed edges cost four times the pixels. */
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const known = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 export class View {
   constructor(canvas, about, inclusions) {
     this.canvas = canvas;
     this.about = about;
     this.inclusions = inclusions; // Uint8Array (n * n, 2) an interior: first rigid level, and the level after the last
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = new WebGLRenderer({ canvas, antialias: !drawsInSoftware(), alpha: true });
     this.renderer.setScissorTest(true);
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(30, 1, 1, 2000);
