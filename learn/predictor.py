@@ -250,7 +250,7 @@ class Predictor:
         asked: tuple[dict[str, float], str | None],
     ) -> PokePrediction:
         u, force = response.displacement.numpy(), float(response.force[0])
-        distance = self.domain.distance(*asked) if self.domain else 0.0
+        distance = self.domain.distance(asked[0]) if self.domain else 0.0
         radius, factor = self._interval(response, pokes, distance)
         return PokePrediction(
             poke=poke,

@@ -43,22 +43,19 @@ class Answer:
     displacement : of the surface's points [m], shape (n, 3), float32.
     force : magnitude of the force on the indenter [N].
     force_interval : 90 % interval of the force [N]; None where the run has no intervals.
-    distance : how far the poke is outside what was trained, 0 inside (`learn.validity.Domain.distance`); NaN
+    inside : whether the poke is inside what the model was trained on; None where that is not known.
+    distance : how far it is outside the trained ranges, 0 inside (`learn.validity.Domain.distance`); NaN
         where that is not known.
     """
 
     displacement: NDArray[np.float32]
     force: float
     force_interval: tuple[float, float] | None
+    inside: bool | None
     distance: float
     _intervals: Intervals | None
     _away: Floats | None
     _depth: float
-
-    @property
-    def inside(self) -> bool | None:
-        """Whether the poke is inside what the model was trained on; None where that is not known."""
-        return None if math.isnan(self.distance) else self.distance == 0.0
 
     @cached_property
     def radius(self) -> Floats | None:
@@ -107,7 +104,8 @@ class RealTime:
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
         self._store, self._domain = store, predictor.domain
-        self._intervals, self._kind = predictor.intervals, kind_of(file, store)
+        self._intervals = predictor.intervals
+        self._known = self._domain is None or self._domain.knows(kind_of(file, store))
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         self._interior = interior_of(store, profile)
         self.points, self.modulus = store.points, float(pokes.modulus[0])
@@ -154,6 +152,7 @@ class RealTime:
             displacement=u,
             force=force,
             force_interval=interval,
+            inside=None if math.isnan(distance) else self._known and distance == 0.0,
             distance=distance,
             _intervals=self._intervals,
             _away=away,
@@ -166,4 +165,4 @@ class RealTime:
         values = poke_values(
             self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
         )
-        return self._domain.distance(values, self._kind)
+        return self._domain.distance(values)

@@ -135,13 +135,18 @@ class Domain(BaseModel):
             )
         return checks
 
-    def distance(self, values: Mapping[str, float], kind: str | None) -> float:
+    def knows(self, kind: str | None) -> bool:
+        """Whether a kind of inclusion was trained; also where that is not known of it."""
+        return kind is None or self.kinds is None or kind in self.kinds
+
+    def distance(self, values: Mapping[str, float]) -> float:
         """How far outside the ranges a poke is, 0 inside: the root of the sum of squares over its quantities.
 
-        Each counts in units of its range's width, or of its value where there is no range to speak of; a kind
-        of inclusion that was not trained counts as 1, quantities of which no range is known as 0.
+        Each counts in units of its range's width, or of its value where there is no range to speak of;
+        quantities of which no range is known count as 0. The kind of inclusion is no quantity: one that was
+        not trained is no harder within the ranges (studies/learning/part-of-paper.md), and only marked.
         """
-        total = 0.0 if kind is None or self.kinds is None or kind in self.kinds else 1.0
+        total = 0.0
         for key, value in values.items():
             if key in self.ranges:
                 low, high = self.ranges[key]
@@ -256,7 +261,6 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
     found = np.empty(len(poke))
     for index in np.unique(poke):
         interior = interior_of(store, store.profile[int(store.geometry[index])])
-        kind = shape_kind(store, store.shapes[store.shape[index]])
         for frame in np.flatnonzero(poke == index):
             values = poke_values(
                 store,
@@ -266,7 +270,7 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
                 depth=float(depth[frame]),
                 modulus=float(store.modulus[index]),
             )
-            found[frame] = domain.distance(values, kind)
+            found[frame] = domain.distance(values)
     return found
 
 

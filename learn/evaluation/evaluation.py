@@ -21,6 +21,7 @@ from learn.evaluation.intervals import (
     across_folds,
     coverage,
     fit_intervals,
+    inside_alone,
     load_intervals,
     rank_correlation,
     too_few,
@@ -287,8 +288,8 @@ def evaluate(
             found.predictions = predictions
         for band, row in by_depth(predictions).items():
             found.depths.setdefault(f"{name}, {band}", []).append(row)
-        predicted.append(Predicted(run, name, predictions))
-        _look_closer(found, run, name, split, predictions, clouds=clouds and not found.clouds)
+        predicted.append(Predicted(run, name, predictions, _distance(run, store, predictions)))
+        _look_closer(found, predicted[-1], split, clouds=clouds and not found.clouds)
         key = _part(run.recipe)
         if not baselines or key in fitted or not len(split.train):
             continue
@@ -300,7 +301,7 @@ def evaluate(
             baseline.fit(train, scene)
             found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, scene, test)))
     for one, intervals in across_folds([p for p in predicted if p.run.uuid == store.uuid]):
-        found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one.predictions)
+        found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one)
         found.intervals = [(r, i) for r, i in found.intervals if r is not one.run] + [(one.run, intervals)]
     return found
 
@@ -349,19 +350,26 @@ def _part(recipe: Recipe) -> str:
     return repr((recipe.fold, recipe.split, recipe.train_softness, recipe.train_depth_mm))
 
 
-def _covered(intervals: Intervals, predictions: Predictions) -> Covered:
+def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
+    """How far frames lie outside what the run was trained on (f,); 0 where that is not known."""
+    if run.domain is None:
+        return np.zeros(len(predictions.depth))
+    return frame_distances(run.domain, store, predictions.poke, predictions.depth)
+
+
+def _covered(intervals: Intervals, one: Predicted) -> Covered:
+    """As intervals are stated: widened outside what was trained."""
     return Covered(
         intervals=intervals,
-        found=coverage(intervals, predictions),
-        rank=rank_correlation(intervals, predictions),
-        radius_mm=float(intervals.radius_mm(predictions).mean()),
+        found=coverage(intervals, one.predictions, distance=one.distance),
+        rank=rank_correlation(intervals, one.predictions, distance=one.distance),
+        radius_mm=float(intervals.radius_mm(one.predictions, distance=one.distance).mean()),
     )
 
 
-def _look_closer(
-    found: Evaluation, run: Run, title: str, split: Split, predictions: Predictions, *, clouds: bool
-) -> None:
+def _look_closer(found: Evaluation, one: Predicted, split: Split, *, clouds: bool) -> None:
     """Symmetry, intervals, depth and clouds of one run."""
+    run, title, predictions = one.run, one.name, one.predictions
     store, scene, model = found.store, scene_of(found.store), run.model
     name = f"{title}, fold {run.recipe.fold}"
     name += f", seed {run.recipe.seed}" if name in found.symmetry else ""
@@ -374,11 +382,10 @@ def _look_closer(
     intervals = _own_intervals(found, run, name, predict_part(model, scene, validation) if own else None)
     if intervals is not None:
         found.intervals.append((run, intervals))
-        found.covered[name] = _covered(intervals, predictions)
+        found.covered[name] = _covered(intervals, one)
     if not own and run.domain is not None:
-        distance = frame_distances(run.domain, store, predictions.poke, predictions.depth)
-        for band, one in by_distance(predictions, distance, intervals).items():
-            found.outside[f"{name}, {band}"] = one
+        for band, row in by_distance(predictions, one.distance, intervals).items():
+            found.outside[f"{name}, {band}"] = row
     if run.recipe.train_depth_mm is not None:
         limit = run.recipe.train_depth_mm * 1e-3
         found.deeper[f"{name}, to {run.recipe.train_depth_mm:g} mm"] = summarise(
@@ -402,7 +409,7 @@ def _own_intervals(
     if validation.pokes < LEAST_POKES:
         found.no_intervals[name] = too_few(validation.pokes)
         return None
-    return fit_intervals(validation)
+    return fit_intervals(inside_alone(validation, _distance(run, found.store, validation)))
 
 
 def _clouds(found: Evaluation, run: Run, split: Split) -> None:

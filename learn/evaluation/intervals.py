@@ -184,9 +184,11 @@ def pooled_quantile(scores: Floats, poke: NDArray[np.int64], level: float) -> fl
     return float(scores[order[min(found, len(scores) - 1)]])
 
 
-def rank_correlation(intervals: Intervals, predictions: Predictions) -> float:
+def rank_correlation(
+    intervals: Intervals, predictions: Predictions, *, distance: float | Floats = 0.0
+) -> float:
     """Spearman's, of radius and error over all points: 1 where wide intervals are where large errors are."""
-    radius = intervals.radius_mm(predictions).reshape(-1).argsort().argsort()
+    radius = intervals.radius_mm(predictions, distance=distance).reshape(-1).argsort().argsort()
     error = predictions.distance_mm.reshape(-1).argsort().argsort()
     return float(np.corrcoef(radius, error)[0, 1])
 
@@ -243,12 +245,22 @@ def too_few(pokes: int) -> str:
     return f"intervals need at least two validation pokes, {there}: train on a dataset of more pokes"
 
 
+def inside_alone(predictions: Predictions, distance: Floats) -> Predictions:
+    """Frames that may calibrate: those inside what was trained, where there are two pokes of them; else all.
+
+    distance: of the frames (f,), `learn.validity.Domain.distance`. Outside intervals are widened by it.
+    """
+    inside = predictions.where(distance == 0.0)
+    return inside if inside.pokes >= LEAST_POKES else predictions
+
+
 class Predicted(NamedTuple):
-    """A run, its name in tables, and its predictions of its test part."""
+    """A run, its name in tables, predictions of its test part, and how far these lie outside its training."""
 
     run: Run
     name: str
     predictions: Predictions
+    distance: Floats
 
 
 def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Intervals]]:
@@ -263,7 +275,7 @@ def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Interv
         if len(folds) != len(group) or len(folds) < LEAST_FOLDS:
             continue
         for one in group:
-            others = [other.predictions for other in group if other is not one]
+            others = [inside_alone(o.predictions, o.distance) for o in group if o is not one]
             found.append((one, fit_intervals(join_predictions(others))))
     return found
 

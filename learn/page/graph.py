@@ -206,10 +206,10 @@ class _Ranges(nn.Module):
         )
 
     def forward(self, values: Tensor, kind: Tensor) -> tuple[Tensor, Tensor]:
-        """Beyond (q + 1,), in widths of the ranges, 0 inside; and its length."""
+        """Beyond (q + 1,), in widths of the ranges, 0 inside; and its length but for the kind."""
         excess = torch.maximum(self.low - values, values - self.high) - self.slack
-        beyond = torch.cat([excess.clamp(min=0.0) / self.width, kind[None]])
-        return beyond, torch.sqrt(beyond.square().sum())
+        beyond = excess.clamp(min=0.0) / self.width
+        return torch.cat([beyond, kind[None]]), torch.sqrt(beyond.square().sum())
 
 
 def write_page_graph(part: PagePart, example: Inputs, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -9,8 +10,8 @@ from typing import cast
 import numpy as np
 import pytest
 
-from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals
-from learn.metrics import Predictions
+from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals, inside_alone
+from learn.metrics import Predictions, join_predictions
 from learn.training import Recipe, Run
 
 
@@ -37,7 +38,7 @@ def _answers(
         softness=np.full(frames, "S0"),
     )
     run = SimpleNamespace(recipe=Recipe(fold=fold, **recipe), folder=Path(f"f{fold}"))  # type: ignore[arg-type]
-    return Predicted(cast(Run, run), name, cases)
+    return Predicted(cast(Run, run), name, cases, np.zeros(frames))
 
 
 def test_shapes_that_differ_are_covered_on_average_over_folds() -> None:
@@ -61,6 +62,25 @@ def test_a_run_takes_no_part_in_its_own_intervals() -> None:
     shares = {one.run.recipe.fold: coverage(i, one.predictions).points for one, i in found}
     assert shares[2] < 0.3
     assert min(shares[k] for k in (0, 1, 3)) > 0.9
+
+
+def test_frames_outside_what_was_trained_calibrate_nothing() -> None:
+    """Half of each fold lies outside, its errors ten times as large: intervals are those of the inside."""
+    alone = [_answers(fold, 1.0) for fold in range(4)]
+    whole = []
+    for fold, near in enumerate(alone):
+        far = _answers(fold, 10.0, seed=1).predictions
+        both = join_predictions([near.predictions, replace(far, poke=far.poke + 500)])
+        whole.append(near._replace(predictions=both, distance=np.repeat([0.0, 0.4], len(near.distance))))
+    found = [intervals for _, intervals in across_folds(whole)]
+    assert found == [intervals for _, intervals in across_folds(alone)]
+    assert coverage(found[0], whole[0].predictions).points < 0.7
+
+
+def test_where_hardly_any_frame_is_inside_all_calibrate() -> None:
+    cases = _answers(0, 1.0).predictions
+    distance = np.where(cases.poke == cases.poke[0], 0.0, 0.4)
+    assert inside_alone(cases, distance) is cases
 
 
 @pytest.mark.parametrize(

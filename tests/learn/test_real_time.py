@@ -84,15 +84,15 @@ def test_distance_is_in_units_of_the_trained_ranges() -> None:
     )  # fmt: skip
     plain = {"depth_mm": 5.0, "rod_radius_mm": 2.5, "site_to_side_mm": 60.0, "shear_modulus_kPa": 1e4}
 
-    def distance(kind: str | None = "cube", **changes: float) -> float:
-        return domain.distance({**plain, **changes}, kind)
+    def distance(**changes: float) -> float:
+        return domain.distance({**plain, **changes})
 
     assert distance() == 0.0
-    assert distance(kind=None) == 0.0
     assert distance(depth_mm=31.0) == pytest.approx(0.5, abs=5e-3)
     assert distance(rod_radius_mm=4.0) == pytest.approx(0.6, abs=5e-3)
     assert distance(site_to_side_mm=5.0) == pytest.approx(0.5, abs=0.01)
-    assert distance(kind="sphere", depth_mm=31.0) == pytest.approx(math.hypot(1.0, 0.5), abs=5e-3)
+    assert distance(depth_mm=31.0, rod_radius_mm=4.0) == pytest.approx(math.hypot(0.5, 0.6), abs=5e-3)
+    assert [domain.knows(kind) for kind in ("cube", None, "sphere")] == [True, True, False]
     assert all(check.inside for check in domain.check(plain, "cube"))
 
 

@@ -3,7 +3,7 @@
 import { contents } from "./payload.js";
 import { Surrogate } from "./surrogate.js";
 import { View } from "./view.js";
-import { Panel, number } from "./panel.js";
+import { Panel, isOutside, number } from "./panel.js";
 import { listen } from "./pointer.js";
 
 const byId = (id) => document.getElementById(id);
@@ -150,7 +150,7 @@ class Page {
     const depth = Math.max(poke.depth, 0);
     const now = Array.from(tip, (v, k) => v * 1e3 + direction[k] * depth);
     const rod = { tip: now, push: direction, radius, edge };
-    const outside = answer.distance?.[0] > 0; // grey, and no halo: the intervals promise nothing there
+    const outside = isOutside(answer); // grey, and no halo: the intervals promise nothing there
     const halo = answer.radius && byId("halo").checked && depth > 0 && !outside;
     if (halo) this._scaled(answer.radius);
     this.view.show("surrogate", displacement, halo ? this.shade : null, outside, rod);

@@ -4,6 +4,11 @@ const byId = (id) => document.getElementById(id);
 const SPOKEN_AFTER = 600; // ms after the last change
 
 /** A number with three significant digits and no exponent. */
+/** Whether any quantity of an answer, or its kind of inclusion, is beyond what was trained. */
+export function isOutside({ beyond }) {
+  return Boolean(beyond) && beyond.some((part) => part > 0);
+}
+
 export function number(value) {
   if (!Number.isFinite(value)) return "not known";
   if (value === 0) return "0";
@@ -78,7 +83,7 @@ export class Panel {
     }
     byId("interval").textContent = interval;
     const verdict = this._verdict(poke, answer);
-    const inside = answer.distance ? answer.distance[0] === 0 : null;
+    const inside = answer.beyond ? !isOutside(answer) : null;
     byId("inside").textContent = { true: "inside", false: "outside" }[inside] ?? "not known whether inside";
     byId("inside").textContent += " what it was trained on";
     byId("verdict").textContent = verdict;
@@ -96,9 +101,10 @@ export class Panel {
     }, SPOKEN_AFTER);
   }
 
-  _verdict(poke, { distance, beyond, values }) {
-    if (!distance) return "It is not known what the model was trained on.";
-    if (distance[0] === 0) return "Inside what the model was trained on.";
+  _verdict(poke, answer) {
+    const { beyond, values } = answer;
+    if (!beyond) return "It is not known what the model was trained on.";
+    if (!isOutside(answer)) return "Inside what the model was trained on.";
     const names = this.about.checks.flatMap(({ name, units, trained, kinds }, k) => {
       if (!(beyond[k] > 0)) return [];
       const value = kinds ? this.about.interiors[poke.interior].kind : `${number(values[k])} ${units}`.trim();
