@@ -116,11 +116,13 @@ def validation_sentence(error: ValidationError) -> str:
     return "; ".join(found)
 
 
-def nested_problems(error: ValidationError) -> PydanticCustomError:
-    """The problems of a model that a validator calls, to be raised there: reported under the outer key."""
-    return PydanticCustomError(
-        "nested", "{text}", {"text": "nested", "problems": error.errors(include_url=False)}
-    )
+def nested_problems(error: ValidationError, *, under: tuple[int | str, ...] = ()) -> PydanticCustomError:
+    """The problems of a model that a validator calls, to be raised there: reported under the outer key.
+
+    under: keys between that one and the problems.
+    """
+    problems = [{**problem, "loc": (*under, *problem["loc"])} for problem in error.errors(include_url=False)]
+    return PydanticCustomError("nested", "{text}", {"text": "nested", "problems": problems})
 
 
 def _flat(problems: Any, outer: tuple[int | str, ...] = ()) -> list[Any]:

@@ -1,13 +1,9 @@
-"""Recipes: what a dataset contains, read from YAML (lengths in mm, angles in degrees).
-
-Inclusion shapes are those of `tisim.inclusions.recipe_shapes()`: one that is registered there is known here.
-"""
+"""Recipes: what a dataset contains, read from YAML (lengths in mm, angles in degrees)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -17,92 +13,15 @@ from pydantic import (
     SerializeAsAny,
     SerializerFunctionWrapHandler,
     ValidationError,
-    create_model,
     model_serializer,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
 
 from factory._course import Piece, check_pieces
-from factory._input import InputError, Strict, nested_problems, read_yaml, shipped_folder
-from tisim import inclusions
-from tisim.inclusions import Inclusion, RecipeShape
+from factory._input import InputError, Strict, read_yaml, shipped_folder
+from factory._shapes import Name, Natural, Positive, Room, Shape, of_its_kind, with_drawn_shapes
 
-Positive = Annotated[float, Field(gt=0, le=1e6)]
-Natural = Annotated[float, Field(ge=0, le=1e6)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=60)]
-
-_MM = 1e-3
-_THINNEST_MM = 1.0  # what tisim's meshes need above and beside an inclusion, and of it above the base
-
-
-class Shape(Strict):
-    """An inclusion standing on the base: a kind of `tisim.inclusions`, its id, and lengths as NAME_mm.
-
-    Attributes
-    ----------
-    kind : str
-        Name of a shape that recipes offer ("cube", "sphere", "cylinder", or one that was registered).
-    id : str
-        Name of this inclusion within the recipe.
-    """
-
-    kind: str
-    id: Name
-
-    @property
-    def lengths_mm(self) -> dict[str, float]:
-        """Its parameters by name, without the unit [mm]."""
-        return {p.name: getattr(self, f"{p.name}_mm") for p in self._shape.parameters}
-
-    @property
-    def reach_mm(self) -> float:
-        """Largest distance of its points from its vertical axis [mm]."""
-        return self._shape.reach_of(self.lengths_mm)
-
-    @property
-    def top_mm(self) -> float:
-        """Height of its highest point above the base [mm]."""
-        return self._shape.top_of(self.lengths_mm)
-
-    @property
-    def turned(self) -> bool:
-        """A turn about the vertical changes it."""
-        return self._shape.turned
-
-    def standing(self, x_mm: float, y_mm: float, angle: float) -> Inclusion:
-        """The inclusion [m] at a place of the base [mm], turned by an angle [rad]."""
-        return self._shape.standing(self.lengths_mm, x_mm, y_mm, angle).scaled(_MM)
-
-    @property
-    def _shape(self) -> RecipeShape:
-        return inclusions.recipe_shapes()[self.kind]
-
-
-@lru_cache(maxsize=64)
-def _shape_model(shape: RecipeShape) -> type[Shape]:
-    """The model of one kind of inclusion, with its lengths as keys."""
-    keys: dict[str, Any] = {"kind": (Literal[shape.name], ...)}
-    keys |= {
-        f"{p.name}_mm": (Positive if p.positive else Natural, ... if p.default is None else p.default)
-        for p in shape.parameters
-    }
-    model: type[Shape] = create_model(shape.name, __base__=Shape, **keys)
-    return model
-
-
-def _of_its_kind(value: object) -> object:
-    """A recipe's entry as the model of its kind."""
-    if not isinstance(value, Mapping) or "kind" not in value:
-        return value  # the base model says what is missing
-    known, kind = inclusions.recipe_shapes(), value["kind"]
-    if not isinstance(kind, str) or kind not in known:
-        names = ", ".join(repr(name) for name in known)
-        raise PydanticCustomError("kind", f"expected as kind one of {names}, got {str(kind)[:40]!r}")
-    try:
-        return _shape_model(known[kind]).model_validate(value)
-    except ValidationError as error:
-        raise nested_problems(error) from None
+__all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
 
 
 class RodRecipe(Strict):
@@ -217,8 +136,13 @@ class Recipe(Strict):
     cover_mm: Natural
     refinement: Annotated[float, Field(ge=0.1, le=10)] = 1.0
     shapes: Annotated[
-        tuple[Annotated[SerializeAsAny[Shape], BeforeValidator(_of_its_kind)], ...], Field(min_length=1)
+        tuple[Annotated[SerializeAsAny[Shape], BeforeValidator(of_its_kind)], ...], Field(min_length=1)
     ]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_shapes_drawn(cls, recipe: object) -> object:
+        return with_drawn_shapes(recipe)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -226,8 +150,11 @@ class Recipe(Strict):
             if len(set(names)) < len(names):
                 raise ValueError(f"{label}: expected different names")
         _check_protocol(self)
+        room = Room(block_mm=self.block_mm, border_mm=self.border_mm, cover_mm=self.cover_mm)
         for shape in self.shapes:
-            _check_shape(self, shape)
+            fault = room.fault(shape)
+            if fault is not None:
+                raise ValueError(f"shapes.{shape.id}: {fault}")
         return self
 
     @property
@@ -265,22 +192,6 @@ def _check_protocol(recipe: Recipe) -> None:
             f"{recipe.rod.radius_mm:g} mm lands within the top at up to {protocol.max_angle_deg:g} degrees, "
             f"got {protocol.margin_mm:g}"
         )
-
-
-def _check_shape(recipe: Recipe, shape: Shape) -> None:
-    height, cover = recipe.block_mm[2], max(recipe.cover_mm, _THINNEST_MM)
-    if shape.top_mm < _THINNEST_MM:
-        raise ValueError(
-            f"shapes.{shape.id}: its top is at {shape.top_mm:g} mm: expected at least {_THINNEST_MM:g} mm "
-            "of it above the base"
-        )
-    if shape.top_mm + cover > height:
-        raise ValueError(
-            f"shapes.{shape.id}: its top at {shape.top_mm:g} mm leaves less than cover_mm = "
-            f"{cover:g} of {height:g} mm above it"
-        )
-    if shape.reach_mm + max(recipe.border_mm, _THINNEST_MM) > min(recipe.block_mm[:2]) / 2:
-        raise ValueError(f"shapes.{shape.id}: wider than the block less border_mm")
 
 
 def recipe_names() -> list[str]:

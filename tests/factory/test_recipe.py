@@ -308,7 +308,7 @@ def test_junk_in_any_place_is_valid_or_named(tmp_path: Path, where: tuple[Any, .
 
 
 def test_recipes_by_name() -> None:
-    assert recipe_names() == ["paper", "quick", "sample", "surrogate", "surrogate-law", "timed"]
+    assert recipe_names() == ["paper", "quick", "sample", "surrogate", "surrogate-law", "timed", "wide"]
     with pytest.raises(
         InputError, match="--recipe papper: expected a path of a YAML file or one of: paper, q"
     ):
