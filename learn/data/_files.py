@@ -1,13 +1,16 @@
-"""The files of a store in a folder or at an fsspec URL; reading errors in one sentence."""
+"""The files of a store in a folder, in a zip or at an fsspec URL; reading errors in one sentence."""
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import json
 import mmap
 import os
-from collections.abc import Iterator
+import struct
+import zipfile
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,13 +20,14 @@ import numpy as np
 import zarr
 from numcodecs.blosc import decompress
 from numpy.typing import NDArray
-from zarr.storage import FsspecStore, LocalStore
+from zarr.storage import FsspecStore, LocalStore, ZipStore
 
 from learn.errors import InputError
 
 MANIFEST = "provenance/manifest.json"
 _ABSENT = 2**64 - 1  # of a chunk that was never written: it holds zeros
 _CHECKSUM = 4  # bytes of the index's crc32c
+_HEADER = struct.Struct("<26xHH")  # of a zip's entry: the lengths of its name and of its extra field
 
 
 @contextlib.contextmanager
@@ -48,6 +52,7 @@ def group_here(location: str, *, fresh: bool = False) -> zarr.Group:
     if fresh or key not in _opened:
         _opened[key] = Source(location).group()
         _readers.pop(location, None)
+        _place.cache_clear()
     return _opened[key]
 
 
@@ -55,7 +60,7 @@ def displacement_reader(location: str) -> ShardReader | None:
     """The fast reader of a local store's displacement; None where zarr has to read it."""
     if location not in _readers:
         remote = Source(location).remote
-        _readers[location] = None if remote else shard_reader(Path(location) / "grid_displacement")
+        _readers[location] = None if remote else shard_reader(Path(location), "grid_displacement")
     return _readers[location]
 
 
@@ -67,7 +72,7 @@ def _is_local(name: str) -> bool:
 
 @dataclass(frozen=True)
 class Source:
-    """A folder or URL that holds a store."""
+    """A folder, a zip (as `factory.release` writes it) or a URL that holds a store."""
 
     location: str
 
@@ -77,10 +82,15 @@ class Source:
 
     def group(self) -> zarr.Group:
         """The store's root group; InputError where there is none."""
-        store: LocalStore | FsspecStore
+        store: LocalStore | FsspecStore | ZipStore
         if self.remote:
             with reading(self.location):
                 store = FsspecStore.from_url(self.location, read_only=True)
+        elif Path(self.location).is_file():
+            with reading(self.location), zipfile.ZipFile(self.location) as archive:
+                if "zarr.json" not in archive.namelist():
+                    raise InputError(f"{self.location}: no dataset there (expected the zip of a store)")
+            store = ZipStore(Path(self.location), mode="r")
         else:
             if not (Path(self.location) / "zarr.json").is_file():
                 raise InputError(f"{self.location}: no dataset there (expected a Zarr 3 store)")
@@ -89,7 +99,7 @@ class Source:
             return zarr.open_group(store=store, mode="r", zarr_format=3)
 
     def check_manifest(self, arrays: list[str]) -> None:
-        """Every file of these arrays is there and, in a folder, has the bytes of the manifest.
+        """Every file of these arrays is there and, in a folder or zip, has the bytes of the manifest.
 
         Zarr reads a missing chunk as zeros, so that a truncated store must be found here. Over a URL
         only existence is checked: the bytes would have to be loaded twice.
@@ -99,23 +109,45 @@ class Source:
             for name, digest in self._manifest().items()
             if name.split("/")[0] in arrays and not name.endswith("zarr.json")
         }
-        for name in sorted(wanted):
-            if self.remote:
-                files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{name}")
+        if self.remote:
+            self._check_remote(sorted(wanted))
+            return
+        with self._stored() as open_stored:
+            for name in sorted(wanted):
                 with reading(f"{self.location}: {name}"):
-                    there = bool(files.exists(path))
-                if not there:
-                    raise InputError(f"{self.location}: {name} is missing, the store is incomplete")
-                continue
-            file = Path(self.location) / name
-            if not file.resolve().is_relative_to(Path(self.location).resolve()):
-                raise InputError(f"{self.location}: {name} is a link that leads out of the store")
-            if not file.is_file():
+                    stream = open_stored(name)
+                    if stream is None:
+                        raise InputError(f"{self.location}: {name} is missing, the store is incomplete")
+                    with stream:
+                        found = hashlib.file_digest(stream, "sha256").hexdigest()
+                if found != wanted[name]:
+                    raise InputError(
+                        f"{self.location}: {name} was altered (its sha256 is not the manifest's)"
+                    )
+
+    def _check_remote(self, names: list[str]) -> None:
+        for name in names:
+            files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{name}")
+            with reading(f"{self.location}: {name}"):
+                there = bool(files.exists(path))
+            if not there:
                 raise InputError(f"{self.location}: {name} is missing, the store is incomplete")
-            with file.open("rb") as stream:
-                found = hashlib.file_digest(stream, "sha256").hexdigest()
-            if found != wanted[name]:
-                raise InputError(f"{self.location}: {name} was altered (its sha256 is not the manifest's)")
+
+    @contextlib.contextmanager
+    def _stored(self) -> Iterator[Callable[[str], Any]]:
+        """Opens files of a folder or zip by their names; None where there is no such file."""
+        if Path(self.location).is_dir():
+            yield self._in_folder
+            return
+        with zipfile.ZipFile(self.location) as archive:
+            names = set(archive.namelist())
+            yield lambda name: archive.open(name) if name in names else None
+
+    def _in_folder(self, name: str) -> Any:
+        file = Path(self.location) / name
+        if not file.resolve().is_relative_to(Path(self.location).resolve()):
+            raise InputError(f"{self.location}: {name} is a link that leads out of the store")
+        return file.open("rb") if file.is_file() else None
 
     def _manifest(self) -> dict[str, str]:
         where = f"{self.location}: {MANIFEST}"
@@ -124,7 +156,12 @@ class Source:
                 files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{MANIFEST}")
                 text = files.cat_file(path)
             else:
-                text = (Path(self.location) / MANIFEST).read_bytes()
+                with self._stored() as open_stored:
+                    stream = open_stored(MANIFEST)
+                    if stream is None:
+                        raise FileNotFoundError("No such file")
+                    with stream:
+                        text = stream.read()
             found: Any = json.loads(text)["sha256"]
             if not isinstance(found, dict) or not found:
                 raise InputError(f"{where}: expected a table of sha256 sums")
@@ -143,11 +180,14 @@ class ShardReader:
     """Reads whole shards of a local store straight to where they are wanted.
 
     zarr-python takes three times as long for a shard of 1,024 frames as its chunks take to decompress (copies
-    and scheduling). Where the store has the factory's layout in a folder, its shards are read here; elsewhere
-    zarr reads them, to the same values. rows: of the array; chunk, shard: rows in each; row: shape of one.
+    and scheduling). Where the store has the factory's layout, in a folder or not compressed in a zip, its
+    shards are read here; elsewhere zarr reads them, to the same values.
+
+    location: of the store; name: of the array; rows: of it; chunk, shard: rows in each; row: shape of one.
     """
 
-    folder: Path
+    location: Path
+    name: str
     rows: int
     chunk: int
     shard: int
@@ -161,10 +201,15 @@ class ShardReader:
             self._read_shard(number, low - first, high - first, out[low - start : high - start])
 
     def _read_shard(self, number: int, low: int, high: int, out: NDArray[np.float32]) -> None:
-        path = self.folder / "c" / "/".join(str(k) for k in (number, *(0 for _ in self.row)))
+        name = "/".join([self.name, "c", str(number), *("0" for _ in self.row)])
+        path, begin, end = self.location / name, 0, None
+        if self.location.is_file():
+            path, (begin, end) = self.location, _place(self.location, name)
         per = self.shard // self.chunk
         with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-            index = np.frombuffer(data[-16 * per - _CHECKSUM : -_CHECKSUM], dtype="<u8").reshape(per, 2)
+            end = len(data) if end is None else end
+            table = data[end - 16 * per - _CHECKSUM : end - _CHECKSUM]
+            index = np.frombuffer(table, dtype="<u8").reshape(per, 2)
             for k in range(low // self.chunk, -(-high // self.chunk)):
                 first = k * self.chunk
                 a, b = max(low, first), min(high, first + self.chunk)
@@ -173,7 +218,7 @@ class ShardReader:
                 if offset == _ABSENT:
                     where[...] = 0
                     continue
-                view = memoryview(data)[offset : offset + size]
+                view = memoryview(data)[begin + offset : begin + offset + size]
                 try:
                     if b - a == self.chunk:
                         decompress(view, where)
@@ -185,9 +230,31 @@ class ShardReader:
                     view.release()
 
 
-def shard_reader(folder: Path) -> ShardReader | None:
-    """A reader of an array's folder; None where its layout is another."""
-    meta: dict[str, Any] = json.loads((folder / "zarr.json").read_text(encoding="utf-8"))
+@functools.cache
+def _place(archive: Path, name: str) -> tuple[int, int]:
+    """Where in a zip the bytes of a file that was not compressed begin and end."""
+    with zipfile.ZipFile(archive) as entries:
+        entry = entries.getinfo(name)
+    if entry.compress_type != zipfile.ZIP_STORED:
+        raise ValueError(f"{name} is compressed")
+    with archive.open("rb") as file:
+        file.seek(entry.header_offset)
+        lengths = _HEADER.unpack(file.read(_HEADER.size))
+    begin = entry.header_offset + _HEADER.size + sum(lengths)
+    return begin, begin + entry.file_size
+
+
+def shard_reader(location: Path, name: str) -> ShardReader | None:
+    """A reader of an array of a store; None where its layout is another."""
+    if location.is_file():
+        with zipfile.ZipFile(location) as archive:
+            compressed = any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist())
+            text = archive.read(f"{name}/zarr.json")
+        if compressed:
+            return None
+    else:
+        text = (location / name / "zarr.json").read_bytes()
+    meta: dict[str, Any] = json.loads(text)
     shape, grid, codecs = meta["shape"], meta["chunk_grid"]["configuration"]["chunk_shape"], meta["codecs"]
     if meta["data_type"] != "float32" or len(codecs) != 1 or codecs[0]["name"] != "sharding_indexed":
         return None
@@ -204,4 +271,4 @@ def shard_reader(folder: Path) -> ShardReader | None:
         and chunk[1:] == grid[1:] == shape[1:]
         and grid[0] % chunk[0] == 0
     )
-    return ShardReader(folder, shape[0], chunk[0], grid[0], tuple(shape[1:])) if fits else None
+    return ShardReader(location, name, shape[0], chunk[0], grid[0], tuple(shape[1:])) if fits else None

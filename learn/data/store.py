@@ -65,7 +65,7 @@ class Store:
 
     Attributes
     ----------
-    location, attributes : folder or URL, and attributes of the root group.
+    location, attributes : folder, zip or URL, and attributes of the root group.
     points, normals : rest positions [m] and outward unit normals of the grid, shape (n, 3).
     profile : stiffness under each point as stored, top level first, shape (g, n, levels), uint8.
     level_depth : depth of each level below the surface [m], shape (levels,).
