@@ -131,6 +131,11 @@ class Store:
         return np.asarray((self.depth > 0.0) & (force > _PRESSES * unit))
 
     @property
+    def address(self) -> str:
+        """Where it lies, also seen from another folder."""
+        return self.location if "://" in self.location else str(Path(self.location).resolve())
+
+    @property
     def uuid(self) -> str:
         return str(self.attributes["uuid"])
 

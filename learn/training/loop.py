@@ -319,7 +319,7 @@ class Trainer:
             "version": MODELS[self.recipe.model].version,
             "uuid": self.store.uuid,
             "law": self.store.law,
-            "location": self.store.location,
+            "location": self.store.address,
             "recipe": self.recipe.model_dump(mode="json"),
             "statistics": self.statistics.as_dict(),
             "groups": self.split.groups,

@@ -73,9 +73,13 @@ def test_what_was_not_compressed_is_read_without_zarr(folder: Path, tmp_path: Pa
     assert displacement_reader(str(packed)) is None
 
 
-def test_it_can_be_trained_on(folder: Path, tmp_path: Path) -> None:
+def test_it_can_be_trained_on(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a relative path, too, and from another folder afterwards."""
     path = zipped(folder, tmp_path / "small.zarr.zip")
-    run = train_small(path, tmp_path / "run")
+    monkeypatch.chdir(tmp_path)
+    run = train_small(Path(path.name), tmp_path / "run")
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
     assert load_run(run).uuid == open_store(folder).uuid
     answer = load(run).predict({"site_mm": [0, 0], "depth_mm": 2, "softness": "S0", "shape": "shape-1"})
     assert answer.force > 0
