@@ -202,8 +202,9 @@ def _lead(predictor: Predictor) -> str:
     run, store = predictor.run, predictor.store
     length, width, height = (1e3 * v for v in store.block_size)
     return (
-        f"{length:.0f} x {width:.0f} x {height:.0f} mm of soft tissue (law {store.law}) with a rigid inclusion, "
-        f"a rod of {2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in this browser."
+        f"{length:.0f} x {width:.0f} x {height:.0f} mm of soft tissue (law {store.law}) with a rigid "
+        f"inclusion, a rod of {2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in "
+        "this browser."
     )
 
 
