@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import logging
 import pickle
+from collections import ChainMap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from types import CodeType
+from typing import Any, ClassVar
 
 from tisim import laws
 from tisim.problems import _registry
@@ -26,10 +29,28 @@ class Extension:
 
     @staticmethod
     def of(name: str, thing: Any) -> Extension:
-        import cloudpickle  # type: ignore[import-untyped]  # loky needs it as well
-
-        data = bytes(cloudpickle.dumps(thing))
+        data = _pickled(thing)
         return Extension(name, hashlib.sha256(data).hexdigest(), data)
+
+
+def _pickled(thing: Any) -> bytes:
+    """By value, and code with the name of its file: from 3.1.3 on cloudpickle leaves that out, but Taichi
+    compiles a function from its source."""
+    from cloudpickle import cloudpickle  # type: ignore[import-untyped]  # loky needs it as well
+
+    by_type = cloudpickle.CloudPickler.dispatch_table
+    reduce_code = by_type[CodeType]
+
+    def with_file(code: CodeType) -> tuple[Any, ...]:
+        make, arguments = reduce_code(code)
+        return make, tuple(code.co_filename if a == "<dynamic-code>" else a for a in arguments)
+
+    class Pickler(cloudpickle.CloudPickler):
+        dispatch_table: ClassVar[Any] = ChainMap({CodeType: with_file}, by_type)
+
+    buffer = io.BytesIO()
+    Pickler(buffer).dump(thing)
+    return buffer.getvalue()
 
 
 def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
