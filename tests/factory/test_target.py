@@ -47,7 +47,7 @@ def test_a_changed_recipe_is_refused_when_finished(
     assert not building_folder(target).exists()
 
 
-def test_another_law_another_version_and_other_elements_are_refused(
+def test_another_law_another_version_and_other_meshes_are_refused(
     plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "a.zarr"
@@ -58,9 +58,11 @@ def test_another_law_another_version_and_other_elements_are_refused(
         patch.setitem(plan.identity["versions"], "tisim", "99.0")
         with pytest.raises(InputError, match=r"changed: versions\.tisim\)"):
             standin_build(plan, target)
-    monkeypatch.setitem(plan.identity, "element", "hex8")
-    with pytest.raises(InputError, match=r"changed: element\)"):
-        standin_build(plan, target)
+    for key, other in (("element", "hex8"), ("mesh_layout", 1)):
+        with monkeypatch.context() as patch:
+            patch.setitem(plan.identity, key, other)
+            with pytest.raises(InputError, match=rf"changed: {key}\)"):
+                standin_build(plan, target)
 
 
 def test_overwrite_keeps_the_old_store_until_the_new_one_is_whole(

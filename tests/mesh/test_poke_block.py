@@ -33,7 +33,7 @@ def quad_areas(mesh, facets):
 
 @pytest.mark.parametrize("site", [(0.0, 0.0), (0.030, 0.030), (-0.030, 0.012)])
 @pytest.mark.parametrize("direction", [DOWN, TILTED])
-@pytest.mark.parametrize(("kind", "some"), [("hex8", 3500), ("hex20", 2360)])
+@pytest.mark.parametrize(("kind", "some"), [("hex8", 3500), ("hex20", 2560)])
 def test_plain_block_has_its_volume_and_some_nodes(kind, some, site, direction):
     mesh = poke_mesh(block=BLOCK, site=site, direction=direction, rod=ROD, kind=kind)
     assert mesh.n_nodes == pytest.approx(some, rel=0.13)
@@ -113,6 +113,9 @@ def test_any_poke_gets_a_good_mesh(seed):
 
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
+@example(243)  # a cylinder whose chords, all straightened, lose over 5 % of its volume
+@example(647)  # a box that wants more rays
+@example(1027)  # a shallow cap that a first grid halves
 def test_any_poke_gets_a_good_quadratic_mesh(seed):
     case = random_poke(np.random.default_rng(seed))
     mesh = poke_mesh(**case, rod=ROD)

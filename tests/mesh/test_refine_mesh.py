@@ -161,6 +161,18 @@ def test_projection_that_would_turn_elements_over_is_taken_back(block):
     assert not np.allclose(mild.nodes, to_quadratic(block).nodes, atol=1e-5)
 
 
+def test_an_edge_keeps_the_part_of_its_curve_that_leaves_its_element_sound(block):
+    def bulge(x):  # the further out the more, so that some edges can follow and some cannot
+        return x * (1.0 + 0.9 * (x[:, :1] / np.abs(block.nodes[:, 0]).max()) ** 2)
+
+    straight, wild = to_quadratic(block), to_quadratic(block, project=bulge)
+    n = block.n_nodes
+    asked, got = bulge(straight.nodes[n:]) - straight.nodes[n:], wild.nodes[n:] - straight.nodes[n:]
+    kept = np.linalg.norm(got, axis=1) / np.linalg.norm(asked, axis=1).clip(1e-9)
+    assert (nodal_determinants(wild).min(axis=1) > 0.099 * nodal_determinants(straight).mean(axis=1)).all()
+    assert {0.25, 0.5, 0.75} & set(np.round(kept, 6))
+
+
 def test_wrong_kinds_and_endless_refinement_are_refused(block):
     quadratic = to_quadratic(block)
     for action in (to_quadratic, smooth, lambda m: refine(m, size=lambda x: x[:, 0])):

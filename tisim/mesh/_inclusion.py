@@ -53,6 +53,15 @@ class Outline:
         return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
     @property
+    def volume(self) -> float:
+        """Of the inclusion above the block's base [m3]."""
+        if self.dome is None:
+            return self.area * (self.high - self.low)
+        half, below = self.dome.half_height, min(self.dome.middle, self.dome.half_height)
+        # of sections pi r2 (1 - t2 / h2) at the height t over the centre
+        return float(np.pi * self.dome.radius**2 * (2 * half / 3 + below - below**3 / (3 * half**2)))
+
+    @property
     def apex(self) -> float:
         """The highest point of the inclusion [m]."""
         return self.high if self.dome is None else self.dome.half_height + self.dome.middle

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tisim.bodies import Block, Rod, Vector
 from tisim.mesh._columns import extrude
-from tisim.mesh._elements import is_sound
+from tisim.mesh._elements import det_jacobian, is_sound, quadrature
 from tisim.mesh._inclusion import Outline, outline_of
 from tisim.mesh._mesh import ElementKind, Mesh, MeshError
 from tisim.mesh._ogrid import Focus, PlaneGrid, o_grid
@@ -15,6 +15,8 @@ from tisim.mesh._snap import Snapped, snap
 
 Floats = NDArray[np.float64]
 
+# raised whenever the same poke gets another mesh: labels from two layouts are not mixed in a dataset
+LAYOUT = 2
 STEEPEST = np.radians(45.5)
 # Grids tried until one meets the inclusion well: (spacing at the inclusion, turn of the rays in parts of
 # their spacing, rings more).
@@ -22,7 +24,8 @@ ATTEMPTS = (
     *((1.00, 0.0, 0), (1.00, 0.5, 1), (0.85, 0.25, 0), (0.85, 0.75, 1), (0.92, 0.33, 2), (0.78, 0.0, 0)),
     *((0.78, 0.5, 1), (0.72, 0.67, 0), (0.65, 0.25, 1), (0.65, 0.75, 2), (0.78, 0.1, 3), (0.65, 0.4, 3)),
     *((0.50, 0.0, 2), (0.50, 0.5, 4), (0.55, 0.33, 3), (0.45, 0.67, 1), (0.40, 0.25, 3), (0.40, 0.75, 5)),
-    *((0.35, 0.5, 2), (0.35, 0.0, 6), (0.30, 0.25, 4), (0.30, 0.8, 7)),
+    *((0.35, 0.5, 2), (0.35, 0.0, 6), (0.30, 0.25, 4), (0.30, 0.8, 7), (1.00, 0.8, 2), (1.00, 0.0, 6)),
+    *((0.85, 0.4, 6), (1.00, 0.6, 6)),
 )
 # cells at an inclusion, in parts of the radius of its outline's inscribed circle: some ten nodes on a
 # circle; more for a sphere, whose dome is met by facets too
@@ -35,8 +38,12 @@ COARSER_FAR_AWAY = 1.3
 FAR = 0.020
 GOOD_QUALITY = 0.12
 WORST_QUALITY = 0.01
-# the part of its plan area that an inclusion may lose to the chords of its outline
-AREA_LOST = 0.10
+# the part of its plan area that an inclusion may lose to the chords of its outline; the edges of hex20 bow
+# out to the outline again, so that its volume decides
+AREA_LOST, AREA_LOST_BOWED = 0.10, 0.15
+# meshed volume over true volume: of prisms, and of spheroids, whose thin gap to the base is filled
+VOLUME = (0.95, 1.001)
+VOLUME_OF_DOME = (0.80, 1.14)
 
 
 def poke_mesh(
@@ -50,8 +57,9 @@ def poke_mesh(
 ) -> Mesh:
     """The block meshed for a rod pushed along `direction` at `site` (x, y) [m].
 
-    A round inclusion is met by chords and facets: the nodes lie on its surface, and its meshed volume is some
-    percent small. Soft material thinner than 1 mm between an inclusion and the base is meshed as rigid.
+    A round inclusion is met by chords and facets: the corners lie on its surface, and its meshed volume is
+    some percent small (where all grids tried are further off, it is that of the nearest). Soft material
+    thinner than 1 mm between an inclusion and the base is meshed as rigid.
 
     Parameters
     ----------
@@ -62,7 +70,7 @@ def poke_mesh(
         Of the push, up to 45 degrees from -z.
     rod : Rod
     refinement : float
-        Spacings get smaller by this factor, 0.5 to 6; at 1 some 2,400 nodes without an inclusion (3,500 of
+        Spacings get smaller by this factor, 0.5 to 6; at 1 some 2,600 nodes without an inclusion (3,500 of
         hex8).
     kind : "hex20", "hex8", "tet4" or "tet10"
         Hexahedra have wedges (with repeated nodes) where an inclusion's outline cuts a cell; tetrahedra are
@@ -91,20 +99,26 @@ def poke_mesh(
     coarser = 1.0 + away * (COARSER_FAR_AWAY - 1.0)
     cell = coarser * (CELL_AT_OUTLINE if outline.dome is None else CELL_AT_DOME) * outline.radius / refinement
     cell *= COARSER_QUADRATIC if kind == "hex20" and outline.dome is None else 1.0
-    worse: list[tuple[float, PlaneGrid, Snapped]] = []
+    flat: list[tuple[float, PlaneGrid, Snapped]] = []
+    spare: list[tuple[float, Mesh]] = []
     for spacing, turn, more in ATTEMPTS:
         focus = Focus(centre=outline.centre, reach=outline.reach, spacing=spacing * cell)
         grid = grids.make(focus, turn=turn, more=more)
         snapped = snap(points=grid.points, cells=grid.cells, border=grid.border, outline=outline)
-        if snapped is None or not _meets(snapped, outline):
+        if snapped is None or not _meets(snapped, outline, kind):
             continue
         if snapped.quality < GOOD_QUALITY:
-            worse.append((snapped.quality, grid, snapped))
+            flat.append((snapped.quality, grid, snapped))
             continue
         mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
         if mesh is not None:
-            return mesh
-    met = sorted(worse, key=lambda one: -one[0])
+            off = _volume_off(mesh, outline, size)
+            if off == 0.0:
+                return mesh
+            spare.append((off, mesh))
+    if spare:
+        return min(spare, key=lambda one: one[0])[1]
+    met = sorted(flat, key=lambda one: -one[0])
     for _, grid, snapped in [one for one in met if one[0] >= WORST_QUALITY]:
         mesh = _raised(grid, snapped, size=size, refinement=refinement, kind=kind, outline=outline)
         if mesh is not None:
@@ -153,9 +167,21 @@ def _raised(
     return None
 
 
-def _meets(snapped: Snapped, outline: Outline) -> bool:
+def _meets(snapped: Snapped, outline: Outline, kind: ElementKind) -> bool:
     lost = 1.0 - snapped.area / outline.area
-    return -1e-9 < lost < (1e-9 if len(outline.corners) else AREA_LOST)
+    most = AREA_LOST_BOWED if kind == "hex20" else AREA_LOST
+    return -1e-9 < lost < (1e-9 if len(outline.corners) else most)
+
+
+def _volume_off(mesh: Mesh, outline: Outline, size: tuple[float, float, float]) -> float:
+    """By how much the inclusion's meshed volume over its own is outside of what is asked; 0 inside."""
+    if mesh.kind != "hex20":
+        return 0.0  # straight edges: the plan area has decided
+    places, weights = quadrature(mesh.kind)
+    soft = float(np.sum(det_jacobian(mesh.kind, mesh.nodes, mesh.elements, places) * weights))
+    ratio = (size[0] * size[1] * size[2] - soft) / outline.volume
+    least, most = VOLUME if outline.dome is None else VOLUME_OF_DOME
+    return max(least - ratio, ratio - most, 0.0)
 
 
 def _checked_size(block: Block) -> tuple[float, float, float]:
@@ -206,7 +232,7 @@ class _Grids:
         self.stretch = 1.0 / float(np.cos(tilt))
         self.quadratic = kind == "hex20"
         if self.quadratic:  # half as many rays and rings: there are nodes between them
-            self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(3, round(5 * refinement))
+            self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(4, round(8 * refinement))
         else:
             self.n_theta, self.n_outer = 4 * max(3, round(5 * refinement)), max(5, round(9 * refinement))
 

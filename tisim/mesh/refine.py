@@ -26,6 +26,8 @@ _QUADRATIC: dict[ElementKind, tuple[ElementKind, NDArray[np.int64]]] = {
     "tet4": ("tet10", TET_EDGES),
     "hex8": ("hex20", HEX_EDGES),
 }
+# parts of its curve that an edge keeps where all of it would turn an element over
+CURVED = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 _TRIANGLE_EDGES = np.array([(0, 1), (1, 2), (2, 0)])
 Projection = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 Between = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -255,7 +257,7 @@ def _straighten(
     middles: NDArray[np.float64],
     straight: NDArray[np.float64],
 ) -> None:
-    """Set back (in place) the middles of elements that the curve turns over."""
+    """Set back (in place), by and by, the middles of elements that the curve turns over."""
     n = len(corners)
     quadratic = _QUADRATIC[kind][0]
     width = len(NODE_PLACES[kind])
@@ -263,11 +265,14 @@ def _straighten(
     # the collapsed nodes of a wedge have no volume
     places = quadrature(quadratic)[0] if quadratic == "hex20" else NODE_PLACES[quadratic]
     plain = det_jacobian(kind, corners, elements[:, :width], centre)[:, 0]
-    while True:  # each round straightens an edge at least
+    bow, parts = middles - straight, np.zeros(len(middles), dtype=np.int64)
+    while True:  # each round makes an edge less curved at least
         nodes = np.concatenate([corners, middles])
         det = det_jacobian(quadratic, nodes, elements, places)
         back = np.unique(elements[det.min(axis=1) < 0.1 * plain, width:]) - n
         back = back[back >= 0]  # a collapsed edge has its corner there
-        if np.array_equal(middles[back], straight[back]):
+        back = back[(parts[back] < len(CURVED) - 1) & bow[back].any(axis=1)]
+        if not len(back):
             return
-        middles[back] = straight[back]
+        parts[back] += 1
+        middles[back] = straight[back] + CURVED[parts[back]][:, None] * bow[back]
