@@ -119,7 +119,17 @@ def test_a_poke_that_cannot_go_on_says_so() -> None:
     reached = (
         f"{result.load[-1] * 1e3:.2f} mm, {force:.3g} N and smallest det F {result.min_jacobian[-1]:.3f}"
     )
-    assert result.message.endswith(f"after {reached}")
+    left = f"{6.0 - result.load[-1] * 1e3:.1f} mm of tissue left between the rod and the base"
+    assert result.message.endswith(f"after {reached}; {left} (6.0 at first touch)")
+
+
+def test_tissue_squeezed_to_a_tenth_bears_the_rod() -> None:
+    """Under the edge the pressure outgrows the contact, which is made stiffer before the surface slips past."""
+    ogden = tisim.material_from_moduli("ogden", shear_modulus=SHEAR, bulk_modulus=BULK)
+    thin = tisim.Block(size=(0.06, 0.06, 0.012))
+    result = solve_poke(poke(material=ogden, block=thin, depth=0.0108, frame_spacing=5e-4))
+    assert result.ok, result.message
+    assert result.penetration.max() < 0.25 * result.scene.rod.edge_radius
 
 
 def test_axisymmetric_reference() -> None:

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim import laws
-from tisim.bodies import Rod, Vector
+from tisim.bodies import Vector
 from tisim.io.export import checked_path
 from tisim.mesh import Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
+from tisim.problems.indentation.rod import rod_surface
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result, frame_index
 from tisim.scene import Poke
@@ -222,34 +223,3 @@ def _finish(figure: Any, axes: Any, flat: list[Array], scale: Any, title: str, *
     axes.set_title(title, fontsize=11)
     mappable = ScalarMappable(norm=scale, cmap=_colour_map())
     figure.colorbar(mappable, ax=axes, label="displacement [mm]", shrink=0.75, pad=0.02)
-
-
-def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40, piece: float = 1e-3) -> Array:
-    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`.
-
-    around: how many at its circumference. piece: longest along the shaft [m].
-    """
-    radius, height = _profile(rod, piece)
-    axis = axis / np.linalg.norm(axis)
-    u = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])
-    u /= np.linalg.norm(u)
-    v = np.cross(-axis, u)
-    turn = np.linspace(0.0, 2.0 * np.pi, around + 1)
-    circle = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
-    rings = tip - height[:, None, None] * axis + radius[:, None, None] * circle
-    low, high = rings[:-1], rings[1:]
-    quads = np.stack([low[:, :-1], low[:, 1:], high[:, 1:], high[:, :-1]], axis=2)
-    return quads.reshape(-1, 4, 3)
-
-
-def _profile(rod: Rod, piece: float) -> tuple[Array, Array]:
-    """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
-    edge = rod.edge
-    angle = np.linspace(0.0, 0.5 * np.pi, 9)
-    # short pieces along the shaft, so that a painter's order of their centres is right
-    shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / piece)) + 1))[1:]
-    radius = np.concatenate([
-        [0.0], rod.radius - edge + edge * np.sin(angle), np.full(len(shaft), rod.radius), [0.0],
-    ])  # fmt: skip
-    height = np.concatenate([[0.0], edge * (1.0 - np.cos(angle)), shaft, [rod.length]])
-    return radius, height

@@ -17,6 +17,7 @@ from tisim.problems._registry import OnStep, skip
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.course import follow, without_course
 from tisim.problems.indentation.kind import ELEMENT
+from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.steps import (
     BETWEEN,
     FIRST_STEP,
@@ -30,6 +31,7 @@ from tisim.problems.indentation.steps import (
     stiffen_where_deep,
 )
 from tisim.problems.indentation.system import PokeSystem
+from tisim.problems.indentation.turning import axis_at
 from tisim.result import Cost, Result, Status
 from tisim.scene import Poke
 
@@ -172,6 +174,13 @@ def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: 
         last = frames[-1]
         size = float(np.linalg.norm(last.rod_force))
         reached = f"{last.depth * 1e3:.2f} mm, {size:.3g} N and smallest det F {last.min_jacobian:.3f}"
+        if scene.mesh is None:
+            axis = axis_at(scene, last.time)
+            left, where = tissue_left(scene, last.tip, axis)
+            reached += f"; {left * 1e3:.1f} mm of tissue left between the rod and the {where}"
+            if scene.course is None:
+                whole = tissue_left(scene, last.tip - last.depth * axis, axis)[0]
+                reached += f" ({whole * 1e3:.1f} at first touch)"
     return Result(
         scene=scene,
         status=status,
