@@ -138,7 +138,7 @@ def _advance(
         walk.x, walk.depth, walk.time = outcome.x, target, time
         block.last_residual = outcome.residual
         system.accept(outcome.x)
-        stiffen_where_deep(system)
+        stiffen_where_deep(system, outcome.x)
     return Status.CONVERGED
 
 

@@ -65,9 +65,9 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
     return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
 
 
-def stiffen_where_deep(system: PokeSystem) -> None:
-    """Make the contact stiffer from the next step on, where the surface overlaps with the rod too far."""
-    if -float(system.report[3]) > STIFFEN_AT * system.edge:
+def stiffen_where_deep(system: PokeSystem, x: Array) -> None:
+    """Make the contact stiffer from the next step on, where the surface at x is too far in the rod."""
+    if system.overlap(x) > STIFFEN_AT * system.edge:
         system.stiffen()
 
 
