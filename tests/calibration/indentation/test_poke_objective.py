@@ -197,10 +197,11 @@ def test_repeats_share_a_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_modulus_of_a_hertzian_contact() -> None:
-    """Hertz's closed form for a frictionless ball at 0.2 radii: within 2 % and within the interval, which has
-    the mesh's error; a fit without that would claim 0.1 %."""
+    """Hertz's closed form for a frictionless ball at 0.1 radii: within 1 % and within the interval, which has
+    the mesh's error; a fit without that would claim 0.1 %. At 0.2 radii his small strains and parabola are
+    off by themselves: meshes of 0.75, 0.9, 1 go to 30.8, 31.1, 31.1 kPa there, to 29.4, 29.8, 29.9 here."""
     soft = FREE.material(SOFT)
-    depth = np.linspace(0.0, 5e-4, 51)
+    depth = np.linspace(0.0, 2.5e-4, 51)
     rng = np.random.default_rng(0)
     force = made.hertz(depth, 0.0025, soft)
     block = tisim.Block(size=(0.15, 0.15, 0.08))
@@ -212,11 +213,11 @@ def test_modulus_of_a_hertzian_contact() -> None:
         rod_tip="hemisphere",
         start=(0.0, 0.0, 0.08),
     )
-    pokes = pokes_of(ball, law=HELD, friction=0.0, refinement=0.75)
+    pokes = pokes_of(ball, law=HELD, friction=0.0, refinement=1.0)
     end = polish(Problem(parametrisation=HELD, objectives=(pokes,)), HELD.start(shear=8e3))
     assert end.converged
     known = identify(HELD, end.u, end.jacobian, reduced_chi2=end.cost / pokes.points).estimates[0]
-    assert known.value == pytest.approx(made.SHEAR, rel=0.02)
+    assert known.value == pytest.approx(made.SHEAR, rel=0.01)
     assert known.low < made.SHEAR < known.high
     assert 0.015 < known.sd < 0.05
 
