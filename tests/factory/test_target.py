@@ -59,6 +59,7 @@ def test_another_law_another_version_and_other_meshes_are_refused(
         with pytest.raises(InputError, match=r"changed: versions\.tisim\)"):
             standin_build(plan, target)
     for key, other in (("element", "hex8"), ("mesh_layout", 1)):
+        assert plan.identity[key] != other
         with monkeypatch.context() as patch:
             patch.setitem(plan.identity, key, other)
             with pytest.raises(InputError, match=rf"changed: {key}\)"):
