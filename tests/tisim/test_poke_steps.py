@@ -44,7 +44,7 @@ def test_frames_are_solved_to_the_tolerance_and_refused_steps_more_patiently(
     assert (result.residual <= 5e-4).all()
     assert [one["max_iterations"] for one in asked[:5]] == [40, 40, 80, 120, 40]
     for one in asked:
-        assert one["tolerance"] == pytest.approx(5e-4 if one["kept"] else 3e-3)
+        assert one["tolerance"] == pytest.approx(5e-4 if one["kept"] else 6e-3)
     assert sum(one["kept"] for one in asked) >= 2
     assert any(not one["kept"] for one in asked)
 

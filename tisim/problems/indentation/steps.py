@@ -23,7 +23,7 @@ FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
 # the way before.
 IN_VAIN = 3
 # Tolerance of steps between frames, which are there to follow the path, in units of the frames'.
-BETWEEN = 6.0
+BETWEEN = 12.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,7 +99,7 @@ class PokeSystem:
         self.far: FarField | None = None
         self.linearisations = 0
         self.min_jacobian = 1.0
-        self._known: tuple[Array, tuple[Array, float, float]] | None = None
+        self._known: list[tuple[Array, tuple[Array, float, float]]] = []
         self.previous = mesh.nodes.copy()
         self.depth = self.previous_depth = 0.0
         self._pose(0.0)
@@ -156,20 +156,20 @@ class PokeSystem:
     def begin(self, dt: float) -> None:
         """Begin a step of length dt [s] from the last accepted state."""
         self.body.begin(dt)
-        self._known = None
+        self._known = []
 
     def accept(self, x: Array) -> None:
         """Take x as the converged state: friction remembers it, and so do material and distorted elements."""
         if self.body.remembers:
             self.body.accept(x)
-            self._known = None
+            self._known = []
         self._memory = self._slip.copy()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
-            self._known = None
+            self._known = []
 
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
         """This system at its depth on some of the elements, with `far` for the others.
@@ -180,7 +180,7 @@ class PokeSystem:
         it.discretisation, it.body, it.linear = part.body.discretisation, part.body, part.linear
         it.full, it._slot, it.far = part.full, part.slot, far
         it._pressure, it._slip, it._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
-        it._known, it.report = None, np.zeros(6)
+        it._known, it.report = [], np.zeros(6)
         return it
 
     def stiffen(self) -> None:
@@ -204,13 +204,19 @@ class PokeSystem:
         return max(-float(distance.min()), 0.0)
 
     def _forces_at(self, x: Array) -> tuple[Array, float, float]:
-        """Internal forces (n, 3), energy and smallest det F of the body; an accepted trial is asked again."""
-        if self._known is None or self._known[0] is not x:
-            force, energy, min_jacobian = self.body.forces_and_energy(x)
-            if self.far is not None:
-                energy += self.far.add_to(force, x)
-            self._known = (x, (force, energy, min_jacobian))
-        return self._known[1]
+        """Internal forces (n, 3), energy and smallest det F of the body.
+
+        Kept of two states: an accepted trial is asked again, and so is the last but one, where the last was
+        no better (`predict`).
+        """
+        for state, known in self._known:
+            if state is x:
+                return known
+        force, energy, min_jacobian = self.body.forces_and_energy(x)
+        if self.far is not None:
+            energy += self.far.add_to(force, x)
+        self._known = [(x, (force, energy, min_jacobian)), *self._known[:1]]
+        return self._known[0][1]
 
     def residual(self, x: Array) -> tuple[Array, float]:
         """Residual at the free nodes (n_free, 3) and the load it is measured by [N]; sets the report."""
