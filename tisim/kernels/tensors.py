@@ -42,25 +42,71 @@ def determinant(F):
 
 
 @ti.func
-def eigen_symmetric(C):
-    """Eigenvalues (3) and eigenvectors (columns) of a symmetric 3 x 3 matrix by cyclic Jacobi rotations.
+def _third_of_angle(r):
+    """cos(acos(r) / 3) for r from 0 to 1: the root x of 4 x^3 - 3 x = r, by Newton's method."""
+    x = 0.8660254037844386 + r * (0.16667 - 0.0327 * r)
+    for _ in ti.static(range(3)):
+        x -= ((4.0 * x * x - 3.0) * x - r) / (12.0 * x * x - 3.0)
+    return x
 
-    Backward stable, also where eigenvalues repeat; `ti.sym_eig` errs by 6e-6 near the identity.
+
+@ti.func
+def _frame_of_eigenvector(C):
+    """Rotation whose last column is an eigenvector of C, as far as rounding allows.
+
+    That of the eigenvalue that lies apart from the others, in closed form: the longest product of two rows
+    of C less that eigenvalue (Scherzinger and Dohrmann, Comput. Methods Appl. Mech. Eng. 197, 2008).
     """
-    A = C
     V = ti.Matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    scale = A[0, 0] * A[0, 0] + A[1, 1] * A[1, 1] + A[2, 2] * A[2, 2]
+    mean = (C[0, 0] + C[1, 1] + C[2, 2]) / 3.0
+    B = C - mean * V
+    size = B.norm_sqr() / 6.0
+    if size > 1e-24 * mean * mean:
+        p = ti.sqrt(size)
+        r = 0.5 * determinant(B) / (size * p)
+        root = 2.0 * p * _third_of_angle(ti.min(ti.abs(r), 1.0))
+        if r < 0.0:
+            root = -root
+        x = ti.Vector([B[0, 0] - root, B[0, 1], B[0, 2]])
+        y = ti.Vector([B[1, 0], B[1, 1] - root, B[1, 2]])
+        z = ti.Vector([B[2, 0], B[2, 1], B[2, 2] - root])
+        w = x.cross(y)
+        length = w.norm_sqr()
+        for other in ti.static((y.cross(z), z.cross(x))):
+            if other.norm_sqr() > length:
+                w = other
+                length = other.norm_sqr()
+        w /= ti.sqrt(length)
+        u = ti.Vector([0.0, w[2], -w[1]])
+        if ti.abs(w[0]) > ti.abs(w[1]):
+            u = ti.Vector([-w[2], 0.0, w[0]])
+        u /= u.norm()
+        v = w.cross(u)
+        for k in ti.static(range(3)):
+            V[k, 0] = u[k]
+            V[k, 1] = v[k]
+            V[k, 2] = w[k]
+    return V
+
+
+@ti.func
+def eigen_symmetric(C):
+    """Eigenvalues (3) and eigenvectors (columns) of a symmetric 3 x 3 matrix.
+
+    Jacobi rotations, of which one is left where the closed form has brought it: backward stable, also where
+    eigenvalues repeat. `ti.sym_eig` errs by 6e-6 near the identity.
+    """
+    V = _frame_of_eigenvector(C)
+    A = V.transpose() @ C @ V
+    small = 1e-31 * (A[0, 0] * A[0, 0] + A[1, 1] * A[1, 1] + A[2, 2] * A[2, 2])
     for _ in range(12):
-        off = A[0, 1] * A[0, 1] + A[0, 2] * A[0, 2] + A[1, 2] * A[1, 2]
-        if off <= 1e-34 * scale:
-            break
         for p, q in ti.static(PAIRS):
             r = ti.static(3 - p - q)
             apq = A[p, q]
-            if ti.abs(apq) > 1e-300:
-                theta = (A[q, q] - A[p, p]) / (2.0 * apq)
-                t = 1.0 / (ti.abs(theta) + ti.sqrt(theta * theta + 1.0))
-                if theta < 0.0:
+            if apq * apq > small:
+                half = 0.5 * (A[q, q] - A[p, p])
+                t = apq / (ti.abs(half) + ti.sqrt(half * half + apq * apq))
+                if half < 0.0:
                     t = -t
                 c = 1.0 / ti.sqrt(t * t + 1.0)
                 s = t * c
@@ -79,6 +125,8 @@ def eigen_symmetric(C):
                     vq = V[k, q]
                     V[k, p] = c * vp - s * vq
                     V[k, q] = s * vp + c * vq
+        if ti.max(A[0, 1] * A[0, 1], A[0, 2] * A[0, 2], A[1, 2] * A[1, 2]) <= small:
+            break
     return ti.Vector([A[0, 0], A[1, 1], A[2, 2]]), V
 
 

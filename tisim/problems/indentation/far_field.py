@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.linear.blocks import Pattern
+from tisim.linear.blocks import Pattern, distinct
 
 Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -30,15 +30,15 @@ class FarField:
 
     def set_stiffness(self, stiffness: Singles) -> None:
         """stiffness (3 n, 3 n), symmetric [N/m]."""
-        self._stiffness = stiffness
+        n = len(self.nodes)
+        i, j = self._pairs
+        self._stiffness, self._blocks = stiffness, stiffness.reshape(n, 3, n, 3)[i, :, j]
 
     def joined(self, blocks: Array) -> Array:
         """Blocks of the near tangent and of the stiffness, in the order of `factor_pattern`."""
-        n = len(self.nodes)
         whole = np.zeros((self.factor_pattern.n_blocks, 3, 3))
         whole[self._of_near] = blocks
-        i, j = self._pairs
-        whole[self._of_pairs] += self._stiffness.reshape(n, 3, n, 3)[i, :, j]
+        whole[self._of_pairs] += self._blocks
         return whole
 
     def place(self, x: Array, force: Array) -> None:
@@ -66,7 +66,7 @@ def _with_all_pairs(pattern: Pattern, rows: Ints) -> tuple[Pattern, Ints, Ints]:
     own = row * n + pattern.indices
     a, b = np.triu_indices(len(rows))
     pairs = rows[a].astype(np.int64) * n + rows[b]
-    keys = np.union1d(own, pairs)
+    keys = distinct(np.concatenate([own, pairs]))
     indptr = np.zeros(n + 1, dtype=np.int32)
     np.cumsum(np.bincount(keys // n, minlength=n), out=indptr[1:])
     whole = replace(pattern, indptr=indptr, indices=(keys % n).astype(np.int32), slot=pattern.slot[:0])
