@@ -42,7 +42,7 @@ def determinant(F):
 
 
 @ti.func
-def _third_of_angle(r):
+def _cos_of_third(r):
     """cos(acos(r) / 3) for r from 0 to 1: the root x of 4 x^3 - 3 x = r, by Newton's method."""
     x = 0.8660254037844386 + r * (0.16667 - 0.0327 * r)
     for _ in ti.static(range(3)):
@@ -64,7 +64,7 @@ def _frame_of_eigenvector(C):
     if size > 1e-24 * mean * mean:
         p = ti.sqrt(size)
         r = 0.5 * determinant(B) / (size * p)
-        root = 2.0 * p * _third_of_angle(ti.min(ti.abs(r), 1.0))
+        root = 2.0 * p * _cos_of_third(ti.min(ti.abs(r), 1.0))
         if r < 0.0:
             root = -root
         x = ti.Vector([B[0, 0] - root, B[0, 1], B[0, 2]])

@@ -206,8 +206,8 @@ class PokeSystem:
     def _forces_at(self, x: Array) -> tuple[Array, float, float]:
         """Internal forces (n, 3), energy and smallest det F of the body.
 
-        Kept of two states: an accepted trial is asked again, and so is the last but one, where the last was
-        no better (`predict`).
+        Those of the last two states are kept: an accepted trial is asked for again, and `predict` takes the
+        last but one where the last is no better.
         """
         for state, known in self._known:
             if state is x:
