@@ -10,43 +10,15 @@ The commands are `python -m learn.train`, `learn.evaluate`, `learn.predict`, `le
 `learn.page` and `learn.bench`.
 """
 
-from __future__ import annotations
+from importlib import metadata as _metadata
 
-import importlib
-from typing import TYPE_CHECKING, Any
+import lazy_loader as _lazy
 
-if TYPE_CHECKING:
-    from learn.metrics import register_metric
-    from learn.models import register_model
-    from learn.predictor import PokePrediction, Predictor, load
+try:
+    __version__ = _metadata.version("tisim")
+except _metadata.PackageNotFoundError:  # a checkout that is not installed
+    __version__ = "unknown"
 
-    __version__: str
-
-__all__ = ["PokePrediction", "Predictor", "__version__", "load", "register_metric", "register_model"]
-
-_HOMES = {
-    "load": "learn.predictor",
-    "Predictor": "learn.predictor",
-    "PokePrediction": "learn.predictor",
-    "register_metric": "learn.metrics",
-    "register_model": "learn.models",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Public names on first use: `--help` of a command, and the package without torch, need none of them."""
-    if name == "__version__":
-        return _version()
-    if name in _HOMES:
-        return getattr(importlib.import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'learn' has no attribute {name!r}")
-
-
-def _version() -> str:
-    """The installed version; "unknown" in a checkout that is not installed."""
-    from importlib import metadata
-
-    try:
-        return metadata.version("tisim")
-    except metadata.PackageNotFoundError:
-        return "unknown"
+# the public names, in __init__.pyi, are imported when first asked for: a command's --help, and the package
+# without torch, need none
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

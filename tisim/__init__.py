@@ -19,97 +19,13 @@ inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, 
 `tisim.problems`.
 """
 
-from tisim import _extensions, inclusions, laws, mesh, parts, problems
-from tisim.bodies import (
-    Block,
-    BoxInclusion,
-    Circle,
-    CylinderInclusion,
-    Inclusion,
-    Rectangle,
-    Rod,
-    SphereInclusion,
-)
-from tisim.course import Course
-from tisim.fields import Fields, Quantities, fields, fields_of_frames
-from tisim.io import export
-from tisim.io.export import surface_triangles, write
-from tisim.io.picture import picture
-from tisim.io.read import read
-from tisim.laws import Moduli
-from tisim.mesh import Mesh
-from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
-from tisim.problems.beam.rest_shape import rest_positions
-from tisim.problems.dynamics.paper_stop import PaperStop, paper_stop
-from tisim.result import Cost, Result, Status, frame_index
-from tisim.scene import (
-    Beam,
-    ClampImperfections,
-    Coupon,
-    Imperfections,
-    Material,
-    Poke,
-    Press,
-    Scene,
-    Solver,
-    Void,
-    material_from_moduli,
-)
-from tisim.simulate import simulate
-from tisim.view import show
+import lazy_loader as _lazy
+
+from tisim import _extensions
 
 __version__ = "0.1.0"
 
-__all__ = [
-    "Beam",
-    "Block",
-    "BoxInclusion",
-    "Circle",
-    "ClampImperfections",
-    "Cost",
-    "Coupon",
-    "Course",
-    "CylinderInclusion",
-    "Fields",
-    "HolzapfelGasserOgden",
-    "Imperfections",
-    "Inclusion",
-    "Material",
-    "Mesh",
-    "Moduli",
-    "OgdenRoxburgh",
-    "PaperStop",
-    "Poke",
-    "Press",
-    "Prony",
-    "Quantities",
-    "Rectangle",
-    "Result",
-    "Rod",
-    "Scene",
-    "Solver",
-    "SphereInclusion",
-    "Status",
-    "Void",
-    "__version__",
-    "export",
-    "fields",
-    "fields_of_frames",
-    "frame_index",
-    "inclusions",
-    "laws",
-    "material_from_moduli",
-    "mesh",
-    "paper_stop",
-    "parts",
-    "picture",
-    "problems",
-    "read",
-    "rest_positions",
-    "show",
-    "simulate",
-    "surface_triangles",
-    "write",
-]
+# the public names, in __init__.pyi, are imported when first asked for: a command's --help needs none
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
 
 _extensions.load()

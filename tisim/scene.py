@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 from tisim import laws, parts
 from tisim.bodies import Block, Circle, Rectangle, Rod, Vector
@@ -210,7 +213,8 @@ class Beam:
     ----------
     material : Material
     length : float
-        Free length [m].
+        Free length [m]. May be left out with a mesh of one's own: how far that reaches from its clamp, or from
+        one clamp to the other.
     section : Circle or Rectangle
     supports : "clamped-free" or "clamped-clamped"
     grip_length : float
@@ -244,7 +248,7 @@ class Beam:
     """
 
     material: Material
-    length: float
+    length: float = None  # type: ignore[assignment] # a number from __post_init__ on
     section: Circle | Rectangle = field(default_factory=lambda: Circle(radius=0.010))
     supports: Literal["clamped-free", "clamped-clamped"] = "clamped-free"
     grip_length: float = 0.020
@@ -259,6 +263,26 @@ class Beam:
     clamp_imperfections: ClampImperfections = field(default_factory=ClampImperfections)
     course: Course | None = None
     solver: Solver = field(default_factory=Solver)
+
+    def __post_init__(self) -> None:
+        if self.length is not None:
+            return
+        if self.mesh is None:
+            raise TypeError("Beam: expected length, the free length [m], or a mesh")
+        object.__setattr__(self, "length", _free_length(self.mesh, self.supports))
+
+
+def _free_length(mesh: Mesh, supports: str) -> float:
+    """From the clamp's bounding box to the farthest node, or to the other clamp's [m]; NaN without clamps."""
+    names = ("clamp",) if supports == "clamped-free" else ("clamp", "far_clamp")
+    held = [mesh.nodes[mesh.node_sets[name]] for name in names if len(mesh.node_sets.get(name, ()))]
+    if len(held) < len(names):
+        return math.nan  # which the scene's check says
+    low, high = held[0].min(axis=0), held[0].max(axis=0)
+    if len(held) == 1:
+        return float(np.linalg.norm(mesh.nodes - np.clip(mesh.nodes, low, high), axis=1).max())
+    gaps = np.maximum(held[1].min(axis=0) - high, low - held[1].max(axis=0))
+    return float(np.linalg.norm(np.maximum(gaps, 0.0)))
 
 
 @dataclass(frozen=True, kw_only=True)

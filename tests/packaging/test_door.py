@@ -51,7 +51,7 @@ def test_help_shows_all_verbs_with_their_purposes_and_imports_none(folder: Path)
     for verb in VERBS:
         assert re.search(r"\w+ \w+ \w+", lines[verb].strip("│ ").removeprefix(verb)), lines[verb]
     imported = shown.stdout.splitlines()[-1]
-    for package in ("factory", "calibration", "learn", "torch", "taichi", "zarr"):
+    for package in ("factory", "calibration", "learn", "numpy", "torch", "taichi", "zarr"):
         assert f"'{package}'" not in imported
 
 

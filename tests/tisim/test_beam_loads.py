@@ -11,6 +11,7 @@ from tisim.mesh.refine import to_quadratic
 from tisim.problems.beam.solve import solve_beam
 from tisim.problems.beam.system import beam_discretisation
 from tisim.scene import Beam, Material, Solver
+from tisim.simulate import simulate
 
 SOFT = neo_hookean(2e4, 100.0)
 EXACT = Solver(tolerance=1e-9)
@@ -157,11 +158,29 @@ def test_own_unstructured_mesh_of_the_same_beam():
     assert own.support_force[0] == pytest.approx([0, -0.01, weight + 0.02], abs=1e-6)
 
 
+@pytest.mark.parametrize("with_grips", [False, True])
+def test_length_of_an_own_mesh_is_how_far_it_reaches_from_its_clamp(with_grips):
+    section = Circle(radius=0.01)
+    mesh = beam_mesh(length=0.05, section=section, with_grips=with_grips)
+    turned = Mesh(
+        kind="tet10", nodes=mesh.nodes[:, [2, 0, 1]], elements=mesh.elements, node_sets=mesh.node_sets
+    )
+    for own in (mesh, turned):
+        assert Beam(material=SOFT, mesh=own).length == pytest.approx(0.05)
+    assert Beam(material=SOFT, mesh=mesh, length=0.04).length == 0.04
+    bridge = beam_mesh(length=0.12, section=section, supports="clamped-clamped", with_grips=with_grips)
+    assert Beam(material=SOFT, mesh=bridge, supports="clamped-clamped").length == pytest.approx(0.12)
+    with pytest.raises(TypeError, match="expected length"):
+        Beam(material=SOFT)
+
+
 def test_scene_that_cannot_be_built_says_why():
     mesh = beam_mesh(length=0.05, section=Circle(radius=0.01))
     bare = Mesh(kind="tet10", nodes=mesh.nodes, elements=mesh.elements)
     with pytest.raises(ValueError, match="expected a node set 'clamp'"):
         solve_beam(Beam(material=SOFT, length=0.05, mesh=bare))
+    with pytest.raises(ValueError, match="mesh: expected a node set 'clamp'"):
+        simulate(Beam(material=SOFT, mesh=bare))
     bridge = Beam(material=SOFT, length=0.05, supports="clamped-clamped", tip_force=(0, 0, 1.0))
     with pytest.raises(ValueError, match="a tip force needs a free end"):
         solve_beam(bridge)

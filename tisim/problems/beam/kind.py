@@ -34,7 +34,6 @@ SECONDS_DYNAMIC = 20.0
 
 
 def check(scene: Beam) -> None:
-    check_length("length", scene.length)
     check_length("grip_length", scene.grip_length)
     check_type("section", scene.section, (Circle, Rectangle))
     if isinstance(scene.section, Circle):
@@ -56,6 +55,7 @@ def check(scene: Beam) -> None:
     if scene.tip_mass and scene.supports == "clamped-clamped":
         raise FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
     check_mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
+    check_length("length", scene.length)  # after the mesh, which may have given it
     _check_imperfections(scene)
     _check_clamps(scene)
     _check_course(scene)

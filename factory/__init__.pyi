@@ -1,0 +1,34 @@
+from ._build import BuildProgress, Built, build_dataset
+from ._checks import Verification, verify_dataset
+from ._input import InputError
+from ._store import DamagedError
+from ._summary import Summary, summarise
+from .materials import Card, load_card, material_of
+from .plan import Plan, PlannedPoke, make_plan
+from .reader import Dataset, PokeData, open_dataset
+from .recipe import Recipe, Shape, load_recipe, recipe_names
+
+__all__ = [
+    "BuildProgress",
+    "Built",
+    "Card",
+    "DamagedError",
+    "Dataset",
+    "InputError",
+    "Plan",
+    "PlannedPoke",
+    "PokeData",
+    "Recipe",
+    "Shape",
+    "Summary",
+    "Verification",
+    "build_dataset",
+    "load_card",
+    "load_recipe",
+    "make_plan",
+    "material_of",
+    "open_dataset",
+    "recipe_names",
+    "summarise",
+    "verify_dataset",
+]

@@ -1,0 +1,3 @@
+from . import export
+
+__all__ = ["export"]
