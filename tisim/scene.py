@@ -213,8 +213,8 @@ class Beam:
     ----------
     material : Material
     length : float
-        Free length [m]. May be left out with a mesh of one's own: how far that reaches from its clamp, or from
-        one clamp to the other.
+        Free length [m]. May be left out with a mesh of one's own: how far that reaches from its clamp, or
+        from one clamp to the other.
     section : Circle or Rectangle
     supports : "clamped-free" or "clamped-clamped"
     grip_length : float
