@@ -54,15 +54,15 @@ class Discretisation:
         for axis in mesh.symmetry:
             held[mesh.node_sets[f"mirror_{axis}"], "xyz".index(axis)] = True
         pattern = pattern_of(mesh.elements, mesh.n_nodes, fixed)
-        na = mesh.elements.shape[1]
+        integration = reference(mesh)
         return Discretisation(
             mesh=mesh,
             fixed=np.asarray(fixed, dtype=np.int32),
             held=held[pattern.free],
-            reference=reference(mesh),
+            reference=integration,
             pattern=pattern,
             solver=DirectSolver(pattern.indptr, pattern.indices),
-            _scratch=np.zeros((na, 9 * na + 3)),
+            _scratch=np.zeros((integration.weights.shape[1], 9, 9)),
         )
 
     @property

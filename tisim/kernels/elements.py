@@ -6,6 +6,10 @@ prm packed law parameters, then those of the material's other parts; kp (q,) poi
 stiffness [Pa]; state (m, q, k) what these parts need by point (`tisim.kernels.isochoric.Features`).
 The energy of an element is  sum_q w_q (W + kp_q/2 theta^2) + kb/2 V mean(theta)^2: with kb = 0 the plain
 displacement element, else one with a constant pressure kb mean(theta), condensed ("P2/P0", "Q1/P0").
+
+What is added to again and again (forces, blocks of the tangent) is summed up by element in variables of the
+kernel, not in its arrays: any store into an array may change a shape or an address of another, as far as the
+compiler knows, and each access after it works these out anew, at several times the cost of the sum itself.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
@@ -27,15 +31,37 @@ _i2 = ti.types.ndarray(dtype=i32, ndim=2)
 _i3 = ti.types.ndarray(dtype=i32, ndim=3)
 
 
+MOST_NODES = 20  # of an element
+
+
 @ti.func
-def deformation_gradient(x: ti.template(), conn: ti.template(), grad: ti.template(), e, q):
-    F = ti.Matrix.zero(f64, 3, 3)
+def load_nodes(x: ti.template(), conn: ti.template(), e, xe: ti.template()):
+    """xe (3 MOST_NODES,): the positions of the element's nodes."""
     for a in range(conn.shape[1]):
         n = conn[e, a]
         for i in ti.static(range(3)):
+            xe[3 * a + i] = x[n, i]
+
+
+@ti.func
+def deformation_gradient(xe: ti.template(), grad: ti.template(), e, q):
+    F = ti.Matrix.zero(f64, 3, 3)
+    for a in range(grad.shape[2]):
+        for i in ti.static(range(3)):
             for k in ti.static(range(3)):
-                F[i, k] += x[n, i] * grad[e, q, a, k]
+                F[i, k] += xe[3 * a + i] * grad[e, q, a, k]
     return F
+
+
+@ti.func
+def add_by_node(P, grad: ti.template(), e, q, fe: ti.template()):
+    """fe (3 MOST_NODES,) += P, times the gradient of each node's shape function."""
+    for a in range(grad.shape[2]):
+        for i in ti.static(range(3)):
+            s = 0.0
+            for k in ti.static(range(3)):
+                s += P[i, k] * grad[e, q, a, k]
+            fe[3 * a + i] += s
 
 
 @ti.func
@@ -51,14 +77,12 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
     load_point = make_load_point(features)
 
     @ti.func
-    def mean_theta(
-        x: ti.template(), conn: ti.template(), grad: ti.template(), weight: ti.template(), e, minj
-    ):
+    def mean_theta(xe: ti.template(), grad: ti.template(), weight: ti.template(), e, minj):
         """Volume-weighted mean of theta, rest volume, smallest det F; theta of a turned point is skipped."""
         s = 0.0
         v = 0.0
         for q in range(weight.shape[1]):
-            F = deformation_gradient(x, conn, grad, e, q)
+            F = deformation_gradient(xe, grad, e, q)
             J = determinant(F)
             minj = ti.min(minj, J)
             if J > 0.0:
@@ -81,13 +105,18 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
         """f += dEnergy/dx (internal forces), shape (n, 3) [N]; returns energy [J] and smallest det F."""
         total = 0.0
         minj = 1e300
+        xe = ti.Vector.zero(f64, 3 * MOST_NODES)
+        fe = ti.Vector.zero(f64, 3 * MOST_NODES)
         for e in range(conn.shape[0]):
+            load_nodes(x, conn, e, xe)
+            for r in range(3 * conn.shape[1]):
+                fe[r] = 0.0
             mean = 0.0
             if kb != 0.0:
-                mean, v, minj = mean_theta(x, conn, grad, weight, e, minj)
+                mean, v, minj = mean_theta(xe, grad, weight, e, minj)
                 total += 0.5 * kb * v * mean * mean
             for q in range(weight.shape[1]):
-                F = deformation_gradient(x, conn, grad, e, q)
+                F = deformation_gradient(xe, grad, e, q)
                 J = determinant(F)
                 minj = ti.min(minj, J)
                 if J > 0.0:
@@ -96,13 +125,11 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
                     if kb != 0.0:
                         th = theta(F.norm_sqr(), J)[0]
                     total += weight[e, q] * (psi - kb * mean * th)
-                    for a in range(conn.shape[1]):
-                        n = conn[e, a]
-                        for i in ti.static(range(3)):
-                            s = 0.0
-                            for k in ti.static(range(3)):
-                                s += P[i, k] * grad[e, q, a, k]
-                            f[n, i] = f[n, i] + weight[e, q] * s
+                    add_by_node(weight[e, q] * P, grad, e, q, fe)
+            for a in range(conn.shape[1]):
+                n = conn[e, a]
+                for i in ti.static(range(3)):
+                    f[n, i] = f[n, i] + fe[3 * a + i]
         return total, minj
 
     return mean_theta, add_forces
@@ -123,11 +150,13 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         minj = 1e300
         ti.loop_config(serialize=True)
         for _ in range(1):
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
             for e in range(conn.shape[0]):
+                load_nodes(x, conn, e, xe)
                 s = 0.0
                 v = 0.0
                 for q in range(weight.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
+                    F = deformation_gradient(xe, grad, e, q)
                     J = determinant(F)
                     minj = ti.min(minj, J)
                     if J > 0.0:
@@ -162,7 +191,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         pressure: _f1,
         sparse: i32,
         slot: _i3,
-        ke: _f2,
+        moduli: _f3,
         f: _f2,
         values: _f3,
         out: _f1,
@@ -173,81 +202,121 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         are exact whatever it is.
         sparse: 1 where nodes that do not move a point are skipped (tetrahedra in a hexahedron), 0 elsewhere.
         slot (m, a, b), for a <= b: 4 * block + 0 (add), 1 (add transposed), 2 (both), or -1 (a fixed node).
-        ke (a, a * 9) and its last row pair is scratch.
+        moduli (q, 9, 9) is scratch: an element's tangents at its points.
         """
         minj = 1e300
         ti.loop_config(serialize=True)
         for _ in range(1):
             na = conn.shape[1]
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
+            fe = ti.Vector.zero(f64, 3 * MOST_NODES)
+            slopes = ti.Vector.zero(f64, 3 * MOST_NODES)  # of the volume integral of theta
+            # a point's gradients, and a block column of the element's matrix: each component by node, in a
+            # variable of its own, which is what the compiler makes vector instructions of
+            gx = ti.Vector.zero(f64, MOST_NODES)
+            gy = ti.Vector.zero(f64, MOST_NODES)
+            gz = ti.Vector.zero(f64, MOST_NODES)
+            kxx = ti.Vector.zero(f64, MOST_NODES)
+            kxy = ti.Vector.zero(f64, MOST_NODES)
+            kxz = ti.Vector.zero(f64, MOST_NODES)
+            kyx = ti.Vector.zero(f64, MOST_NODES)
+            kyy = ti.Vector.zero(f64, MOST_NODES)
+            kyz = ti.Vector.zero(f64, MOST_NODES)
+            kzx = ti.Vector.zero(f64, MOST_NODES)
+            kzy = ti.Vector.zero(f64, MOST_NODES)
+            kzz = ti.Vector.zero(f64, MOST_NODES)
             for e in range(conn.shape[0]):
-                for a in range(na):
-                    for b in range(9 * na + 3):
-                        ke[a, b] = 0.0
+                load_nodes(x, conn, e, xe)
+                for r in range(3 * na):
+                    fe[r] = 0.0
+                    slopes[r] = 0.0
                 excess = 0.0
                 vol = 0.0
                 pe = 0.0
                 if kb != 0.0:
-                    mean, vol, minj = mean_theta(x, conn, grad, weight, e, minj)
+                    mean, vol, minj = mean_theta(xe, grad, weight, e, minj)
                     pe = pressure[e]
                     excess = kb * mean - pe
                 for q in range(weight.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
+                    F = deformation_gradient(xe, grad, e, q)
                     J = determinant(F)
                     minj = ti.min(minj, J)
+                    w = weight[e, q]
                     if J > 0.0:
-                        w = weight[e, q]
                         _psi, P, A = tangent(F, J, prm, kp[q], pe, load_point(state, e, q))
                         if kb != 0.0:
                             th = theta(F.norm_sqr(), J)
                             T = 2.0 * th[1] * F + th[2] * cofactor(F)
                             P += excess * T
-                            for a in range(na):
-                                for i in ti.static(range(3)):
-                                    s = 0.0
-                                    for k in ti.static(range(3)):
-                                        s += T[i, k] * grad[e, q, a, k]
-                                    ke[a, 9 * na + i] = ke[a, 9 * na + i] + w * s
-                        for b in range(na):
-                            if sparse != 0 and not takes_part(grad, e, q, b):
-                                continue
-                            g = ti.Vector([grad[e, q, b, 0], grad[e, q, b, 1], grad[e, q, b, 2]])
-                            n = conn[e, b]
-                            for i in ti.static(range(3)):
-                                f[n, i] = f[n, i] + w * (P[i, 0] * g[0] + P[i, 1] * g[1] + P[i, 2] * g[2])
-                            g = w * g
-                            H = ti.Matrix.zero(f64, 9, 3)
-                            for r in ti.static(range(9)):
-                                for j in ti.static(range(3)):
-                                    H[r, j] = (
-                                        A[r, 3 * j] * g[0] + A[r, 3 * j + 1] * g[1] + A[r, 3 * j + 2] * g[2]
-                                    )
-                            for a in range(b + 1):
-                                takes = slot[e, a, b] >= 0
-                                if sparse != 0:
-                                    takes = takes and takes_part(grad, e, q, a)
-                                if takes:  # all loads before all stores: the compiler may pair them then
-                                    d = ti.Vector([grad[e, q, a, 0], grad[e, q, a, 1], grad[e, q, a, 2]])
-                                    block = ti.Vector.zero(f64, 9)
-                                    for r in ti.static(range(9)):
-                                        i, j = ti.static(r // 3, r % 3)
-                                        block[r] = ke[a, 9 * b + r] + (
-                                            d[0] * H[3 * i, j]
-                                            + d[1] * H[3 * i + 1, j]
-                                            + d[2] * H[3 * i + 2, j]
-                                        )
-                                    for r in ti.static(range(9)):
-                                        ke[a, 9 * b + r] = block[r]
+                            add_by_node(w * T, grad, e, q, slopes)
+                        add_by_node(w * P, grad, e, q, fe)
+                        for r in ti.static(range(9)):
+                            for t in ti.static(range(9)):
+                                moduli[q, r, t] = w * A[r, t]
+                    else:
+                        for r in ti.static(range(9)):
+                            for t in ti.static(range(9)):
+                                moduli[q, r, t] = 0.0
+                for a in range(na):
+                    n = conn[e, a]
+                    for i in ti.static(range(3)):
+                        f[n, i] = f[n, i] + fe[3 * a + i]
                 for b in range(na):
+                    for a in range(MOST_NODES):
+                        kxx[a] = 0.0
+                        kxy[a] = 0.0
+                        kxz[a] = 0.0
+                        kyx[a] = 0.0
+                        kyy[a] = 0.0
+                        kyz[a] = 0.0
+                        kzx[a] = 0.0
+                        kzy[a] = 0.0
+                        kzz[a] = 0.0
+                    for q in range(weight.shape[1]):
+                        if sparse != 0 and not takes_part(grad, e, q, b):
+                            continue
+                        for a in range(b + 1):
+                            gx[a] = grad[e, q, a, 0]
+                            gy[a] = grad[e, q, a, 1]
+                            gz[a] = grad[e, q, a, 2]
+                        H = ti.Matrix.zero(f64, 9, 3)
+                        for r in ti.static(range(9)):
+                            for j in ti.static(range(3)):
+                                H[r, j] = (
+                                    moduli[q, r, 3 * j] * gx[b]
+                                    + moduli[q, r, 3 * j + 1] * gy[b]
+                                    + moduli[q, r, 3 * j + 2] * gz[b]
+                                )
+                        for a in range(b + 1):
+                            x0 = gx[a]
+                            x1 = gy[a]
+                            x2 = gz[a]
+                            kxx[a] += x0 * H[0, 0] + x1 * H[1, 0] + x2 * H[2, 0]
+                            kxy[a] += x0 * H[0, 1] + x1 * H[1, 1] + x2 * H[2, 1]
+                            kxz[a] += x0 * H[0, 2] + x1 * H[1, 2] + x2 * H[2, 2]
+                            kyx[a] += x0 * H[3, 0] + x1 * H[4, 0] + x2 * H[5, 0]
+                            kyy[a] += x0 * H[3, 1] + x1 * H[4, 1] + x2 * H[5, 1]
+                            kyz[a] += x0 * H[3, 2] + x1 * H[4, 2] + x2 * H[5, 2]
+                            kzx[a] += x0 * H[6, 0] + x1 * H[7, 0] + x2 * H[8, 0]
+                            kzy[a] += x0 * H[6, 1] + x1 * H[7, 1] + x2 * H[8, 1]
+                            kzz[a] += x0 * H[6, 2] + x1 * H[7, 2] + x2 * H[8, 2]
                     for a in range(b + 1):
                         s = slot[e, a, b]
                         if s >= 0:
                             block = s // 4
                             mode = s % 4
+                            K = ti.Matrix(
+                                [
+                                    [kxx[a], kxy[a], kxz[a]],
+                                    [kyx[a], kyy[a], kyz[a]],
+                                    [kzx[a], kzy[a], kzz[a]],
+                                ]
+                            )
                             for i in ti.static(range(3)):
                                 for j in ti.static(range(3)):
-                                    v = ke[a, 9 * b + 3 * i + j]
+                                    v = K[i, j]
                                     if kb != 0.0:
-                                        v += kb / vol * ke[a, 9 * na + i] * ke[b, 9 * na + j]
+                                        v += kb / vol * slopes[3 * a + i] * slopes[3 * b + j]
                                     if mode != 1:
                                         values[block, i, j] = values[block, i, j] + v
                                     if mode != 0:
@@ -260,12 +329,16 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         """pressure (m,): kb mean(theta) at x, advanced to first order by the displacement du [Pa]."""
         ti.loop_config(serialize=True)
         for _ in range(1):
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
+            de = ti.Vector.zero(f64, 3 * MOST_NODES)
             for e in range(conn.shape[0]):
+                load_nodes(x, conn, e, xe)
+                load_nodes(du, conn, e, de)
                 s = 0.0
                 v = 0.0
                 for q in range(weight.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
-                    D = deformation_gradient(du, conn, grad, e, q)
+                    F = deformation_gradient(xe, grad, e, q)
+                    D = deformation_gradient(de, grad, e, q)
                     J = determinant(F)
                     if J > 0.0:
                         th = theta(F.norm_sqr(), J)
@@ -324,9 +397,11 @@ def isochoric_kernels(law: Law, features: Features) -> tuple[Kernel, Kernel]:
     def of_mesh(x: _f2, conn: _i2, grad: _f4, prm: _f1, state: _f3, C: _f3, S: _f3, w: _f2):
         ti.loop_config(serialize=True)
         for _ in range(1):
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
             for e in range(conn.shape[0]):
+                load_nodes(x, conn, e, xe)
                 for q in range(w.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
+                    F = deformation_gradient(xe, grad, e, q)
                     c, s, energy = isochoric(F, determinant(F), prm, load_point(state, e, q))
                     for n in ti.static(range(6)):
                         i, k = ti.static(pairs[n])

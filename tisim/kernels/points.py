@@ -9,7 +9,7 @@ Arguments as in `tisim.kernels.elements`, whose forces are the sum of these stre
 from functools import cache
 
 from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
-from tisim.kernels.elements import deformation_gradient, force_functions
+from tisim.kernels.elements import MOST_NODES, deformation_gradient, force_functions, load_nodes
 from tisim.kernels.isochoric import NONE, Features, make_load_point
 from tisim.kernels.response import make_response
 from tisim.kernels.tensors import determinant
@@ -40,12 +40,14 @@ def point_kernel(law: Law, features: Features = NONE) -> Kernel:
     ):
         ti.loop_config(serialize=True)
         for _ in range(1):
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
             for e in range(conn.shape[0]):
+                load_nodes(x, conn, e, xe)
                 mean = 0.0
                 if kb != 0.0:
-                    mean, _v, _j = mean_theta(x, conn, grad, weight, e, 1e300)
+                    mean, _v, _j = mean_theta(xe, grad, weight, e, 1e300)
                 for q in range(weight.shape[1]):
-                    F = deformation_gradient(x, conn, grad, e, q)
+                    F = deformation_gradient(xe, grad, e, q)
                     J = determinant(F)
                     psi[e, q] = 0.0
                     for r in ti.static(range(9)):
