@@ -22,6 +22,8 @@ await build({
   format: "esm",
   target: "es2022",
   legalComments: "inline",
+  // onnxruntime-web takes it for the base of a URL, and a file's is "null" in Firefox and Safari
+  define: { "location.origin": "location.href" },
   outfile: `${OUT}/page.js`,
 });
 const wasm = readFileSync("node_modules/onnxruntime-web/dist/ort-wasm-simd-threaded.wasm");

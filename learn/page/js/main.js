@@ -208,7 +208,8 @@ async function start() {
 }
 
 window.tisim = start().catch((error) => {
-  byId("loading").textContent = `This page could not start: ${error.message}. It needs WebAssembly and WebGL 2.`;
+  const why = error.message.replace(/\.$/, "");
+  byId("loading").textContent = `This page could not start: ${why}. It needs WebAssembly and WebGL 2.`;
   document.documentElement.dataset.ready = "failed";
   throw error;
 });

@@ -22,8 +22,13 @@ export function listen(view, now, change) {
   const { canvas, controls } = view;
   let moving = null; // the pointer that holds the rod
   let leaning = false;
+  let last = null; // its last event
+  let before = null; // where the rod was when it came
+  let passing = false; // an event is passed on to OrbitControls
+  const turning = new Set(); // fingers that turn the view
 
   const hold = (event) => {
+    last = event;
     const at = view.under(event);
     if (!at) return;
     if (leaning) {
@@ -34,13 +39,37 @@ export function listen(view, now, change) {
     } else change({ x: at.x, y: at.y });
   };
 
+  const release = () => {
+    moving = null;
+    controls.enabled = true;
+  };
+
+  /** A second finger: both are the view's from now on, and the rod is where it was before they came. */
+  const handOver = () => {
+    const { pointerId, pointerType, clientX, clientY } = last;
+    release();
+    change(before);
+    passing = true;
+    const passed = { pointerId, pointerType, clientX, clientY, bubbles: true, cancelable: true };
+    canvas.dispatchEvent(new PointerEvent("pointerdown", passed));
+    passing = false;
+    turning.add(pointerId);
+  };
+
   // before OrbitControls hears of it: on the block a pointer moves the rod, beside it the view
   canvas.addEventListener("pointerdown", (event) => {
+    if (passing) return;
     canvas.focus({ preventScroll: true });
+    if (moving !== null) handOver();
     const at = view.under(event);
-    const mine = moving === null && at?.inside && (event.button === 0 || event.button === 2);
+    const mine = !turning.size && at?.inside && (event.button === 0 || event.button === 2);
     controls.enabled = !mine;
-    if (!mine) return;
+    if (!mine) {
+      if (event.pointerType === "touch") turning.add(event.pointerId);
+      return;
+    }
+    const { x, y, angle, heading } = now();
+    before = { x, y, angle, heading };
     moving = event.pointerId;
     leaning = event.button === 2 || event.shiftKey;
     canvas.setPointerCapture(moving);
@@ -54,9 +83,8 @@ export function listen(view, now, change) {
   });
   for (const name of ["pointerup", "pointercancel"]) {
     canvas.addEventListener(name, (event) => {
-      if (event.pointerId !== moving) return;
-      moving = null;
-      controls.enabled = true;
+      turning.delete(event.pointerId);
+      if (event.pointerId === moving) release();
     });
   }
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());

@@ -3,7 +3,8 @@
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight, DoubleSide,
   EdgesGeometry, HemisphereLight, LatheGeometry, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
-  PerspectiveCamera, Plane, Quaternion, Raycaster, RepeatWrapping, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
+  PerspectiveCamera, Plane, Quaternion, Raycaster, RepeatWrapping, Scene, SRGBColorSpace, TOUCH, Vector2, Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Surface } from "./surface.js";
@@ -35,6 +36,7 @@ export class View {
     this.camera.up.copy(UP);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enablePan = false;
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_ROTATE };
     this.controls.minDistance = 25;
     this.controls.maxDistance = 500;
     this.controls.maxPolarAngle = Math.PI * 0.6;

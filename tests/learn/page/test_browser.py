@@ -49,21 +49,30 @@ def written(predictor: Predictor, tmp_path_factory: pytest.TempPathFactory) -> W
 
 
 @pytest.fixture(scope="module")
-def page(written: Written) -> Iterator[Any]:
-    """The page when it is ready, at a phone's width; its errors in `page.faults`."""
+def browser() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as play:
         browser = play.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        page = browser.new_page(viewport={"width": 390, "height": 700})
-        page.faults = []
-        page.on("pageerror", lambda error: page.faults.append(str(error)))
-        page.on("console", lambda said: page.faults.append(said.text) if said.type == "error" else None)
-        page.on("request", lambda asked: page.faults.append(asked.url) if "http" in asked.url[:5] else None)
-        page.goto(written.path.as_uri())
-        page.wait_for_function("document.documentElement.dataset.ready", timeout=60_000)
-        yield page
+        yield browser
         browser.close()
+
+
+def opened(browser: Any, written: Written, **device: Any) -> Any:
+    """The page when it is ready, at a phone's width; its errors in `page.faults`."""
+    page = browser.new_page(viewport={"width": 390, "height": 700}, **device)
+    page.faults = []
+    page.on("pageerror", lambda error: page.faults.append(str(error)))
+    page.on("console", lambda said: page.faults.append(said.text) if said.type == "error" else None)
+    page.on("request", lambda asked: page.faults.append(asked.url) if "http" in asked.url[:5] else None)
+    page.goto(written.path.as_uri())
+    page.wait_for_function("document.documentElement.dataset.ready", timeout=60_000)
+    return page
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, written: Written) -> Any:
+    return opened(browser, written)
 
 
 def _graph(path: Path) -> Any:
@@ -160,6 +169,56 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
     page.wait_for_function("document.getElementById('compared-text').textContent.startsWith('FEM: ')")
     assert "of the points lie within their intervals" in page.locator("#compared-text").inner_text()
     page.wait_for_function("/^Force [0-9.]+ newtons/.test(document.getElementById('spoken').textContent)")
+
+
+def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> None:
+    """On a phone: one finger on the block holds the rod; two turn and zoom the view, and the rod stays."""
+    page = opened(browser, written, has_touch=True, is_mobile=True)
+    screen = page.context.new_cdp_session(page)
+    box = page.locator("#picture").bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55
+
+    def touch(kind: str, *fingers: float) -> None:
+        """Fingers by how far they are to the right of the picture's middle [pixels]."""
+        points = [{"x": middle[0] + x, "y": middle[1], "id": k} for k, x in enumerate(fingers)]
+        screen.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+
+    def state() -> tuple[list[float], float]:
+        """Where the rod is, and how far the camera."""
+        x, y, away = page.evaluate(
+            "async () => { const t = await tisim;"
+            " while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 5));"
+            " return [t.poke.x, t.poke.y, t.view.camera.position.length()]; }"
+        )
+        return [x, y], away
+
+    touch("Start", 0)
+    place, away = state()
+    touch("Move", 25)
+    touch("Move", 50)
+    moved, still = state()
+    touch("End")
+    assert moved[0] > place[0] + 5.0
+    assert still == away
+
+    touch("Start", -20)
+    assert state()[0] != moved
+    touch("Start", -20, 20)
+    for spread in (30, 40, 50, 60):
+        touch("Move", -spread, spread)
+    pinched, nearer = state()
+    touch("Move", 60)
+    touch("End")
+    assert pinched == moved
+    assert nearer < 0.9 * away
+
+    touch("Start", 0)
+    touch("Cancel")
+    touch("Start", -40)
+    assert state()[0][0] < 0.0
+    touch("End")
+    assert page.faults == []
+    page.close()
 
 
 def test_it_is_readable(page: Any) -> None:

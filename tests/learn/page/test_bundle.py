@@ -42,6 +42,11 @@ def test_licences_are_beside_it() -> None:
     assert b"Eigen" in lzma.decompress((BUNDLE / "NOTICES-onnxruntime.txt.xz").read_bytes())
 
 
+def test_it_takes_no_origin_for_the_base_of_a_url() -> None:
+    """That of a page opened from disk is "null" in Firefox, where the page did not start."""
+    assert "location.origin" not in (BUNDLE / "page.js").read_text(encoding="utf-8")
+
+
 def test_it_is_small_and_needs_no_network() -> None:
     assert sum(path.stat().st_size for path in BUNDLE.iterdir()) < 4e6
     assert lzma.decompress((BUNDLE / "onnxruntime.wasm.xz").read_bytes())[:4] == b"\0asm"
