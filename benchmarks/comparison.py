@@ -1,7 +1,7 @@
 """Two beams in tisim, CalculiX, FElupe, MuJoCo and Newton: error, time, lines of input; prints two tables.
 
     python -m benchmarks.comparison                  # all that is installed; 10 minutes of one core
-    python -m benchmarks.comparison --only tisim calculix
+    python -m benchmarks.comparison --only tisim calculix --beam bar
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1. Needs `ccx`, the extra `bench`, and
 `pip install mujoco newton meshio warp-lang` for the last two; what is missing is said. SOFA, FEBio and
@@ -92,18 +92,24 @@ class Line:
     lines: int
 
 
-def cases() -> Iterator[Case]:
+def paper_beam() -> Case:
     entry = next(
         e
         for e in json.loads(FILE.read_text())["beams"]
         if (e["case"], e["set"], e["G"]) == ("cantilever-100", "neo_hookean-100", 40e3)
     )
-    paper = np.array([entry["dx"], 0.0, entry["dz"]])
-    yield Case("the paper's beam", tisim.Circle(radius=0.010), 1000.0, 40e3, paper, entry["error_percent"])
-    bar = tisim.Rectangle(width=0.030, height=0.030)
+    end = np.array([entry["dx"], 0.0, entry["dz"]])
+    return Case("the paper's beam", tisim.Circle(radius=0.010), 1000.0, 40e3, end, entry["error_percent"])
+
+
+def bar() -> Case:
+    section = tisim.Rectangle(width=0.030, height=0.030)
     coarse, fine = (bar_reference(level) for level in (1, 2))
     error = 100 * float(np.linalg.norm(fine - coarse) / np.linalg.norm(fine))
-    yield Case("the Dragon Skin bar", bar, 1070.0, 85e3, fine, error)
+    return Case("the Dragon Skin bar", section, 1070.0, 85e3, fine, error)
+
+
+BEAMS = {"paper": paper_beam, "bar": bar}
 
 
 def bar_reference(level: int) -> Array:
@@ -262,14 +268,15 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", nargs="*", choices=list(PROGRAMS), default=list(PROGRAMS))
-    only = parser.parse_args().only
-    for case in cases():
+    parser.add_argument("--beam", nargs="*", choices=list(BEAMS), default=list(BEAMS))
+    given = parser.parse_args()
+    for case in (BEAMS[name]() for name in given.beam):
         size = float(np.linalg.norm(case.reference))
         print(f"\n{case.name}: the end moves by {1e3 * size:.2f} mm, known to {case.stated:.2f} %\n")
         print("| program | elements and law | error % | core-s | of tisim's | lines of input |")
         print("| --- | --- | --- | --- | --- | --- |")
         first: float | None = None
-        for name in only:
+        for name in given.only:
             there, run = PROGRAMS[name]
             if not there():
                 print(f"| {name} | not installed | | | | |", flush=True)

@@ -1,6 +1,6 @@
 from ._build import BuildProgress, Built, build_dataset
 from ._checks import Verification, verify_dataset
-from ._input import InputError
+from ._errors import InputError
 from ._store import DamagedError
 from ._summary import Summary, summarise
 from .materials import Card, load_card, material_of

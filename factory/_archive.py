@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from factory._input import InputError, one_line
+from factory._errors import InputError, one_line
 from factory._staging import sync_folder
 from factory._store import LEDGER, MANIFEST, DamagedError, file_faults, manifest_faults, plain_files
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from factory._assemble import assemble
 from factory._cluster import CLUSTER_TIMEOUT, run_cluster
+from factory._errors import InputError, describe_os_error
 from factory._execution import SIMULATOR
-from factory._input import InputError, describe_os_error
 from factory._local import run_local
 from factory._record import Outcome
 from factory._similar import arrays_of, in_proportion

@@ -13,8 +13,8 @@ import numpy as np
 
 from factory import _paper
 from factory._checks import FORCE_FLOOR, Verification, verify_dataset
+from factory._errors import InputError
 from factory._features import Features, features, own_solves, write_features, write_softness
-from factory._input import InputError
 from factory._store import LEDGER, MANIFEST, DamagedError, read_json
 from factory._summary import Summary, summarise
 from factory.reader import Dataset, open_dataset

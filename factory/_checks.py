@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from factory._archive import zip_faults
 from factory._course import PHASES, states_at
-from factory._input import InputError, one_line
+from factory._errors import InputError, one_line
 from factory._record import STATUSES
 from factory._sampling import LEVELS, RIGID, SIZE, profiles
 from factory._store import DamagedError, file_faults, manifest_faults

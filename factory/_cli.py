@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from factory._input import InputError, describe_os_error, one_line
+from factory._errors import InputError, describe_os_error, one_line
 
 if TYPE_CHECKING:
     from rich.console import Console

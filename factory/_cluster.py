@@ -12,8 +12,8 @@ import time
 from collections.abc import Generator, Sequence
 from typing import Any
 
+from factory._errors import InputError, one_line
 from factory._execution import ERROR_LENGTH, THREAD_VARIABLES, run_poke, sendable
-from factory._input import InputError, one_line
 from factory._record import Outcome
 from factory.plan import PlannedPoke
 

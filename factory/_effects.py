@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
-from factory._input import InputError, Strict
+from factory._errors import InputError
+from factory._input import Strict
 from tisim import Material, Moduli, laws, material_from_moduli
 
 BASE = "neo-hookean"  # the law that effects extend

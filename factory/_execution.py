@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from factory._input import InputError
+from factory._errors import InputError
 from factory._record import Outcome, encode, record
 from factory.plan import PlannedPoke
 from tisim.parallel.extensions import Extension, adopt, needed

@@ -1,4 +1,4 @@
-"""Input that people write: errors of one sentence, and YAML files read into validated models."""
+"""Input that people write: YAML files read into validated models."""
 
 from __future__ import annotations
 
@@ -11,25 +11,11 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import PydanticCustomError
 
+from factory._errors import InputError, describe_os_error
 from tisim.io.bounded_yaml import Limits, YamlError, as_tuples, load
 
 MAX_BYTES = 1_000_000  # of a YAML file
 LIMITS = Limits(depth=40, values=50_000)
-
-
-class InputError(Exception):
-    """Bad input or an unusable target; its text is one sentence for people (exit code 2)."""
-
-
-def describe_os_error(error: OSError, doing: str) -> str:
-    """One sentence for a failed file operation: what was being done, where, and the system's reason."""
-    where = f" {error.filename}" if error.filename else ""
-    return f"{doing}{where}: {error.strerror or error}"
-
-
-def one_line(error: BaseException, limit: int = 200) -> str:
-    """The text of an error of another library on one line; its type where it has no text."""
-    return (" ".join(str(error).split()) or type(error).__name__)[:limit]
 
 
 def shipped_folder(name: str) -> Path:

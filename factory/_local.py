@@ -18,8 +18,8 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 
+from factory._errors import InputError
 from factory._execution import THREAD_VARIABLES, load_simulator, run_poke, sendable
-from factory._input import InputError
 from factory._record import Outcome
 from factory.plan import PlannedPoke
 from tisim.parallel.extensions import Extension

@@ -16,7 +16,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, InstanceOf
 from pydantic_core import PydanticCustomError
 
-from factory._input import one_line
+from factory._errors import one_line
 from tisim import Material, parts
 
 UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key may end with

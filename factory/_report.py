@@ -21,7 +21,7 @@ from factory._build import BuildProgress, Built
 from factory._cli import duration, size_text
 from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
-from factory._input import describe_os_error
+from factory._errors import describe_os_error
 from factory._parts import part_entries
 from factory._staging import Staging
 from factory._store import read_ledger

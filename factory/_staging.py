@@ -31,7 +31,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from factory._input import InputError, one_line
+from factory._errors import InputError, one_line
 from factory._record import Outcome, check_arrays
 from factory._store import read_json
 from factory.plan import PlannedPoke

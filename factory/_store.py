@@ -18,7 +18,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from factory._input import InputError, describe_os_error, validation_sentence
+from factory._errors import InputError, describe_os_error
+from factory._input import validation_sentence
 
 PROVENANCE = "provenance"  # a Zarr group, so that its files do not disturb who lists the arrays
 MANIFEST = f"{PROVENANCE}/manifest.json"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from factory._input import InputError, describe_os_error
+from factory._errors import InputError, describe_os_error
 from factory._record import STATUSES
 from factory._staging import DamagedResultError, Staging, building_folder
 from factory._store import LEDGER, check_identity, read_json, read_ledger

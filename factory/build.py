@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
-from factory._input import InputError, shipped_folder
+from factory._errors import InputError
+from factory._input import shipped_folder
 from tisim import laws
 from tisim.parallel.termination import terminable
 

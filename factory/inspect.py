@@ -19,7 +19,7 @@ from factory._cli import (
     shown_errors,
     size_text,
 )
-from factory._input import InputError
+from factory._errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -17,7 +17,7 @@ import numpy as np
 
 from factory._course import deepest, draw_course
 from factory._effects import in_one_law
-from factory._input import InputError
+from factory._errors import InputError
 from factory._parts import part_entries
 from factory._similar import one_solve
 from factory.materials import (

@@ -21,7 +21,7 @@ import zarr.storage
 from numpy.typing import NDArray
 
 from factory._course import PHASES
-from factory._input import InputError, describe_os_error, one_line
+from factory._errors import InputError, describe_os_error, one_line
 from factory._record import STATUSES
 from factory._schema import NOT_SIMULATED, Spec, specs_of
 from factory._staging import building_folder

@@ -18,7 +18,8 @@ from pydantic import (
 )
 
 from factory._course import Piece, check_pieces
-from factory._input import InputError, Strict, read_yaml, shipped_folder
+from factory._errors import InputError
+from factory._input import Strict, read_yaml, shipped_folder
 from factory._shapes import Name, Natural, Positive, Room, Shape, of_its_kind, with_drawn_shapes
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]

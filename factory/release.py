@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors, size_text
-from factory._input import InputError
+from factory._errors import InputError
 
 EXAMPLES = """
 [bold]Example[/bold]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from factory._cli import Plugins, Version, counted, import_plugins, make_app, make_console, shown_errors
-from factory._input import InputError
+from factory._errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console

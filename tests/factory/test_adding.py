@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import factory
-from factory._input import InputError
+from factory._errors import InputError
 from factory.build import app as build_app
 from factory.verify import app as verify_app
 from tests.factory.conftest import ROOT, environment, run_app

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from factory._input import InputError
+from factory._errors import InputError
 from factory.materials import LAWS, load_card
 from factory.plan import make_plan
 from factory.recipe import load_recipe

@@ -16,7 +16,7 @@ import pytest
 
 from factory import _cluster
 from factory._build import BuildProgress, build_dataset
-from factory._input import InputError
+from factory._errors import InputError
 from factory._staging import Staging
 from factory.plan import Plan
 from tests.factory.conftest import Builder, digest, environment

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from factory._build import BuildProgress
-from factory._input import InputError
+from factory._errors import InputError
 from factory._staging import Staging, building_folder
 from factory.build import app as build_app
 from factory.inspect import app as inspect_app

@@ -15,7 +15,7 @@ import zarr
 
 from factory import _build, verify_dataset
 from factory._build import Built, build_dataset
-from factory._input import InputError
+from factory._errors import InputError
 from factory._store import MANIFEST, write_manifest
 from factory.build import app as build_app
 from factory.inspect import app as inspect_app

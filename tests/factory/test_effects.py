@@ -11,7 +11,7 @@ import yaml
 from typer.testing import CliRunner
 
 import tisim
-from factory._input import InputError
+from factory._errors import InputError
 from factory.build import app
 from factory.materials import load_card, material_of
 from factory.plan import Plan, make_plan

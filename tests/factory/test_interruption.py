@@ -26,7 +26,7 @@ import pytest
 
 from factory import _assemble, _local, _staging
 from factory._build import build_dataset
-from factory._input import InputError
+from factory._errors import InputError
 from factory._staging import Staging, building_folder
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from factory._build import build_dataset, in_turns
+from factory._errors import InputError
 from factory._features import features
-from factory._input import InputError
 from factory._staging import Staging, building_folder
 from factory._summary import summarise
 from factory.build import app

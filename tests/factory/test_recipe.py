@@ -14,7 +14,8 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from factory._input import InputError, read_yaml
+from factory._errors import InputError
+from factory._input import read_yaml
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe, recipe_names
 from tests.factory.conftest import TINY

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from factory._build import BuildProgress, build_dataset
-from factory._input import InputError
+from factory._errors import InputError
 from factory._staging import Staging, building_folder
 from factory.plan import Plan, make_plan
 from factory.recipe import load_recipe

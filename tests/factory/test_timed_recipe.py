@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import factory
-from factory._input import InputError
+from factory._errors import InputError
 from factory._parts import part_entry
 from tests.factory.conftest import TINY
 from tests.factory.timed_cases import FIBRES, SOFTENING, TIMED, VISCOUS, card, recipe

@@ -1,5 +1,9 @@
 """What a new process loads before its first solve: MKL without a walk over the disk, kernels that can err."""
 
+import os
+import subprocess
+import sys
+import time
 from importlib import metadata
 from pathlib import Path
 
@@ -9,6 +13,8 @@ import pytest
 from tisim.kernels._taichi import ensure_runtime, ti
 from tisim.linear.direct import HAVE_PARDISO
 from tisim.linear.pardiso import _file_of_mkl
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.skipif(not HAVE_PARDISO, reason="pypardiso is for x86-64")
@@ -34,6 +40,34 @@ def test_without_the_package_the_search_is_left_to_pypardiso(monkeypatch):
     assert _file_of_mkl() is None
     monkeypatch.setattr(metadata, "files", lambda _: [])
     assert _file_of_mkl() is None
+
+
+COMPILE = """
+import numpy as np
+from tisim.kernels._taichi import ensure_runtime, ti
+ensure_runtime()
+
+@ti.kernel
+def count(values: ti.types.ndarray(dtype=ti.f64, ndim=1)):
+    for i in range(3):
+        values[i] = values[i] + 1.0
+
+count(np.zeros(3))
+"""
+
+
+@pytest.mark.parametrize(("age", "kept"), [(3600.0, False), (0.0, True)])
+def test_a_lock_that_a_killed_process_left_does_not_keep_kernels_from_the_disk(tmp_path, age, kept):
+    """But for one that a process may have taken just now."""
+    lock = tmp_path / "ticache.lock"
+    lock.touch()
+    os.utime(lock, (time.time() - age,) * 2)
+    script = tmp_path / "compile.py"
+    script.write_text(COMPILE)
+    environment = {**os.environ, "TI_OFFLINE_CACHE_FILE_PATH": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    subprocess.run([sys.executable, script], env=environment, check=True, capture_output=True)
+    assert lock.exists() == kept
+    assert bool(list(tmp_path.glob("*.tic"))) != kept
 
 
 def test_errors_of_kernels_show_their_line():

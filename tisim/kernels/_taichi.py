@@ -10,7 +10,9 @@ import inspect
 import io
 import os
 import textwrap
+import time
 import warnings
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -142,6 +144,7 @@ _NUMBERS = {ti.f64: float, ti.i32: int}
 f64 = ti.f64
 i32 = ti.i32
 _started = False
+LONGEST_WRITE = 60.0  # of compiled kernels [s]
 
 
 def ensure_runtime() -> None:
@@ -151,7 +154,19 @@ def ensure_runtime() -> None:
         return
     with contextlib.redirect_stdout(io.StringIO()):  # it prints the backend's name
         _init()
+    _remove_lock_of_the_dead()
     _started = True
+
+
+def _remove_lock_of_the_dead() -> None:
+    """The lock on compiled kernels of a process that was killed as it wrote them, in a second or less.
+
+    As long as it lies there no process writes any, so that each compiles all its kernels.
+    """
+    lock = Path(impl.current_cfg().offline_cache_file_path) / "ticache.lock"
+    with contextlib.suppress(OSError):
+        if time.time() - lock.stat().st_mtime > LONGEST_WRITE:
+            lock.unlink()
 
 
 def _init() -> None:
