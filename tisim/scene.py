@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-
 from tisim import laws, parts
 from tisim.bodies import Block, Circle, Rectangle, Rod, Vector
 from tisim.course import Course
 from tisim.mesh import Mesh
+from tisim.mesh._mesh import free_length
 
 ElementChoice = Literal["default", "tet4", "tet10", "hex8", "hex20"]
 
@@ -269,20 +268,10 @@ class Beam:
             return
         if self.mesh is None:
             raise TypeError("Beam: expected length, the free length [m], or a mesh")
-        object.__setattr__(self, "length", _free_length(self.mesh, self.supports))
-
-
-def _free_length(mesh: Mesh, supports: str) -> float:
-    """From the clamp's bounding box to the farthest node, or to the other clamp's [m]; NaN without clamps."""
-    names = ("clamp",) if supports == "clamped-free" else ("clamp", "far_clamp")
-    held = [mesh.nodes[mesh.node_sets[name]] for name in names if len(mesh.node_sets.get(name, ()))]
-    if len(held) < len(names):
-        return math.nan  # which the scene's check says
-    low, high = held[0].min(axis=0), held[0].max(axis=0)
-    if len(held) == 1:
-        return float(np.linalg.norm(mesh.nodes - np.clip(mesh.nodes, low, high), axis=1).max())
-    gaps = np.maximum(held[1].min(axis=0) - high, low - held[1].max(axis=0))
-    return float(np.linalg.norm(np.maximum(gaps, 0.0)))
+        held = ("clamp",) if self.supports == "clamped-free" else ("clamp", "far_clamp")
+        # what is no mesh, or has no clamps, is refused by the scene's check
+        free = free_length(self.mesh, held) if isinstance(self.mesh, Mesh) else math.nan
+        object.__setattr__(self, "length", free)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -181,6 +181,8 @@ def test_scene_that_cannot_be_built_says_why():
         solve_beam(Beam(material=SOFT, length=0.05, mesh=bare))
     with pytest.raises(ValueError, match="mesh: expected a node set 'clamp'"):
         simulate(Beam(material=SOFT, mesh=bare))
+    with pytest.raises(ValueError, match="mesh: expected Mesh"):
+        simulate(Beam(material=SOFT, mesh="finger.stl"))
     bridge = Beam(material=SOFT, length=0.05, supports="clamped-clamped", tip_force=(0, 0, 1.0))
     with pytest.raises(ValueError, match="a tip force needs a free end"):
         solve_beam(bridge)

@@ -20,8 +20,9 @@ def compiled(kernel: Any) -> bool:
 
 @pytest.mark.parametrize("name", ["neo-hookean", "neo-hookean+prony"])
 def test_each_kernel_of_a_material_is_compiled(name: str) -> None:
-    from tisim.kernels.elements import element_kernels, evaluation_kernel, isochoric_kernels
+    from tisim.kernels.elements import element_kernels, evaluation_kernel
     from tisim.kernels.leapfrog import leapfrog_kernel
+    from tisim.kernels.points import isochoric_kernels
 
     made = precompile.material(name)
     law, features = laws.get(made.law), features_of(made)

@@ -118,7 +118,8 @@ class DiscretisedBody:
         added_mass: Array | None = None,
         history: Array | None = None,
     ) -> None:
-        from tisim.kernels.elements import element_kernels, isochoric_kernels  # imports Taichi
+        from tisim.kernels.elements import element_kernels  # imports Taichi
+        from tisim.kernels.points import isochoric_kernels
 
         law = laws.get(material.law)
         law.check(material.parameters)

@@ -1,4 +1,4 @@
-"""Taichi kernel of one material over a mesh: energy density and stress at the points of integration.
+"""Taichi kernels at the points of integration: energy density and stress, and what a history is made of.
 
 Arguments as in `tisim.kernels.elements`, whose forces are the sum of these stresses.
 """
@@ -61,3 +61,49 @@ def point_kernel(law: Law, features: Features = NONE) -> Kernel:
                             P[e, q, r] = S[r // 3, r % 3]
 
     return points
+
+
+@cache
+def isochoric_kernels(law: Law, features: Features) -> tuple[Kernel, Kernel]:
+    """Kernels (of a mesh, of given F) of what a point's history is made of, see `make_response`.
+
+    C, S (m, q, 6), components 00, 11, 22, 01, 02, 12, S in [Pa]; w (m, q), the isochoric energy before
+    softening [J/m3]. Given deformations F (n, 3, 3) are points of one element.
+    """
+    ensure_runtime()
+    _, _, _, _, isochoric = make_response(law, features)
+    load_point = make_load_point(features)
+    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+    @ti.kernel
+    def of_mesh(x: _f2, conn: _i2, grad: _f4, prm: _f1, state: _f3, C: _f3, S: _f3, w: _f2):
+        ti.loop_config(serialize=True)
+        for _ in range(1):
+            xe = ti.Vector.zero(f64, 3 * MOST_NODES)
+            for e in range(conn.shape[0]):
+                load_nodes(x, conn, e, xe)
+                for q in range(w.shape[1]):
+                    F = deformation_gradient(xe, grad, e, q)
+                    c, s, energy = isochoric(F, determinant(F), prm, load_point(state, e, q))
+                    for n in ti.static(range(6)):
+                        i, k = ti.static(pairs[n])
+                        C[e, q, n] = c[i, k]
+                        S[e, q, n] = s[i, k]
+                    w[e, q] = energy
+
+    @ti.kernel
+    def of_points(F: _f3, prm: _f1, state: _f3, C: _f3, S: _f3, w: _f2):
+        ti.loop_config(serialize=True)
+        for q in range(F.shape[0]):
+            G = ti.Matrix.zero(f64, 3, 3)
+            for i in ti.static(range(3)):
+                for k in ti.static(range(3)):
+                    G[i, k] = F[q, i, k]
+            c, s, energy = isochoric(G, determinant(G), prm, load_point(state, 0, q))
+            for n in ti.static(range(6)):
+                i, k = ti.static(pairs[n])
+                C[0, q, n] = c[i, k]
+                S[0, q, n] = s[i, k]
+            w[0, q] = energy
+
+    return of_mesh, of_points

@@ -144,6 +144,21 @@ class MeshError(ValueError):
     """A body cannot be meshed; the message is one sentence that says what to change."""
 
 
+def free_length(mesh: Mesh, held: tuple[str, ...]) -> float:
+    """From the bounding box of a node set that is held to the farthest node, or to the box of another [m].
+
+    NaN where a set is not there.
+    """
+    sets = [mesh.nodes[mesh.node_sets[name]] for name in held if len(mesh.node_sets.get(name, ()))]
+    if len(sets) < len(held):
+        return float("nan")
+    low, high = sets[0].min(axis=0), sets[0].max(axis=0)
+    if len(sets) == 1:
+        return float(np.linalg.norm(mesh.nodes - np.clip(mesh.nodes, low, high), axis=1).max())
+    gaps = np.maximum(sets[1].min(axis=0) - high, low - sets[1].max(axis=0))
+    return float(np.linalg.norm(np.maximum(gaps, 0.0)))
+
+
 def with_node_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
     """The mesh with one more node set.
 

@@ -40,7 +40,8 @@ class MaterialPoints:
     def __init__(self, material: Material, count: int = 1) -> None:
         from tisim import laws
         from tisim.discretisation.packed import features_of, history_of, pack
-        from tisim.kernels.elements import evaluation_kernel, isochoric_kernels
+        from tisim.kernels.elements import evaluation_kernel
+        from tisim.kernels.points import isochoric_kernels
         from tisim.problems._checks import check_material
 
         check_material(material)
