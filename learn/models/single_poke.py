@@ -1,14 +1,16 @@
 """One poke at a time over one interior, as fast as torch and NumPy go: what a haptic loop calls.
 
 The same numbers as `InvariantGnn.decode` but for rounding. What makes it faster: everything that does not
-depend on the poke is made once; features are rows of one buffer that feeds one product; nothing is
-concatenated; small arrays are NumPy's, whose operations cost a quarter of torch's, products are torch's; the
-rod's surface is looked at near the rod alone.
+depend on the poke is made once; a channel is a row of all points, so that each operation runs along them, and
+products write where the next one reads; small arrays are NumPy's, whose operations cost a quarter of torch's,
+products are torch's; the rod's surface is looked at near the rod alone.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -19,7 +21,7 @@ from torch.nn.functional import silu
 from learn.errors import InputError
 from learn.models import _contact, _prior
 from learn.models._contact import RINGS, WIDTHS
-from learn.models._encoder import Encoded, Gathered, Sparse
+from learn.models._encoder import RADII, Encoded, Gathered, Sparse, Stencil
 from learn.models.invariant_gnn import InvariantGnn, _Messages
 
 Floats = NDArray[np.float32]
@@ -42,21 +44,21 @@ class SinglePoke:
         if model.takes_clock:
             raise InputError("a model that was trained with time is not offered one poke at a time")
         scene = encoded.scene
-        self._matrices = tuple((_matrix(s.mean), _matrix(s.slope)) for s in encoded.stencils)
         self._radius, self._edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
         self._log_modulus, self._force_unit = model.log_modulus, model.force_unit
         self._log_area = torch.log(scene.area).float().numpy()
         self._points = np.ascontiguousarray((scene.points / self._radius).numpy().T)
-        self._normals64 = np.ascontiguousarray(scene.normals.numpy().T)
-        self._normals = self._normals64.astype(np.float32)
+        self._normals = np.ascontiguousarray(scene.normals.float().numpy().T)
         n = self._points.shape[1]
         code = encoded.code[:, inclusion]
         self._looked = model.look(code).numpy()
-        self._code = model.from_code(code)
+        self._code = model.from_code(code).T.contiguous()
         self._clear = encoded.clear[:, inclusion].double().numpy()
         vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
         self._vectors = np.ascontiguousarray(vectors.numpy())
-        self._prior = model.prior.coefficients.numpy()
+        prior = model.prior.coefficients.numpy()  # (radial, factors, 3)
+        self._prior_of_poke = np.ascontiguousarray(prior[:, :-1].transpose(2, 0, 1))
+        self._prior = np.concatenate([np.zeros_like(prior[:, 0].T), prior[:, -1].T])  # (6, radial)
 
         weight = model.from_point.weight.T
         picked = [row for part in (_PLAIN, _BUMPS, _EXP, _TANH, _UNDER) for row in part]
@@ -67,22 +69,32 @@ class SinglePoke:
         self._of_depth = weight[list(_OF_POKE)].numpy()
         self._of_poke = model.from_poke.weight.numpy()
         nothing = torch.zeros(4, weight.shape[1])  # of the direction from the contact, and of the poke
-        self._first = torch.cat([mine, nothing, weight[first + seen :]]).contiguous()
-        self._own = len(mine)  # the row at which those four begin
-        self._ones = np.ones(weight.shape[1], dtype=np.float32)  # a sum by a product
-        # one memory, seen from both sides
-        self._rows = np.ones((len(self._first), n), dtype=np.float32)
-        self._rows_there, self._first_here = torch.from_numpy(self._rows), self._first.numpy()
+        self._first = torch.cat([mine, nothing, weight[first + seen :]]).T.contiguous()
+        self._own = len(mine)  # the column at which those four begin
+        # memory seen from both sides
+        self._rows_there = _channels(self._first.shape[1], n).fill_(1.0)
+        self._rows, self._first_here = self._rows_there.numpy(), self._first.numpy()
+        self._entered = _channels(len(self._first), n)
 
         self._rings = (RINGS[:, None] * len(RINGS)).numpy()
         self._widths = np.array([[-0.5 * (self._radius / w) ** 2] for w in WIDTHS], dtype=np.float32)
         self._scales = np.array([[[2.5e-3 / w]] for w in WIDTHS], dtype=np.float32)
-        self._rounds = [_Round(part, n) for part in model.rounds if isinstance(part, _Messages)]
+        self._rounds: list[_Round] = []
+        shift = torch.zeros(model.enter.out_features)
+        for part in model.rounds:
+            assert isinstance(part, _Messages)
+            self._rounds.append(_Round(part, encoded.stencils, self._radius, shift))
+            shift = shift + part.back.bias
+        # of the vectors that the outputs weigh: those that stay, and room for those of a poke
+        slopes = part.directions * len(part.scales)
+        self._basis = np.empty((3, 3 + v + slopes, n), dtype=np.float32)
+        self._basis[:, 0], self._basis[:, 3 : 3 + v] = self._normals, self._vectors
+        self._products = np.empty_like(self._basis)
         leave, head, last = model.leave[0], model.force_head[0], model.force_head[2]
         assert isinstance(leave, nn.Linear)
         assert isinstance(head, nn.Linear)
         assert isinstance(last, nn.Linear)
-        self._enter, self._leave = _Layer(model.enter), _Layer(leave)
+        self._enter, self._leave = _Layer(model.enter), _Layer(leave, shift)
         self._out, self._out_bias = model.coefficients.weight, model.coefficients.bias[:, None]
         self._head = tuple(t.numpy() for t in (head.weight, head.bias, last.weight[0], last.bias))
 
@@ -98,7 +110,8 @@ class SinglePoke:
         deep = max(depth / self._radius, _contact.TOUCH)
         r64 = self._points - (start / self._radius)[:, None]
         r, push = r64.astype(np.float32), direction.astype(np.float32)
-        square = (r * r).sum(axis=0)
+        square64 = (r64 * r64).sum(axis=0)
+        square = square64.astype(np.float32)
         near = np.exp(self._widths * (square - square.min()) + self._log_area)
         near /= near.sum(axis=1, keepdims=True)  # (w, n)
         here = self._normals @ near[0]
@@ -107,27 +120,26 @@ class SinglePoke:
 
         unit, along, aside = self._fill(r, square, push, deep)
         k = self._own
-        self._first_here[k : k + 3] = toward @ self._toward
+        self._first_here[:, k : k + 3] = (toward @ self._toward).T
         of_depth = deep / 4 * self._of_depth[0] + log_deep * self._of_depth[1]
-        self._first_here[k + 3] = self._of_poke @ about + of_depth
-        h = silu(torch.addmm(self._code, self._rows_there.T, self._first), inplace=True)
-        h = silu(self._enter(h), inplace=True)
-        unit_there, push_there, near_there = (torch.from_numpy(a) for a in (unit, push, near))
-        slopes: list[Tensor] = []
-        for round_ in self._rounds:
-            h, slopes = round_(h, self._matrices, unit_there, push_there, near_there[2:])
+        self._first_here[:, k + 3] = self._of_poke @ about + of_depth
+        h = silu(torch.addmm(self._code, self._first, self._rows_there, out=self._entered), inplace=True)
+        h = silu(self._enter(h, self._rounds[0].input), inplace=True)
+        seen = _Seen(r, unit, push, near[2])
+        for k, round_ in enumerate(self._rounds, start=1):
+            later = self._rounds[k].input if k < len(self._rounds) else self._entered
+            h, slopes = round_(seen, later)
         out = silu(self._leave(h), inplace=True)
-        amounts = torch.addmm(self._out_bias, self._out, out.T).numpy()  # (outputs, n)
-        gates, middle = _contact.N_GATES, 3 + self._vectors.shape[1]
-        own = amounts[0] * self._normals + amounts[1] * unit + amounts[2] * push[:, None]
-        own += (self._vectors * amounts[3:middle]).sum(axis=1)
-        for slope, amount in zip(slopes, np.split(amounts[middle:-gates], len(slopes)), strict=True):
-            each = slope.numpy() * np.ascontiguousarray(amount.T)
-            own += (each.reshape(-1, each.shape[2]) @ self._ones[: each.shape[2]]).reshape(own.shape)
+        amounts = torch.addmm(self._out_bias, self._out, out).numpy()  # (outputs, n)
+        gates, basis = _contact.N_GATES, self._basis
+        basis[:, 1], basis[:, 2] = unit, push[:, None]
+        basis[:, 3 + self._vectors.shape[1] :] = slopes
+        np.multiply(basis, amounts[:-gates], out=self._products)
+        own = self._products.sum(axis=1)
         own *= self._rows[0]
 
         soft = float(near[0] @ self._clear)
-        smooth = self._smooth(r64, direction, deep, soft, float(here @ push)).astype(np.float32)
+        smooth = self._smooth(square64, unit, push, (deep, soft, float(here @ push)))
         u = own + smooth
         beside = np.flatnonzero(aside < _contact.LAND[1])
         if len(beside):
@@ -135,10 +147,10 @@ class SinglePoke:
                 r.T[beside], push, _column(deep)[0], along[beside], aside[beside], self._edge
             )
             gate = 1 / (1 + np.exp(-amounts[-gates:, beside].T))
-            u[:, beside] = _contact.held(place, smooth.T[beside], own.T[beside], gate, np).T
-        pooled = (near_there[:2] @ out).numpy().reshape(-1)
+            u[:, beside] = _contact.held(place, smooth.T[beside], own.T[beside], gate, _OfFew).T
+        pooled = [out.numpy() @ weight for weight in near[:2]]
         weight, bias, last, last_bias = self._head
-        hidden = weight @ np.concatenate([pooled, about]) + bias
+        hidden = weight @ np.concatenate([*pooled, about]) + bias
         kappa = float(last @ (hidden / (1 + np.exp(-hidden))) + last_bias[0])
         depth = max(depth, 0.0)
         force = modulus * depth * self._radius * self._force_unit * float(np.logaddexp(0, kappa))
@@ -177,7 +189,7 @@ class SinglePoke:
         flat = np.subtract(turn, lift * lean, out=rows[5])
         np.multiply(far, np.float32(deep), out=rows[6])
         np.multiply(flat, far, out=rows[7])
-        ring = np.log1p(np.sqrt(square + np.float32(1e-6)) * np.float32(self._radius * 500))
+        ring = np.log(1 + np.sqrt(square + np.float32(1e-6)) * np.float32(self._radius * 500))
         e = 8 + len(_BUMPS)
         np.subtract(ring * np.float32(len(RINGS) / math.log1p(20.0)), self._rings, out=rows[8:e])
         np.multiply(aside, _column(1, 0.5, 1 / (1 + 0.5 * deep)), out=rows[e : e + 3])
@@ -197,78 +209,141 @@ class SinglePoke:
         rows[t + 4 : t + 8] *= rows[e + 3]
         rows[self._own : self._own + 3] = unit
         v, w = self._own + 4, len(self._vectors[0])
-        np.sum(self._vectors * unit[:, None], axis=0, out=rows[v : v + w])
-        np.matmul(push, self._vectors.reshape(3, -1), out=rows[v + w :].reshape(-1))
+        turned = np.multiply(self._vectors, unit[:, None], out=self._products[:, :w])
+        np.sum(turned, axis=0, out=rows[v : v + w])
+        rows[v + w :] = (push @ self._vectors.reshape(3, -1)).reshape(w, -1)
         return unit, along, aside
 
-    def _smooth(self, r: Doubles, push: Doubles, deep: float, soft: float, facing: float) -> Doubles:
-        """The closed form (3, n), as `Prior.forward`."""
-        square = (r * r).sum(axis=0)
+    def _smooth(
+        self, square: Doubles, unit: Floats, push: Floats, poke: tuple[float, float, float]
+    ) -> Floats:
+        """The closed form (3, n), as `Prior.forward`: sums of terms that nearly cancel, in float64.
+
+        square: of the distance from the contact; poke: depth, soft share of the column, and the part of the
+        push along the normal.
+        """
+        deep, soft, facing = poke
         size = np.sqrt(square + 1e-6)
         cores = 1 / np.sqrt(square + np.array([[a * a] for a in _prior.CORES]))
         falls = np.exp(size / np.array([[-length] for length in _prior.RANGES]))
         radial = (cores[:, None] * falls).reshape(-1, len(size))
         lean, part = facing + 0.8, deep / 4
         factors = np.array([1, lean, part, soft, part * lean, part * part, part * soft])
-        mixed = np.tensordot(self._prior[:, :-1], factors, axes=(1, 0)).T  # (vectors, radial)
-        amounts = np.concatenate([mixed, self._prior[:, -1].T]) @ radial
-        unit = r / np.sqrt(square + 1)
-        a = amounts[:3] + amounts[3:] * (push @ unit)
-        return np.asarray(a[0] * self._normals64 + a[1] * unit + a[2] * push[:, None])
+        self._prior[:3] = self._prior_of_poke @ factors
+        amounts = (self._prior @ radial).astype(np.float32)
+        a = amounts[:3] + amounts[3:] * self._rows[4]
+        return np.asarray(a[0] * self._normals + a[1] * unit + a[2] * push[:, None])
 
 
 def _column(*values: float) -> Floats:
     return np.array(values, dtype=np.float32)[:, None]
 
 
-def _matrix(operator: Sparse | Gathered) -> Tensor:
-    """Its matrix, with indices of 32 bits, which the product would make of longer ones at every call."""
-    assert isinstance(operator, Sparse)
-    m = operator.matrix
-    rows, columns = m.crow_indices().int(), m.col_indices().int()
-    return torch.sparse_csr_tensor(rows, columns, m.values(), size=m.shape, check_invariants=False)
+def _channels(count: int, n: int) -> Tensor:
+    """Memory of some channels of n points.
+
+    Rows that begin a multiple of 4 KiB apart, as those of 1,024 points, would share their places in the
+    processor's cache.
+    """
+    return torch.empty(count, n + 16)[:, :n]
+
+
+class _Seen(NamedTuple):
+    """Of all points, from the contact, in rod radii: r and unit (3, n), push (3,), near (n,)."""
+
+    r: Floats
+    unit: Floats
+    push: Floats
+    near: Floats
+
+
+class _OfFew:
+    """What `_contact.held` wants of NumPy; `np.clip` takes as long as five operations on a few points."""
+
+    sqrt, maximum, minimum, where, tanh = np.sqrt, np.maximum, np.minimum, np.where, np.tanh
+
+    @staticmethod
+    def clip(x: Any, low: float | None, high: float | None) -> Any:
+        x = x if low is None else np.maximum(x, low)
+        return x if high is None else np.minimum(x, high)
 
 
 class _Layer:
-    """x W + b, the weights as the product wants them."""
+    """W (x + shift) + b, of x (c, n)."""
 
-    def __init__(self, layer: nn.Linear) -> None:
-        self.weight, self.bias = layer.weight.T.contiguous(), layer.bias
+    def __init__(self, layer: nn.Linear, shift: Tensor | None = None) -> None:
+        bias = layer.bias if shift is None else layer.bias + layer.weight @ shift
+        self.weight, self.bias = layer.weight.contiguous(), bias[:, None].contiguous()
 
-    def __call__(self, x: Tensor) -> Tensor:
-        return torch.addmm(self.bias, x, self.weight)
+    def __call__(self, x: Tensor, out: Tensor | None = None) -> Tensor:
+        return torch.addmm(self.bias, self.weight, x, out=out)
 
 
 class _Round:
-    """`_Messages` of one poke."""
+    """`_Messages` of one poke.
 
-    def __init__(self, part: _Messages, n: int) -> None:
-        d, hidden = part.directions, part.back.out_features
-        self._scales, self._whole = part.scales, part.whole.weight.T.contiguous()
-        self._thin, self._mix, self._back = _Layer(part.thin), _Layer(part.mix), _Layer(part.back)
-        self._x = torch.empty(n, part.mix.in_features)
-        self._hidden, self._m, self._d = hidden, part.thin.out_features - d, d
+    The mean of (x_j - x_i) v_j is that of r_j v_j less r_i times that of v_j, r from the contact: one sparse
+    product gives means and slopes at all scales. Codes come and go less the biases of earlier rounds'
+    last layers (`shift`), which the layers that read them add in theirs.
 
-    def __call__(
-        self, h: Tensor, matrices: tuple[tuple[Tensor, Tensor], ...], unit: Tensor, push: Tensor, near: Tensor
-    ) -> tuple[Tensor, list[Tensor]]:
-        """New h (n, hidden), and the slopes (3, n, directions) of each scale."""
-        n, m, d, x = len(h), self._m, self._d, self._x
-        x[:, : self._hidden] = h
-        thin = self._thin(h)
-        scalar, vector = thin[:, :m].contiguous(), thin[:, m:].contiguous()
-        u = unit[..., None]
-        at, slopes = self._hidden, []
-        for k in self._scales:
-            mean, slope_of = matrices[k]
-            x[:, at : at + m] = torch.mm(mean, scalar)
-            slope = torch.mm(slope_of, vector).reshape(3, n, d)
-            turned = torch.mul(slope[0], u[0], out=x[:, at + m : at + m + d])
-            turned.addcmul_(slope[1], u[1]).addcmul_(slope[2], u[2])
-            x[:, at + m + d : at + m + 2 * d] = (push @ slope.reshape(3, -1)).reshape(n, d)
-            at += m + 2 * d
-            slopes.append(slope)
-        whole = near @ h @ self._whole
-        mixed = torch.addmm(self._mix.bias + whole[0], x, self._mix.weight)
-        new = torch.addmm(h, silu(mixed, inplace=True), self._back.weight).add_(self._back.bias)
-        return new, slopes
+    Attributes
+    ----------
+    input : where the code (hidden, n) is to be.
+    """
+
+    def __init__(self, part: _Messages, stencils: tuple[Stencil, ...], unit: float, shift: Tensor) -> None:
+        hidden, d = part.back.out_features, part.directions
+        m, scales = part.thin.out_features - d, len(part.scales)
+        self._m, self._d = m, d
+        self._means = _stacked([stencils[k].mean for k in part.scales])
+        n = self._means.shape[1]
+        self._over_radius = np.array([unit / RADII[k] for k in part.scales], dtype=np.float32)[:, None]
+        self._thin, self._back = _Layer(part.thin, shift), part.back.weight.contiguous()
+        self._whole, self._mix = part.whole.weight.numpy(), part.mix.weight.contiguous()
+        bias = part.mix.bias + part.mix.weight[:, :hidden] @ shift + part.whole(shift)
+        self._mix_bias = bias.numpy()
+        # memory seen from both sides
+        self._x, self._carried = _channels(part.mix.in_features, n), _channels(m + 4 * d, n)
+        self._mixed = _channels(hidden, n)
+        self.input, self._thinned = self._x[:hidden], self._carried[: m + d]
+        self._carried_here = self._carried.numpy()
+        self._moved = self._carried[m + d :].unflatten(0, (3, d)).numpy()
+        beside = self._x[hidden:].unflatten(0, (scales, m + 2 * d)).numpy()
+        self._of_means, self._of_unit, self._of_push = np.split(beside, [m, m + d], axis=1)
+
+    def __call__(self, seen: _Seen, out: Tensor) -> tuple[Tensor, Floats]:
+        """The new code, in `out` (hidden, n), and the slopes (3, scales x directions, n)."""
+        m, d = self._m, self._d
+        thin = self._thin(self.input, self._thinned).numpy()
+        np.multiply(seen.r[:, None], thin[m:], out=self._moved)
+        wanted = torch.from_numpy(np.ascontiguousarray(self._carried_here.T))
+        found = np.ascontiguousarray(torch.mm(self._means, wanted).numpy().T)
+        found = found.reshape(m + 4 * d, *self._of_means.shape[::2])  # (channels, scales, n)
+        self._of_means[:] = found[:m].swapaxes(0, 1)
+        slope = found[m + d :].reshape(3, d, *found.shape[1:])
+        slope -= seen.r[:, None, None] * found[m : m + d]
+        slope *= self._over_radius
+        slope = np.ascontiguousarray(slope.swapaxes(1, 2))  # (3, scales, d, n)
+        np.sum(slope * seen.unit[:, None, None], axis=0, out=self._of_unit)
+        self._of_push[:] = (seen.push @ slope.reshape(3, -1)).reshape(self._of_push.shape)
+        bias = self._mix_bias + self._whole @ (self.input.numpy() @ seen.near)
+        mixed = torch.addmm(torch.from_numpy(bias)[:, None], self._mix, self._x, out=self._mixed)
+        torch.addmm(self.input, self._back, silu(mixed, inplace=True), out=out)
+        return out, slope.reshape(3, -1, slope.shape[-1])
+
+
+def _stacked(operators: Sequence[Sparse | Gathered]) -> Tensor:
+    """Their matrices one below the other, with indices of 32 bits, which each product would make of longer
+    ones."""
+    rows, columns, values = [torch.zeros(1, dtype=torch.int32)], [], []
+    for operator in operators:
+        assert isinstance(operator, Sparse)
+        m = operator.matrix
+        rows.append(m.crow_indices()[1:].int() + rows[-1][-1])
+        columns.append(m.col_indices().int())
+        values.append(m.values())
+    n = operator.matrix.shape[1]
+    return torch.sparse_csr_tensor(
+        torch.cat(rows), torch.cat(columns), torch.cat(values), size=(len(operators) * n, n),
+        check_invariants=False,
+    )  # fmt: skip
