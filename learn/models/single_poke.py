@@ -81,12 +81,13 @@ class SinglePoke:
         self._scales = np.array([[[2.5e-3 / w]] for w in WIDTHS], dtype=np.float32)
         self._rounds: list[_Round] = []
         shift = torch.zeros(model.enter.out_features)
+        slopes = 0
         for part in model.rounds:
             assert isinstance(part, _Messages)
+            slopes = part.directions * len(part.scales)
             self._rounds.append(_Round(part, encoded.stencils, self._radius, shift))
             shift = shift + part.back.bias
         # of the vectors that the outputs weigh: those that stay, and room for those of a poke
-        slopes = part.directions * len(part.scales)
         self._basis = np.empty((3, 3 + v + slopes, n), dtype=np.float32)
         self._basis[:, 0], self._basis[:, 3 : 3 + v] = self._normals, self._vectors
         self._products = np.empty_like(self._basis)
@@ -335,15 +336,15 @@ class _Round:
 def _stacked(operators: Sequence[Sparse | Gathered]) -> Tensor:
     """Their matrices one below the other, with indices of 32 bits, which each product would make of longer
     ones."""
-    rows, columns, values = [torch.zeros(1, dtype=torch.int32)], [], []
-    for operator in operators:
-        assert isinstance(operator, Sparse)
-        m = operator.matrix
+    matrices = [operator.matrix for operator in operators if isinstance(operator, Sparse)]
+    assert len(matrices) == len(operators)
+    rows = [torch.zeros(1, dtype=torch.int32)]
+    for m in matrices:
         rows.append(m.crow_indices()[1:].int() + rows[-1][-1])
-        columns.append(m.col_indices().int())
-        values.append(m.values())
-    n = operator.matrix.shape[1]
     return torch.sparse_csr_tensor(
-        torch.cat(rows), torch.cat(columns), torch.cat(values), size=(len(operators) * n, n),
+        torch.cat(rows),
+        torch.cat([m.col_indices().int() for m in matrices]),
+        torch.cat([m.values() for m in matrices]),
+        size=(sum(m.shape[0] for m in matrices), matrices[0].shape[1]),
         check_invariants=False,
-    )  # fmt: skip
+    )
