@@ -34,9 +34,9 @@ def draw_features(facts: Facts, path: Path) -> None:
     for axes, label in ((depth, "deepest frame [mm]"), (force, "largest force on the rod [N]")):
         axes.set(ylabel=label, ylim=(0, None))
         axes.set_xticks(range(len(shapes)), shapes, rotation=45, ha="right", fontsize=8)
-    depth.legend(
-        title="material level (dashed: the paper's)" if _drawn(facts) else "material level", fontsize=8
-    )
+    of = "material level (dashed: the paper's)" if _drawn(facts) else "material level"
+    handles, labels = depth.get_legend_handles_labels()
+    figure.legend(handles, labels, title=of, fontsize=8, loc="outside upper right", ncols=len(levels))
     figure.suptitle("mean of the pokes, from the least to the largest of them")
     figure.savefig(path, format="png")
 

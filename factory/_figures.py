@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -122,16 +123,26 @@ def _block(poke: PokeData, axes: Any) -> None:
 
 
 def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
-    """Stiffness below the grid row nearest to the rod's tip, and that row of the top, deformed."""
-    rest = data.table["grid_rest"] * 1e3
-    tip = poke.rod_tip[_deepest(poke)] * 1e3
-    row = int(np.argmin(np.abs(rest[:, 0, 1] - tip[1])))
-    height = float(rest[0, 0, 2])
-    levels = poke.profile[row].T / 255
-    extent = (rest[row, 0, 0], rest[row, -1, 0], 0.0, height)
+    """Upright, through the rod's axis: stiffness of the block at rest, the deformed surface, the rod."""
+    tip = poke.rod_tip[_deepest(poke)]
+    heading = np.array(poke.direction[:2])
+    lean = float(np.linalg.norm(heading))
+    heading = heading / lean if lean > 1e-6 else np.array([1.0, 0.0])
+    cut = _cut(poke.surface[_deepest(poke)] - np.array([*tip[:2], 0.0]), poke.triangles, heading)
+    axes.add_collection(LineCollection(cut * 1e3, colors="#2171b5", linewidths=1.2))
+
+    # of the plane: the part within the block, and the columns of the grid that are nearest to it
+    rest = data.table["grid_rest"]
+    (low, high), height = (rest[[0, -1], [0, -1], :2] - tip[:2]), float(rest[0, 0, 2])
+    ends = np.sort([low, high], axis=0)
+    with np.errstate(divide="ignore"):
+        reach = np.sort(ends / heading, axis=0)
+    along = np.linspace(reach[0].max(), reach[1].min(), 200)
+    place = (along[:, None] * heading - ends[0]) / (ends[1] - ends[0])
+    column, row = np.rint(np.clip(place, 0, 1).T * (np.array(rest.shape[1::-1])[:, None] - 1)).astype(int)
     drawn = axes.imshow(
-        levels,
-        extent=extent,
+        poke.profile[row, column].T / 255,
+        extent=(along[0] * 1e3, along[-1] * 1e3, 0.0, height * 1e3),
         aspect="equal",
         cmap="Greys",
         vmin=0,
@@ -139,14 +150,30 @@ def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
         alpha=0.7,
         interpolation="nearest",
     )
-    figure.colorbar(drawn, ax=axes, label="stiffness code (rest shape)", orientation="horizontal")
-    axes.plot(
-        poke.grid[_deepest(poke), row, :, 0] * 1e3,
-        poke.grid[_deepest(poke), row, :, 2] * 1e3,
-        ".-",
-        color="#2171b5",
+    figure.colorbar(
+        drawn, ax=axes, label="stiffness code of the nearest grid columns, at rest", orientation="horizontal"
     )
-    start = tip - 40 * poke.direction
-    axes.plot([start[0], tip[0]], [start[2], tip[2]], color="#d94801", lw=3)
-    axes.set(xlabel="x [mm]", ylabel="z [mm]", title=f"section at y = {rest[row, 0, 1]:.1f} mm")
-    axes.set_ylim(0, height + 12)
+
+    radius = data.attributes["identity"]["recipe"]["rod"]["radius_mm"]
+    push = np.array([lean, float(poke.direction[2])])
+    across, foot = radius * np.array([-push[1], push[0]]), np.array([0.0, tip[2] * 1e3])
+    corners = [foot + across, foot - across, foot - across - 80 * push, foot + across - 80 * push]
+    axes.add_patch(Polygon(corners, closed=True, facecolor="#d94801", alpha=0.8))
+    axes.set(xlabel="along the heading, from the tip [mm]", ylabel="z [mm]", title="section through the rod")
+    axes.set_xlim(along[0] * 1e3 - 2, along[-1] * 1e3 + 2)
+    axes.set_ylim(-1, height * 1e3 + 12)
+
+
+def _cut(surface: Any, triangles: Any, heading: Any) -> Any:
+    """Where an upright plane through the origin cuts a surface: segments (k, 2, 2), along the heading and up.
+
+    surface (n, 3), beside the origin in x and y but at its own height.
+    """
+    side = surface[:, :2] @ np.array([-heading[1], heading[0]])
+    side = np.where(side == 0.0, 1e-12, side)  # through no corner
+    flat = np.stack([surface[:, :2] @ heading, surface[:, 2]], axis=1)
+    first, second = triangles, np.roll(triangles, -1, axis=1)
+    crossed = (side[first] > 0) != (side[second] > 0)  # none or two edges of each triangle
+    first, second = first[crossed], second[crossed]
+    share = (side[first] / (side[first] - side[second]))[:, None]
+    return (flat[first] + share * (flat[second] - flat[first])).reshape(-1, 2, 2)
