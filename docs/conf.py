@@ -47,6 +47,8 @@ include_patterns = [
     "studies/**/*.png",
     "benchmarks/README.md",
     "datasets/measured/README.md",
+    "datasets/cards/*/card.md",
+    "datasets/cards/*/*.png",
     "tests/README.md",
     "CHANGELOG.md",
 ]

@@ -11,7 +11,7 @@ from tests.packaging.blocks import ROOT
 
 PAGES = sorted(
     p.relative_to(ROOT).as_posix()
-    for folder in (".", "docs", "studies", "benchmarks", "datasets/measured")
+    for folder in (".", "docs", "studies", "benchmarks", "datasets/measured", "datasets/cards")
     for p in (ROOT / folder).glob("*.md" if folder == "." else "**/*.md")
     if not {"_build", "gallery"} & set(p.relative_to(ROOT).parts[:2])
 )
