@@ -14,7 +14,7 @@ import yaml
 from factory import _paper
 from factory._card import Facts, beside_the_paper, size_category, solves
 from factory._cli import counted, duration, size_text
-from factory._features import Features, Spread, measures
+from factory._features import Features, measures
 
 _SNIPPET = """```python
 import zarr
@@ -188,8 +188,12 @@ def _reached(facts: Facts) -> Iterator[str]:
         snapshots = _paper.SNAPSHOTS.get(summary.model)
         theirs = f" It has {snapshots} snapshots of this law, from pokes asked to {_paper.DEPTH_MM:g} mm."
         yield f"Rows of the paper: {_paper.SOURCE}.{theirs if snapshots else ''}"
+    yield (
+        "By shape: means, in brackets the least of the deepest frames and the largest of the forces; the "
+        "share of the depth asked for that was reached; pokes that ended before it."
+    )
     yield _table(
-        ("shape", "softness", "pokes", "deepest [mm]", "largest force [N]", "reached of asked", "ended"),
+        ("shape", "softness", "pokes", "deepest [mm]", "force [N]", "reached", "ended early"),
         [_row(row) for row in facts.rows],
     )
     yield "What ended the pokes: " + _ends(facts) + "."
@@ -279,19 +283,16 @@ def _ends(facts: Facts) -> str:
 
 
 def _row(row: Features) -> tuple[str, ...]:
+    early = [f"{count} {name}" for name, count in row.ended.items() if name != "converged"]
     return (
         f"`{row.shape}`",
         f"`{row.level}`",
         str(row.pokes),
-        _range(row.deepest),
-        _range(row.force),
+        "-" if row.deepest is None else f"{row.deepest.mean:.2f} ({row.deepest.low:.2f})",
+        "-" if row.force is None else f"{row.force.mean:.2f} ({row.force.high:.2f})",
         "-" if row.reached is None else f"{row.reached:.2f}",
-        ", ".join(f"{name} {count}" for name, count in row.ended.items()),
+        ", ".join(early) or "-",
     )
-
-
-def _range(spread: Spread | None) -> str:
-    return "-" if spread is None else f"{spread.mean:.2f} ({spread.low:.2f} to {spread.high:.2f})"
 
 
 def _pairs(pairs: Sequence[tuple[float, float]]) -> list[str]:
