@@ -194,10 +194,12 @@ class Model(nn.Module):
     free_interior : the model accepts interiors and moduli that the dataset does not hold.
     takes_clock : the model reads `Pokes.clock`, and needs it; only such models are trained on datasets with
         time.
+    outputs : names of the last layers' matrices, which an optimiser of hidden layers leaves to another.
     """
 
     free_interior: bool = False
     takes_clock: bool = False
+    outputs: frozenset[str] = frozenset()
 
     def warm_start(self, batches: Iterable[Batch], scene: Scene) -> None:
         """Fit, before training, the parts that are not trained; batches: some of the training part."""

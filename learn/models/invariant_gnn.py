@@ -47,6 +47,7 @@ class InvariantGnn(Model):
     """
 
     free_interior = True
+    outputs = frozenset({"coefficients.weight", "force_head.2.weight"})
 
     def __init__(
         self,

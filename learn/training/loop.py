@@ -21,6 +21,7 @@ from learn.data.folds import split_of
 from learn.errors import InputError
 from learn.models import MODELS, Scene, make_model, pokes_of, scene_of
 from learn.progress import OnProgress, Progress, ignore
+from learn.training.optimisers import make_optimiser
 from learn.training.process_group import ProcessGroup
 from learn.training.recipe import Loss, Recipe, loss_of
 from learn.training.run_folder import (
@@ -99,7 +100,7 @@ class Trainer:
         if kept is None:
             self._warm_start()
         self.ema = copy.deepcopy(self.model).requires_grad_(False)
-        self.optimiser = torch.optim.Adam(self.model.parameters(), lr=recipe.learning_rate)
+        self.optimiser = make_optimiser(self.model, recipe)
         self.step, self.epoch, self.best, self.first = 0, 0, math.inf, math.inf
         torch.manual_seed(recipe.seed + 1 + group.rank)  # dropout
         if kept is not None:

@@ -43,8 +43,10 @@ class Recipe(BaseModel):
     split, fold, train_softness, train_depth_mm : see `learn.data.split_pokes`.
     seed : of weights, order of frames, point dropout and jitter.
     epochs, batch : passes over the training part; frames a step.
-    learning_rate, schedule, warmup : Adam's rate; "cosine" falls to 1 % of it over the epochs; warmup is the
-        fraction of all steps over which it rises.
+    optimiser : "adam", or "muon" for the matrices of hidden layers, beside Adam for the other parameters
+        (`learn.training.optimisers`).
+    learning_rate, schedule, warmup : the optimiser's rate; "cosine" falls to 1 % of it over the epochs;
+        warmup is the fraction of all steps over which it rises.
     clip : largest norm of the gradient (0: none).
     ema_decay : of the exponential moving average of the weights, which is validated and kept (0: the
     weights).
@@ -52,14 +54,14 @@ class Recipe(BaseModel):
         1 + near_weight exp(-r^2 / (2 near_width^2)) in the displacement's loss, a weighted mean distance
         [mm].
     depth_power : a frame has the weight depth^-depth_power in it: 0 counts millimetres, 1 fractions of the
-    depth.
+        depth.
     force_loss, force_weight : "log" is ``|ln(predicted / true)|``, "square" the squared error over the
         training part's mean square; its weight against the displacement's loss.
     point_dropout : fraction of the batches that see a random 40 to 100 % of the points, for other clouds.
     point_jitter : fraction of the batches in which each point is moved at random within its cell of the grid,
-    with
-        the displacement interpolated from the surface meshes: points that no grid point of the few training
-        sites comes near, such as the middle of the contact, are then trained on. Needs data "memory".
+        with the displacement interpolated from the surface meshes: points that no grid point of the few
+        training sites comes near, such as the middle of the contact, are then trained on. Needs data
+        "memory".
     data, shuffle_buffer : frames in memory, or streamed through a buffer of this many blocks.
     mixed_precision : bfloat16 on a GPU.
     """
@@ -75,6 +77,7 @@ class Recipe(BaseModel):
     train_depth_mm: Positive | None = None
     epochs: Annotated[int, Field(strict=True, ge=1, le=100_000)] = 30
     batch: Count = 16
+    optimiser: Literal["adam", "muon"] = "adam"
     learning_rate: Positive = 2e-3
     schedule: Literal["cosine", "constant"] = "cosine"
     warmup: Fraction = 0.03
@@ -118,7 +121,8 @@ class Recipe(BaseModel):
 
 
 RECIPES: dict[str, Recipe] = {
-    "fast": Recipe(),
+    # the default of the key is what recipes and checkpoints without it were trained with
+    "fast": Recipe(optimiser="muon"),
     "quick": Recipe(
         name="quick",
         split="site",

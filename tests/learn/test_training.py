@@ -57,9 +57,15 @@ def _same(a: dict[str, Tensor], b: dict[str, Tensor]) -> bool:
     return all(torch.equal(a[name], b[name]) for name in a)
 
 
-@pytest.mark.parametrize("data", ["memory", pytest.param("stream", marks=pytest.mark.slow)])
-def test_stopped_and_resumed_is_the_same_as_at_one_go(folder: Path, tmp_path: Path, data: str) -> None:
-    recipe = TINY.model_copy(update={"data": data, "shuffle_buffer": 2, "point_dropout": 0.5})
+@pytest.mark.parametrize(
+    ("data", "optimiser"),
+    [("memory", "adam"), ("memory", "muon"), pytest.param("stream", "adam", marks=pytest.mark.slow)],
+)
+def test_stopped_and_resumed_is_the_same_as_at_one_go(
+    folder: Path, tmp_path: Path, data: str, optimiser: str
+) -> None:
+    changes = {"data": data, "shuffle_buffer": 2, "point_dropout": 0.5, "optimiser": optimiser}
+    recipe = TINY.model_copy(update=changes)
     _train(folder, recipe, tmp_path / "whole")
     with pytest.raises(KeyboardInterrupt):
         _train(folder, recipe, tmp_path / "parts", stop_after=1)  # in the middle of the second epoch
