@@ -1,18 +1,9 @@
 """Evaluation: metrics of trained runs beside baselines, conformal intervals, the report."""
 
-from learn.evaluation.evaluation import (
-    Evaluation,
-    Value,
-    by_softness,
-    ensembles,
-    evaluate,
-    join_runs,
-    over_folds,
-    parts_of,
-    summarise,
-)
+from learn.evaluation.evaluation import Evaluation, ensembles, evaluate, join_runs, parts_of
 from learn.evaluation.intervals import Intervals, coverage, fit_intervals, load_intervals, save_intervals
 from learn.evaluation.predictions import predict_on, predict_part, symmetry_error
+from learn.evaluation.summary import Value, by_softness, over_folds, summarise
 
 __all__ = [
     "Evaluation",

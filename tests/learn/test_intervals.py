@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from learn.errors import InputError
-from learn.evaluation.evaluation import by_distance
 from learn.evaluation.intervals import coverage, fit_intervals, pooled_quantile, rank_correlation
+from learn.evaluation.summary import by_distance
 from learn.metrics import Predictions, join_predictions
 
 

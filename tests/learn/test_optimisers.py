@@ -37,9 +37,10 @@ def _one_step(sizes: Statistics, optimiser: str) -> tuple[Model, dict[str, torch
     return model, {name: p.detach() - before[name] for name, p in model.named_parameters()}
 
 
-def test_muon_moves_a_hidden_matrix_as_far_in_all_directions(sizes: Statistics) -> None:
+@pytest.mark.parametrize("name", ["enter.weight", "from_point.weight"])
+def test_muon_moves_a_hidden_matrix_as_far_in_all_directions(sizes: Statistics, name: str) -> None:
     _, moved = _one_step(sizes, "muon")
-    step = moved["enter.weight"]
+    step = moved[name]
     size = RATE * 0.2 * max(step.shape) ** 0.5  # Liu et al. 2025, eq. 4
     found = torch.linalg.svdvals(step) / size
     assert found.min() > 0.5  # as near to 1 as five iterations of Newton and Schulz come
