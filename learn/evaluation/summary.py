@@ -1,4 +1,4 @@
-"""Metrics of predictions as rows of tables: of all frames, by softness, by depth, by distance from the training."""
+"""Metrics of predictions as rows of tables: all frames, by softness, depth and distance from the training."""
 
 from __future__ import annotations
 
