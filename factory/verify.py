@@ -82,6 +82,7 @@ def main(
         sound = not found.total
         if sound:
             more = f"; {counted(found.waiting, 'poke')} not simulated yet" if found.waiting else ""
+            more += "; next: equilibrium by assembly" if assembly else ""
             console.print(f"{counted(found.pokes, 'poke')}, {counted(found.frames, 'frame')}: no fault{more}")
         if sound and assembly:
             sound = _assembled(dataset, pokes, workers, plugin or [], show, console)

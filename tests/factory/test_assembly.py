@@ -122,7 +122,7 @@ def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
 def test_the_command_counts_what_it_checked(simulated: Path) -> None:
     done = run_app(app, simulated, "--assembly", "--pokes", 1, "--workers", 1)
     assert done.exit_code == 0, done.output
-    assert "1 poke, 2 frames: no fault" in done.output
+    assert "1 poke, 2 frames: no fault; next: equilibrium by assembly" in done.output
     assert "equilibrium by assembly of 1 poke, 2 frames: 0 faults" in done.output
     refused = run_app(app, simulated, "--pokes", 1)
     assert refused.exit_code == 2
