@@ -203,10 +203,10 @@ class Predictor:
             timed = "with" if self.run.model.takes_clock else "without"
             raise InputError(f"{where}: {wanted} the model was trained {timed} time")
         inputs, pokes = scene_and_poke(poke, self.store, where)
-        values, kind = self._values(inputs, pokes), kind_of(poke, self.store)
+        asked = self._values(inputs, pokes), kind_of(poke, self.store), poke.law
         with torch.no_grad():
             response = self.run.model(inputs, pokes)
-        answer = self._answer(poke, inputs, pokes, response, (values, kind))
+        answer = self._answer(poke, inputs, pokes, response, asked)
         if not (np.isfinite(answer.displacement).all() and np.isfinite(answer.force)):
             raise InputError(f"{where}: the model's answer is not finite")
         if strict and answer.inside is not True:
@@ -219,7 +219,7 @@ class Predictor:
         Parameters
         ----------
         interior : keys as in `learn.scene_file.PokeScene` that say what is poked: shape or inclusion,
-            softness or shear_modulus_kPa.
+            softness or shear_modulus_kPa, and law.
 
         Raises
         ------
@@ -247,10 +247,11 @@ class Predictor:
         scene: Scene,
         pokes: Pokes,
         response: Response,
-        asked: tuple[dict[str, float], str | None],
+        asked: tuple[dict[str, float], str | None, str | None],
     ) -> PokePrediction:
         u, force = response.displacement.numpy(), float(response.force[0])
-        distance = self.domain.distance(asked[0]) if self.domain else 0.0
+        values, _, law = asked
+        distance = self.domain.distance(values, law) if self.domain else 0.0
         radius, factor = self._interval(response, pokes, distance)
         return PokePrediction(
             poke=poke,

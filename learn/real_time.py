@@ -75,7 +75,7 @@ class RealTime:
     ----------
     predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
     interior : keys of `learn.scene_file.PokeScene` that say what is poked: shape or inclusion, softness or
-        shear_modulus_kPa.
+        shear_modulus_kPa, and law.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class RealTime:
         self._intervals = predictor.intervals
         self._known = self._domain is None or self._domain.knows(kind_of(file, store))
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
-        self._interior = interior_of(store, profile)
+        self._interior, self._law = interior_of(store, profile), file.law
         self.points, self.modulus = store.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
 
@@ -165,4 +165,4 @@ class RealTime:
         values = poke_values(
             self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
         )
-        return self._domain.distance(values)
+        return self._domain.distance(values, self._law)

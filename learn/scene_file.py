@@ -121,6 +121,8 @@ class PokeScene(_Strict):
         a hold, negative when drawn back) and from first contact on; all three, for models trained with time.
     softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain; one of
         the two.
+    law : material law of the tissue, by the name that datasets have for it ("ogden"). The model answers for its
+        dataset's law whatever is said here: another one is marked, and widens the intervals.
     """
 
     site_mm: Pair
@@ -131,6 +133,7 @@ class PokeScene(_Strict):
     inclusion: Inclusion | None = None
     softness: Name | None = None
     shear_modulus_kPa: Annotated[float, Field(strict=True, gt=0, lt=1e6)] | None = None
+    law: Name | None = None
     time_s: Annotated[float, Field(strict=True, gt=0, lt=1e9)] | None = None
     rod_speed_mm_per_s: Annotated[float, Field(strict=True, gt=-1e6, lt=1e6)] | None = None
     approach_speed_mm_per_s: Annotated[float, Field(strict=True, gt=0, lt=1e6)] | None = None

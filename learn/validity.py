@@ -60,6 +60,10 @@ CLOCK_QUANTITIES: dict[str, Quantity] = {
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
 RELATIVE_SLACK = 1e-3  # tolerance besides the slack
 NARROW = 0.01  # of the value: a range narrower than this is none
+# The distance that another law counts as. Of one silicone laws differ where it was stretched further than it was
+# measured: studies/learning/laws.md.
+OTHER_LAW = 0.1
+_LAW = "material law"
 KINDS = ("cube", "cylinder", "sphere", "none")
 
 
@@ -110,8 +114,11 @@ class Domain(BaseModel):
     law: str
     proportional: tuple[str, ...] = ()
 
-    def check(self, values: Mapping[str, float], kind: str | None) -> list[Check]:
-        """Every quantity of a poke (`poke_values`) against its range; kind of inclusion: None if unknown."""
+    def check(self, values: Mapping[str, float], kind: str | None, law: str | None = None) -> list[Check]:
+        """Every quantity of a poke (`poke_values`) against its range.
+
+        kind: of the inclusion, None if unknown; law: of the tissue, None where nothing was said of it.
+        """
         checks = []
         for key, value in values.items():
             quantity = _ALL[key]
@@ -133,20 +140,25 @@ class Domain(BaseModel):
             checks.append(
                 Check(key="inclusion", name="inclusion", value=kind, trained=trained, inside=inside)
             )
+        if law is not None:
+            checks.append(
+                Check(key="law", name=_LAW, value=law, trained=self.law, inside=law == self.law)
+            )
         return checks
 
     def knows(self, kind: str | None) -> bool:
         """Whether a kind of inclusion was trained; also where that is not known of it."""
         return kind is None or self.kinds is None or kind in self.kinds
 
-    def distance(self, values: Mapping[str, float]) -> float:
+    def distance(self, values: Mapping[str, float], law: str | None = None) -> float:
         """How far outside the ranges a poke is, 0 inside: the root of the sum of squares over its quantities.
 
         Each counts in units of its range's width, or of its value where there is no range to speak of;
-        quantities of which no range is known count as 0. The kind of inclusion is no quantity: one that was
-        not trained is no harder within the ranges (studies/learning/part-of-paper.md), and only marked.
+        quantities of which no range is known count as 0, and another law than the dataset's as `OTHER_LAW`.
+        The kind of inclusion is no quantity: one that was not trained is no harder within the ranges
+        (studies/learning/part-of-paper.md), and only marked.
         """
-        total = 0.0
+        total = 0.0 if law is None or law == self.law else OTHER_LAW**2
         for key, value in values.items():
             if key in self.ranges:
                 low, high = self.ranges[key]
@@ -210,14 +222,15 @@ def _range(low: float, high: float, quantity: Quantity) -> str:
     return f"{low:.4g}{units}" if alike else f"{low:.4g} to {high:.4g}{units}"
 
 
-def unknown_checks(values: Mapping[str, float], kind: str | None) -> list[Check]:
+def unknown_checks(values: Mapping[str, float], kind: str | None, law: str | None = None) -> list[Check]:
     """The checks of a run whose training part is not known."""
     checks = [_unknown(key, value) for key, value in values.items()]
-    return [*checks, _unknown("inclusion", kind or "unknown")]
+    checks.append(_unknown("inclusion", kind or "unknown"))
+    return checks if law is None else [*checks, _unknown("law", law)]
 
 
 def _unknown(key: str, value: float | str) -> Check:
-    name = _ALL[key].name if key in _ALL else key
+    name = _ALL[key].name if key in _ALL else _LAW if key == "law" else key
     return Check(key=key, name=name, value=value, trained="", inside=None)
 
 
@@ -256,7 +269,8 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
 def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
     """How far frames of a store lie outside a domain (`Domain.distance`), (f,).
 
-    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside.
+    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside. The store's law
+    counts as `Domain.distance` says.
     """
     found = np.empty(len(poke))
     for index in np.unique(poke):
@@ -270,7 +284,7 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
                 depth=float(depth[frame]),
                 modulus=float(store.modulus[index]),
             )
-            found[frame] = domain.distance(values)
+            found[frame] = domain.distance(values, store.law)
     return found
 
 

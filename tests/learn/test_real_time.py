@@ -14,7 +14,7 @@ from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN
 from learn.predictor import Predictor
 from learn.real_time import RealTime
-from learn.validity import Domain
+from learn.validity import OTHER_LAW, Domain
 from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
@@ -94,6 +94,35 @@ def test_distance_is_in_units_of_the_trained_ranges() -> None:
     assert distance(depth_mm=31.0, rod_radius_mm=4.0) == pytest.approx(math.hypot(0.5, 0.6), abs=5e-3)
     assert [domain.knows(kind) for kind in ("cube", None, "sphere")] == [True, True, False]
     assert all(check.inside for check in domain.check(plain, "cube"))
+    assert domain.distance(plain, "ogden") == 0.0
+    assert domain.distance({**plain, "depth_mm": 31.0}, "yeoh") == pytest.approx(
+        math.hypot(0.5, OTHER_LAW), abs=5e-3
+    )
+
+
+def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
+    """What the model answers is the same: it knows one law."""
+    assert predictor.domain is not None
+    angle = sum(predictor.domain.ranges["angle_deg"]) / 2
+    interior = {**INTERIOR, "shape": predictor.run.groups["train"][0]}
+    poke = {"site": (5e-3, -10e-3), "direction": _way(angle, 40), "depth": 1.5e-3}
+    scene = {**interior, "site_mm": [5, -10], "depth_mm": 1.5, "angle_deg": angle, "heading_deg": 40}
+    mine, other = (predictor.predict({**scene, "law": law}) for law in (predictor.store.law, "mooney-rivlin"))
+    silent = predictor.predict(scene)
+    assert [check.inside for check in (mine.checks[-1], other.checks[-1])] == [True, False]
+    assert "law" not in [check.key for check in silent.checks]
+    assert "material law (mooney-rivlin; trained: " in other.verdict
+    assert mine.inside is silent.inside is True
+    assert mine.force == other.force == silent.force
+    assert other.force_interval is not None
+    assert mine.force_interval == silent.force_interval
+    assert mine.force_interval is not None
+    assert other.force_interval[1] > mine.force_interval[1]
+    here = predictor.real_time(interior)(**poke)  # type: ignore[arg-type]
+    there = predictor.real_time({**interior, "law": "mooney-rivlin"})(**poke)  # type: ignore[arg-type]
+    assert (here.inside, there.inside) == (True, False)
+    assert there.force_interval == pytest.approx(other.force_interval, rel=1e-4)
+    assert there.force == here.force
 
 
 def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
