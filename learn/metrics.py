@@ -38,6 +38,9 @@ class Predictions:
     depth : indentation depth [m], shape (f,).
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
+    shape : name of the inclusion's shape, shape (f,); "" where it is not known.
+    inclusion : volume of the upright cylinder about it [cm3] (`learn.validity.Interior`), shape (f,); 0 where
+        it is not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     """
@@ -50,12 +53,18 @@ class Predictions:
     depth: Floats
     poke: NDArray[np.int64]
     softness: NDArray[np.str_]
+    shape: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype=np.str_))
+    inclusion: Floats = field(default_factory=lambda: np.zeros(0))
     spread: Floats = field(default_factory=lambda: np.zeros(0))
     force_spread: Floats = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         if not self.spread.size:
             object.__setattr__(self, "spread", np.zeros(self.away.shape))
+        if not self.shape.size:
+            object.__setattr__(self, "shape", np.full(self.depth.shape, ""))
+        if not self.inclusion.size:
+            object.__setattr__(self, "inclusion", np.zeros(self.depth.shape))
         if not self.force_spread.size:
             object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
 

@@ -31,7 +31,15 @@ from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, load_run
-from learn.validity import Check, Domain, domain_of, interior_of, poke_values, unknown_checks
+from learn.validity import (
+    Check,
+    Domain,
+    cylinder_about,
+    domain_of,
+    interior_of,
+    poke_values,
+    unknown_checks,
+)
 
 Floats = NDArray[np.float64]
 
@@ -252,7 +260,8 @@ class Predictor:
         u, force = response.displacement.numpy(), float(response.force[0])
         values, _, law = asked
         distance = self.domain.distance(values, law) if self.domain else 0.0
-        radius, factor = self._interval(response, pokes, distance)
+        inclusion = cylinder_about(values["inclusion_width_mm"], values["inclusion_height_mm"])
+        radius, factor = self._interval(response, pokes, inclusion, distance)
         return PokePrediction(
             poke=poke,
             points=self.store.points,
@@ -266,12 +275,13 @@ class Predictor:
         )
 
     def _interval(
-        self, response: Response, pokes: Pokes, distance: float
+        self, response: Response, pokes: Pokes, inclusion: float, distance: float
     ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
             return None, None
-        radius = self.intervals.radius_at_mm(
+        intervals = self.intervals.over(inclusion)
+        radius = intervals.radius_at_mm(
             np.linalg.norm(response.displacement[0].numpy(), axis=1),
             away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1),
             depth=float(pokes.depth[0]),
@@ -279,7 +289,7 @@ class Predictor:
             distance=distance,
         )
         spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
-        return radius * 1e-3, float(np.exp(self.intervals.force_log(spread, distance=distance)))
+        return radius * 1e-3, float(np.exp(intervals.force_log(spread, distance=distance)))
 
     @cached_property
     def intervals(self) -> Intervals | None:

@@ -104,10 +104,11 @@ class RealTime:
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
         self._store, self._domain = store, predictor.domain
-        self._intervals = predictor.intervals
         self._known = self._domain is None or self._domain.knows(kind_of(file, store))
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         self._interior, self._law = interior_of(store, profile), file.law
+        known = predictor.intervals
+        self._intervals = None if known is None else known.over(self._interior.inclusion)
         self.points, self.modulus = store.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
 

@@ -121,8 +121,8 @@ class PokeScene(_Strict):
         a hold, negative when drawn back) and from first contact on; all three, for models trained with time.
     softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain; one of
         the two.
-    law : material law of the tissue, by the name that datasets have for it ("ogden"). The model answers for its
-        dataset's law whatever is said here: another one is marked, and widens the intervals.
+    law : material law of the tissue, by the name that datasets have for it ("ogden"). The model answers for
+        its dataset's law whatever is said here: another one is marked, and widens the intervals.
     """
 
     site_mm: Pair

@@ -60,8 +60,8 @@ CLOCK_QUANTITIES: dict[str, Quantity] = {
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
 RELATIVE_SLACK = 1e-3  # tolerance besides the slack
 NARROW = 0.01  # of the value: a range narrower than this is none
-# The distance that another law counts as. Of one silicone laws differ where it was stretched further than it was
-# measured: studies/learning/laws.md.
+# The distance that another law counts as: of one silicone they differ where it was stretched further than it
+# was measured (studies/learning/laws.md).
 OTHER_LAW = 0.1
 _LAW = "material law"
 KINDS = ("cube", "cylinder", "sphere", "none")
@@ -141,9 +141,7 @@ class Domain(BaseModel):
                 Check(key="inclusion", name="inclusion", value=kind, trained=trained, inside=inside)
             )
         if law is not None:
-            checks.append(
-                Check(key="law", name=_LAW, value=law, trained=self.law, inside=law == self.law)
-            )
+            checks.append(Check(key="law", name=_LAW, value=law, trained=self.law, inside=law == self.law))
         return checks
 
     def knows(self, kind: str | None) -> bool:
@@ -269,8 +267,8 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
 def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
     """How far frames of a store lie outside a domain (`Domain.distance`), (f,).
 
-    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside. The store's law
-    counts as `Domain.distance` says.
+    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside. Another law
+    than the domain's counts as `Domain.distance` says.
     """
     found = np.empty(len(poke))
     for index in np.unique(poke):
@@ -298,6 +296,16 @@ class Interior(NamedTuple):
     soft: Floats
     width: float
     height: float
+
+    @property
+    def inclusion(self) -> float:
+        """Volume of the upright cylinder about the inclusion [cm3]; 0 without one."""
+        return cylinder_about(self.width, self.height)
+
+
+def cylinder_about(width: Any, height: Any) -> Any:
+    """Volume [cm3] of an upright cylinder; width, height: numbers or tensors [mm]."""
+    return 0.25e-3 * math.pi * width**2 * height
 
 
 def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:

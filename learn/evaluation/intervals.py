@@ -10,6 +10,10 @@ come (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling CDFs). Fewer than 9 po
 largest score is taken then, and `promised` says what it promises. Unseen shapes are not exchangeable with
 seen ones, so that the coverage is measured, never presumed.
 
+Errors are larger beside a large inclusion than beside a small one, whatever the poke. So the fitted errors
+have a factor of the inclusion's volume, e^(b V): one number, since a shape is one draw of what it is to be
+unseen, and fitted to five shapes or more.
+
 The shapes that a run was validated on are two, and do not say how a third will do. The test parts of the
 other folds are each predicted by a model that had not seen their shapes, so that they are more draws of the
 error on an unseen shape (cross-conformal prediction: Vovk, Ann. Math. Artif. Intell. 74, 2015; Barber et al.,
@@ -19,8 +23,9 @@ Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -36,9 +41,11 @@ from learn.training.run_folder import write_whole
 
 Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
+_LEAST_FORCE = 1e-5  # of ln(force)
 LEVEL = 0.9
 LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
 LEAST_FOLDS = 3
+LEAST_SHAPES = 5  # that say how errors grow with the inclusion
 # Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
 # known to a factor of e^FORCE_UNKNOWN = 4: nine tenths on thin covers, the worst of the questions of
 # studies/learning/outside.
@@ -57,6 +64,8 @@ class Intervals:
     scale : coefficients of ln(fitted error / mm).
     factors : of the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
+    inclusion, force_inclusion : by how much both fitted errors grow, in their logarithms, with each cm3 of
+        the inclusion (`learn.validity.Interior.inclusion`); 0 from few shapes.
     """
 
     level: float
@@ -66,6 +75,14 @@ class Intervals:
     factors: list[float]
     force_scale: float
     force: float
+    inclusion: float = 0.0
+    force_inclusion: float = 0.0
+
+    def over(self, inclusion: float) -> Intervals:
+        """Those over one inclusion [cm3], which ask for none any more."""
+        scale = [self.scale[0] + self.inclusion * inclusion, *self.scale[1:]]
+        force_scale = self.force_scale * math.exp(self.force_inclusion * inclusion)
+        return replace(self, scale=scale, force_scale=force_scale, inclusion=0.0, force_inclusion=0.0)
 
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
@@ -78,6 +95,7 @@ class Intervals:
             away=predictions.away,
             depth=predictions.depth[:, None],
             spread=predictions.spread,
+            inclusion=predictions.inclusion[:, None],
             distance=np.asarray(distance)[..., None],
         )
 
@@ -88,20 +106,31 @@ class Intervals:
         away: Floats,
         depth: float | Floats,
         spread: float | Floats = 0.0,
+        inclusion: float | Floats = 0.0,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """The same from the size of the predicted displacement [m]; see `Predictions` for the others."""
-        radius = np.array(self.factors).take(_ring(away)) * _scale_mm(size, away, depth, spread, self.scale)
+        fitted = _scale_mm(size, away, depth, self.scale)
+        if self.inclusion:
+            fitted = fitted * np.exp(self.inclusion * np.asarray(inclusion))
+        radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
         if np.any(np.asarray(distance) > 0.0):
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
         return np.asarray(radius)
 
-    def force_log(self, spread: float | Floats = 0.0, *, distance: float | Floats = 0.0) -> Floats:
+    def force_log(
+        self,
+        spread: float | Floats = 0.0,
+        *,
+        inclusion: float | Floats = 0.0,
+        distance: float | Floats = 0.0,
+    ) -> Floats:
         """The true force lies within predicted e^-x and predicted e^x.
 
-        spread: of an ensemble, as `Predictions.force_spread`; distance: as above.
+        spread: of an ensemble, as `Predictions.force_spread`; the others: as above.
         """
-        inside = self.force * np.hypot(self.force_scale, spread)
+        fitted = self.force_scale * np.exp(self.force_inclusion * np.asarray(inclusion))
+        inside = self.force * np.hypot(fitted, spread)
         return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
 
     def as_dict(self) -> dict[str, Any]:
@@ -133,10 +162,14 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
     order = np.random.default_rng(seed).permutation(pokes)
     first = np.isin(predictions.poke, order[: len(order) // 2])
     fitting, held = predictions.where(first), predictions.where(~first)
-    scale = _fit_scale(fitting)
-    scores = held.distance_mm / _scale_mm(_size(held), held.away, held.depth[:, None], held.spread, scale)
-    force_scale = float(np.sqrt((_force_error(fitting) ** 2).mean()))
-    force = _force_error(held) / np.hypot(force_scale, held.force_spread)
+    scale, inclusion = _fit_scale(fitting)
+    fitted = _scale_mm(_size(held), held.away, held.depth[:, None], scale)
+    fitted = fitted * np.exp(inclusion * held.inclusion[:, None])
+    scores = held.distance_mm / _with_spread(fitted, held.spread)
+    force_scale, force_inclusion = _fit_force_scale(fitting)
+    force = _force_error(held) / np.hypot(
+        force_scale * np.exp(force_inclusion * held.inclusion), held.force_spread
+    )
     ring, poke = _ring(held.away), np.broadcast_to(held.poke[:, None], scores.shape)
     anywhere = pooled_quantile(scores.reshape(-1), poke.reshape(-1), level)
     factors = [
@@ -152,6 +185,8 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
         factors=factors,
         force_scale=force_scale,
         force=pooled_quantile(force, held.poke, level),
+        inclusion=inclusion,
+        force_inclusion=force_inclusion,
     )
 
 
@@ -164,7 +199,10 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
         points=float(inside.mean()),
         force=float(
             (
-                _force_error(predictions) <= intervals.force_log(predictions.force_spread, distance=distance)
+                _force_error(predictions)
+                <= intervals.force_log(
+                    predictions.force_spread, inclusion=predictions.inclusion, distance=distance
+                )
             ).mean()
         ),
         rings=[
@@ -214,14 +252,16 @@ def _size(predictions: Predictions) -> Floats:
     return np.asarray(np.linalg.norm(predictions.predicted, axis=2))
 
 
-def _scale_mm(
-    size: Floats, away: Floats, depth: float | Floats, spread: float | Floats, scale: Sequence[float] | Floats
-) -> Floats:
+def _scale_mm(size: Floats, away: Floats, depth: float | Floats, scale: Sequence[float] | Floats) -> Floats:
     """The error to expect at each point [mm], by the coefficients of `_fit_scale` (Horner's scheme)."""
     c, (x, t, s) = scale, _logarithms(size, away, depth)
     of_x = x * (c[1] + c[6] * t + x * (c[2] + x * c[3]))
-    fitted = np.exp(c[0] + t * (c[4] + t * c[5]) + of_x + s * (c[7] + s * c[8]))
-    return np.asarray(fitted if np.ndim(spread) == 0 and spread == 0.0 else np.hypot(fitted, spread * 1e3))
+    return np.asarray(np.exp(c[0] + t * (c[4] + t * c[5]) + of_x + s * (c[7] + s * c[8])))
+
+
+def _with_spread(fitted: Floats, spread: float | Floats) -> Floats:
+    """fitted [mm], spread [m]."""
+    return fitted if np.ndim(spread) == 0 and spread == 0.0 else np.hypot(fitted, np.asarray(spread) * 1e3)
 
 
 def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floats, Floats, Floats]:
@@ -229,14 +269,31 @@ def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floa
     return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
 
 
-def _fit_scale(predictions: Predictions) -> Floats:
+def _inclusion(predictions: Predictions) -> Floats:
+    """The volume that errors may grow with; one for all where there are few shapes."""
+    many = len(np.unique(predictions.shape)) >= LEAST_SHAPES
+    return predictions.inclusion if many else np.zeros_like(predictions.inclusion)
+
+
+def _fit_scale(predictions: Predictions) -> tuple[Floats, float]:
+    """Coefficients of ln(error / mm), and that of the inclusion's volume."""
     x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
-    t = np.broadcast_to(t, x.shape)
-    parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2]
-    a = np.stack(parts, axis=-1).reshape(-1, _N_FEATURES)
+    t, v = (np.broadcast_to(values, x.shape) for values in (t, _inclusion(predictions)[:, None]))
+    parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, v]
+    a = np.stack(parts, axis=-1).reshape(-1, _N_FEATURES + 1)
     target = np.log(np.maximum(predictions.distance_mm.reshape(-1), _LEAST_MM))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
-    return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ target))
+    found = np.linalg.solve(a.T @ a + ridge, a.T @ target)
+    return found[:-1], float(found[-1])
+
+
+def _fit_force_scale(predictions: Predictions) -> tuple[float, float]:
+    """Root mean square of the error of ln(force) at no inclusion, and the coefficient of its volume."""
+    error, v = _force_error(predictions), _inclusion(predictions)
+    off = v - v.mean()
+    varies = float(off @ off)
+    slope = float(off @ np.log(np.maximum(error, _LEAST_FORCE))) / varies if varies > 0.0 else 0.0
+    return float(np.sqrt(((error * np.exp(-slope * v)) ** 2).mean())), slope
 
 
 def too_few(pokes: int) -> str:
@@ -326,6 +383,8 @@ class _File(BaseModel):
     ]
     force_scale: _Positive
     force: _Positive
+    inclusion: _Number = 0.0  # files of before 2026-11-25 do not have them
+    force_inclusion: _Number = 0.0
 
 
 def _path(run: Run) -> Path:

@@ -4,6 +4,7 @@ scenes.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -16,6 +17,7 @@ from learn.data import Batch, MemoryDataset, Store, make_batch
 from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, pokes_of, scene_on
+from learn.validity import interior_of
 
 Floats = NDArray[np.float64]
 
@@ -41,6 +43,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
     parts: list[Predictions] = []
     encoded: Any = None
     points = scene.points.numpy()
+    size = functools.cache(lambda geometry: interior_of(store, store.profile[geometry]).inclusion)
     for batch in batches:
         if encoded is None:
             encoded = model.encode(scene, model.prepare(scene))
@@ -57,6 +60,8 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
                 depth=batch.depth.numpy(),
                 poke=poke,
                 softness=np.array(store.softness_names)[store.softness[poke]],
+                shape=np.array(store.shapes)[store.shape[poke]],
+                inclusion=np.array([size(int(geometry)) for geometry in store.geometry[poke]]),
                 spread=_or_zero(found.spread, away.shape),
                 force_spread=_or_zero(found.force_spread, poke.shape),
             )

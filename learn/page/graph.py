@@ -35,7 +35,7 @@ from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
 from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
-from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
+from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, cylinder_about, interior_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
 _FAR = 1e30  # of a side of a range that does not matter
@@ -139,7 +139,8 @@ class PagePart(nn.Module):
             beyond, distance = self.ranges(values, about[2])
             found += [values, beyond, distance]
         if self.intervals is not None:
-            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), distance)
+            inclusion = cylinder_about(about[0], about[1])
+            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), inclusion, distance)
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
@@ -166,7 +167,9 @@ class PagePart(nn.Module):
         }
         return torch.stack([values[key] for key in QUANTITIES])
 
-    def _intervals(self, u: Tensor, tip: Tensor, depth: Tensor, distance: Tensor) -> list[Tensor]:
+    def _intervals(
+        self, u: Tensor, tip: Tensor, depth: Tensor, inclusion: Tensor, distance: Tensor
+    ) -> list[Tensor]:
         """Factor around the force and radius at each point [m], as `learn.evaluation.Intervals` has them."""
         assert self.intervals is not None
         away = torch.sqrt((self.points - tip).square().sum(dim=1))
@@ -175,14 +178,14 @@ class PagePart(nn.Module):
         moved = torch.log(size / depth + 1e-4)
         parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
+        logs = logs + self.intervals.inclusion * inclusion
         ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
         # 1 - exp(-t) as -expm1(-t), which no runtime has in double: small t loses digits that no one sees
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
-        log = torch.sqrt(
-            (self.intervals.force * self.intervals.force_scale) ** 2 + unknown * FORCE_UNKNOWN**2
-        )
+        fitted = self.intervals.force_scale * torch.exp(self.intervals.force_inclusion * inclusion)
+        log = torch.sqrt((self.intervals.force * fitted) ** 2 + unknown * FORCE_UNKNOWN**2)
         return [torch.exp(log), radius]
 
 

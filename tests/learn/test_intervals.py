@@ -13,10 +13,13 @@ from learn.evaluation.summary import by_distance
 from learn.metrics import Predictions, join_predictions
 
 
-def _noisy(pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0) -> Predictions:
+def _noisy(
+    pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0, growth: float = 0.0, shapes: int = 1
+) -> Predictions:
     """Predictions with errors that fall with the distance from the tip and grow with the depth.
 
-    apart: standard deviation of the logarithm of a factor that all errors of a poke share.
+    apart: standard deviation of the logarithm of a factor that all errors of a poke share; growth: of the
+    logarithm of errors with each cm3 of an inclusion, of which there are so many shapes, of 1 cm3 and more.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
@@ -24,7 +27,8 @@ def _noisy(pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0) -> P
     depth = np.tile([2e-3, 4e-3, 6e-3, 8e-3], pokes)
     truth = np.zeros((frames, n, 3))
     truth[..., 2] = -depth[:, None] * np.exp(-away / 0.01)
-    own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4)
+    shape = np.repeat(np.arange(pokes) % shapes, 4)
+    own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4) * np.exp(growth * (1 + shape))
     scale = more * 0.02 * (own * depth)[:, None] * np.exp(-away / 0.02)
     predicted = truth + random.normal(size=truth.shape) * scale[..., None]
     force = depth * 500
@@ -37,6 +41,8 @@ def _noisy(pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0) -> P
         depth=depth,
         poke=np.repeat(np.arange(pokes), 4),
         softness=np.full(frames, "S0"),
+        shape=shape.astype(str),
+        inclusion=1.0 + shape,
     )
 
 
@@ -141,3 +147,33 @@ def test_frames_are_told_apart_by_how_far_outside_they_are() -> None:
     assert outside.calibrated.rings[0] < 0.5 < 0.9 < outside.widened.rings[0]
     assert outside.mean_mm > 8 * inside.mean_mm
     assert [one.frames for one in found.values()] == [len(within.depth), len(beyond.depth)]
+
+
+def test_errors_that_grow_with_the_inclusion_are_covered_beside_a_larger_one() -> None:
+    """Five shapes say how; the sixth, twice as hard as the mean of these, was not among them."""
+    five, six = _noisy(200, 0, growth=0.3, shapes=5), _noisy(300, 1, growth=0.3, shapes=6)
+    largest = six.where(six.shape == "5")
+    intervals = fit_intervals(five)
+    assert intervals.inclusion == pytest.approx(0.3, abs=0.03)
+    assert intervals.force_inclusion == pytest.approx(0.3, abs=0.1)
+    found = coverage(intervals, largest)
+    assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther off errors are below 1e-4 mm
+    assert 0.82 <= found.force <= 0.96
+    unaware = fit_intervals(dataclasses.replace(five, inclusion=np.zeros(0)))
+    assert max(coverage(unaware, largest).rings[:3]) < 0.75
+
+
+def test_few_shapes_do_not_say_how_errors_grow() -> None:
+    intervals = fit_intervals(_noisy(200, 0, growth=0.3, shapes=4))
+    assert (intervals.inclusion, intervals.force_inclusion) == (0.0, 0.0)
+
+
+def test_intervals_over_one_inclusion_are_those_of_its_frames() -> None:
+    intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5))
+    frame = _noisy(5, 1, shapes=5).where(np.arange(20) == 17)
+    assert frame.inclusion[0] == 5.0
+    bare = dataclasses.replace(frame, inclusion=np.zeros(0))
+    over = intervals.over(5.0)
+    np.testing.assert_allclose(over.radius_mm(bare), intervals.radius_mm(frame), rtol=1e-12)
+    assert over.force_log() == pytest.approx(intervals.force_log(inclusion=5.0)[()], rel=1e-12)
+    assert (over.radius_mm(bare) > intervals.radius_mm(bare)).all()
