@@ -3,6 +3,7 @@
     python -m benchmarks.references.oblique --levels 1              # some 10 core minutes
     python -m benchmarks.references.oblique --levels 1 --penalty 1e10
     python -m benchmarks.references.oblique --levels 1.4            # an hour
+    python -m benchmarks.references.oblique --angle 0 --depth 2     # beside references/poke.json: a check
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
@@ -160,7 +161,9 @@ def half_block(level: float) -> tuple[fe.Mesh, Array]:
     return fe.Mesh(grid.reshape(-1, 3), lattice_cells(number), "hexahedron27"), number[:, :, -1]
 
 
-def poke(level: float, penalty: float, depths: tuple[float, ...] = DEPTHS) -> dict[str, Any]:
+def poke(
+    level: float, penalty: float, depths: tuple[float, ...] = DEPTHS, angle: float = ANGLE
+) -> dict[str, Any]:
     """Force, checks and the top's displacement at every depth reached."""
     mesh, top = half_block(level)
     field = mixed_fields(fe.RegionTriQuadraticHexahedron(mesh))
@@ -172,7 +175,7 @@ def poke(level: float, penalty: float, depths: tuple[float, ...] = DEPTHS) -> di
     i, j = (np.flatnonzero(near.any(axis=k)) for k in (1, 0))
     i, j = i[i % 2 == 0], j[j % 2 == 0]
     faces = [top[a : a + 3, b : b + 3].ravel() for a in i[:-1] for b in j[:-1]]
-    rod = Rod(mesh, np.array(faces), angle=ANGLE, friction=FRICTION, penalty=penalty)
+    rod = Rod(mesh, np.array(faces), angle=angle, friction=FRICTION, penalty=penalty)
     zero = np.zeros(field[0].values.size)
     law = mixed_law("neo_hookean", BULK, mu=MU)
     model = MixedModel(field, law, fixed, lambda _: zero, tolerance=1e-6, contact=rod)
@@ -208,11 +211,12 @@ def main() -> None:
     parser.add_argument("--levels", type=float, nargs="+", default=[1.0])
     parser.add_argument("--penalty", type=float, default=PENALTY, help="Pa/m")
     parser.add_argument("--depth", type=float, default=10.0, help="mm; below 10 nothing is written")
+    parser.add_argument("--angle", type=float, default=ANGLE, help="degrees; but for 45 nothing is written")
     args = parser.parse_args()
     for level in args.levels:
         depths = tuple(d for d in DEPTHS if d <= 1e-3 * args.depth)
-        run = poke(level, args.penalty, depths)
-        if len(depths) < len(DEPTHS):
+        run = poke(level, args.penalty, depths, args.angle)
+        if len(depths) < len(DEPTHS) or args.angle != ANGLE:
             continue
         found: dict[str, Any] = json.loads(FILE.read_text())["runs"] if FILE.exists() else {}
         key = f"{level:g}" if args.penalty == PENALTY else f"{level:g}, penalty {args.penalty:g}"
