@@ -39,8 +39,7 @@ class Predictions:
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
     shape : name of the inclusion's shape, shape (f,); "" where it is not known.
-    inclusion : volume of the upright cylinder about it [cm3] (`learn.validity.Interior`), shape (f,); 0 where
-        it is not known.
+    inclusion : its size [mm], the cube root of its volume, shape (f,); 0 where it is not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     """

@@ -34,7 +34,7 @@ from learn.training import Run, load_run
 from learn.validity import (
     Check,
     Domain,
-    cylinder_about,
+    Interior,
     domain_of,
     interior_of,
     poke_values,
@@ -236,12 +236,15 @@ class Predictor:
         """
         return RealTime(self, interior)
 
+    def _interior(self, scene: Scene) -> Interior:
+        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
+        return interior_of(self.store, profile)
+
     def _values(self, scene: Scene, pokes: Pokes) -> dict[str, float]:
         """The poke's quantities, by key of `learn.validity.QUANTITIES`."""
-        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         return poke_values(
             self.store,
-            interior_of(self.store, profile),
+            self._interior(scene),
             start=pokes.start[0].numpy(),
             direction=pokes.direction[0].numpy(),
             depth=float(pokes.depth[0]),
@@ -260,8 +263,8 @@ class Predictor:
         u, force = response.displacement.numpy(), float(response.force[0])
         values, _, law = asked
         distance = self.domain.distance(values, law) if self.domain else 0.0
-        inclusion = cylinder_about(values["inclusion_width_mm"], values["inclusion_height_mm"])
-        radius, factor = self._interval(response, pokes, inclusion, distance)
+        size = self._interior(scene).size
+        radius, factor = self._interval(response, pokes, size, distance)
         return PokePrediction(
             poke=poke,
             points=self.store.points,

@@ -108,7 +108,7 @@ class RealTime:
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         self._interior, self._law = interior_of(store, profile), file.law
         known = predictor.intervals
-        self._intervals = None if known is None else known.over(self._interior.inclusion)
+        self._intervals = None if known is None else known.over(self._interior.size)
         self.points, self.modulus = store.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
 

@@ -290,22 +290,13 @@ class Interior(NamedTuple):
     """What of an interior the quantities of a poke depend on.
 
     soft: thickness of the soft tissue above the inclusion, or above the base, at each point (n,) [m]; width,
-    height: of the inclusion [mm].
+    height: of the inclusion [mm]; size: cube root of its volume [mm], 0 without one.
     """
 
     soft: Floats
     width: float
     height: float
-
-    @property
-    def inclusion(self) -> float:
-        """Volume of the upright cylinder about the inclusion [cm3]; 0 without one."""
-        return cylinder_about(self.width, self.height)
-
-
-def cylinder_about(width: Any, height: Any) -> Any:
-    """Volume [cm3] of an upright cylinder; width, height: numbers or tensors [mm]."""
-    return 0.25e-3 * math.pi * width**2 * height
+    size: float
 
 
 def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
@@ -316,7 +307,8 @@ def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
     soft = np.where(columns, rigid.argmax(axis=1), rigid.shape[1]) * (height / rigid.shape[1])
     area = columns.sum() * length * breadth / len(store.points)
     tall = (height - float(soft.min())) * 1e3 if columns.any() else 0.0
-    return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall)
+    volume = float(rigid.mean()) * length * breadth * height
+    return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall, 1e3 * math.cbrt(volume))
 
 
 def poke_values(

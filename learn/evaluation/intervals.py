@@ -11,8 +11,8 @@ largest score is taken then, and `promised` says what it promises. Unseen shapes
 seen ones, so that the coverage is measured, never presumed.
 
 Errors are larger beside a large inclusion than beside a small one, whatever the poke. So the fitted errors
-have a factor of the inclusion's volume, e^(b V): one number, since a shape is one draw of what it is to be
-unseen, and fitted to five shapes or more.
+have a factor of the inclusion's size, e^(b V^(1/3)): one number, since a shape is one draw of what it is to
+be unseen, and fitted to five shapes or more.
 
 The shapes that a run was validated on are two, and do not say how a third will do. The test parts of the
 other folds are each predicted by a model that had not seen their shapes, so that they are more draws of the
@@ -64,8 +64,8 @@ class Intervals:
     scale : coefficients of ln(fitted error / mm).
     factors : of the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
-    inclusion, force_inclusion : by how much both fitted errors grow, in their logarithms, with each cm3 of
-        the inclusion (`learn.validity.Interior.inclusion`); 0 from few shapes.
+    inclusion, force_inclusion : by how much both fitted errors grow, in their logarithms, with each mm of
+        the inclusion's size (`learn.validity.Interior.size`); 0 from few shapes.
     """
 
     level: float
@@ -79,7 +79,7 @@ class Intervals:
     force_inclusion: float = 0.0
 
     def over(self, inclusion: float) -> Intervals:
-        """Those over one inclusion [cm3], which ask for none any more."""
+        """Those over an inclusion of this size [mm], which ask for none any more."""
         scale = [self.scale[0] + self.inclusion * inclusion, *self.scale[1:]]
         force_scale = self.force_scale * math.exp(self.force_inclusion * inclusion)
         return replace(self, scale=scale, force_scale=force_scale, inclusion=0.0, force_inclusion=0.0)
@@ -270,13 +270,13 @@ def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floa
 
 
 def _inclusion(predictions: Predictions) -> Floats:
-    """The volume that errors may grow with; one for all where there are few shapes."""
+    """The size that errors may grow with; one for all where there are few shapes."""
     many = len(np.unique(predictions.shape)) >= LEAST_SHAPES
     return predictions.inclusion if many else np.zeros_like(predictions.inclusion)
 
 
 def _fit_scale(predictions: Predictions) -> tuple[Floats, float]:
-    """Coefficients of ln(error / mm), and that of the inclusion's volume."""
+    """Coefficients of ln(error / mm), and that of the inclusion's size."""
     x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
     t, v = (np.broadcast_to(values, x.shape) for values in (t, _inclusion(predictions)[:, None]))
     parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, v]
@@ -288,7 +288,7 @@ def _fit_scale(predictions: Predictions) -> tuple[Floats, float]:
 
 
 def _fit_force_scale(predictions: Predictions) -> tuple[float, float]:
-    """Root mean square of the error of ln(force) at no inclusion, and the coefficient of its volume."""
+    """Root mean square of the error of ln(force) at no inclusion, and the coefficient of its size."""
     error, v = _force_error(predictions), _inclusion(predictions)
     off = v - v.mean()
     varies = float(off @ off)

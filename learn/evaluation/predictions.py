@@ -43,7 +43,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
     parts: list[Predictions] = []
     encoded: Any = None
     points = scene.points.numpy()
-    size = functools.cache(lambda geometry: interior_of(store, store.profile[geometry]).inclusion)
+    size = functools.cache(lambda geometry: interior_of(store, store.profile[geometry]).size)
     for batch in batches:
         if encoded is None:
             encoded = model.encode(scene, model.prepare(scene))

@@ -35,7 +35,7 @@ from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
 from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
-from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, cylinder_about, interior_of
+from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
 _FAR = 1e30  # of a side of a range that does not matter
@@ -64,8 +64,8 @@ def interior_inputs(
     Returns
     -------
     base, looked, vectors, clear: see `learn.page.network.interior_codes`; soft (n,): thickness of the soft
-    tissue above the inclusion [m]; about (3,): width and height of the inclusion [mm], 1 for a kind that was
-    not trained.
+    tissue above the inclusion [m]; about (4,): width and height of the inclusion [mm], 1 for a kind that was
+    not trained, size of the inclusion [mm] (`learn.validity.Interior`).
     """
     rigid = torch.from_numpy(profile == 255).float()
     with torch.no_grad():
@@ -75,7 +75,7 @@ def interior_inputs(
     return {
         **{name: code.numpy() for name, code in codes.items()},
         "soft": inside.soft.astype(np.float64),
-        "about": np.array([inside.width, inside.height, 0.0 if trained_kind else 1.0]),
+        "about": np.array([inside.width, inside.height, 0.0 if trained_kind else 1.0, inside.size]),
     }
 
 
@@ -139,8 +139,7 @@ class PagePart(nn.Module):
             beyond, distance = self.ranges(values, about[2])
             found += [values, beyond, distance]
         if self.intervals is not None:
-            inclusion = cylinder_about(about[0], about[1])
-            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), inclusion, distance)
+            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), about[3], distance)
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:

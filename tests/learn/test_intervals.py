@@ -19,7 +19,7 @@ def _noisy(
     """Predictions with errors that fall with the distance from the tip and grow with the depth.
 
     apart: standard deviation of the logarithm of a factor that all errors of a poke share; growth: of the
-    logarithm of errors with each cm3 of an inclusion, of which there are so many shapes, of 1 cm3 and more.
+    logarithm of errors with each mm of an inclusion, of which there are so many shapes, of 1 mm and more.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
