@@ -162,7 +162,12 @@ def half_block(level: float) -> tuple[fe.Mesh, Array]:
 
 
 def poke(
-    level: float, penalty: float, depths: tuple[float, ...] = DEPTHS, angle: float = ANGLE
+    level: float,
+    penalty: float,
+    depths: tuple[float, ...] = DEPTHS,
+    *,
+    angle: float = ANGLE,
+    step: float = STEP,
 ) -> dict[str, Any]:
     """Force, checks and the top's displacement at every depth reached."""
     mesh, top = half_block(level)
@@ -199,7 +204,7 @@ def poke(
         checks = f"base {reaction:.4f}, penetration {rod.deepest * 1e6:.1f} um, min J {J.min():.3f}"
         print(f"{what}, {checks}, {model.solves} solves, {clock():.0f} s", flush=True)
 
-    reached = model.path(0.0, depths, report, 1e-4, STEP)
+    reached = model.path(0.0, depths, report, min(1e-4, step), step)
     if not reached:
         print(f"level {level:g}: no equilibrium beyond the values above", flush=True)
     return {"points": np.round(1e3 * at[near][:, :2], 4).tolist(), "nodes": mesh.npoints, "depths": out}
@@ -211,15 +216,17 @@ def main() -> None:
     parser.add_argument("--levels", type=float, nargs="+", default=[1.0])
     parser.add_argument("--penalty", type=float, default=PENALTY, help="Pa/m")
     parser.add_argument("--depth", type=float, default=10.0, help="mm; below 10 nothing is written")
+    parser.add_argument("--step", type=float, default=1e3 * STEP, help="largest travel of a step [mm]")
     parser.add_argument("--angle", type=float, default=ANGLE, help="degrees; but for 45 nothing is written")
     args = parser.parse_args()
     for level in args.levels:
         depths = tuple(d for d in DEPTHS if d <= 1e-3 * args.depth)
-        run = poke(level, args.penalty, depths, args.angle)
+        run = poke(level, args.penalty, depths, angle=args.angle, step=1e-3 * args.step)
         if len(depths) < len(DEPTHS) or args.angle != ANGLE:
             continue
         found: dict[str, Any] = json.loads(FILE.read_text())["runs"] if FILE.exists() else {}
         key = f"{level:g}" if args.penalty == PENALTY else f"{level:g}, penalty {args.penalty:g}"
+        key += "" if args.step == 1e3 * STEP else f", steps of {args.step:g} mm"
         about = {
             "units": "N, Pa/m; depths, points at rest (x, y) and displacements of the top in mm",
             "model": "benchmarks/references/oblique.py",
