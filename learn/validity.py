@@ -61,7 +61,7 @@ _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
 RELATIVE_SLACK = 1e-3  # tolerance besides the slack
 NARROW = 0.01  # of the value: a range narrower than this is none
 # The distance that another law counts as: of one silicone they differ where it was stretched further than it
-# was measured (studies/learning/laws.md).
+# was measured (studies/learning/paper.md).
 OTHER_LAW = 0.1
 _LAW = "material law"
 KINDS = ("cube", "cylinder", "sphere", "none")
