@@ -169,7 +169,7 @@ def evaluate(
     with plain_errors():
         from learn.data import open_store
         from learn.evaluation import evaluate as evaluate_runs
-        from learn.evaluation import save_intervals
+        from learn.evaluation import replaced_text, save_intervals
         from learn.evaluation.report import tables, verdict, write_report
         from learn.training import load_run
 
@@ -189,6 +189,9 @@ def evaluate(
         write_report(found, folder)
         if not transfer:
             for run, intervals in found.intervals:
+                text = replaced_text(run, intervals)
+                if text is not None:
+                    console.print(text)
                 save_intervals(run, intervals)
         for title, ((heads, rows), notes) in tables(found).items():
             if rows:

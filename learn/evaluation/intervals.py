@@ -345,6 +345,23 @@ def save_intervals(run: Run, intervals: Intervals) -> Path:
     return path
 
 
+def replaced_text(run: Run, intervals: Intervals) -> str | None:
+    """The sentence to say when these replace intervals that more pokes calibrated; None where they do not.
+
+    A run that is evaluated without the other folds has its own validation part alone.
+    """
+    try:
+        kept = load_intervals(run)
+    except InputError:  # damaged: written again
+        return None
+    if kept is None or kept.pokes <= intervals.pokes:
+        return None
+    return (
+        f"{run.folder}: its intervals, calibrated on {kept.pokes} pokes, are replaced by intervals from "
+        f"{intervals.pokes}: evaluate it with the other folds to have those again"
+    )
+
+
 def load_intervals(run: Run) -> Intervals | None:
     """None where there are none; InputError where the file is damaged or belongs to other members."""
     path = _path(run)

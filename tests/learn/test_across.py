@@ -10,7 +10,15 @@ from typing import cast
 import numpy as np
 import pytest
 
-from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals, inside_alone
+from learn.evaluation.intervals import (
+    Predicted,
+    across_folds,
+    coverage,
+    fit_intervals,
+    inside_alone,
+    replaced_text,
+    save_intervals,
+)
 from learn.metrics import Predictions, join_predictions
 from learn.training import Recipe, Run
 
@@ -95,3 +103,15 @@ def test_where_hardly_any_frame_is_inside_all_calibrate() -> None:
 )
 def test_what_is_not_three_folds_of_one_kind_has_none(answers: list[Predicted]) -> None:
     assert across_folds(answers) == []
+
+
+def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> None:
+    run = cast(Run, SimpleNamespace(folder=tmp_path, members=()))
+    own = fit_intervals(_answers(0, 1.0).predictions)
+    assert replaced_text(run, own) is None
+    save_intervals(run, replace(own, pokes=420))
+    assert "calibrated on 420 pokes, are replaced by intervals from 6" in str(replaced_text(run, own))
+    save_intervals(run, own)
+    assert replaced_text(run, own) is None
+    (tmp_path / "intervals.json").write_text("{", encoding="utf-8")
+    assert replaced_text(run, own) is None
