@@ -1,14 +1,8 @@
 """Evaluation: metrics of trained runs beside baselines, conformal intervals, the report."""
 
 from learn.evaluation.evaluation import Evaluation, ensembles, evaluate, join_runs, parts_of
-from learn.evaluation.intervals import (
-    Intervals,
-    coverage,
-    fit_intervals,
-    load_intervals,
-    replaced_text,
-    save_intervals,
-)
+from learn.evaluation.intervals import Intervals, coverage, fit_intervals
+from learn.evaluation.intervals_file import load_intervals, replaced_text, save_intervals
 from learn.evaluation.predictions import predict_on, predict_part, symmetry_error
 from learn.evaluation.summary import Value, by_softness, over_folds, summarise
 

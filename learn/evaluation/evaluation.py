@@ -21,10 +21,10 @@ from learn.evaluation.intervals import (
     coverage,
     fit_intervals,
     inside_alone,
-    load_intervals,
     rank_correlation,
     too_few,
 )
+from learn.evaluation.intervals_file import load_intervals
 from learn.evaluation.predictions import (
     SymmetryError,
     interpolation_error_mm,

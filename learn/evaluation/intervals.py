@@ -22,22 +22,17 @@ Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals 
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from learn._yaml import first_fault
 from learn.errors import InputError
 from learn.metrics import RING_EDGES_MM, Predictions, join_predictions
 from learn.training import Run
-from learn.training.run_folder import write_whole
 
 Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
@@ -45,6 +40,7 @@ _LEAST_FORCE = 1e-5  # of ln(force)
 LEVEL = 0.9
 LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
 LEAST_FOLDS = 3
+N_FEATURES = 9  # of `_fit_scale`
 LEAST_SHAPES = 5  # that say how errors grow with the inclusion
 # Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
 # known to a factor of e^FORCE_UNKNOWN = 4: nine tenths on thin covers, the worst of the questions of
@@ -280,7 +276,7 @@ def _fit_scale(predictions: Predictions) -> tuple[Floats, float]:
     x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
     t, v = (np.broadcast_to(values, x.shape) for values in (t, _inclusion(predictions)[:, None]))
     parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, v]
-    a = np.stack(parts, axis=-1).reshape(-1, _N_FEATURES + 1)
+    a = np.stack(parts, axis=-1).reshape(-1, N_FEATURES + 1)
     target = np.log(np.maximum(predictions.distance_mm.reshape(-1), _LEAST_MM))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
     found = np.linalg.solve(a.T @ a + ridge, a.T @ target)
@@ -335,78 +331,3 @@ def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Interv
             others = [inside_alone(o.predictions, o.distance) for o in group if o is not one]
             found.append((one, fit_intervals(join_predictions(others))))
     return found
-
-
-def save_intervals(run: Run, intervals: Intervals) -> Path:
-    """Write them to the folder of the run, or of the first of an ensemble."""
-    path = _path(run)
-    content = {"members": _members(run), **intervals.as_dict()}
-    write_whole(path, (json.dumps(content) + "\n").encode())
-    return path
-
-
-def replaced_text(run: Run, intervals: Intervals) -> str | None:
-    """The sentence to say when these replace intervals that more pokes calibrated; None where they do not.
-
-    A run that is evaluated without the other folds has its own validation part alone.
-    """
-    try:
-        kept = load_intervals(run)
-    except InputError:  # damaged: written again
-        return None
-    if kept is None or kept.pokes <= intervals.pokes:
-        return None
-    return (
-        f"{run.folder}: its intervals, calibrated on {kept.pokes} pokes, are replaced by intervals from "
-        f"{intervals.pokes}: evaluate it with the other folds to have those again"
-    )
-
-
-def load_intervals(run: Run) -> Intervals | None:
-    """None where there are none; InputError where the file is damaged or belongs to other members."""
-    path = _path(run)
-    if not path.is_file():
-        return None
-    try:
-        content = _File.model_validate(json.loads(path.read_text(encoding="utf-8"))).model_dump()
-    except ValidationError as error:
-        raise InputError(
-            f"{path}: not readable ({first_fault(error)}); learn.evaluate writes it again"
-        ) from None
-    except (ValueError, RecursionError):
-        raise InputError(f"{path}: not readable; learn.evaluate writes it again") from None
-    members = content.pop("members")
-    if members != _members(run):
-        raise InputError(
-            f"{path}: belongs to {', '.join(members)}; learn.evaluate --ensemble writes it again"
-        )
-    return Intervals(**content)
-
-
-_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-_Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
-_N_FEATURES = 9  # of `_fit_scale`
-
-
-class _File(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-    members: list[str]
-    level: _Positive
-    promised: _Positive
-    pokes: Annotated[int, Field(strict=True, ge=1)]
-    scale: Annotated[list[_Number], Field(min_length=_N_FEATURES, max_length=_N_FEATURES)]
-    factors: Annotated[
-        list[_Positive], Field(min_length=len(RING_EDGES_MM) - 1, max_length=len(RING_EDGES_MM) - 1)
-    ]
-    force_scale: _Positive
-    force: _Positive
-    inclusion: _Number = 0.0  # files of before 2026-11-25 do not have them
-    force_inclusion: _Number = 0.0
-
-
-def _path(run: Run) -> Path:
-    return run.folder / ("intervals-together.json" if run.members else "intervals.json")
-
-
-def _members(run: Run) -> list[str]:
-    return [folder.resolve().name for folder in run.members]

@@ -10,15 +10,8 @@ from typing import cast
 import numpy as np
 import pytest
 
-from learn.evaluation.intervals import (
-    Predicted,
-    across_folds,
-    coverage,
-    fit_intervals,
-    inside_alone,
-    replaced_text,
-    save_intervals,
-)
+from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals, inside_alone
+from learn.evaluation.intervals_file import replaced_text, save_intervals
 from learn.metrics import Predictions, join_predictions
 from learn.training import Recipe, Run
 

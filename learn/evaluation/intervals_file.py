@@ -1,0 +1,90 @@
+"""Intervals in a run's folder: written by `learn.evaluate`, read by whoever predicts with it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from learn._yaml import first_fault
+from learn.errors import InputError
+from learn.evaluation.intervals import N_FEATURES, Intervals
+from learn.metrics import RING_EDGES_MM
+from learn.training import Run
+from learn.training.run_folder import write_whole
+
+
+def save_intervals(run: Run, intervals: Intervals) -> Path:
+    """Write them to the folder of the run, or of the first of an ensemble."""
+    path = _path(run)
+    content = {"members": _members(run), **intervals.as_dict()}
+    write_whole(path, (json.dumps(content) + "\n").encode())
+    return path
+
+
+def replaced_text(run: Run, intervals: Intervals) -> str | None:
+    """The sentence to say when these replace intervals that more pokes calibrated; None where they do not.
+
+    A run that is evaluated without the other folds has its own validation part alone.
+    """
+    try:
+        kept = load_intervals(run)
+    except InputError:  # damaged: written again
+        return None
+    if kept is None or kept.pokes <= intervals.pokes:
+        return None
+    return (
+        f"{run.folder}: its intervals, calibrated on {kept.pokes} pokes, are replaced by intervals from "
+        f"{intervals.pokes}: evaluate it with the other folds to have those again"
+    )
+
+
+def load_intervals(run: Run) -> Intervals | None:
+    """None where there are none; InputError where the file is damaged or belongs to other members."""
+    path = _path(run)
+    if not path.is_file():
+        return None
+    try:
+        content = _File.model_validate(json.loads(path.read_text(encoding="utf-8"))).model_dump()
+    except ValidationError as error:
+        raise InputError(
+            f"{path}: not readable ({first_fault(error)}); learn.evaluate writes it again"
+        ) from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{path}: not readable; learn.evaluate writes it again") from None
+    members = content.pop("members")
+    if members != _members(run):
+        raise InputError(
+            f"{path}: belongs to {', '.join(members)}; learn.evaluate --ensemble writes it again"
+        )
+    return Intervals(**content)
+
+
+_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+_Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+    members: list[str]
+    level: _Positive
+    promised: _Positive
+    pokes: Annotated[int, Field(strict=True, ge=1)]
+    scale: Annotated[list[_Number], Field(min_length=N_FEATURES, max_length=N_FEATURES)]
+    factors: Annotated[
+        list[_Positive], Field(min_length=len(RING_EDGES_MM) - 1, max_length=len(RING_EDGES_MM) - 1)
+    ]
+    force_scale: _Positive
+    force: _Positive
+    inclusion: _Number = 0.0  # files of before 2026-11-25 do not have them
+    force_inclusion: _Number = 0.0
+
+
+def _path(run: Run) -> Path:
+    return run.folder / ("intervals-together.json" if run.members else "intervals.json")
+
+
+def _members(run: Run) -> list[str]:
+    return [folder.resolve().name for folder in run.members]
