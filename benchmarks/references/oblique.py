@@ -32,7 +32,8 @@ import scipy.sparse as sp
 from benchmarks.references.cylinder import graded, lattice_cells
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
-from benchmarks.references.poke import BULK, EDGE, HEIGHT, MU, PENALTY, ROD
+from benchmarks.references.poke import BULK, EDGE, HEIGHT, MU, PENALTY, ROD, corners
+from benchmarks.references.rod import pressure
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")
@@ -85,10 +86,6 @@ class Rod:
         gap = distance - self.edge
         return gap, normal, from_tip - gap[..., None] * normal
 
-    def _pressure(self, gap: Array) -> Array:
-        d = np.maximum(-gap, 0.0)
-        return self.penalty * np.where(d < self.soft, d**2 / (2 * self.soft), d - self.soft / 2)
-
     def _way(self, normal: Array, foot: Array) -> Array:
         """From the anchor to the foot, in the tangent plane; 0 where there is no anchor yet."""
         way = np.where(np.isnan(self.anchor), 0.0, foot - self.anchor)
@@ -102,7 +99,7 @@ class Rod:
     def traction(self, x: Array, travel: float) -> Array:
         """Force an area at rest on the surface [Pa], (..., 3)."""
         gap, normal, foot = self._place(x, travel)
-        p = self._pressure(gap)
+        p = pressure(gap, self.penalty, self.soft)
         return p[..., None] * normal - self.stick * self._held(self._way(normal, foot), p)
 
     def assemble(self, u: Array, factor: float) -> tuple[Array, sp.csr_matrix]:
@@ -128,18 +125,12 @@ class Rod:
         gap, normal, foot = self._place(x, factor)
         self.force = -np.einsum("eqi,eq->i", self.traction(x, factor), self.weight)
         self.deepest = float(np.maximum(-gap, 0.0).max())
-        held = self._held(self._way(normal, foot), self._pressure(gap))
+        held = self._held(self._way(normal, foot), pressure(gap, self.penalty, self.soft))
         tip = self.start + factor * self.push
         moved = self._place(tip + foot - held, factor)[2]  # back onto the rod's surface
         fresh = np.isnan(self.anchor)
         touching = (gap < 0.0)[..., None]
         self.anchor = np.where(touching, np.where(fresh, foot, moved), np.nan)
-
-
-def spans(knots: tuple[float, ...], counts: tuple[int, ...]) -> Array:
-    """Corners and middles of intervals cut evenly between the knots."""
-    parts = [np.linspace(a, b, 2 * n + 1) for a, b, n in zip(knots[:-1], knots[1:], counts, strict=True)]
-    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
 
 
 def half_block(level: float) -> tuple[fe.Mesh, Array]:
@@ -151,10 +142,12 @@ def half_block(level: float) -> tuple[fe.Mesh, Array]:
     side = graded(count(4), 3.0)[1:]
     x = np.concatenate([
         BACK - (HALF + BACK) * side[::-1],
-        spans((BACK, FRONT), (count(14),)),
+        corners((BACK, FRONT), (count(14),), 1),
         FRONT + (HALF - FRONT) * side,
     ])  # fmt: skip
-    y = np.concatenate([spans((0.0, 0.003, BESIDE), (count(4), count(2))), BESIDE + (HALF - BESIDE) * side])
+    y = np.concatenate(
+        [corners((0.0, 0.003, BESIDE), (count(4), count(2)), 1), BESIDE + (HALF - BESIDE) * side]
+    )
     z = HEIGHT * (1 - graded(count(6), 3.0))[::-1]
     grid = np.stack(np.meshgrid(x, y, z, indexing="ij"), -1)
     number = np.arange(grid[..., 0].size).reshape(grid.shape[:3])

@@ -19,6 +19,12 @@ import scipy.sparse as sp
 Array = np.ndarray[Any, Any]
 
 
+def pressure(gap: Array, penalty: float, soft: float) -> Array:
+    """Linear in the penetration past `soft` [m], quadratic before; penalty [Pa/m]."""
+    d = np.maximum(-gap, 0.0)
+    return penalty * np.where(d < soft, d**2 / (2 * soft), d - soft / 2)
+
+
 class FlatRod:
     """Contact term of `mixed.MixedModel`; the load factor is the rod's travel [m]."""
 
@@ -63,15 +69,10 @@ class FlatRod:
         tangent = np.stack([normal[..., 1], -normal[..., 0]], -1) * along[..., None]
         return distance - self.edge, s, normal, tangent
 
-    def _pressure(self, gap: Array) -> Array:
-        """Linear in the penetration past `soft`, quadratic before."""
-        d = np.maximum(-gap, 0.0)
-        return self.penalty * np.where(d < self.soft, d**2 / (2 * self.soft), d - self.soft / 2)
-
     def traction(self, x: Array, travel: float) -> Array:
         """Force a reference area on the surface [Pa], (..., 2)."""
         gap, s, normal, tangent = self._place(x, travel)
-        p = self._pressure(gap)
+        p = pressure(gap, self.penalty, self.soft)
         t = np.where(np.isnan(self.anchor), 0.0, self.stick * (s - np.nan_to_num(self.anchor)))
         limit = self.friction * p
         return p[..., None] * normal - np.clip(t, -limit, limit)[..., None] * tangent
@@ -100,7 +101,7 @@ class FlatRod:
         gap, s, _, _ = self._place(x, factor)
         self.force = -float((self.traction(x, factor)[..., 0] * self.weight).sum())
         self.deepest = float(np.maximum(-gap, 0.0).max())
-        p = self._pressure(gap)
+        p = pressure(gap, self.penalty, self.soft)
         limit = self.friction * p / self.stick
         held = s - np.clip(s - self.anchor, -limit, limit)
         touching = gap < (1e-12 if factor == 0 else 0.0)
