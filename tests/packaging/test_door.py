@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -53,6 +54,23 @@ def test_help_shows_all_verbs_with_their_purposes_and_imports_none(folder: Path)
     imported = shown.stdout.splitlines()[-1]
     for package in ("factory", "calibration", "learn", "numpy", "torch", "taichi", "zarr"):
         assert f"'{package}'" not in imported
+
+
+def test_help_of_every_verb_waits_for_nothing_that_computes(folder: Path) -> None:
+    code = (
+        "import json, sys\n"
+        "from importlib import import_module\n"
+        "from typer.testing import CliRunner\n"
+        "for verb, value in json.loads(sys.argv[1]).items():\n"
+        "    module, _, name = value.partition(':')\n"
+        "    done = CliRunner().invoke(getattr(import_module(module), name), ['--help'])\n"
+        "    assert done.exit_code == 0, (verb, done.output)\n"
+        "    found = {n.partition('.')[0] for n in sys.modules}\n"
+        "    slow = sorted(found & {'numpy', 'scipy', 'zarr', 'matplotlib', 'torch', 'taichi', 'dask'})\n"
+        "    assert not slow, (verb, slow)\n"
+    )
+    done = tisim(folder, json.dumps(VERBS), code=code)
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_documented_command_is_a_verb() -> None:

@@ -33,6 +33,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from tisim.laws import (
     arruda_boyce,
@@ -45,9 +46,11 @@ from tisim.laws import (
     stiffening_neo_hookean,
     yeoh,
 )
-from tisim.laws._check import LawReport, check_law, evaluate
 from tisim.laws._energy import by_invariants, first_isochoric, lazy, ti
 from tisim.laws._law import Law, Moduli, Parameters
+
+if TYPE_CHECKING:
+    from tisim.laws._check import LawReport, check_law, evaluate
 
 # The paper's laws, in its order, then those of tisim that are not searched for by default.
 _PAPER = (
@@ -133,6 +136,14 @@ def get(name: str) -> Law:
     if law is None:
         raise ValueError(f"law: expected one of {', '.join(all_names())}, got {name!r}")
     return law
+
+
+def __getattr__(name: str) -> Any:
+    if name in ("LawReport", "check_law", "evaluate"):  # they need NumPy, which a command's help does without
+        from tisim.laws import _check
+
+        return getattr(_check, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 __all__ = [

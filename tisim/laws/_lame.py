@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal
 
-import numpy as np
-
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 
@@ -26,7 +24,7 @@ def law_of_lame(
         family="invariant",
         theta=theta,
         energy=energy,
-        pack=lambda p: np.array([scalar(p, "mu")]),
+        pack=lambda p: (scalar(p, "mu"),),
         kappa=kappa,
         moduli=lambda p: Moduli(
             shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0

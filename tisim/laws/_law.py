@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # a command's help names the laws: NumPy is imported when one is used
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 Parameters = Mapping[str, "float | tuple[float, ...]"]
 
@@ -55,7 +56,7 @@ class Law:
     energy : Taichi function
         (I1, I2, J, prm) or (l1, l2, l3, prm) to the 10-vector; prm is the packed array. Decorated by
         `tisim.laws.ti.func` (Taichi is then imported when the law is first evaluated) or by Taichi's own.
-    pack : callable (parameters) -> ndarray of float, shape (n,)
+    pack : callable (parameters) -> array_like of float, shape (n,)
         The numbers that `energy` reads.
     kappa : callable (parameters) -> float
         Factor of theta^2 / 2 [Pa].
@@ -76,7 +77,7 @@ class Law:
     family: Literal["invariant", "principal"]
     theta: Literal["log", "linear", "trace"]
     energy: Any
-    pack: Callable[[Parameters], NDArray[np.float64]]
+    pack: Callable[[Parameters], ArrayLike]
     kappa: Callable[[Parameters], float]
     moduli: Callable[[Parameters], Moduli]
     from_moduli: Callable[[float, float], dict[str, float | tuple[float, ...]]]
@@ -85,6 +86,8 @@ class Law:
 
     def check(self, parameters: Parameters) -> None:
         """Raise ValueError, in one sentence, unless names, shapes and small-strain moduli are sound."""
+        import numpy as np
+
         unknown = sorted(set(parameters) - set(self.parameters))
         missing = sorted(set(self.parameters) - set(parameters))
         if unknown or missing:
@@ -118,9 +121,13 @@ class Law:
 
 def scalar(parameters: Parameters, name: str) -> float:
     """One number out of the parameters."""
+    import numpy as np
+
     return float(np.asarray(parameters[name], dtype=float))
 
 
 def series(parameters: Parameters, name: str) -> NDArray[np.float64]:
     """A series out of the parameters, shape (N,)."""
+    import numpy as np
+
     return np.atleast_1d(np.asarray(parameters[name], dtype=float))

@@ -16,8 +16,6 @@ SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.085
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
@@ -60,7 +58,7 @@ LAW = Law(
     family="invariant",
     theta="log",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "locking")]),
+    pack=lambda p: (scalar(p, "mu"), scalar(p, "locking")),
     kappa=lambda p: scalar(p, "bulk"),
     moduli=_moduli,
     from_moduli=lambda shear, bulk: {

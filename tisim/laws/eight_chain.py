@@ -16,8 +16,6 @@ paper's laws.
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
@@ -77,7 +75,7 @@ LAW = Law(
     family="invariant",
     theta="log",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "locking")]),
+    pack=lambda p: (scalar(p, "mu"), scalar(p, "locking")),
     kappa=lambda p: scalar(p, "bulk"),
     moduli=lambda p: Moduli(shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "bulk")),
     from_moduli=lambda shear, bulk: {"mu": shear, "locking": 8.0**0.5, "bulk": bulk},

@@ -13,8 +13,6 @@ does not: integer division in its exponents).
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import ti
 from tisim.laws._law import Law, Moduli, scalar
 
@@ -50,7 +48,7 @@ LAW = Law(
     family="invariant",
     theta="log",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "c10"), scalar(p, "c01")]),
+    pack=lambda p: (scalar(p, "c10"), scalar(p, "c01")),
     kappa=lambda p: scalar(p, "bulk"),
     moduli=lambda p: Moduli(
         shear_modulus=2.0 * (scalar(p, "c10") + scalar(p, "c01")),

@@ -17,8 +17,6 @@ Older SOFA computes a stress that is not the derivative of its energy (SOFA issu
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar, series
 
@@ -58,9 +56,9 @@ def energy(l1, l2, l3, prm: ti.template()):
     )
 
 
-def _pack(p: Parameters) -> np.ndarray:
-    mu, alpha = series(p, "mu"), series(p, "alpha")
-    return np.concatenate([[len(mu)], np.column_stack([mu, alpha]).ravel()])
+def _pack(p: Parameters) -> list[float]:
+    terms = list(zip(series(p, "mu"), series(p, "alpha"), strict=True))
+    return [len(terms), *(number for term in terms for number in term)]
 
 
 LAW = Law(

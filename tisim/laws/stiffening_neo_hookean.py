@@ -12,8 +12,6 @@ strain: G = mu, K = lam + 2 mu/3, whatever the stiffening. Stress-free at rest. 
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws import yeoh
 from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, scalar
@@ -39,7 +37,7 @@ LAW = Law(
     family="invariant",
     theta="log",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "stiffening")]),
+    pack=lambda p: (scalar(p, "mu"), scalar(p, "stiffening")),
     kappa=lambda p: scalar(p, "lam"),
     moduli=lambda p: Moduli(
         shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "lam") + 2.0 * scalar(p, "mu") / 3.0

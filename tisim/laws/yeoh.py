@@ -12,8 +12,6 @@ Stress-free at rest. Not among the paper's laws.
 
 from __future__ import annotations
 
-import numpy as np
-
 from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
@@ -41,7 +39,7 @@ LAW = Law(
     family="invariant",
     theta="log",
     energy=energy,
-    pack=lambda p: np.array([scalar(p, "mu"), scalar(p, "stiffening")]),
+    pack=lambda p: (scalar(p, "mu"), scalar(p, "stiffening")),
     kappa=lambda p: scalar(p, "bulk"),
     moduli=lambda p: Moduli(shear_modulus=scalar(p, "mu"), bulk_modulus=scalar(p, "bulk")),
     from_moduli=lambda shear, bulk: {"mu": shear, "stiffening": 0.0, "bulk": bulk},
