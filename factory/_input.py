@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import importlib.resources
 import stat
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,22 +15,6 @@ from tisim.io.bounded_yaml import Limits, YamlError, as_tuples, load
 
 MAX_BYTES = 1_000_000  # of a YAML file
 LIMITS = Limits(depth=40, values=50_000)
-
-
-def shipped_folder(name: str) -> Path:
-    """Folder of the recipes or material cards that come with the package.
-
-    Parameters
-    ----------
-    name : {"recipes", "materials"}
-
-    Returns
-    -------
-    Path
-        `factory/_shipped/NAME` of an installed wheel, `datasets/NAME` of a checkout.
-    """
-    installed = Path(str(importlib.resources.files("factory"))) / "_shipped" / name
-    return installed if installed.is_dir() else Path(__file__).parent.parent / "datasets" / name
 
 
 class Strict(BaseModel):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from factory._bundled import recipe_names
 from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
 from factory._errors import InputError
-from factory._input import shipped_folder
 from tisim import laws
 from tisim.parallel.termination import terminable
 
@@ -52,7 +52,7 @@ material level after another, to look at or to train on:
 Exit codes: 0 built, 1 built but some pokes failed, 2 bad input or target, 130 stopped by Ctrl-C.
 """
 
-RECIPES = ", ".join(sorted(path.stem for path in shipped_folder("recipes").glob("*.yaml")))
+RECIPES = ", ".join(recipe_names())
 MODELS = ", ".join(laws.all_names())
 
 

@@ -13,9 +13,10 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from factory._bundled import shipped_folder
 from factory._effects import BASE, CardEffect, Text, extended
 from factory._errors import InputError
-from factory._input import Strict, read_mapping, read_yaml, shipped_folder
+from factory._input import Strict, read_mapping, read_yaml
 from factory._laws import LAWS as LAWS
 from factory._laws import Laws, Modulus
 from factory._parts import Fibres, Softening, Viscosity

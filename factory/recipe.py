@@ -17,9 +17,10 @@ from pydantic import (
     model_validator,
 )
 
+from factory._bundled import recipe_names, shipped_folder
 from factory._course import Piece, check_pieces
 from factory._errors import InputError
-from factory._input import Strict, read_yaml, shipped_folder
+from factory._input import Strict, read_yaml
 from factory._shapes import Name, Natural, Positive, Room, Shape, of_its_kind, with_drawn_shapes
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
@@ -193,11 +194,6 @@ def _check_protocol(recipe: Recipe) -> None:
             f"{recipe.rod.radius_mm:g} mm lands within the top at up to {protocol.max_angle_deg:g} degrees, "
             f"got {protocol.margin_mm:g}"
         )
-
-
-def recipe_names() -> list[str]:
-    """Names of the recipes that come with the package."""
-    return sorted(path.stem for path in shipped_folder("recipes").glob("*.yaml"))
 
 
 def load_recipe(name_or_path: str | Path) -> Recipe:
