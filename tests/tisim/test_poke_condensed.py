@@ -252,7 +252,7 @@ def test_nearly_incompressible_far_tissue_does_not_hold_steps_back(monkeypatch: 
     assert condensed <= 1.5 * solve_poke(poke).cost.newton_iterations
 
 
-def test_a_poke_that_fails_ends_after_three_times_the_iterations_of_a_step(
+def test_a_poke_that_fails_ends_after_so_many_iterations(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """And says so: no frame is made up."""
@@ -260,10 +260,10 @@ def test_a_poke_that_fails_ends_after_three_times_the_iterations_of_a_step(
 
     def fails(block: CondensedBlock, x: Array, **_: Any) -> Outcome:
         asked.append(block._system.depth)
-        return Outcome(x, Status.NOT_CONVERGED, 1.0, 120)  # three times Solver.max_iterations
+        return Outcome(x, Status.NOT_CONVERGED, 1.0, 80)  # twice Solver.max_iterations
 
     monkeypatch.setattr(CondensedBlock, "solve", fails)
     found = solve_poke(scene())
-    assert len(asked) == 1  # smaller steps would be tried otherwise
+    assert len(asked) == 2  # as it is, and as a motion: smaller steps would be tried otherwise
     assert found.status is Status.NOT_CONVERGED
     assert len(found.load) == 0

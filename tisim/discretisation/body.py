@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim import laws
+from tisim.discretisation.history import History
 from tisim.discretisation.packed import features_of, history_of, pack
 from tisim.discretisation.quadrature import Reference, bulk_shares, reference
 from tisim.linear.blocks import Pattern, pattern_of
@@ -196,10 +197,14 @@ class DiscretisedBody:
 
     def go_on_from(self, earlier: DiscretisedBody) -> None:
         """Take over the history of another body of the same material and mesh, which gives it up."""
-        self.history = earlier.history
-        if self.history is not None:
-            self.state = self.history.state
-            self._set_scale(self.history.scale)
+        self.take(earlier.history)
+
+    def take(self, history: History | None) -> None:
+        """Go on from this history, of a body of the same material and mesh."""
+        self.history = history
+        if history is not None:
+            self.state = history.state
+            self._set_scale(history.scale)
 
     def _set_scale(self, scale: float) -> None:
         self._prm[len(self._prm) - self.features.tail_size] = scale

@@ -246,6 +246,14 @@ class TetrahedralParts:
         self._worst = np.ones(mesh.n_elements)
         self.mends = False  # whether a part may fall again
 
+    def state(self) -> tuple[Array, Array]:
+        """What `restore` goes back to."""
+        return self._worst.copy(), self._weights.copy()
+
+    def restore(self, state: tuple[Array, Array]) -> None:
+        """Forget the positions that were taken into account since."""
+        self._worst[:], self._weights[:] = state
+
     def update(self, x: Array) -> None:
         """Take positions x (n, 3) into account."""
         corners = x[self._elements][:, HEX_CUTS]

@@ -23,7 +23,7 @@ from tisim.linear.krylov import FactorGMRES
 from tisim.nonlinear.contact_newton import contact_newton, settled
 from tisim.nonlinear.newton import CRUSHED, Outcome
 from tisim.problems.indentation.far_field import FarField
-from tisim.problems.indentation.system import Part, PokeSystem
+from tisim.problems.indentation.system import Drag, Part, PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -78,12 +78,19 @@ class CondensedBlock:
         self.rounds = self.condensations = 0
         self.last_residual = 0.0
 
-    def solve(self, x: Array, *, tolerance: float, max_iterations: int, kept: bool) -> Outcome:
-        """Equilibrium from x (n, 3) on, as by `contact_newton`, whose tolerance and `kept` these are."""
+    def solve(
+        self, x: Array, *, tolerance: float, max_iterations: int, kept: bool, drag: float = 0.0
+    ) -> Outcome:
+        """Equilibrium from x (n, 3) on, as by `contact_newton`, whose tolerance and `kept` these are.
+
+        drag: of each near node against motion away from x [N/m] (`Drag`).
+        """
         system = self._system
         if self._chosen is None or self._beyond(self._chosen):
             self._choose(x)
         split = self._split
+        moving = system.discretisation if split is None else split.near.body.discretisation
+        system.drag = Drag(x, _of_free(drag, moving)) if drag else None
         if split is None:
             outcome = contact_newton(system, x, tolerance=tolerance, max_iterations=max_iterations, kept=kept)
             self._count(system.linear, outcome.iterations)
@@ -130,6 +137,10 @@ class CondensedBlock:
             self._stale = share < 1.0  # too far for a linear answer of the far tissue
             x = found
             self.rounds += 1
+
+    def renew(self) -> None:
+        """Take the far tangent at the next state: the last one was far from where the block is now."""
+        self._stale = True
 
     def _count(self, linear: FactorGMRES, iterations: int) -> None:
         self.iterations += iterations
@@ -243,6 +254,13 @@ class CondensedBlock:
             dead_load=body.dead_load,
             history=np.zeros_like(body.state[chosen]) if body.remembers else None,
         )
+
+
+def _of_free(value: float, discretisation: Discretisation) -> Array:
+    """(n,): the value at nodes that move, 0 at the others."""
+    found = np.zeros(discretisation.mesh.n_nodes)
+    found[discretisation.pattern.free] = value
+    return found
 
 
 def _nodes_of(elements: NDArray[np.int32], n_nodes: int) -> Bools:

@@ -11,6 +11,7 @@ from tisim.course import Stop
 from tisim.problems._registry import OnStep
 from tisim.problems._stops import shortest_time
 from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.damped import solve_step
 from tisim.problems.indentation.steps import (
     BETWEEN,
     FIRST_STEP,
@@ -19,7 +20,6 @@ from tisim.problems.indentation.steps import (
     SMALLEST_STEP,
     Frame,
     frame_of,
-    overlap_fault,
     predict,
     stiffen_where_deep,
 )
@@ -86,7 +86,7 @@ def _advance(
     scene: Poke, system: PokeSystem, block: CondensedBlock, walk: _Walk, stop: Stop, origin: float
 ) -> Status:
     """On to a stop, in depth steps no larger than a poke's, and in parts of the time where a hold fails."""
-    part, refused, in_vain = 1.0, 0, 0
+    part, in_vain = 1.0, 0
     while walk.time < stop.time or walk.depth != stop.value:
         left = stop.value - walk.depth
         way = abs(left)
@@ -105,19 +105,12 @@ def _advance(
         system.begin(time - walk.time)
         pace = time - walk.time if scene.turns else _pace(walk, target, time, origin)
         guess = walk.x.copy() if walk.velocity is None else predict(system, walk.x, walk.velocity * pace)
-        system.touch(guess)
         kept = done and stop.frame
-        outcome = block.solve(
-            guess,
-            tolerance=(1.0 if kept else BETWEEN) * scene.solver.tolerance,
-            max_iterations=scene.solver.max_iterations * (1 + refused),
-            kept=kept,
-        )
+        tolerance = (1.0 if kept else BETWEEN) * scene.solver.tolerance
+        outcome, failed = solve_step(system, block, guess, tolerance=tolerance, kept=kept)
         walk.steps += 1
-        failed = overlap_fault(outcome, system)
         if failed is not None:
             walk.cuts += 1
-            refused += 1
             in_vain += outcome.iterations
             if way:
                 walk.step = 0.4 * min(walk.step, share * way)
@@ -134,7 +127,7 @@ def _advance(
                 walk.step = min(2.0 * walk.step, LARGEST_STEP)
             elif outcome.iterations > 12:
                 walk.step *= 0.7
-        refused, part = 0, 1.0
+        part = 1.0
         walk.x, walk.depth, walk.time = outcome.x, target, time
         block.last_residual = outcome.residual
         system.accept(outcome.x)

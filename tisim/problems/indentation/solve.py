@@ -16,6 +16,7 @@ from tisim.parallel.threads import one_thread
 from tisim.problems._registry import OnStep, skip
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.course import follow, without_course
+from tisim.problems.indentation.damped import solve_step
 from tisim.problems.indentation.kind import ELEMENT
 from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.steps import (
@@ -26,7 +27,6 @@ from tisim.problems.indentation.steps import (
     SMALLEST_STEP,
     Frame,
     frame_of,
-    overlap_fault,
     predict,
     stiffen_where_deep,
 )
@@ -108,17 +108,10 @@ def _push(
                 target = 0.5 * (depth + wanted)
             system.move_to(target)
             guess = predict(system, x, velocity * (target - depth))
-            system.touch(guess)
             frame = way * (target - wanted) >= -SAME
-            outcome = block.solve(
-                guess,
-                tolerance=(1.0 if frame else BETWEEN) * scene.solver.tolerance,
-                # what stops most steps is a snap, which no smaller step goes round: it takes iterations
-                max_iterations=scene.solver.max_iterations * (1 + refused),
-                kept=frame,
-            )
+            tolerance = (1.0 if frame else BETWEEN) * scene.solver.tolerance
+            outcome, failed = solve_step(system, block, guess, tolerance=tolerance, kept=frame)
             steps += 1
-            failed = overlap_fault(outcome, system)
             if _log.isEnabledFor(logging.DEBUG):
                 _log.debug(
                     "%7.3f mm, step %.3f mm: %s", target * 1e3, step * 1e3, _state(outcome, system, block)

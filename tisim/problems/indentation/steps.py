@@ -21,7 +21,7 @@ FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
 # Between two frames, refused steps may take so many times the iterations that one may take. Near a poke's
 # end, where tissue is crushed, smaller steps are found for a tenth of a millimetre more, at the cost of all
 # the way before.
-IN_VAIN = 3
+IN_VAIN = 4
 # Tolerance of steps between frames, which are there to follow the path, in units of the frames'.
 BETWEEN = 12.0
 

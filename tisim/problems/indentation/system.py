@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from copy import copy
+from copy import copy, deepcopy
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tisim.bodies import Rod
 from tisim.discretisation.body import Discretisation, DiscretisedBody, gravity_load
+from tisim.discretisation.history import History
 from tisim.discretisation.quadrature import TetrahedralParts, facet_areas
 from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
@@ -44,6 +46,36 @@ class Part:
     slot: NDArray[np.int32]
 
 
+@dataclass(frozen=True, eq=False)
+class Drag:
+    """Resistance against motion away from positions `start` (n, 3): `stiffness` (n,) [N/m] at each node.
+
+    One implicit step of a viscous motion; the stiffness is the viscosity over the length of the step.
+    """
+
+    start: Array
+    stiffness: Array
+
+    def energy(self, x: Array) -> float:
+        return 0.5 * float(self.stiffness @ ((x - self.start) ** 2).sum(axis=1))
+
+    def forces(self, x: Array) -> Array:
+        found: Array = self.stiffness[:, None] * (x - self.start)
+        return found
+
+
+class Remembered(NamedTuple):
+    """What the last accepted state left behind: see `PokeSystem.accept`."""
+
+    x: Array
+    depth: float
+    pose: tuple[Array, Array]
+    slip: Array
+    gap: Array
+    history: History | None
+    parts: tuple[Array, Array] | None
+
+
 def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
     """Tip centre where the rod, its axis through the site, first touches the plane z = height."""
     edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
@@ -59,6 +91,7 @@ class PokeSystem:
     """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
 
     far: what tissue beyond the body's elements adds, where the body is the near part of a block.
+    drag: what resists motion besides, in energy, forces and tangent; None for equilibrium.
     """
 
     def __init__(self, scene: Poke, discretisation: Discretisation) -> None:
@@ -97,6 +130,7 @@ class PokeSystem:
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
         self.far: FarField | None = None
+        self.drag: Drag | None = None
         self.linearisations = 0
         self.min_jacobian = 1.0
         self._known: list[tuple[Array, tuple[Array, float, float]]] = []
@@ -171,6 +205,28 @@ class PokeSystem:
             self._parts.update(x)
             self._known = []
 
+    def remembered(self) -> Remembered:
+        """What `recall` goes back to."""
+        return Remembered(
+            x=self.previous,
+            depth=self.previous_depth,
+            pose=(self.previous_axis, self._previous_start),
+            slip=self._memory,
+            gap=self._gap.copy(),
+            history=deepcopy(self.body.history),
+            parts=None if self._parts is None else self._parts.state(),
+        )
+
+    def recall(self, earlier: Remembered) -> None:
+        """Forget all states that were accepted since; each is to be recalled once."""
+        self.previous, self.previous_depth = earlier.x, earlier.depth
+        self.previous_axis, self._previous_start = earlier.pose
+        self._memory, self._gap = earlier.slip, earlier.gap
+        self.body.take(earlier.history)
+        if self._parts is not None and earlier.parts is not None:
+            self._parts.restore(earlier.parts)
+        self._known = []
+
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
         """This system at its depth on some of the elements, with `far` for the others.
 
@@ -195,7 +251,10 @@ class PokeSystem:
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
             self._memory, self._part, self._pressure, out,
         )  # fmt: skip
-        return energy + float(out[0]), min_jacobian
+        energy += float(out[0])
+        if self.drag is not None:
+            energy += self.drag.energy(x)
+        return energy, min_jacobian
 
     def overlap(self, x: Array) -> float:
         """How far the surface at x reaches into the rod [m], also between contact points; not below 0."""
@@ -231,6 +290,10 @@ class PokeSystem:
             self.far.add_to(force, x)
         self.linearisations += 1
         found = self._with_contact(x, force, self._slot, self._blocks)
+        if self.drag is not None:
+            pattern = self.discretisation.pattern
+            diagonal = pattern.indptr[:-1]
+            self._blocks[diagonal] += self.drag.stiffness[pattern.free, None, None] * np.eye(3)
         self.discretisation.hold(self._blocks)
         self._matrix = self.full.filled(self._blocks, self._unsymmetric())
         return found
@@ -252,6 +315,8 @@ class PokeSystem:
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
             self._part, self._pressure, self._slip, self._skew, slot, total, blocks, self.report,
         )  # fmt: skip
+        if self.drag is not None:
+            total += self.drag.forces(x)
         # before first touch there is no force to compare with: a millinewton-scale floor
         floor = 1e-4 * self.body.moduli.shear_modulus * self.edge**2
         load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
@@ -282,6 +347,8 @@ class PokeSystem:
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law, self._memory,
             self._part, pressure, slip, skew, none, total, np.zeros((1, 3, 3)), report,
         )  # fmt: skip
+        if self.drag is not None:
+            total += self.drag.forces(x)
         return float(np.linalg.norm(self._free(total)))
 
     def rod_force(self) -> float:
