@@ -119,8 +119,22 @@ def test_a_motion_without_rest_leaves_no_trace(kind: ElementKind) -> None:
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-3)
 
 
-def test_a_poke_whose_steps_all_fail_at_first_is_the_same_poke(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = poke(direction=TILTED)
+VISCOUS = replace(SOFT, viscosity=tisim.Prony(fractions=(0.5,), times=(0.2,)))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        # time goes by once, however many steps the motion takes
+        {"material": VISCOUS, "course": tisim.Course(frames=(0.1, 0.2, 0.3)).ramp(to=0.0012, speed=0.004)},
+    ],
+    ids=["by depth", "by a course"],
+)
+def test_a_poke_whose_steps_all_fail_at_first_is_the_same_poke(
+    options: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = poke(direction=TILTED, **options)
     plain = solve_poke(scene)
     solve = CondensedBlock.solve
     motions: list[float] = []
