@@ -152,7 +152,7 @@ def _frames(result: Result, wanted: Sequence[int]) -> Iterator[Fields]:
             body = DiscretisedBody(discretisation, material)
             if body.history is not None:
                 if memory is not None:
-                    body.go_on_from(memory)
+                    body.take(memory.history)
                 now = before if result.time is None else float(result.time[frame])
                 body.begin(now - before)
                 body.accept(x)

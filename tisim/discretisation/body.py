@@ -195,12 +195,8 @@ class DiscretisedBody:
             self.state[:] = whole.state[elements]
             self._set_scale(whole.history.scale)
 
-    def go_on_from(self, earlier: DiscretisedBody) -> None:
-        """Take over the history of another body of the same material and mesh, which gives it up."""
-        self.take(earlier.history)
-
     def take(self, history: History | None) -> None:
-        """Go on from this history, of a body of the same material and mesh."""
+        """Go on from this history, of a body of the same material and mesh, which gives it up."""
         self.history = history
         if history is not None:
             self.state = history.state
