@@ -49,6 +49,7 @@ Plugins = Annotated[
 ]
 Dataset = Annotated[str | None, typer.Option(help="The store, if it moved since the training.")]
 Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")]
+Device = Annotated[str, typer.Option(help="auto, cpu or cuda.")]
 Runs = Annotated[
     list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")
 ]

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 import typer
 
-from learn._options import Dataset, Plugins, Runs, Threads, Version, load_plugins, set_threads
+from learn._options import Dataset, Device, Plugins, Runs, Threads, Version, load_plugins, set_threads
 from learn._terminal import fail, log_to, make_console, plain_errors, print_table, terminable
 from learn._training_screen import TrainingScreen
 from learn.errors import InputError
@@ -72,7 +72,7 @@ def train(
         Path | None, typer.Option(help="The run's folder. Default: runs/RECIPE-MODEL-LAW-FOLD-SEED.")
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on where an earlier run stopped.")] = False,
-    device: Annotated[str, typer.Option(help="auto, cpu or cuda.")] = "auto",
+    device: Device = "auto",
     threads: Threads = None,
     plugin: Plugins = None,
     _version: Version = False,
@@ -88,6 +88,7 @@ def train(
 
         load_plugins(plugin or [])
         set_threads(threads)
+        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")  # a GPU's matrix products too
         torch.use_deterministic_algorithms(True, warn_only=True)
         changes = {"model": model, "fold": fold, "split": split, "seed": seed, "epochs": epochs}
         given = {key: value for key, value in changes.items() if value is not None}
@@ -160,6 +161,7 @@ def evaluate(
         typer.Option("--ensemble", help="Join runs that differ in seed alone, and evaluate them as one too."),
     ] = False,
     out: Annotated[Path | None, typer.Option(help="Default: evaluation/ in the first run.")] = None,
+    device: Device = "auto",
     threads: Threads = None,
     plugin: Plugins = None,
     _version: Version = False,
@@ -171,11 +173,12 @@ def evaluate(
         from learn.evaluation import evaluate as evaluate_runs
         from learn.evaluation import replaced_text, save_intervals
         from learn.evaluation.report import tables, verdict, write_report
-        from learn.training import load_run
+        from learn.training import load_run, make_device
 
         load_plugins(plugin or [])
         set_threads(threads)
         log_to(console)
+        chosen = make_device(device)
         loaded = [load_run(folder) for folder in runs]
         store = open_store(dataset or loaded[0].location)
         for run in loaded:
@@ -184,7 +187,9 @@ def evaluate(
                     f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid} "
                     "(--transfer allows it)"
                 )
-        found = evaluate_runs(loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble)
+        found = evaluate_runs(
+            loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble, device=chosen
+        )
         folder = out or runs[0] / "evaluation"
         write_report(found, folder)
         if not transfer:

@@ -6,6 +6,7 @@ import logging
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
@@ -34,7 +35,7 @@ from learn.evaluation.predictions import (
 )
 from learn.evaluation.summary import Outside, Row, by_depth, by_distance, by_softness, over_folds, summarise
 from learn.metrics import Predictions
-from learn.models import Ensemble, pokes_of, scene_of
+from learn.models import Ensemble, Scene, pokes_of, scene_of
 from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run
 from learn.validity import frame_distances
@@ -87,6 +88,7 @@ class Evaluation:
     Attributes
     ----------
     runs, store : evaluated, on this dataset.
+    device : the models', while they predict.
     models : names of the trained models, which stand in `folds` beside baselines.
     folds : by name, one entry a fold: metrics by softness level.
     frames, pokes : of the test parts together.
@@ -103,6 +105,7 @@ class Evaluation:
 
     runs: list[Run]
     store: Store
+    device: torch.device
     models: list[str] = field(default_factory=list)
     folds: dict[str, list[dict[str, Row]]] = field(default_factory=dict)
     frames: int = 0
@@ -137,6 +140,7 @@ def evaluate(
     baselines: bool = True,
     clouds: bool = True,
     ensemble: bool = False,
+    device: torch.device | str = "cpu",
     on_progress: OnProgress = ignore,
 ) -> Evaluation:
     """Every run on its own test part; baselines fitted to each distinct training part.
@@ -148,10 +152,12 @@ def evaluate(
     baselines, clouds : whether to fit baselines, and to predict on other point clouds.
     ensemble : evaluate runs of one model and training part, from different seeds, as one as well, before they
         are evaluated alone. InputError where no two runs can be joined so.
+    device : where the models predict; baselines stay on the CPU, and so do the models afterwards.
     on_progress : called before each step.
     """
-    found = Evaluation(runs=runs, store=store)
-    scene = scene_of(store)
+    found = Evaluation(runs=runs, store=store, device=torch.device(device))
+    here = scene_of(store)
+    scene = here.to(found.device)
     fitted: set[str] = set()
     predicted: list[Predicted] = []
     joined = ensembles(runs) if ensemble else []
@@ -161,6 +167,7 @@ def evaluate(
         split = parts_of(store, run)
         test = MemoryDataset(store, split.test)
         steps.next(f"{run.folder}: {len(test)} test frames")
+        run.model.to(found.device)
         predictions = predict_part(run.model, scene, test)
         found.folds.setdefault(name, []).append(by_softness(predictions))
         found.models += [name] if name not in found.models else []
@@ -172,7 +179,8 @@ def evaluate(
         for band, row in by_depth(predictions).items():
             found.depths.setdefault(f"{name}, {band}", []).append(row)
         predicted.append(Predicted(run, name, predictions, _distance(run, store, predictions)))
-        _look_closer(found, predicted[-1], split, clouds=clouds and not found.clouds)
+        _look_closer(found, predicted[-1], scene, split, clouds=clouds and not found.clouds)
+        run.model.cpu()
         key = _part(run.recipe)
         if not baselines or key in fitted or not len(split.train):
             continue
@@ -181,8 +189,8 @@ def evaluate(
         for title, kind in BASELINES.items():
             steps.next(f"fitting: {title}")
             baseline = kind()
-            baseline.fit(train, scene)
-            found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, scene, test)))
+            baseline.fit(train, here)
+            found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, here, test)))
     for one, intervals in across_folds([p for p in predicted if p.run.uuid == store.uuid]):
         found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one)
         found.intervals = [(r, i) for r, i in found.intervals if r is not one.run] + [(one.run, intervals)]
@@ -250,10 +258,10 @@ def _covered(intervals: Intervals, one: Predicted) -> Covered:
     )
 
 
-def _look_closer(found: Evaluation, one: Predicted, split: Split, *, clouds: bool) -> None:
-    """Symmetry, intervals, depth and clouds of one run."""
+def _look_closer(found: Evaluation, one: Predicted, scene: Scene, split: Split, *, clouds: bool) -> None:
+    """Symmetry, intervals, depth and clouds of one run; scene: the store's, on the model's device."""
     run, title, predictions = one.run, one.name, one.predictions
-    store, scene, model = found.store, scene_of(found.store), run.model
+    store, model = found.store, run.model
     name = f"{title}, fold {run.recipe.fold}"
     name += f", seed {run.recipe.seed}" if name in found.symmetry else ""
     own = store.uuid == run.uuid
@@ -301,11 +309,12 @@ def _clouds(found: Evaluation, run: Run, split: Split) -> None:
     pokes = pokes[np.linspace(0, len(pokes) - 1, min(_CLOUD_POKES, len(pokes))).astype(int)]
     rows = split.test[np.isin(store.frame_poke[split.test], pokes)]
     surfaces = SurfaceField(store, pokes.tolist())
-    found.clouds["1024, the grid"] = summarise(predict_on(run.model, store, rows, store.points, surfaces))
+
+    def errors_on(points: Floats) -> Row:
+        return summarise(predict_on(run.model, store, rows, points, surfaces, device=found.device))
+
+    found.clouds["1024, the grid"] = errors_on(store.points)
     for size in CLOUD_SIZES:
-        each = [
-            summarise(predict_on(run.model, store, rows, scattered(store, size, seed=seed), surfaces))
-            for seed in range(CLOUD_SEEDS)
-        ]
+        each = [errors_on(scattered(store, size, seed=seed)) for seed in range(CLOUD_SEEDS)]
         found.clouds[f"{size}, scattered"] = over_folds(each)
     found.interpolation_mm = interpolation_error_mm(store, rows)

@@ -33,29 +33,30 @@ class Predicts(Protocol):
 
 
 def predict_part(model: Predicts, scene: Scene, data: MemoryDataset, *, batch: int = 64) -> Predictions:
-    """Predictions of all frames of a part; scene: of the store's grid."""
+    """Predictions of all frames of a part; scene: of the store's grid, on the model's device."""
     return predict_batches(model, scene, data.store, data.batches(batch))
 
 
 @torch.no_grad()
 def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterable[Batch]) -> Predictions:
-    """Predictions of these batches."""
+    """Predictions of these batches; scene: on the model's device."""
     parts: list[Predictions] = []
     encoded: Any = None
-    points = scene.points.numpy()
+    device = scene.points.device
+    points = scene.points.cpu().numpy()
     size = functools.cache(lambda geometry: interior_of(store, store.profile[geometry]).size)
     for batch in batches:
         if encoded is None:
             encoded = model.encode(scene, model.prepare(scene))
-        found = model.decode(encoded, pokes_of(batch))
+        found = model.decode(encoded, pokes_of(batch.to(device)))
         away = np.linalg.norm(points[None] - batch.start.numpy()[:, None], axis=2)
         poke = store.frame_poke[batch.frame.numpy()]
         parts.append(
             Predictions(
                 truth=batch.displacement.numpy(),
-                predicted=found.displacement.float().numpy(),
+                predicted=found.displacement.float().cpu().numpy(),
                 force=batch.force.double().numpy(),
-                force_predicted=found.force.double().numpy(),
+                force_predicted=found.force.double().cpu().numpy(),
                 away=away,
                 depth=batch.depth.numpy(),
                 poke=poke,
@@ -71,7 +72,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
 
 def _or_zero(spread: torch.Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """The spread; zero for one model."""
-    return np.zeros(shape) if spread is None else spread.double().numpy()
+    return np.zeros(shape) if spread is None else spread.double().cpu().numpy()
 
 
 def predict_on(
@@ -80,10 +81,16 @@ def predict_on(
     rows: NDArray[np.int64],
     points: Floats,
     surfaces: SurfaceField | None = None,
+    *,
+    device: torch.device | str = "cpu",
 ) -> Predictions:
-    """Predictions at other points of the top face, against interpolation of each poke's own surface mesh."""
+    """Predictions at other points of the top face, against interpolation of each poke's own surface mesh.
+
+    device : the model's.
+    """
     field = surfaces or SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
-    return predict_batches(model, scene_on(store, points), store, _batches(store, rows, points, field))
+    scene = scene_on(store, points).to(device)
+    return predict_batches(model, scene, store, _batches(store, rows, points, field))
 
 
 def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
@@ -129,6 +136,7 @@ def symmetry_error(
     from scipy.stats import special_ortho_group  # half a second to import
 
     random = np.random.default_rng(0)
+    pokes = replace(pokes, **{name: value.to(scene.points.device) for name, value in vars(pokes).items()})
     still = model.decode(model.encode(scene, model.prepare(scene)), pokes)
     worst, worst_force = 0.0, 0.0
     for k in range(3 if about_normal else rotations):
@@ -137,7 +145,7 @@ def symmetry_error(
             shift = np.zeros(3)
         else:
             turn, shift = special_ortho_group.rvs(3, random_state=random), random.uniform(-0.1, 0.1, 3)
-        q, t = torch.from_numpy(turn), torch.from_numpy(shift)
+        q, t = (torch.from_numpy(a).to(scene.points.device) for a in (turn, shift))
         turned = replace(scene, points=scene.points @ q.T + t, normals=scene.normals @ q.T)
         rod = replace(pokes, start=pokes.start @ q.T + t, direction=pokes.direction @ q.T)
         moved = model.decode(model.encode(turned, model.prepare(turned)), rod)

@@ -31,7 +31,6 @@ from learn.models.base import Model, Pokes, Response, Scene, pokes_of, register_
 
 SEEN = 6  # channels of the code that the contact looks at
 N_CLOCK = 3  # invariants of a poke with time
-SCALES = ((0, 1), (0,))  # of the encoder's radii, those of each round of messages
 
 
 # version 1 did not know the indenter's surface; 2 counted points, not area, and knew a modulus of no effect
@@ -44,6 +43,7 @@ class InvariantGnn(Model):
     statistics : of the training part; they set the units of modulus and force.
     hidden : width of the trunk.
     messages, directions : channels of the messages' means and slopes.
+    scales : of the encoder's radii, those of each round of messages.
     """
 
     free_interior = True
@@ -56,6 +56,7 @@ class InvariantGnn(Model):
         hidden: int = 64,
         messages: int = 16,
         directions: int = 8,
+        scales: tuple[tuple[int, ...], ...] = ((0, 1), (0,)),
     ) -> None:
         super().__init__()
         self.log_modulus = statistics.log_modulus_mean
@@ -73,9 +74,9 @@ class InvariantGnn(Model):
         self.from_poke = nn.Linear(about, hidden, bias=False)
         self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * vectors, hidden, bias=False)
         self.enter = nn.Linear(hidden, hidden)
-        self.rounds = nn.ModuleList([_Messages(hidden, messages, directions, scales) for scales in SCALES])
+        self.rounds = nn.ModuleList([_Messages(hidden, messages, directions, some) for some in scales])
         self.leave = nn.Sequential(nn.Linear(hidden, hidden), nn.SiLU())
-        self.coefficients = nn.Linear(hidden, 3 + vectors + len(SCALES[-1]) * directions + _contact.N_GATES)
+        self.coefficients = nn.Linear(hidden, 3 + vectors + len(scales[-1]) * directions + _contact.N_GATES)
         self.force_head = nn.Sequential(
             nn.Linear(2 * hidden + about, hidden), nn.SiLU(), nn.Linear(hidden, 1)
         )

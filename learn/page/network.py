@@ -17,7 +17,7 @@ from torch.nn.functional import silu, softplus
 from learn.models import InvariantGnn, Scene, _contact, _prior
 from learn.models._contact import RINGS, WIDTHS, Place
 from learn.models._encoder import Encoded, Gathered, Stencil, gathered
-from learn.models.invariant_gnn import SCALES, _Messages
+from learn.models.invariant_gnn import _Messages
 
 # columns of `Contact.point` in the order in which `_features` makes them, with their signs
 _PLAIN = [(0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (8, 1), (9, 1)]
@@ -66,7 +66,7 @@ class RowNetwork(nn.Module):
         self.rings = RINGS[:, None].double() * len(RINGS)
         self.cores = torch.tensor([[a * a] for a in _prior.CORES], dtype=torch.float64)
         self.ranges = torch.tensor([[-1 / length] for length in _prior.RANGES], dtype=torch.float64)
-        used = sorted({k for scales in SCALES for k in scales})
+        used = sorted({k for part in model.rounds if isinstance(part, _Messages) for k in part.scales})
         self.near = nn.ModuleList([_Near(stencils[k]) for k in used])
         self.place = {k: place for place, k in enumerate(used)}
 

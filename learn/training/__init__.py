@@ -1,7 +1,7 @@
 """Training: recipes, the loop, a run's folder."""
 
 from learn.training.loop import DivergedError, Trainer
-from learn.training.process_group import ProcessGroup, make_process_group
+from learn.training.process_group import ProcessGroup, make_device, make_process_group
 from learn.training.recipe import RECIPES, Recipe, load_recipe
 from learn.training.run_folder import Run, load_run, read_log
 
@@ -14,6 +14,7 @@ __all__ = [
     "Trainer",
     "load_recipe",
     "load_run",
+    "make_device",
     "make_process_group",
     "read_log",
 ]

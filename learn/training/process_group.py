@@ -14,11 +14,12 @@ from learn.errors import InputError
 
 @dataclass(frozen=True)
 class ProcessGroup:
-    """Process `rank` of `world`; device: of this process."""
+    """Process `rank` of `world`, on `device`; joined: torchrun started it, alone or with others."""
 
     rank: int
     world: int
     device: torch.device
+    joined: bool = False
 
     @property
     def is_main(self) -> bool:
@@ -26,7 +27,7 @@ class ProcessGroup:
 
     def average_gradients(self, model: nn.Module) -> None:
         """Every process's gradient becomes the mean of all."""
-        if self.world == 1:
+        if not self.joined:
             return
         gradients = [p.grad for p in model.parameters() if p.grad is not None]
         flat = torch.cat([g.reshape(-1) for g in gradients])
@@ -37,7 +38,7 @@ class ProcessGroup:
 
     def all_true(self, value: bool) -> bool:
         """True where it is for every process: none may wait for a batch that another does not have."""
-        if self.world == 1:
+        if not self.joined:
             return value
         vote = torch.tensor(float(value), device=self.device)
         dist.all_reduce(vote, op=dist.ReduceOp.MIN)
@@ -45,37 +46,55 @@ class ProcessGroup:
 
     def mean(self, value: float) -> float:
         """Mean over the processes."""
-        if self.world == 1:
+        if not self.joined:
             return value
         total = torch.tensor(value, dtype=torch.float64, device=self.device)
         dist.all_reduce(total)
         return float(total) / self.world
 
     def wait(self) -> None:
-        if self.world > 1:
+        if self.joined:
             dist.barrier()
 
     def close(self) -> None:
-        if self.world > 1:
+        if self.joined:
             dist.destroy_process_group()
 
 
 def make_process_group(device: str = "auto") -> ProcessGroup:
     """From torchrun's environment; device "auto" is this process's GPU where there is one.
 
+    InputError where torch does not know the device, it is not there, or a GPU would be shared.
+    """
+    joined = "WORLD_SIZE" in os.environ
+    world, rank = int(os.environ.get("WORLD_SIZE", "1")), int(os.environ.get("RANK", "0"))
+    chosen = make_device(device)
+    if joined and chosen.type == "cuda":
+        local = int(os.environ.get("LOCAL_RANK", "0"))
+        if local >= torch.cuda.device_count():
+            raise InputError(
+                f"--nproc-per-node: {local + 1} processes or more want a GPU each, of which "
+                f"{torch.cuda.device_count()} are here: expected as many processes as GPUs, or --device cpu"
+            )
+        chosen = torch.device("cuda", local)
+        torch.cuda.set_device(chosen)
+        dist.init_process_group("nccl", device_id=chosen)
+    elif joined:
+        dist.init_process_group("gloo")
+    return ProcessGroup(rank, world, chosen, joined)
+
+
+def make_device(device: str = "auto") -> torch.device:
+    """The device of that name; "auto" is the GPU where there is one.
+
     InputError where torch does not know the device, or it is not there.
     """
-    world, rank = int(os.environ.get("WORLD_SIZE", "1")), int(os.environ.get("RANK", "0"))
-    cuda = torch.cuda.is_available() if device == "auto" else device.startswith("cuda")
+    if device == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
     try:
-        chosen = torch.device(device if device != "auto" else "cuda" if cuda else "cpu")
+        chosen = torch.device(device)
     except RuntimeError:
         raise InputError(f"device {device}: expected auto, cpu or cuda") from None
     if chosen.type == "cuda" and not torch.cuda.is_available():
         raise InputError(f"device {device}: torch sees no GPU here, expected auto or cpu")
-    if cuda and world > 1:
-        chosen = torch.device("cuda", int(os.environ.get("LOCAL_RANK", "0")))
-        torch.cuda.set_device(chosen)
-    if world > 1:
-        dist.init_process_group("nccl" if cuda else "gloo")
-    return ProcessGroup(rank, world, chosen)
+    return chosen

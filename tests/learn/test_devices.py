@@ -5,6 +5,7 @@ On the meta device an operation that mixes devices, or needs a value on the CPU,
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,11 @@ import torch
 
 from learn.benchmark import on_device
 from learn.data import Batch, MemoryDataset, Statistics, Store, open_store, statistics
+from learn.errors import InputError
+from learn.evaluation import evaluate
 from learn.models import Model, Scene, make_model, pokes_of, scene_of
 from learn.models._encoder import gathered
-from learn.training.process_group import make_process_group
+from learn.training import ProcessGroup, Run, Trainer, load_run, make_process_group, read_log
 from learn.training.recipe import Loss, Recipe, loss_of
 from tests.learn.small_store import write_store
 
@@ -106,15 +109,66 @@ def test_each_process_takes_a_gpu_of_its_own(monkeypatch: pytest.MonkeyPatch) ->
     """What torchrun starts where there are GPUs: the local rank's device, and NCCL between them."""
     done: list[Any] = []
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
     monkeypatch.setattr(torch.cuda, "set_device", done.append)
-    monkeypatch.setattr(torch.distributed, "init_process_group", done.append)
+    monkeypatch.setattr(
+        torch.distributed, "init_process_group", lambda name, **given: done.append((name, given))
+    )
     for name, value in {"WORLD_SIZE": "8", "RANK": "5", "LOCAL_RANK": "1"}.items():
         monkeypatch.setenv(name, value)
     group = make_process_group()
-    assert (group.rank, group.world, group.device) == (5, 8, torch.device("cuda", 1))
-    assert done == [torch.device("cuda", 1), "nccl"]
-    monkeypatch.setenv("WORLD_SIZE", "1")
-    done.clear()
+    own = torch.device("cuda", 1)
+    assert (group.rank, group.world, group.device, group.joined) == (5, 8, own, True)
+    assert done == [own, ("nccl", {"device_id": own})]
+    monkeypatch.setenv("LOCAL_RANK", "2")
+    with pytest.raises(InputError, match=r"--nproc-per-node: 3 processes or more .* 2 are here"):
+        make_process_group()
+
+
+def test_one_process_without_torchrun_joins_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("WORLD_SIZE", raising=False)
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
     assert make_process_group().device.type == "cuda"
-    assert make_process_group("cpu").device.type == "cpu"
-    assert done == []
+    group = make_process_group("cpu")
+    assert (group.device.type, group.world, group.joined) == ("cpu", 1, False)
+    assert group.mean(2.5) == 2.5
+    assert not torch.distributed.is_initialized()
+
+
+GPU = pytest.mark.skipif(not torch.cuda.is_available(), reason="wants a GPU")
+
+
+def trained_on(device: str, store: Store, folder: Path, **changes: Any) -> Run:
+    recipe = Recipe(optimiser="muon", epochs=2, batch=4, point_dropout=0.5, point_jitter=0.0, **changes)
+    group = ProcessGroup(0, 1, torch.device(device))
+    Trainer(store, recipe, folder, process_group=group).train()
+    return load_run(folder)
+
+
+@GPU
+@pytest.mark.parametrize("name", MODELS)
+def test_training_on_a_gpu_goes_as_on_the_cpu(name: str, store: Store, tmp_path: Path) -> None:
+    """In float32 the losses are those of the CPU to a percent; in bfloat16 they fall alike."""
+    runs = {
+        "cpu": trained_on("cpu", store, tmp_path / "cpu", model=name),
+        "cuda": trained_on("cuda", store, tmp_path / "cuda", model=name, mixed_precision=False),
+        "bf16": trained_on("cuda", store, tmp_path / "bf16", model=name),
+    }
+    losses = {key: [line["train_loss"] for line in read_log(run.folder)] for key, run in runs.items()}
+    assert losses["cuda"] == pytest.approx(losses["cpu"], rel=0.01)
+    assert losses["bf16"] == pytest.approx(losses["cpu"], rel=0.1)
+    assert losses["bf16"] != losses["cuda"]
+
+
+@GPU
+def test_evaluation_on_a_gpu_is_that_of_the_cpu(store: Store, tmp_path: Path) -> None:
+    run = trained_on("cuda", store, tmp_path / "run")
+    here, there = (evaluate([run], store, baselines=False, device=device) for device in ("cpu", "cuda"))
+    assert here.predictions is not None
+    assert there.predictions is not None
+    np.testing.assert_allclose(there.predictions.predicted, here.predictions.predicted, atol=1e-7)
+    np.testing.assert_allclose(there.predictions.force_predicted, here.predictions.force_predicted, rtol=1e-4)
+    on_grid = [found.clouds["1024, the grid"]["mean"].mean for found in (here, there)]
+    assert on_grid[1] == pytest.approx(on_grid[0], rel=1e-3)
+    assert max(error.displacement_mm for error in there.symmetry.values()) < 1e-3
+    assert next(run.model.parameters()).device.type == "cpu"
