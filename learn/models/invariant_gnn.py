@@ -44,6 +44,7 @@ class InvariantGnn(Model):
     hidden : width of the trunk.
     messages, directions : channels of the messages' means and slopes.
     scales : of the encoder's radii, those of each round of messages.
+    vectors : channels of the encoder's slopes, at each of its two larger radii.
     """
 
     free_interior = True
@@ -57,26 +58,27 @@ class InvariantGnn(Model):
         messages: int = 16,
         directions: int = 8,
         scales: tuple[tuple[int, ...], ...] = ((0, 1), (0,)),
+        vectors: int = 8,
     ) -> None:
         super().__init__()
         self.log_modulus = statistics.log_modulus_mean
         self.force_unit = math.exp(statistics.log_force_mean)
         self.log_time, self.log_speed = statistics.log_time_mean, statistics.log_speed_mean
         self.takes_clock = self.log_time is not None and self.log_speed is not None
-        self.encoder = GeometryEncoder()
+        self.encoder = GeometryEncoder(vectors=vectors)
         self.prior = Prior()
-        code, vectors = self.encoder.n_code, self.encoder.n_vectors
+        code, turning = self.encoder.n_code, self.encoder.n_vectors
         self.look = nn.Linear(code, SEEN, bias=False)
         seen = 3 * SEEN
         about = _contact.N_POKE + 3 * seen + (self.log_modulus is not None)
         about += N_CLOCK if self.takes_clock else 0
         self.from_code = nn.Linear(code, hidden)
         self.from_poke = nn.Linear(about, hidden, bias=False)
-        self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * vectors, hidden, bias=False)
+        self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * turning, hidden, bias=False)
         self.enter = nn.Linear(hidden, hidden)
         self.rounds = nn.ModuleList([_Messages(hidden, messages, directions, some) for some in scales])
         self.leave = nn.Sequential(nn.Linear(hidden, hidden), nn.SiLU())
-        self.coefficients = nn.Linear(hidden, 3 + vectors + len(scales[-1]) * directions + _contact.N_GATES)
+        self.coefficients = nn.Linear(hidden, 3 + turning + len(scales[-1]) * directions + _contact.N_GATES)
         self.force_head = nn.Sequential(
             nn.Linear(2 * hidden + about, hidden), nn.SiLU(), nn.Linear(hidden, 1)
         )
