@@ -39,7 +39,8 @@ class Predictions:
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
     shape : name of the inclusion's shape, shape (f,); "" where it is not known.
-    inclusion : its size [mm], the cube root of its volume, shape (f,); 0 where it is not known.
+    interior : of the inclusion, its size (cube root of its volume) and the cover over it where the rod's axis
+        meets the surface [mm], shape (f, 2); 0 where they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     """
@@ -53,7 +54,7 @@ class Predictions:
     poke: NDArray[np.int64]
     softness: NDArray[np.str_]
     shape: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype=np.str_))
-    inclusion: Floats = field(default_factory=lambda: np.zeros(0))
+    interior: Floats = field(default_factory=lambda: np.zeros(0))
     spread: Floats = field(default_factory=lambda: np.zeros(0))
     force_spread: Floats = field(default_factory=lambda: np.zeros(0))
 
@@ -62,8 +63,8 @@ class Predictions:
             object.__setattr__(self, "spread", np.zeros(self.away.shape))
         if not self.shape.size:
             object.__setattr__(self, "shape", np.full(self.depth.shape, ""))
-        if not self.inclusion.size:
-            object.__setattr__(self, "inclusion", np.zeros(self.depth.shape))
+        if not self.interior.size:
+            object.__setattr__(self, "interior", np.zeros((*self.depth.shape, 2)))
         if not self.force_spread.size:
             object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
 

@@ -263,8 +263,8 @@ class Predictor:
         u, force = response.displacement.numpy(), float(response.force[0])
         values, _, law = asked
         distance = self.domain.distance(values, law) if self.domain else 0.0
-        size = self._interior(scene).size
-        radius, factor = self._interval(response, pokes, size, distance)
+        interior = (self._interior(scene).size, values["cover_mm"])
+        radius, factor = self._interval(response, pokes, interior, distance)
         return PokePrediction(
             poke=poke,
             points=self.store.points,
@@ -278,12 +278,12 @@ class Predictor:
         )
 
     def _interval(
-        self, response: Response, pokes: Pokes, inclusion: float, distance: float
+        self, response: Response, pokes: Pokes, interior: tuple[float, float], distance: float
     ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
             return None, None
-        intervals = self.intervals.over(inclusion)
+        intervals = self.intervals.over(*interior)
         radius = intervals.radius_at_mm(
             np.linalg.norm(response.displacement[0].numpy(), axis=1),
             away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1),

@@ -107,8 +107,7 @@ class RealTime:
         self._known = self._domain is None or self._domain.knows(kind_of(file, store))
         profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
         self._interior, self._law = interior_of(store, profile), file.law
-        known = predictor.intervals
-        self._intervals = None if known is None else known.over(self._interior.size)
+        self._intervals = predictor.intervals
         self.points, self.modulus = store.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
 
@@ -142,12 +141,16 @@ class RealTime:
             raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
         start = first_touch(self._store, site, push)
         u, force = self._single(start, push, depth, self.modulus)
-        distance = self._distance(start, push, depth)
-        away, interval = None, None
+        values = poke_values(
+            self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
+        )
+        distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
+        away, interval, intervals = None, None, None
         if self._intervals is not None and depth > 0.0:
+            intervals = self._intervals.over(self._interior.size, values["cover_mm"])
             r = self._points - start[:, None]
             away = np.sqrt((r * r).sum(axis=0))
-            factor = math.exp(self._intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
+            factor = math.exp(intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
             interval = (force / factor, force * factor)
         return Answer(
             displacement=u,
@@ -155,15 +158,7 @@ class RealTime:
             force_interval=interval,
             inside=None if math.isnan(distance) else self._known and distance == 0.0,
             distance=distance,
-            _intervals=self._intervals,
+            _intervals=intervals,
             _away=away,
             _depth=depth,
         )
-
-    def _distance(self, start: Floats, push: Floats, depth: float) -> float:
-        if self._domain is None:
-            return math.nan
-        values = poke_values(
-            self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
-        )
-        return self._domain.distance(values, self._law)

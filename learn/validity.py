@@ -311,6 +311,20 @@ def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
     return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall, 1e3 * math.cbrt(volume))
 
 
+def interior_at(store: Store, poke: int) -> tuple[float, float]:
+    """Of one poke of the store: size of the inclusion, and the cover over it [mm]."""
+    interior = interior_of(store, store.profile[int(store.geometry[poke])])
+    return interior.size, 1e3 * _cover(store, interior, store.path_start[poke], store.direction[poke])
+
+
+def _cover(store: Store, interior: Interior, start: Floats, direction: Floats) -> float:
+    """Least thickness of the soft tissue [m] within a rod's radius of where its axis meets the surface."""
+    x, y = (store.points[:, :2] - contact_site(store, start, direction)).T
+    square = x * x + y * y
+    near = square <= max(store.rod_radius**2, float(square.min()))
+    return float(interior.soft[near].min())
+
+
 def poke_values(
     store: Store,
     interior: Interior,
@@ -328,13 +342,9 @@ def poke_values(
     interior : from `interior_of`.
     start, direction, depth, modulus, clock : of the poke, SI units, as in `learn.models.Pokes`.
     """
-    points = store.points
     length, width, height = store.block_size
     site = contact_site(store, start, direction)
-    x, y = points[:, 0] - site[0], points[:, 1] - site[1]
-    square = x * x + y * y
-    near = square <= max(store.rod_radius**2, float(square.min()))
-    cover, level = float(interior.soft[near].min()), height / len(store.level_depth)
+    cover, level = _cover(store, interior, start, direction), height / len(store.level_depth)
     cosine = min(1.0, float(-direction[2]))
     to_side = float((np.array([length, width]) / 2 - np.abs(site - store.middle)).min())
     timed = {}

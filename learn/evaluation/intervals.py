@@ -2,17 +2,19 @@
 
 The score of a point is its distance error over a scale: the root of the squares of a fitted error and of the
 ensemble's spread, where there is one (normalised conformal prediction; Lei et al., JASA 113, 2018). The
-fitted error is a regression of the error's logarithm on what the rod, the depth and the prediction say, from
-one half of the validation pokes; the other half calibrates, in rings around first contact. Points of a poke
-are not independent: each poke is one draw, whose points say how its errors are distributed. The quantile is
-taken of the mean of k pokes' distributions, with a share of 1 / (k + 1) beyond all of them for the poke to
-come (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling CDFs). Fewer than 9 pokes cannot promise 90 %: the
-largest score is taken then, and `promised` says what it promises. Unseen shapes are not exchangeable with
-seen ones, so that the coverage is measured, never presumed.
+fitted error is a regression of the error's logarithm on what the rod, the depth and the prediction say. The
+pokes are dealt into parts; each part is scored by the regression on the others, and all scores calibrate, in
+rings around first contact (cross-conformal prediction; Barber et al., Ann. Statist. 49, 2021: CV+). Points of
+a poke are not independent: each poke is one draw, whose points say how its errors are distributed. The
+quantile is taken of the mean of k pokes' distributions, with a share of 1 / (k + 1) beyond all of them for
+the poke to come (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling CDFs). Fewer than 9 pokes cannot promise
+90 %: the largest score is taken then, and `promised` says what it promises. Unseen shapes are not
+exchangeable with seen ones, so that the coverage is measured, never presumed.
 
-Errors are larger beside a large inclusion than beside a small one, whatever the poke. So the fitted errors
-have a factor of the inclusion's size, e^(b V^(1/3)): one number, since a shape is one draw of what it is to
-be unseen, and fitted to five shapes or more.
+Errors are larger over a large inclusion than over a small one, and where its cover is thin. So the fitted
+errors have a factor of the interior, e^(b V^(1/3) + c h): V is the inclusion's volume, h the cover where the
+rod's axis meets the surface. A shape is one draw of what it is to be unseen: both are fitted to five shapes
+or more.
 
 The shapes that a run was validated on are two, and do not say how a third will do. The test parts of the
 other folds are each predicted by a model that had not seen their shapes, so that they are more draws of the
@@ -38,10 +40,11 @@ Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
 _LEAST_FORCE = 1e-5  # of ln(force)
 LEVEL = 0.9
-LEAST_POKES = 2  # one half fits the error's scale, the other calibrates
+LEAST_POKES = 2
+PARTS = 5  # into which pokes are dealt; the error's scale of each is fitted to the others
 LEAST_FOLDS = 3
 N_FEATURES = 9  # of `_fit_scale`
-LEAST_SHAPES = 5  # that say how errors grow with the inclusion
+LEAST_SHAPES = 5  # that say how errors grow with the inclusion and its cover
 # Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
 # known to a factor of e^FORCE_UNKNOWN = 4: nine tenths on thin covers, the worst of the questions of
 # studies/learning/outside.
@@ -60,8 +63,8 @@ class Intervals:
     scale : coefficients of ln(fitted error / mm).
     factors : of the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
-    inclusion, force_inclusion : by how much both fitted errors grow, in their logarithms, with each mm of
-        the inclusion's size (`learn.validity.Interior.size`); 0 from few shapes.
+    interior, force_interior : by how much both fitted errors grow, in their logarithms, with each mm of the
+        inclusion's size (`learn.validity.Interior.size`) and its cover; 0 from few shapes.
     """
 
     level: float
@@ -71,14 +74,20 @@ class Intervals:
     factors: list[float]
     force_scale: float
     force: float
-    inclusion: float = 0.0
-    force_inclusion: float = 0.0
+    interior: tuple[float, float] = (0.0, 0.0)
+    force_interior: tuple[float, float] = (0.0, 0.0)
 
-    def over(self, inclusion: float) -> Intervals:
-        """Those over an inclusion of this size [mm], which ask for none any more."""
-        scale = [self.scale[0] + self.inclusion * inclusion, *self.scale[1:]]
-        force_scale = self.force_scale * math.exp(self.force_inclusion * inclusion)
-        return replace(self, scale=scale, force_scale=force_scale, inclusion=0.0, force_inclusion=0.0)
+    def over(self, size: float, cover: float) -> Intervals:
+        """Those over an inclusion of this size under this cover [mm], which ask for neither any more."""
+        more = self.interior[0] * size + self.interior[1] * cover
+        force_more = self.force_interior[0] * size + self.force_interior[1] * cover
+        return replace(
+            self,
+            scale=[self.scale[0] + more, *self.scale[1:]],
+            force_scale=self.force_scale * math.exp(force_more),
+            interior=(0.0, 0.0),
+            force_interior=(0.0, 0.0),
+        )
 
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
@@ -91,7 +100,7 @@ class Intervals:
             away=predictions.away,
             depth=predictions.depth[:, None],
             spread=predictions.spread,
-            inclusion=predictions.inclusion[:, None],
+            interior=predictions.interior[:, None],
             distance=np.asarray(distance)[..., None],
         )
 
@@ -102,13 +111,13 @@ class Intervals:
         away: Floats,
         depth: float | Floats,
         spread: float | Floats = 0.0,
-        inclusion: float | Floats = 0.0,
+        interior: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """The same from the size of the predicted displacement [m]; see `Predictions` for the others."""
         fitted = _scale_mm(size, away, depth, self.scale)
-        if self.inclusion:
-            fitted = fitted * np.exp(self.inclusion * np.asarray(inclusion))
+        if interior is not None:
+            fitted = fitted * np.exp(interior @ np.array(self.interior))
         radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
         if np.any(np.asarray(distance) > 0.0):
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
@@ -118,14 +127,15 @@ class Intervals:
         self,
         spread: float | Floats = 0.0,
         *,
-        inclusion: float | Floats = 0.0,
+        interior: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """The true force lies within predicted e^-x and predicted e^x.
 
         spread: of an ensemble, as `Predictions.force_spread`; the others: as above.
         """
-        fitted = self.force_scale * np.exp(self.force_inclusion * np.asarray(inclusion))
+        grown = 0.0 if interior is None else interior @ np.array(self.force_interior)
+        fitted = self.force_scale * np.exp(grown)
         inside = self.force * np.hypot(fitted, spread)
         return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
 
@@ -156,33 +166,25 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
     if len(pokes) < LEAST_POKES:
         raise InputError(too_few(len(pokes)))
     order = np.random.default_rng(seed).permutation(pokes)
-    first = np.isin(predictions.poke, order[: len(order) // 2])
-    fitting, held = predictions.where(first), predictions.where(~first)
-    scale, inclusion = _fit_scale(fitting)
-    fitted = _scale_mm(_size(held), held.away, held.depth[:, None], scale)
-    fitted = fitted * np.exp(inclusion * held.inclusion[:, None])
-    scores = held.distance_mm / _with_spread(fitted, held.spread)
-    force_scale, force_inclusion = _fit_force_scale(fitting)
-    force = _force_error(held) / np.hypot(
-        force_scale * np.exp(force_inclusion * held.inclusion), held.force_spread
-    )
-    ring, poke = _ring(held.away), np.broadcast_to(held.poke[:, None], scores.shape)
+    scores, force = np.empty(predictions.away.shape), np.empty(len(predictions.depth))
+    many = len(np.unique(predictions.shape)) >= LEAST_SHAPES
+    for part in np.array_split(order, min(PARTS, len(order))):
+        mine = np.isin(predictions.poke, part)
+        scale = _Scale.fit(predictions.where(~mine), many)
+        scores[mine], force[mine] = scale.scores(predictions.where(mine))
+    ring, poke = _ring(predictions.away), np.broadcast_to(predictions.poke[:, None], scores.shape)
     anywhere = pooled_quantile(scores.reshape(-1), poke.reshape(-1), level)
     factors = [
         pooled_quantile(scores[ring == k], poke[ring == k], level) if (ring == k).any() else anywhere
         for k in range(len(RING_EDGES_MM) - 1)
     ]
-    k = len(np.unique(held.poke))
     return Intervals(
         level=level,
-        promised=min(level, k / (k + 1)),
-        pokes=k,
-        scale=scale.tolist(),
+        promised=min(level, len(pokes) / (len(pokes) + 1)),
+        pokes=len(pokes),
         factors=factors,
-        force_scale=force_scale,
-        force=pooled_quantile(force, held.poke, level),
-        inclusion=inclusion,
-        force_inclusion=force_inclusion,
+        force=pooled_quantile(force, predictions.poke, level),
+        **_Scale.fit(predictions, many)._asdict(),
     )
 
 
@@ -197,7 +199,7 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
             (
                 _force_error(predictions)
                 <= intervals.force_log(
-                    predictions.force_spread, inclusion=predictions.inclusion, distance=distance
+                    predictions.force_spread, interior=predictions.interior, distance=distance
                 )
             ).mean()
         ),
@@ -265,31 +267,53 @@ def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floa
     return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
 
 
-def _inclusion(predictions: Predictions) -> Floats:
-    """The size that errors may grow with; one for all where there are few shapes."""
-    many = len(np.unique(predictions.shape)) >= LEAST_SHAPES
-    return predictions.inclusion if many else np.zeros_like(predictions.inclusion)
+class _Scale(NamedTuple):
+    """How large errors are: what `Intervals` has of the same names."""
+
+    scale: list[float]
+    force_scale: float
+    interior: tuple[float, float]
+    force_interior: tuple[float, float]
+
+    @classmethod
+    def fit(cls, predictions: Predictions, many: bool) -> _Scale:
+        """Least squares of the errors' logarithms; of ln(force), the root mean square of what is left.
+
+        many: whether there are enough shapes for what differs between them.
+        """
+        x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
+        t = np.broadcast_to(t, x.shape)
+        within = predictions.interior * many
+        grown = np.moveaxis(np.broadcast_to(within[:, None], (*x.shape, 2)), 2, 0)
+        parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, *grown]
+        found = _least_squares(parts, np.maximum(predictions.distance_mm, _LEAST_MM))
+        error = _force_error(predictions)
+        parts = [np.ones_like(error), *within.T]
+        slope = _least_squares(parts, np.maximum(error, _LEAST_FORCE))[1:]
+        rest = error * np.exp(-within @ slope)
+        return cls(
+            scale=found[:N_FEATURES].tolist(),
+            force_scale=float(np.sqrt((rest**2).mean())),
+            interior=(float(found[-2]), float(found[-1])),
+            force_interior=(float(slope[0]), float(slope[1])),
+        )
+
+    def scores(self, predictions: Predictions) -> tuple[Floats, Floats]:
+        """Errors over their scale: of points (f, n), and of forces (f,)."""
+        fitted = _scale_mm(_size(predictions), predictions.away, predictions.depth[:, None], self.scale)
+        fitted = fitted * np.exp(predictions.interior @ np.array(self.interior))[:, None]
+        force = self.force_scale * np.exp(predictions.interior @ np.array(self.force_interior))
+        return (
+            predictions.distance_mm / _with_spread(fitted, predictions.spread),
+            _force_error(predictions) / np.hypot(force, predictions.force_spread),
+        )
 
 
-def _fit_scale(predictions: Predictions) -> tuple[Floats, float]:
-    """Coefficients of ln(error / mm), and that of the inclusion's size."""
-    x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
-    t, v = (np.broadcast_to(values, x.shape) for values in (t, _inclusion(predictions)[:, None]))
-    parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, v]
-    a = np.stack(parts, axis=-1).reshape(-1, N_FEATURES + 1)
-    target = np.log(np.maximum(predictions.distance_mm.reshape(-1), _LEAST_MM))
+def _least_squares(parts: list[Floats], errors: Floats) -> Floats:
+    """Coefficients of the parts, of the errors' shape, in ln(error)."""
+    a = np.stack(parts, axis=-1).reshape(-1, len(parts))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
-    found = np.linalg.solve(a.T @ a + ridge, a.T @ target)
-    return found[:-1], float(found[-1])
-
-
-def _fit_force_scale(predictions: Predictions) -> tuple[float, float]:
-    """Root mean square of the error of ln(force) at no inclusion, and the coefficient of its size."""
-    error, v = _force_error(predictions), _inclusion(predictions)
-    off = v - v.mean()
-    varies = float(off @ off)
-    slope = float(off @ np.log(np.maximum(error, _LEAST_FORCE))) / varies if varies > 0.0 else 0.0
-    return float(np.sqrt(((error * np.exp(-slope * v)) ** 2).mean())), slope
+    return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ np.log(errors).reshape(-1)))
 
 
 def too_few(pokes: int) -> str:

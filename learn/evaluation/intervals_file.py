@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from learn._yaml import first_fault
 from learn.errors import InputError
@@ -78,8 +78,17 @@ class _File(BaseModel):
     ]
     force_scale: _Positive
     force: _Positive
-    inclusion: _Number = 0.0  # files of before 2026-11-25 do not have them
-    force_inclusion: _Number = 0.0
+    interior: tuple[_Number, _Number] = (0.0, 0.0)  # files of before 2026-11-25 have neither
+    force_interior: tuple[_Number, _Number] = (0.0, 0.0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _size_alone(cls, values: Any) -> Any:
+        """Files of 2026-11-25 have the inclusion's size alone."""
+        if not isinstance(values, dict):
+            return values
+        old = {"inclusion": "interior", "force_inclusion": "force_interior"}
+        return {old.get(key, key): [value, 0.0] if key in old else value for key, value in values.items()}
 
 
 def _path(run: Run) -> Path:

@@ -17,7 +17,7 @@ from learn.data import Batch, MemoryDataset, Store, make_batch
 from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, pokes_of, scene_on
-from learn.validity import interior_of
+from learn.validity import interior_at
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
     encoded: Any = None
     device = scene.points.device
     points = scene.points.cpu().numpy()
-    size = functools.cache(lambda geometry: interior_of(store, store.profile[geometry]).size)
+    interior = functools.cache(lambda poke: interior_at(store, poke))
     for batch in batches:
         if encoded is None:
             encoded = model.encode(scene, model.prepare(scene))
@@ -62,7 +62,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
                 poke=poke,
                 softness=np.array(store.softness_names)[store.softness[poke]],
                 shape=np.array(store.shapes)[store.shape[poke]],
-                inclusion=np.array([size(int(geometry)) for geometry in store.geometry[poke]]),
+                interior=np.array([interior(int(index)) for index in poke]),
                 spread=_or_zero(found.spread, away.shape),
                 force_spread=_or_zero(found.force_spread, poke.shape),
             )

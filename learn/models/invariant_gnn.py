@@ -165,10 +165,11 @@ class InvariantGnn(Model):
         return [torch.stack(parts, dim=1).float()]
 
 
-@register_model("invariant-gnn-small", version=3)
+# version 3 had two rounds of messages, the first at two radii, and 8 vectors
+@register_model("invariant-gnn-small", version=4)
 def small(statistics: Statistics) -> InvariantGnn:
-    """Half as wide: faster, at a larger error."""
-    return InvariantGnn(statistics, hidden=32, messages=8, directions=4)
+    """Half as wide, with one round of messages: faster, at a larger error."""
+    return InvariantGnn(statistics, hidden=32, messages=8, directions=4, scales=((0,),), vectors=4)
 
 
 def _soft(encoded: Encoded, contact: Contact, inclusion: Tensor) -> Tensor:

@@ -108,6 +108,8 @@ class PagePart(nn.Module):
             self.scale = torch.tensor(intervals.scale, dtype=torch.float64)
             self.factors = torch.tensor(intervals.factors, dtype=torch.float64)
             self.rings = torch.tensor(RING_EDGES_MM[1:-1], dtype=torch.float64)
+            self.interior = torch.tensor(intervals.interior, dtype=torch.float64)
+            self.force_interior = torch.tensor(intervals.force_interior, dtype=torch.float64)
 
     def outputs(self) -> list[str]:
         """Names of what `forward` returns."""
@@ -139,15 +141,14 @@ class PagePart(nn.Module):
             beyond, distance = self.ranges(values, about[2])
             found += [values, beyond, distance]
         if self.intervals is not None:
-            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), about[3], distance)
+            interior = torch.stack([about[3], 1e3 * self._cover(poke, soft)])
+            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), interior, distance)
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
         """The quantities of `learn.validity.poke_values`, in their order."""
         site, angle, depth, modulus = poke[:2], poke[2], poke[4], poke[5]
-        away = torch.sqrt((self.points[:, :2] - site).square().sum(dim=1))
-        near = away <= away.min().clamp(min=self.radius)
-        cover = torch.where(near, soft, torch.full_like(soft, _FAR)).min()
+        cover = self._cover(poke, soft)
         to_side = (self.reach - (site - self.middle).abs()).min()
         values = {
             "depth_mm": depth * 1e3,
@@ -166,8 +167,14 @@ class PagePart(nn.Module):
         }
         return torch.stack([values[key] for key in QUANTITIES])
 
+    def _cover(self, poke: Tensor, soft: Tensor) -> Tensor:
+        """Least thickness of the soft tissue near the site [m]."""
+        away = torch.sqrt((self.points[:, :2] - poke[:2]).square().sum(dim=1))
+        near = away <= away.min().clamp(min=self.radius)
+        return torch.where(near, soft, torch.full_like(soft, _FAR)).min()
+
     def _intervals(
-        self, u: Tensor, tip: Tensor, depth: Tensor, inclusion: Tensor, distance: Tensor
+        self, u: Tensor, tip: Tensor, depth: Tensor, interior: Tensor, distance: Tensor
     ) -> list[Tensor]:
         """Factor around the force and radius at each point [m], as `learn.evaluation.Intervals` has them."""
         assert self.intervals is not None
@@ -177,13 +184,13 @@ class PagePart(nn.Module):
         moved = torch.log(size / depth + 1e-4)
         parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
-        logs = logs + self.intervals.inclusion * inclusion
+        logs = logs + interior @ self.interior
         ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
         # 1 - exp(-t) as -expm1(-t), which no runtime has in double: small t loses digits that no one sees
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
-        fitted = self.intervals.force_scale * torch.exp(self.intervals.force_inclusion * inclusion)
+        fitted = self.intervals.force_scale * torch.exp(interior @ self.force_interior)
         log = torch.sqrt((self.intervals.force * fitted) ** 2 + unknown * FORCE_UNKNOWN**2)
         return [torch.exp(log), radius]
 

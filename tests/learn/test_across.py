@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals, inside_alone
-from learn.evaluation.intervals_file import replaced_text, save_intervals
+from learn.evaluation.intervals_file import load_intervals, replaced_text, save_intervals
 from learn.metrics import Predictions, join_predictions
 from learn.training import Recipe, Run
 
@@ -103,8 +104,20 @@ def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> N
     own = fit_intervals(_answers(0, 1.0).predictions)
     assert replaced_text(run, own) is None
     save_intervals(run, replace(own, pokes=420))
-    assert "calibrated on 420 pokes, are replaced by intervals from 6" in str(replaced_text(run, own))
+    assert "calibrated on 420 pokes, are replaced by intervals from 12" in str(replaced_text(run, own))
     save_intervals(run, own)
     assert replaced_text(run, own) is None
     (tmp_path / "intervals.json").write_text("{", encoding="utf-8")
     assert replaced_text(run, own) is None
+
+
+def test_intervals_of_before_the_cover_are_read(tmp_path: Path) -> None:
+    """Files of 2026-11-25 have the size of the inclusion alone, under another name."""
+    run = SimpleNamespace(folder=tmp_path, members=())
+    own = replace(fit_intervals(_answers(0, 1.0).predictions), interior=(0.1, 0.2), force_interior=(0.3, 0.4))
+    path = save_intervals(run, own)  # type: ignore[arg-type]
+    content = json.loads(path.read_text())
+    old = {"inclusion": content.pop("interior")[0], "force_inclusion": content.pop("force_interior")[0]}
+    path.write_text(json.dumps({**content, **old}))
+    found = load_intervals(run)  # type: ignore[arg-type]
+    assert found == replace(own, interior=(0.1, 0.0), force_interior=(0.3, 0.0))

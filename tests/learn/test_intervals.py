@@ -14,12 +14,20 @@ from learn.metrics import Predictions, join_predictions
 
 
 def _noisy(
-    pokes: int, seed: int, *, more: float = 1.0, apart: float = 0.0, growth: float = 0.0, shapes: int = 1
+    pokes: int,
+    seed: int,
+    *,
+    more: float = 1.0,
+    apart: float = 0.0,
+    growth: float = 0.0,
+    shapes: int = 1,
+    thin: float = 0.0,
 ) -> Predictions:
     """Predictions with errors that fall with the distance from the tip and grow with the depth.
 
-    apart: standard deviation of the logarithm of a factor that all errors of a poke share; growth: of the
-    logarithm of errors with each mm of an inclusion, of which there are so many shapes, of 1 mm and more.
+    apart: standard deviation of the logarithm of a factor that all errors of a poke share. The logarithm of
+    errors grows by growth with each mm of an inclusion, of which there are so many shapes, of 1 mm and more,
+    and by thin with each mm of the cover, of which each poke has its own, from 2 to 6 mm.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
@@ -28,7 +36,9 @@ def _noisy(
     truth = np.zeros((frames, n, 3))
     truth[..., 2] = -depth[:, None] * np.exp(-away / 0.01)
     shape = np.repeat(np.arange(pokes) % shapes, 4)
-    own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4) * np.exp(growth * (1 + shape))
+    cover = np.repeat(np.random.default_rng([seed, 1]).uniform(2, 6, pokes), 4)
+    own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4)
+    own *= np.exp(growth * (1 + shape) + thin * (cover - 4))
     scale = more * 0.02 * (own * depth)[:, None] * np.exp(-away / 0.02)
     predicted = truth + random.normal(size=truth.shape) * scale[..., None]
     force = depth * 500
@@ -42,7 +52,7 @@ def _noisy(
         poke=np.repeat(np.arange(pokes), 4),
         softness=np.full(frames, "S0"),
         shape=shape.astype(str),
-        inclusion=1.0 + shape,
+        interior=np.stack([1.0 + shape, cover], axis=1),
     )
 
 
@@ -79,7 +89,7 @@ def test_pooled_quantile_counts_pokes_not_points() -> None:
 
 def test_few_pokes_promise_less() -> None:
     intervals = fit_intervals(_noisy(8, 0))
-    assert (intervals.pokes, intervals.promised) == (4, 0.8)
+    assert (intervals.pokes, intervals.promised) == (8, 8 / 9)
 
 
 def test_spread_makes_the_intervals_wide_where_the_members_differ() -> None:
@@ -154,26 +164,39 @@ def test_errors_that_grow_with_the_inclusion_are_covered_beside_a_larger_one() -
     five, six = _noisy(200, 0, growth=0.3, shapes=5), _noisy(300, 1, growth=0.3, shapes=6)
     largest = six.where(six.shape == "5")
     intervals = fit_intervals(five)
-    assert intervals.inclusion == pytest.approx(0.3, abs=0.03)
-    assert intervals.force_inclusion == pytest.approx(0.3, abs=0.1)
+    assert intervals.interior == pytest.approx((0.3, 0.0), abs=0.03)
+    assert intervals.force_interior == pytest.approx((0.3, 0.0), abs=0.1)
     found = coverage(intervals, largest)
     assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther off errors are below 1e-4 mm
     assert 0.82 <= found.force <= 0.96
-    unaware = fit_intervals(dataclasses.replace(five, inclusion=np.zeros(0)))
+    unaware = fit_intervals(dataclasses.replace(five, interior=np.zeros(0)))
     assert max(coverage(unaware, largest).rings[:3]) < 0.75
 
 
 def test_few_shapes_do_not_say_how_errors_grow() -> None:
     intervals = fit_intervals(_noisy(200, 0, growth=0.3, shapes=4))
-    assert (intervals.inclusion, intervals.force_inclusion) == (0.0, 0.0)
+    assert (intervals.interior, intervals.force_interior) == ((0.0, 0.0), (0.0, 0.0))
+
+
+def test_errors_that_grow_where_the_cover_is_thin_are_covered_there() -> None:
+    """Each poke has a cover of its own."""
+    many, other = _noisy(200, 0, thin=-0.4, shapes=5), _noisy(400, 1, thin=-0.4, shapes=5)
+    thinnest = other.where(other.interior[:, 1] < 3.0)
+    intervals = fit_intervals(many)
+    assert intervals.interior == pytest.approx((0.0, -0.4), abs=0.03)
+    assert intervals.force_interior == pytest.approx((0.0, -0.4), abs=0.1)
+    assert all(0.87 <= ring <= 0.93 for ring in coverage(intervals, thinnest).rings[:3])
+    unaware = fit_intervals(dataclasses.replace(many, interior=np.zeros(0)))
+    assert max(coverage(unaware, thinnest).rings[:3]) < 0.8
 
 
 def test_intervals_over_one_inclusion_are_those_of_its_frames() -> None:
-    intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5))
+    intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5, thin=-0.2))
     frame = _noisy(5, 1, shapes=5).where(np.arange(20) == 17)
-    assert frame.inclusion[0] == 5.0
-    bare = dataclasses.replace(frame, inclusion=np.zeros(0))
-    over = intervals.over(5.0)
+    size, cover = frame.interior[0]
+    assert size == 5.0
+    bare = dataclasses.replace(frame, interior=np.zeros(0))
+    over = intervals.over(size, cover)
     np.testing.assert_allclose(over.radius_mm(bare), intervals.radius_mm(frame), rtol=1e-12)
-    assert over.force_log() == pytest.approx(intervals.force_log(inclusion=5.0)[()], rel=1e-12)
+    assert over.force_log() == pytest.approx(intervals.force_log(interior=frame.interior)[0], rel=1e-12)
     assert (over.radius_mm(bare) > intervals.radius_mm(bare)).all()
