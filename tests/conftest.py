@@ -19,8 +19,8 @@ HERE = Path(__file__).parent
 # what says nothing of processes starts none: pytest-xdist fills the cores, and a process that is started
 # imports everything and compiles kernels for itself, at several times the cost of what most tests compute
 os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
-# and threads of BLAS and OpenMP, two a process on two busy cores, wait for each other: a test took 100 times as
-# long
+# and threads of BLAS and OpenMP wait for each other: with two a process on two busy cores some tests took a
+# hundred times as long
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 # the same random examples in every run: what fails is the commit, not the draw. New ones:
