@@ -94,7 +94,9 @@ def make_device(device: str = "auto") -> torch.device:
     try:
         chosen = torch.device(device)
     except RuntimeError:
-        raise InputError(f"device {device}: expected auto, cpu or cuda") from None
+        chosen = torch.device("meta")
+    if chosen.type not in ("cpu", "cuda"):
+        raise InputError(f"device {device}: expected auto, cpu or cuda")
     if chosen.type == "cuda" and not torch.cuda.is_available():
         raise InputError(f"device {device}: torch sees no GPU here, expected auto or cpu")
     return chosen

@@ -18,7 +18,7 @@ from learn.errors import InputError
 from learn.evaluation import evaluate
 from learn.models import Model, Scene, make_model, pokes_of, scene_of
 from learn.models._encoder import gathered
-from learn.training import ProcessGroup, Run, Trainer, load_run, make_process_group, read_log
+from learn.training import ProcessGroup, Run, Trainer, load_run, make_device, make_process_group, read_log
 from learn.training.recipe import Loss, Recipe, loss_of
 from tests.learn.small_store import write_store
 
@@ -123,6 +123,18 @@ def test_each_process_takes_a_gpu_of_its_own(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("LOCAL_RANK", "2")
     with pytest.raises(InputError, match=r"--nproc-per-node: 3 processes or more .* 2 are here"):
         make_process_group()
+
+
+@pytest.mark.parametrize("name", ["nonsense", "meta", "cuda:x"])
+def test_another_device_is_refused(name: str) -> None:
+    with pytest.raises(InputError, match=f"device {name}: expected auto, cpu or cuda"):
+        make_device(name)
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="wants a machine without a GPU")
+def test_a_gpu_that_is_not_there_is_refused() -> None:
+    with pytest.raises(InputError, match="device cuda: torch sees no GPU here, expected auto or cpu"):
+        make_device("cuda")
 
 
 def test_one_process_without_torchrun_joins_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
