@@ -57,7 +57,7 @@ OPTIONS: dict[str, Any] = {"tolerance": 5e-4, "max_iterations": 40, "kept": True
 
 def test_a_step_is_newtons_on_the_whole_block() -> None:
     """Far tissue eliminated and brought along again: the same linear system, solved in two parts."""
-    it, x = pressed(kind="hex8")  # in hex20 the tangent at this overlap is indefinite
+    it, x = pressed(0.0001, kind="hex8")  # in hex20 the tangent at this overlap is indefinite
     rng = np.random.default_rng(3)
     free = it.discretisation.pattern.free
     x[free] += 2e-5 * rng.standard_normal((len(free), 3))
@@ -211,7 +211,7 @@ def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.Monk
 
 
 def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    it, x = pressed()
+    it, x = pressed(0.0001)
     block = CondensedBlock(it)
     far = x.copy()
     top = np.unique(it.discretisation.mesh.facet_sets["top"])

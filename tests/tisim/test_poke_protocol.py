@@ -131,6 +131,16 @@ def test_tissue_squeezed_to_a_tenth_bears_the_rod() -> None:
     assert result.ok, result.message
 
 
+@pytest.mark.slow
+def test_a_poke_leaves_two_of_32_millimetres() -> None:
+    """With a linear penalty, or three contact points a side, it ends at 27 mm (studies/depth)."""
+    ogden = tisim.material_from_moduli("ogden", shear_modulus=SHEAR, bulk_modulus=BULK)
+    result = solve_poke(poke(material=ogden, depth=0.03, frame_spacing=1e-3, refinement=1.0))
+    assert result.ok, result.message
+    assert result.load[-1] == pytest.approx(0.03)
+    assert (result.min_jacobian > 0.0).all()
+
+
 def test_axisymmetric_reference() -> None:
     """Force at 1, 2, 5 and 10 mm against axisymmetric quadratic elements (FElupe): within 1.5 %."""
     forces = {int(d): v["force"] for d, v in REFERENCE["values"]["0.6"].items()}

@@ -1,4 +1,4 @@
-"""Contact of a facet set with a rigid rod: penalty on the signed distance, Coulomb friction with memory.
+"""Contact of a facet set with a rigid rod: hardening penalty, Coulomb friction with memory.
 
 The rod is a cylinder with a rounded edge (a hemisphere where the edge radius is the radius), axis `a`
 pointing ahead of the tip, centre of the tip `c`. Its signed distance in the meridian plane, with r the
@@ -6,15 +6,19 @@ distance from the axis and s the height ahead of the tip, is that of a rounded b
 q = (r - (R - e), s + e), d = |max(q, 0)| + min(max(q), 0) - e.
 
 Contact is integrated at many points a facet (at nodes alone the surface tunnels through the edge).
-Energy of a point of rest area A:   A [kn/2 min(d, 0)^2 + huber(g)],  with g the elastic part of the slip
-and huber(g) = kt/2 g^2 up to the Coulomb limit mu p, mu p g - (mu p)^2/(2 kt) beyond: a return mapping
-whose memory is g at the last converged step, so that a sticking point does not creep with the steps.
-p = kn max(-d, 0) is frozen during a line search and refreshed at every linearisation: the residual is
-Coulomb's law without lag. The dependence of mu p and of the tangent plane on x makes the tangent
+Energy of a point of rest area A:   A [kn/2 o^2 (1 + (o/h)^4/3) + huber(g)],  with the overlap
+o = max(-d, 0), g the elastic part of the slip and huber(g) = kt/2 g^2 up to the Coulomb limit mu p,
+mu p g - (mu p)^2/(2 kt) beyond: a return mapping whose memory is g at the last converged step, so that a
+sticking point does not creep with the steps. The pressure p = kn o (1 + (o/h)^4) is close to linear below
+the overlap h and grows with its fifth power beyond, so that no pressure takes the surface far into the rod.
+p is frozen during a line search and refreshed at every linearisation: the residual is Coulomb's law without
+lag. The dependence of mu p and of the tangent plane on x makes the tangent
 unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
 creeps where points slip and where they pass the rounded edge).
 A point that touches first in this step slips for the part of the step that it touches, as the step's
 start value sees it.
+
+The kernels read the contact's constants from `law`: kn [Pa/m], kt [Pa/m], mu, h [m].
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
@@ -65,6 +69,15 @@ def rod_distance(y, rod: ti.template()):
         d = qs - e
     t = er.cross(a)  # around the axis
     return d, n, km, kr, t
+
+
+@ti.func
+def penalty(d, law: ti.template()):
+    """Energy [J/m2], pressure [Pa] and stiffness [Pa/m] at the signed distance d [m]."""
+    overlap = ti.max(0.0, -d)
+    harder = (overlap / law[3]) ** 4
+    energy = 0.5 * law[0] * overlap * overlap * (1.0 + harder / 3.0)
+    return energy, law[0] * overlap * (1.0 + harder), law[0] * (1.0 + 5.0 * harder)
 
 
 @cache
@@ -131,7 +144,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                     d, n, _km, _kr, _t = rod_distance(y, rod)
                     least = ti.min(least, d)
                     if d < 0.0:
-                        total += area[f, q] * 0.5 * law[0] * d * d
+                        total += area[f, q] * penalty(d, law)[0]
                     limit = law[2] * pressure[f, q]
                     if limit > 0.0 and part[f, q] > 0.0:
                         shift = rod_shift(y, rod)
@@ -165,7 +178,8 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                     y = sample(x, conn, shape, f, q)
                     d, n, km, kr, t = rod_distance(y, rod)
                     least = ti.min(least, d)
-                    pressure[f, q] = law[0] * ti.max(0.0, -d)
+                    _e, p, k = penalty(d, law)
+                    pressure[f, q] = p
                     for i in ti.static(range(3)):
                         slip[f, q, i] = 0.0
                     for i in ti.static(range(9)):
@@ -173,11 +187,8 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                     if d < 0.0:
                         touching += area[f, q]
                         m = n.cross(t)
-                        push = law[0] * d  # dphi/dd < 0
-                        grad = push * n
-                        H = law[0] * n.outer_product(n) + push * (
-                            km * m.outer_product(m) + kr * t.outer_product(t)
-                        )
+                        grad = -p * n
+                        H = k * n.outer_product(n) - p * (km * m.outer_product(m) + kr * t.outer_product(t))
                         limit = law[2] * pressure[f, q]
                         if limit > 0.0 and part[f, q] > 0.0:
                             shift = rod_shift(y, rod)
@@ -199,7 +210,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                                 u = g / size
                                 across = limit / size * (ti.Matrix.identity(f64, 3) - u.outer_product(u))
                                 pull = limit * u
-                                D = across @ G - law[2] * law[0] * u.outer_product(n)
+                                D = across @ G - law[2] * k * u.outer_product(n)
                                 symmetric = part[f, q] * limit / size * (T - u.outer_product(u))
                             grad += pull
                             H += symmetric

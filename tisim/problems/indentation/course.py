@@ -21,7 +21,6 @@ from tisim.problems.indentation.steps import (
     Frame,
     frame_of,
     predict,
-    stiffen_where_deep,
 )
 from tisim.problems.indentation.system import PokeSystem
 from tisim.problems.indentation.turning import angle, axis_at
@@ -67,7 +66,7 @@ def follow(
     stops = course.stops(shortest)
     for count, stop in enumerate(stops, start=1):
         if walk.time in (0.0, *course.times):
-            corner, walk.velocity = walk.time, None
+            corner, walk.velocity, walk.step = walk.time, None, FIRST_STEP
         way = np.sign(stop.value - walk.depth)
         if way:
             system.turn(float(way))
@@ -131,7 +130,6 @@ def _advance(
         walk.x, walk.depth, walk.time = outcome.x, target, time
         block.last_residual = outcome.residual
         system.accept(outcome.x)
-        stiffen_where_deep(system, outcome.x)
     return Status.CONVERGED
 
 

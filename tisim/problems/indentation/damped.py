@@ -25,7 +25,7 @@ from tisim.result import Status
 _log = logging.getLogger(__name__)
 
 # The drag of a node at first, and at most, in shear moduli times the rod's radius.
-FIRST, LARGEST = 40.0, 4e3
+FIRST, LARGEST = 40.0, 200.0
 # Newton iterations of a step of the motion; with fewer than these the drag falls to a quarter, to a half.
 AT_MOST, QUARTER, HALF = 10, 4, 7
 # Residual of a step, in units of the rod's force: this part of the drag before, at most so much, and at least
@@ -35,9 +35,11 @@ PART, LOOSEST, LEAST = 0.2, 2e-3, 0.4
 # iterations, and again where the drag has come down to this part.
 NEAR, TRIED, AGAIN = 6.0, 12, 0.3
 
-
 # Of the iterations that a step may take: those before it is tried as a motion, and those of the motion.
-STRAIGHT, IN_MOTION = 0.5, 1.5
+STRAIGHT, IN_MOTION = 0.5, 4.0
+# A motion is given up unless its drag has fallen to the fraction LOW of the first after the fraction SOON of
+# its iterations: over crushed tissue it does not fall.
+LOW, SOON = 0.1, 0.375
 
 
 def solve_step(
@@ -92,11 +94,10 @@ def come_to_rest(
                 _log.debug("at rest after %d iterations, drag %.2g", used, drag / unit)
                 return Outcome(outcome.x, Status.CONVERGED, outcome.residual, used)
             drag *= 0.25 if iterations < QUARTER else 0.5 if iterations < HALF else 1.0
-        elif refused is Status.PENETRATION:  # more drag would only leave the surface deeper in the rod
-            system.stiffen()
         else:
             drag *= 4.0
-        if drag > LARGEST * unit or used >= max_iterations:
+        most = max_iterations if drag <= LOW * FIRST * unit else SOON * max_iterations
+        if drag > LARGEST * unit or used >= most:
             _log.debug("no rest after %d iterations, drag %.2g", used, drag / unit)
             system.recall(before)
             system.drag = None

@@ -28,7 +28,6 @@ from tisim.problems.indentation.steps import (
     Frame,
     frame_of,
     predict,
-    stiffen_where_deep,
 )
 from tisim.problems.indentation.system import PokeSystem
 from tisim.problems.indentation.turning import axis_at
@@ -121,7 +120,6 @@ def _push(
                 cuts += 1
                 refused += 1
                 in_vain += outcome.iterations
-                stiffen_where_deep(system, outcome.x)
                 if in_vain >= IN_VAIN * scene.solver.max_iterations:
                     return frames, status, steps, cuts
                 if frame and way * (goal - target) > SAME:
@@ -138,7 +136,6 @@ def _push(
             x, depth = outcome.x, target
             on_step(travelled / way_to_go)
             system.accept(x)
-            stiffen_where_deep(system, x)
             if outcome.iterations <= 6:
                 step = min(step * 2.0, LARGEST_STEP)
             elif outcome.iterations > 12:

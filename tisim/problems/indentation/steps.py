@@ -13,10 +13,8 @@ from tisim.result import Status
 
 Array = NDArray[np.float64]
 
-# Penetration, as a part of the edge radius, at which the contact is made stiffer, and a step refused. At a
-# quarter, tissue squeezed to a fifth of its thickness slips past the edge between the contact points, and the
-# poke ends; at a tenth, pokes at 45 degrees take half as long again (studies/depth).
-STIFFEN_AT, REFUSE_AT = 0.15, 0.5
+# Penetration, as a fraction of the edge radius, at which a step is refused.
+REFUSE_AT = 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
 # Between two frames, refused steps may take so many times the iterations that one may take. Near a poke's
 # end, where tissue is crushed, smaller steps are found for a tenth of a millimetre more, at the cost of all
@@ -63,12 +61,6 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
     if outcome.status is not Status.CONVERGED:
         return outcome.status
     return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
-
-
-def stiffen_where_deep(system: PokeSystem, x: Array) -> None:
-    """Make the contact stiffer from the next step on, where the surface at x is too far in the rod."""
-    if system.overlap(x) > STIFFEN_AT * system.edge:
-        system.stiffen()
 
 
 def predict(system: PokeSystem, x: Array, move: Array) -> Array:

@@ -26,12 +26,16 @@ Array = NDArray[np.float64]
 # Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
 # shear moduli is a twentieth of the edge radius. Points stick and slip less abruptly than at twice as much.
 NORMAL_STIFFNESS = 200.0
+# Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
+# a linear one the surface of crushed tissue slips past the rod's edge (studies/depth).
+HARDENS_AT = 0.1
 TANGENT_STIFFNESS = 50.0
 # Of the radius: an edge that is rounder counts as this. By its whole radius a hemisphere would sink into the
 # body so far that its force is 1.3 % low, whatever the mesh.
 ROUNDEST = 0.4
-# points along a facet's side, by its nodes
-POINTS_PER_SIDE = {3: 4, 4: 4, 6: 4, 8: 3}
+# Contact points along a facet's side, by its number of nodes. With three on the facets of hex20 the rod's
+# edge goes through between them where the tissue is stretched most (studies/depth).
+POINTS_PER_SIDE = {3: 4, 4: 4, 6: 4, 8: 5}
 # at which a converged surface is looked at: between a curved facet's points the rod's edge could go through
 WATCHED_PER_SIDE = 7
 
@@ -121,7 +125,9 @@ class PokeSystem:
         points = self._area.shape
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
-        self._law = np.array([NORMAL_STIFFNESS * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction])
+        self._law = np.array(
+            [NORMAL_STIFFNESS * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
+        )
         self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
         self._skew = np.zeros((*points, 9))
         self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
@@ -238,10 +244,6 @@ class PokeSystem:
         it._pressure, it._slip, it._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
         it._known, it.report = [], np.zeros(6)
         return it
-
-    def stiffen(self) -> None:
-        """Double the contact's normal stiffness: deep down the pressure at the edge outgrows it."""
-        self._law[0] *= 2.0
 
     def potential(self, x: Array) -> tuple[float, float]:
         """Potential with the pressures of the friction frozen [J], and smallest det F."""
