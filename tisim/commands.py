@@ -29,7 +29,7 @@ def verbs() -> dict[str, EntryPoint]:
 
 
 def purpose(module: str) -> str:
-    """What a module says that it does, without importing it; empty where it says nothing."""
+    """First line of a module's docstring, read without importing it; empty if it has none."""
     first = _docstring(module).partition("\n")[0]
     return (first.partition("`: ")[2] or first).rstrip(".")
 

@@ -43,7 +43,7 @@ class Stop:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """What a test drives over time: straight lines from corner to corner, and jumps.
+    """The prescribed value of a test over time: straight lines from corner to corner, and jumps.
 
     What it is belongs to the scene: the stretch of a coupon or a compressed cylinder, the depth of a poke
     [m], the part of a beam's load that acts. Quasi-static: there is no inertia.

@@ -69,7 +69,7 @@ class Quantities:
 
     @cached_property
     def principal_stresses(self) -> Array:
-        """Of the Cauchy stress, shape (k, 3), the largest first [Pa]."""
+        """Principal Cauchy stresses [Pa], shape (k, 3), in descending order."""
         return np.asarray(np.linalg.eigvalsh(self.cauchy)[:, ::-1])
 
     @cached_property
@@ -205,7 +205,7 @@ def fields_at(body: DiscretisedBody, x: Array, frame: int = -1) -> Fields:
 
 
 def _fitted(body: DiscretisedBody, values: Array, weights: Array) -> tuple[Array, Array]:
-    """Of point values (m, q, c) each element's mean (m, c) and its linear field at its nodes (m, a, c)."""
+    """Mean (m, c) of each element's point values (m, q, c), and their linear fit at its nodes (m, a, c)."""
     mesh, ref = body.discretisation.mesh, body.discretisation.reference
     total = weights.sum(axis=1)
     total = np.where(total > 0.0, total, 1.0)

@@ -1,4 +1,4 @@
-"""What a simulation returns: frames, a status that never hides a failure, and what it cost."""
+"""Results of simulations: frames, a status that states every failure, and the cost."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tisim.mesh import Mesh
 
 
 class Status(StrEnum):
-    """How a simulation ended. Every frame kept is good whatever the status."""
+    """Outcome of a simulation. Every frame kept is an equilibrium, whatever the status."""
 
     CONVERGED = "converged"  # the whole load, depth or duration was reached
     NOT_CONVERGED = "not-converged"  # Newton failed after all step cuts
@@ -107,7 +107,7 @@ class Result:
 
     @property
     def ok(self) -> bool:
-        """Whether the whole load, depth or duration was reached."""
+        """True if the whole load, depth or duration was reached."""
         return self.status is Status.CONVERGED
 
     def __repr__(self) -> str:

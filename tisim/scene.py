@@ -1,4 +1,4 @@
-"""What can be simulated: beams, pokes, coupons and compressed cylinders of one material. SI units."""
+"""Scenes: beams, pokes, coupons and compressed cylinders of one material. SI units."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class Material:
 
     @property
     def has_parts(self) -> bool:
-        """Whether there is anything beside the law."""
+        """True if the material has viscosity, softening or fibres beside its law."""
         return self.viscosity is not None or self.softening is not None or self.fibres is not None
 
     @property
     def remembers(self) -> bool:
-        """Whether stress depends on the past."""
+        """True if the stress depends on the history of deformation."""
         return self.viscosity is not None or self.softening is not None
 
 
@@ -146,7 +146,7 @@ class Void:
 
 @dataclass(frozen=True, kw_only=True)
 class Imperfections:
-    """How a real beam departs from the ideal prism; all zero: the ideal one. x runs along the beam at rest.
+    """Deviations of a real beam from the ideal prism, zero for the ideal one. x runs along the beam at rest.
 
     Attributes
     ----------
@@ -180,7 +180,7 @@ class Imperfections:
 
 @dataclass(frozen=True, kw_only=True)
 class ClampImperfections:
-    """How clamps depart from ideal ones, each of which holds the section of its end upright and in shape.
+    """Deviations of clamps from ideal ones, each of which holds the section of its end upright and in shape.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ NO_STATE = np.zeros((1, 1, 1))
 
 @dataclass(eq=False)
 class Discretisation:
-    """What depends on the mesh and its supports only: quadrature, numbering, sparsity, symbolic factor.
+    """Everything that depends on the mesh and its supports only: quadrature, numbering, sparsity, symbolic factor.
 
     held: boolean (n, 3), components of free nodes that may not move (mirror planes, platens).
     stiffness, density: (m, q), factors of the material's stiffness and density at the quadrature points, None
@@ -68,7 +68,7 @@ class Discretisation:
 
     @property
     def multiplicity(self) -> float:
-        """How many copies of the mesh make the whole body."""
+        """Number of copies of the mesh that make the whole body."""
         return 2.0 ** len(self.mesh.symmetry)
 
     def nodal_volume(self) -> Array:
@@ -170,7 +170,7 @@ class DiscretisedBody:
 
     @property
     def remembers(self) -> bool:
-        """Whether forces depend on the past."""
+        """True if forces depend on the history of deformation."""
         return self.features.state_size > 0
 
     def begin(self, dt: float) -> None:
@@ -220,7 +220,7 @@ class DiscretisedBody:
         return self._points(x, self._prm, self.state)
 
     def stored_energy(self, x: Array) -> Array:
-        """What the accepted state at x can give back, (m, q) [J/m3], without the factor of stiffness."""
+        """Recoverable energy density at the accepted x, (m, q) [J/m3], without the factor of stiffness."""
         if self.history is None or not self.features.viscous:
             return self.point_response(x)[0]
         state, prm = self.state.copy(), self._prm.copy()

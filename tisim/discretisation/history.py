@@ -1,4 +1,4 @@
-"""What a material remembers at its points: viscous stresses, the largest energy so far, energy dissipated.
+"""Internal variables at material points: viscous stresses, the largest energy so far, energy dissipated.
 
 Over a step of length dt, in which the isochoric stress S is taken to change at a constant rate, each viscous
 term is integrated exactly (Taylor, Pister and Goudreau, Int. J. Numer. Methods Eng. 2, 1970):

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 def features_of(material: Material) -> Features:
-    """What the kernels of a material compile in."""
+    """Parts of a material that its kernels compile in."""
     from tisim.kernels.isochoric import Features  # imports Taichi
 
     soft, fibres = material.softening, material.fibres

@@ -99,7 +99,7 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """What integration over a mesh's rest shape needs.
+    """Quadrature data of a mesh's rest shape.
 
     values (q, a); gradients (m, q, a, 3) [1/m]; weights (m, q), rest volumes of the points [m3].
     """

@@ -1,4 +1,4 @@
-"""How the recipe of a dataset gives an inclusion shape."""
+"""Fields by which the recipe of a dataset states an inclusion shape."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class RecipeParameter:
 
 @dataclass(frozen=True, kw_only=True)
 class RecipeShape:
-    """How the recipe of a dataset gives a shape that stands on the base of the block.
+    """Fields by which the recipe of a dataset states a shape that stands on the base of the block.
 
     All functions take the parameters by name in one unit of length, whichever, and answer in that unit.
 

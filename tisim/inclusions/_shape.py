@@ -1,4 +1,4 @@
-"""What an inclusion shape is: its surface, its box, and its geometry for the mesh generator."""
+"""The inclusion shape: its surface, its box, and its geometry for the mesh generator."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Inclusion(ABC):
         """Volume of the whole shape [m3]."""
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Which points lie inside or on the surface; shape (..., 3) [m] to (...)."""
+        """True for points inside or on the surface; shape (..., 3) [m] to (...)."""
         return np.asarray(self.signed_distance(points) <= 0.0)
 
     @property

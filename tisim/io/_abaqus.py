@@ -35,7 +35,7 @@ Names = dict[str, list["int | str"]]
 
 @dataclass
 class InputFile:
-    """What an input file states of its mesh.
+    """Mesh of an input file.
 
     Attributes
     ----------

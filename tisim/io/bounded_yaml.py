@@ -21,7 +21,7 @@ _LARGEST_WHOLE = 2**64
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What a file may hold.
+    """Limits on the contents of a file.
 
     Attributes
     ----------

@@ -54,8 +54,8 @@ class _Failed:
 
 
 def _visit_unmarked(self: Any, context: Any, node: Any) -> Any:
-    """Of each node of a kernel Taichi writes down where it stands, with the line underlined, in case an error
-    should have to say it: here once there is one."""
+    """Build a node without its source position, which Taichi formats for every node of a kernel in case of an
+    error; here it is formatted once there is one."""
     visit = getattr(self, f"build_{type(node).__name__}", None)
     if visit is None:
         return _visit(self, context, node)

@@ -66,7 +66,7 @@ def add_by_node(P, grad: ti.template(), e, q, fe: ti.template()):
 
 @ti.func
 def takes_part(grad: ti.template(), e, q, a):
-    """Whether node a moves point q."""
+    """True if node a moves point q."""
     return grad[e, q, a, 0] != 0.0 or grad[e, q, a, 1] != 0.0 or grad[e, q, a, 2] != 0.0
 
 

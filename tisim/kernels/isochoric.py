@@ -17,7 +17,7 @@ from tisim.laws import Law
 
 @dataclass(frozen=True, kw_only=True)
 class Features:
-    """What the kernels of a material compile in besides its law; numbers follow those of the law in `prm`.
+    """Parts of a material that kernels compile in beside its law; their numbers follow the law's in `prm`.
 
     Attributes
     ----------

@@ -93,7 +93,7 @@ class LawReport:
 
     @property
     def ok(self) -> bool:
-        """Whether every property holds."""
+        """True if every property holds."""
         return not self.faults
 
     def __str__(self) -> str:

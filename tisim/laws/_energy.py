@@ -1,4 +1,4 @@
-"""What the energies of laws are written with: Taichi, imported when it is first needed, and invariants.
+"""Taichi, imported when it is first needed, and the invariants in which laws state their energies.
 
 A law's module uses the `ti` of this module (`from tisim.laws import ti`), with string annotations
 (`from __future__ import annotations`); nothing of Taichi is imported before the law is first evaluated. A

@@ -1,4 +1,4 @@
-"""What a constitutive law is: parameters, small-strain moduli, and derivatives of its energy."""
+"""The constitutive law: parameters, small-strain moduli, and derivatives of its energy."""
 
 from __future__ import annotations
 

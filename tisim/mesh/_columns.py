@@ -18,7 +18,7 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
-    """How thick layers are [m]: at the top, at the base, and at least."""
+    """Thickness of the layers of elements [m]: at the top, at the base, and the least allowed."""
 
     top: float
     bottom: float
@@ -26,7 +26,7 @@ class Layers:
 
     @staticmethod
     def of(kind: ElementKind, refinement: float, height: float) -> Layers:
-        """Of elements of a kind, in a block so high [m].
+        """Layers of an element type in a block of this height [m].
 
         Linear ones thinner than 1.2 mm turn over under a rod's edge; quadratic ones as thick as that lift off
         the flat of a rod beyond 13 mm, and tall ones below them cost no accuracy (studies/depth).

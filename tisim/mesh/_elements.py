@@ -117,8 +117,8 @@ def cut_hexahedra(
 
 
 def is_sound(kind: ElementKind, nodes: NDArray[np.float64], elements: NDArray[np.int32]) -> bool:
-    """Whether no element is inside-out where the solver integrates: its quadrature points, and the
-    tetrahedra that it cuts a hexahedron into."""
+    """True if no element is inverted where the solver integrates: at its quadrature points, and in the
+    tetrahedra into which it cuts a hexahedron."""
     places, weights = quadrature(kind)
     det = det_jacobian(kind, nodes, elements, places)
     if det.min() <= 0.0:

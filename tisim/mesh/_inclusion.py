@@ -54,7 +54,7 @@ class Outline:
 
     @property
     def volume(self) -> float:
-        """Of the inclusion above the block's base [m3]."""
+        """Volume of the inclusion above the block's base [m3]."""
         if self.dome is None:
             return self.area * (self.high - self.low)
         half, below = self.dome.half_height, min(self.dome.middle, self.dome.half_height)

@@ -211,7 +211,7 @@ def _divide(points: Floats, cells: Ints, side: Ints, outline: Outline) -> tuple[
 
 
 def _inside(points: Floats, triangles: Ints, outline: Outline) -> Bools:
-    """Whether triangles with their nodes on the outline cover a part of its inside worth having."""
+    """True for triangles with nodes on the outline that lie inside it and are not degenerate."""
     good = cell_quality(points, triangles[:, [0, 1, 2, 2]]) > WORTH_HAVING
     return good & (outline.signed(points[triangles].mean(axis=1)) < 0.0)
 

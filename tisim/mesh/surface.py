@@ -142,7 +142,7 @@ def _near_pairs(triangles: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _edges_pass(shell: Any, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether an edge of face first[k] passes through the inside of face second[k]."""
+    """True where an edge of face first[k] passes through the inside of face second[k]."""
     faces, vertices = np.asarray(shell.faces), np.asarray(shell.vertices)
     corner = vertices[faces[second]]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])

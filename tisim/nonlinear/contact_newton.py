@@ -142,7 +142,7 @@ def _step(
 
 
 def _good(system: ContactSystem, trial: Array, residual: Array, scale: float, *, lower: bool) -> bool:
-    """Whether a trial is accepted: friction has no potential, so either opinion counts."""
+    """True if a trial is accepted, by its residual or, as friction has no potential, by its energy."""
     size = float(np.linalg.norm(residual))
     new = system.residual_norm(trial)
     return new < (1.0 - 0.1 * scale) * size or (lower and new < GROWTH * size)

@@ -44,7 +44,7 @@ class System(Protocol):
         """x with the step added at the free nodes."""
 
     def searches(self) -> bool:
-        """Whether steps are damped by the potential; else taken whole while no element turns over."""
+        """True if the line search uses the potential; else whole steps that invert no element."""
 
     def residual_norm(self, x: Array) -> float:
         """Size of the residual at x [N]; the second opinion of the line search."""

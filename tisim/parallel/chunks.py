@@ -101,7 +101,7 @@ def _portable(scene: Any) -> Any:
 
 
 def _digest(mesh: Mesh) -> str:
-    """What a mesh is, whichever object holds it."""
+    """Key of a mesh's contents: equal for equal meshes in different objects."""
     h = hashlib.sha256(repr((mesh.kind, mesh.symmetry, mesh.nodes.shape, mesh.elements.shape)).encode())
     h.update(mesh.nodes.tobytes())
     h.update(mesh.elements.tobytes())

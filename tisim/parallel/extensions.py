@@ -54,7 +54,7 @@ def _pickled(thing: Any) -> bytes:
 
 
 def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
-    """What was added and these scenes use; None if it cannot be sent to another process."""
+    """Registered extensions that these scenes use; None if they cannot be sent to another process."""
     found: dict[str, Any] = {}
     for scene in scenes:
         law, kind = laws.added(scene.material.law), _registry.added(scene)

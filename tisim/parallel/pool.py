@@ -36,7 +36,7 @@ def cores() -> int:
 
 
 def pays_off(seconds: Sequence[float], count: int) -> bool:
-    """Whether to use processes for chunks of these costs [core-s] on so many cores.
+    """True if processes are worth their start for chunks of these costs [core-s] on `count` cores.
 
     Running processes are used. Else the work they would have saved is added up, over calls, and they are
     started once it exceeds what their start costs: never worse than twice the best that hindsight knows.

@@ -1,4 +1,4 @@
-"""What a material may have beside its law: one file each, one registration each.
+"""Parts of a material beside its law: one file each, one registration each.
 
 `Prony` (viscosity), `OgdenRoxburgh` (softening, Mullins' effect) and `HolzapfelGasserOgden` (fibres) go with
 any law and with one another:

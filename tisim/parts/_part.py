@@ -1,4 +1,4 @@
-"""What a material may have beside its law: viscosity, softening, fibres."""
+"""Interface of the parts of a material beside its law: viscosity, softening, fibres."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Spectrum:
 
     @property
     def instantaneous(self) -> float:
-        """What there is at once."""
+        """Instantaneous modulus, in units of the law's."""
         return self.equilibrium + float(self.strengths.sum())
 
     def modulus(self, time: float) -> float:

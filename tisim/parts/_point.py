@@ -108,7 +108,7 @@ class MaterialPoints:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PointResponse:
-    """What a material answers to deformations over time.
+    """Response of a material to deformations over time.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Whether a scene can be solved at all, stated in one sentence before any work is done."""
+"""Checks of a scene before any work is done; each fault is stated in one sentence."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def check_parts(material: Material, takes: tuple[str, ...], name: str) -> None:
 
 
 def oblique_fibres(material: Material) -> bool:
-    """Whether the material has fibres that are oblique to x, y and z."""
+    """True if the material has fibres that are oblique to x, y and z."""
     fibres = material.fibres
     return fibres is not None and int(np.count_nonzero(np.abs(fibres.axis()) > 1e-9)) > 1
 

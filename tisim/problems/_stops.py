@@ -1,4 +1,4 @@
-"""Where the steps of a scene end: the stops of its course, or its stretches one after the other."""
+"""Ends of the steps of a scene: the stops of its course, or its stretches in order."""
 
 from __future__ import annotations
 

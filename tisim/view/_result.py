@@ -128,7 +128,7 @@ def rod(shape: Rod, tips: Array, axes: Array) -> Surface:
 
 
 def _place(result: Result, frame: int) -> list[Told]:
-    """What a frame is counted by, and its time."""
+    """Load (depth, stretch or other) and time of a frame, as shown."""
     load = float(result.load[frame])
     found: list[Told] = []
     if result.rod_tip is not None:

@@ -40,7 +40,7 @@ def show(result: Result, path: str | Path | None = None, *, title: str | None = 
 
 
 def view_of_file(path: str | Path, *more: str | Path, poke: int | None = None) -> View:
-    """What a file holds as a view, see `python -m tisim.view --help`.
+    """Contents of a file as a view, see `python -m tisim.view --help`.
 
     Parameters
     ----------

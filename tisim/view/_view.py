@@ -1,4 +1,4 @@
-"""What is shown in three dimensions: bodies with fields over frames, a line of text a frame, a curve."""
+"""The contents of a 3-D view: bodies with fields over frames, a line of text a frame, a curve."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class _Numbers:
 
 
 def content(view: View) -> dict[str, Any]:
-    """What the script reads."""
+    """The view as the data that the page's script reads."""
     from matplotlib import colormaps
 
     numbers = _Numbers()
@@ -133,7 +133,7 @@ def _box(surfaces: Any) -> tuple[Array, Array]:
 
 
 def drawn_positions(view: View, *, rest: bool) -> list[Array]:
-    """Of each surface that is shown at first, the positions (f, k, 3) of what is drawn of it [m]."""
+    """Positions (f, k, 3) [m] of the drawn nodes of each surface that is shown at first."""
     found = []
     for s in view.surfaces:
         if not s.rest or rest:

@@ -230,7 +230,7 @@ def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outc
 
 
 def _near(path: Path) -> float:
-    """What a state between frames may be wrong by [m]."""
+    """Allowed error in position of a state between frames [m]."""
     return NEAR * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
 
 

@@ -33,7 +33,7 @@ SMALL_TURN = 1e-6  # of a clamp, in difference quotients [rad]
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """How it ended, the part of the imperfections that was reached, and what the next beam starts from.
+    """Outcome, the fraction of the imperfections that was reached, and the start values of the next beam.
 
     clamps: those of the equilibrium, where it was found.
     """
@@ -158,7 +158,7 @@ class Clamped:
         return replace(outcome, status=Status.NOT_CONVERGED)
 
     def opens(self, x: Array) -> bool:
-        """Whether the clamps' angles are not what their moments at x make them."""
+        """True if the clamps' angles differ from those that their moments at x cause."""
         if not self.yields:
             return False
         small = ANGLE_TOLERANCE * float(np.abs(self.angles - self.tilts).max()) + SMALL_ANGLE

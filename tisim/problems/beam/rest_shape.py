@@ -23,12 +23,12 @@ Array = NDArray[np.float64]
 
 
 def is_ideal(scene: Beam) -> bool:
-    """Whether neither specimen nor clamps change anything."""
+    """True if the scene has neither imperfections of the specimen nor of the clamps."""
     return ideal_specimen(scene.imperfections) and scene.clamp_imperfections == ClampImperfections()
 
 
 def is_planar(scene: Beam) -> bool:
-    """Whether loads and fibres have the mirror plane y = 0, so that half a beam is enough."""
+    """True if loads and fibres have the mirror plane y = 0, so that half a beam suffices."""
     if scene.material.fibres is not None:
         along = np.abs(scene.material.fibres.axis())
         if along[1] > 1e-9 and max(along[0], along[2]) > 1e-9:
@@ -37,7 +37,7 @@ def is_planar(scene: Beam) -> bool:
 
 
 def ideal_specimen(specimen: Imperfections) -> bool:
-    """Whether it is the ideal prism; the depth of no skin and the place of no void do not matter."""
+    """True for the ideal prism; depth of an absent skin and position of an absent void do not count."""
     void = specimen.void if specimen.void is not None and specimen.void.fraction else None
     depth = specimen.skin_thickness if specimen.skin else Imperfections().skin_thickness
     return replace(specimen, void=void, skin_thickness=depth) == Imperfections()

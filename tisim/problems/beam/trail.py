@@ -50,7 +50,7 @@ class LinearCreep:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Of a beam on its course: time [s], strain of the linear material by its weight, positions (n, 3)."""
+    """Beam on its course: time [s], strain of the linear material by its weight, positions (n, 3)."""
 
     time: float
     strain: float
@@ -74,7 +74,7 @@ class Trail:
         self.states.append(State(time, self.unit * strain, x))
 
     def leads(self, scene: Beam) -> bool:
-        """Whether another scene, on the same mesh, hangs by the same loads over the same time."""
+        """True if another scene, on the same mesh, has the same loads over the same time."""
         return (
             len(self.states) >= KNOWN
             and scene.course == self.scene.course

@@ -98,7 +98,7 @@ class PressSystem(BeamSystem):
         return 0.5 * self.scene.height * stretch
 
     def overlap(self, x: Array, stretch: float) -> float:
-        """How far the side reaches beyond the platen [m], 0 where it does not."""
+        """Distance by which the side reaches beyond the platen [m], not below 0."""
         return max(0.0, float((x[self._side, 2]).max()) - self.plane(stretch))
 
     def equilibrium(

@@ -1,4 +1,4 @@
-"""What both dynamic methods keep: frames in time, the measure of rest, how the run ended."""
+"""Records of both dynamic methods: frames in time, the criterion of rest, the outcome."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Frames:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """How a dynamic run ended, its frames, the work it took.
+    """Outcome of a dynamic run, its frames, its cost.
 
     time: reached [s]; drift: largest error of the energy balance against the largest energy (explicit).
     """

@@ -34,7 +34,7 @@ SMALLEST_VOLUME = 1e-4  # det F of a step of Newton's
 
 @one_thread()
 def solve_oblique(scene: Coupon, *, on_step: OnStep = skip) -> Result:
-    """As `solve_coupon`, of a coupon that deforms homogeneously, its sides free to shear."""
+    """Solve as `solve_coupon` does, for a homogeneous deformation with sides free to shear."""
     start = time.process_time()
     mesh = coupon_mesh()
     points = MaterialPoints(scene.material)

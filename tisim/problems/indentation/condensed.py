@@ -211,7 +211,7 @@ class CondensedBlock:
         )  # fmt: skip
 
     def _beyond(self, chosen: Array) -> bool:
-        """Whether the tip has gone so far from where it was chosen for that another choice is due."""
+        """True if the tip is so far from where the near part was chosen that it has to be chosen again."""
         way = self._system.tip - chosen
         aside = way - (way @ self._system.axis) * self._system.axis
         far, beside = float(np.linalg.norm(way)), float(np.linalg.norm(aside))

@@ -41,7 +41,7 @@ def without_course(scene: Poke) -> Poke:
 
 @dataclass(eq=False)
 class _Walk:
-    """Where the rod is, and how fast the body moved last: by depth in a ramp, by log time in a hold."""
+    """Position of the rod, and the last velocity of the body: by depth in a ramp, by log time in a hold."""
 
     x: Array
     depth: float = 0.0
@@ -134,7 +134,7 @@ def _advance(
 
 
 def _pace(walk: _Walk, depth: float, time: float, origin: float) -> float:
-    """What the step is long in what the motion goes by: depth, or the logarithm of time since the corner."""
+    """Length of a step in the variable of the motion: depth, or the logarithm of time since the corner."""
     if depth != walk.depth:
         return depth - walk.depth
     return float(np.log((time - origin) / (walk.time - origin))) if time > walk.time else 0.0

@@ -1,4 +1,4 @@
-"""What the tissue far from a rod does to the nodes at which the near tissue ends: a force and a stiffness."""
+"""Force and stiffness of the tissue far from a rod on the nodes at which the near tissue ends."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def _check_way(scene: Poke, name: str, direction: Vector) -> None:
 
 
 def leaves(scene: Poke, direction: Vector, depth: float) -> tuple[float, float] | None:
-    """Where a rod pushed along `direction` to a depth [m] is, (x, y) [m], if outside the block's sides."""
+    """Tip (x, y) [m] of a rod pushed along `direction` to a depth [m], if outside the block's sides."""
     size = float(np.linalg.norm(direction))
     x, y = (scene.site[k] + depth * direction[k] / size for k in range(2))
     inside = all(abs(at) <= 0.5 * side for at, side in zip((x, y), scene.block.size[:2], strict=True))

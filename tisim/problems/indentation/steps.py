@@ -1,4 +1,4 @@
-"""What pokes by depth and pokes by course share: constants, frames, the guess of a step, what refuses one."""
+"""Common to pokes by depth and by course: constants, frames, the guess of a step, reasons to refuse one."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Frame:
 
 
 def frame_of(x: Array, system: PokeSystem, residual: float, time: float = 0.0) -> Frame:
-    """Of an accepted equilibrium."""
+    """Frame of an accepted equilibrium."""
     return Frame(
         depth=system.depth,
         x=x,

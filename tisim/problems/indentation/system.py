@@ -69,7 +69,7 @@ class Drag:
 
 
 class Remembered(NamedTuple):
-    """What the last accepted state left behind: see `PokeSystem.accept`."""
+    """Data of the last accepted state: see `PokeSystem.accept`."""
 
     x: Array
     depth: float
@@ -212,7 +212,7 @@ class PokeSystem:
             self._known = []
 
     def remembered(self) -> Remembered:
-        """What `recall` goes back to."""
+        """The last accepted state, for `recall`."""
         return Remembered(
             x=self.previous,
             depth=self.previous_depth,
@@ -259,7 +259,7 @@ class PokeSystem:
         return energy, min_jacobian
 
     def overlap(self, x: Array) -> float:
-        """How far the surface at x reaches into the rod [m], also between contact points; not below 0."""
+        """Penetration of the surface at x into the rod [m], also between contact points; not below 0."""
         shape, distance = self._watched
         self._measure(x, self.facets, shape, self._rod, distance)
         return max(-float(distance.min()), 0.0)
@@ -301,7 +301,7 @@ class PokeSystem:
         return found
 
     def _unsymmetric(self) -> Array | None:
-        """What friction adds to the tangent besides its symmetric part, by facet's node pair."""
+        """Unsymmetric part of the tangent of friction, by node pair of the facets."""
         if self.report[5] == 0.0:
             return None
         pairs = self._shape[:, :, None] * self._shape[:, None, :]  # (q, a, a)
