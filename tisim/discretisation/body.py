@@ -31,7 +31,7 @@ NO_STATE = np.zeros((1, 1, 1))
 
 @dataclass(eq=False)
 class Discretisation:
-    """Everything that depends on the mesh and its supports only: quadrature, numbering, sparsity, symbolic factor.
+    """Data that depend on mesh and supports only: quadrature, numbering, sparsity, symbolic factor.
 
     held: boolean (n, 3), components of free nodes that may not move (mirror planes, platens).
     stiffness, density: (m, q), factors of the material's stiffness and density at the quadrature points, None

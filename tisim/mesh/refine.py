@@ -214,7 +214,7 @@ def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
 
 
 def curved(mesh: Mesh, *, between: Between | None) -> Mesh:
-    """Elements as of `to_quadratic`; between: the middles (k, 3) of the boundary's edges by their ends (k, 2, 3) [m]."""
+    """`to_quadratic`; between: middles (k, 3) of the boundary's edges by their ends (k, 2, 3) [m]."""
     if mesh.kind not in _QUADRATIC:
         raise MeshError(f"only a tet4 or hex8 mesh can be made quadratic, this one is {mesh.kind}")
     kind, local = _QUADRATIC[mesh.kind]
