@@ -87,7 +87,7 @@ def release_store(store: Path, target: Path) -> Released:
 
 
 def sums_file(target: Path) -> Path:
-    """Where the checksum of a zip is written, as `sha256sum -c` reads it."""
+    """Path of the checksum of a zip, in the format of `sha256sum -c`."""
     return target.with_name(f"{target.name}.sha256")
 
 
@@ -125,7 +125,7 @@ def _write(store: Path, path: Path) -> None:
 
 
 def zip_faults(path: Path) -> list[str]:
-    """What differs in a zip from the manifest that it holds, one sentence a file."""
+    """Differences of a zip from its own manifest, one sentence a file."""
     try:
         with zipfile.ZipFile(path) as archive:
             return list(_faults(archive))
@@ -158,7 +158,7 @@ def _faults(archive: zipfile.ZipFile) -> Iterator[str]:
 
 
 def _other_outside(store: Path, path: Path) -> list[str]:
-    """Of the manifest and the ledger, which no manifest can list, those that differ from the store's."""
+    """Manifest and ledger, which no manifest lists, where they differ from the store's."""
     with zipfile.ZipFile(path) as archive:
         there = set(archive.namelist())
         return [

@@ -69,7 +69,7 @@ class FrameForces:
     base: float
 
     def faults(self, tolerance: float) -> list[str]:
-        """What is not as in an equilibrium, to the solver's tolerance."""
+        """Violations of equilibrium beyond the solver's tolerance."""
         found = []
         for what, value, limit in (
             ("forces inside", self.inside, SLACK * tolerance),
@@ -84,7 +84,7 @@ class FrameForces:
 
 @dataclass(frozen=True)
 class Assembled:
-    """What the assembly found in a dataset.
+    """Residuals that the assembly found in a dataset.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ def check_assembly(
 
 
 def _checked(path: Path, index: int, plugins: tuple[str, ...]) -> list[FrameForces] | str:
-    """What a worker process answers: the frames of a poke, or why it cannot be checked."""
+    """Answer of a worker process: the frames of a poke, or the reason why it cannot be checked."""
     from tisim.parallel.threads import one_thread
 
     import_plugins(plugins)

@@ -48,7 +48,7 @@ class BuildProgress:
 
 @dataclass(frozen=True)
 class Built:
-    """How a build ended.
+    """Outcome of a build.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ OnProgress = Callable[[BuildProgress], None]
 
 @dataclass(frozen=True, kw_only=True)
 class _Means:
-    """What simulates: worker processes here or a dask cluster, and the function that they call."""
+    """Executor of simulations: worker processes here or a dask cluster, and the function that they call."""
 
     workers: int
     cluster: str | None
@@ -231,7 +231,7 @@ def warn_of_full_disk(target: Path, needed: float) -> bool:
 
 
 def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
-    """Whether the target is complete; if not, the building folder is ready for this plan afterwards."""
+    """Return True if the target is complete; else make the building folder ready for this plan."""
     if overwrite:
         staging.begin(plan.identity)
         return False

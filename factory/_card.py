@@ -97,7 +97,7 @@ class Facts:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What decides the bytes of the store."""
+        """Inputs that determine the bytes of the store."""
         found: dict[str, Any] = self.data.attributes["identity"]
         return found
 
@@ -200,7 +200,7 @@ def size_category(rows: int) -> str:
 
 
 def beside_the_paper(facts: Facts) -> bool:
-    """Whether the paper's table has rows of this law and these material levels."""
+    """True if the paper's table has rows of this law and these material levels."""
     return any(level in _paper.PAPER.get(facts.summary.model, {}) for level in facts.summary.levels)
 
 
@@ -271,7 +271,7 @@ def _cost(summary: Summary) -> Cost | None:
 
 
 def _sums(data: Dataset) -> dict[str, str]:
-    """Of each file that the manifest lists, and of the manifest and the ledger, which it cannot list."""
+    """Checksum of each file that the manifest lists, of the manifest and of the ledger."""
     import hashlib
 
     content = read_json(data.root / MANIFEST)

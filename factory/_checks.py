@@ -1,4 +1,4 @@
-"""What must hold in a finished store; each check returns its faults as sentences."""
+"""Checks of a finished store; each returns its faults as sentences."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Check = Callable[[Dataset], list[str]]
 
 @dataclass(frozen=True)
 class Verification:
-    """What was found in a dataset.
+    """Results of the checks of a dataset.
 
     Attributes
     ----------

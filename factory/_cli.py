@@ -1,4 +1,4 @@
-"""What the commands share: applications, --version, console, log, and errors of one sentence.
+"""Common parts of the commands: applications, --version, console, log, and errors of one sentence.
 
 Imported before everything else of the factory, so that `--help` does not wait for the simulator.
 """

@@ -150,7 +150,7 @@ def _has_workers(client: Any) -> bool:
 
 
 def _workers(address: str, timeout: float) -> int:
-    """How many workers the scheduler has; OSError where it does not answer in time.
+    """Number of workers of the scheduler; OSError if it does not answer in time.
 
     A client would wait without end for a port that takes the connection and says nothing.
     """

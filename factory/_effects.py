@@ -1,4 +1,4 @@
-"""What a diagnosis found in a specimen, as a material card holds it, and the material that it makes."""
+"""Effects that a diagnosis found, as a material card states them, and the material with them."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def features(data: Dataset, pokes: Sequence[PokeSummary]) -> list[Features]:
 
 
 def own_solves(data: Dataset) -> NDArray[np.bool_]:
-    """Whether each poke has a solve of its own."""
+    """True for pokes with a solve of their own, shape (pokes,)."""
     number = np.arange(data.n_pokes)
     return np.asarray(data.table.get("solved_as", number) == number)
 

@@ -165,7 +165,7 @@ def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
 
 
 def _cut(surface: Any, triangles: Any, heading: Any) -> Any:
-    """Where an upright plane through the origin cuts a surface: segments (k, 2, 2), along the heading and up.
+    """Section of a surface by an upright plane through the origin: segments (k, 2, 2), along heading and up.
 
     surface (n, 3), beside the origin in x and y but at its own height.
     """

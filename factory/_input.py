@@ -68,7 +68,7 @@ def read_mapping(path: Path) -> dict[Any, Any]:
 
 
 def validation_sentence(error: ValidationError) -> str:
-    """What is wrong with input, in one sentence: all missing and unknown keys, and the first other fault."""
+    """Faults of an input in one sentence: all missing and unknown keys, and the first other fault."""
     problems = _flat(error.errors(include_url=False))
     missing = [_key(p["loc"]) for p in problems if p["type"] == "missing"]
     unknown = [_key(p["loc"]) for p in problems if p["type"] == "extra_forbidden"]

@@ -1,4 +1,4 @@
-"""What the paper states of its datasets, to stand beside ours."""
+"""The paper's figures of its datasets, for comparison."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a card states beside its laws: viscosity, softening and fibres, by the names that `tisim.parts` knows.
+"""Parts of a card beside its laws: viscosity, softening and fibres, by their names in `tisim.parts`.
 
     viscosity: {kind: prony, fractions: [0.2, 0.1], times_s: [1, 30], modulus: long-time}
     softening: {kind: ogden-roxburgh, r: 2, m_J_per_m3: 2000, beta: 0.1}
@@ -52,7 +52,7 @@ def _plain(value: Any) -> Any:
 
 
 def _reader(name: str) -> Callable[[object], object]:
-    """What makes a part of a card's entry; faults come out under the entry's own keys."""
+    """Reader of a part of a card's entry; faults are stated under the entry's own keys."""
 
     def read(value: object) -> object:
         if value is None or isinstance(value, FIELDS[name]):
@@ -90,7 +90,7 @@ def _kind(name: str, value: Mapping[str, object]) -> type[parts.Part]:
 
 
 def _keys(kind: type[parts.Part], value: Mapping[str, object]) -> dict[str, str]:
-    """Which key states each field that is given; refuses unknown, doubled and missing ones."""
+    """Key that states each given field; unknown, doubled and missing ones are refused."""
     found: dict[str, str] = {}
     problems: list[tuple[str, str, str, object]] = []
     known = {f.name: f for f in fields(kind) if f.init}

@@ -56,7 +56,7 @@ _NEAR = 1e-6  # m: how far a path may be from the planned one
 
 @dataclass(frozen=True)
 class Outcome:
-    """How one poke ended: its arrays as bytes, or the text of what went wrong.
+    """Outcome of one poke: its arrays as bytes, or the text of the error.
 
     Attributes
     ----------

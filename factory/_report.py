@@ -1,4 +1,4 @@
-"""What the build command shows: the plan, progress with the time left, and the preview beside the store."""
+"""Output of the build command: the plan, progress with the time left, and the preview beside the store."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ _SHAPE: TypeAdapter[Shape] = TypeAdapter(Annotated[Shape, BeforeValidator(of_its
 
 @dataclass(frozen=True, kw_only=True)
 class Room:
-    """What of a block is left for inclusions [mm]: see `factory.recipe.Recipe`."""
+    """Room for inclusions in a block [mm]: see `factory.recipe.Recipe`."""
 
     block_mm: tuple[float, float, float]
     border_mm: float
@@ -204,7 +204,7 @@ _DRAWN: TypeAdapter[Drawn] = TypeAdapter(
 
 
 class _Ground(BaseModel):
-    """What shapes are drawn from: keys of `factory.recipe.Recipe`."""
+    """Keys of `factory.recipe.Recipe` from which shapes are drawn."""
 
     model_config = ConfigDict(extra="ignore", strict=True, allow_inf_nan=False)
 

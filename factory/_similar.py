@@ -43,7 +43,7 @@ def modulus_ratio(material: Material, other: Material) -> float | None:
 
 
 def scale_with_modulus(scenes: Sequence[Poke]) -> bool:
-    """Whether pokes at all material levels move alike, with forces in proportion to the shear modulus."""
+    """True if pokes have one motion at all material levels, with forces in proportion to the modulus."""
     first = scenes[0].material
     materials = {id(scene.material): scene.material for scene in scenes}.values()
     if any(scene.course is not None or any(scene.gravity) for scene in scenes):

@@ -51,7 +51,7 @@ class DamagedResultError(Exception):
 
 
 def building_folder(target: Path) -> Path:
-    """Where the dataset `target` is built."""
+    """Folder in which the dataset `target` is built."""
     return target.with_name(target.name + ".building")
 
 
@@ -123,7 +123,7 @@ class Staging:
             write_atomic(note, (outcome.error or "unknown error").encode())
 
     def result_path(self, index: int) -> Path:
-        """Where the result of a poke is staged."""
+        """Path of the staged result of a poke."""
         return self.results / f"poke-{index:05d}.npz"
 
     @contextlib.contextmanager

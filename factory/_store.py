@@ -66,7 +66,7 @@ class _Identity(_Lenient):
 
 
 class _Attributes(_Lenient):
-    """What the readers of a store rely on."""
+    """Attributes on which the readers of a store rely."""
 
     format: int
     uuid: str
@@ -183,7 +183,7 @@ def write_manifest(folder: Path) -> None:
 
 
 def file_faults(folder: Path) -> list[str]:
-    """What lies in a store besides files and folders: links, pipes, devices."""
+    """Entries of a store that are neither files nor folders: links, pipes, devices."""
     return [
         f"{name}: is {'a symbolic link' if path.is_symlink() else 'no plain file'}, which no dataset contains"
         for name, path, sound in plain_files(folder)
@@ -192,7 +192,7 @@ def file_faults(folder: Path) -> list[str]:
 
 
 def manifest_faults(folder: Path) -> list[str]:
-    """What differs from the manifest, one sentence a file."""
+    """Differences from the manifest, one sentence a file."""
     path = folder / MANIFEST
     try:
         if path.is_symlink() or not path.is_file():

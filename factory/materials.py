@@ -170,7 +170,7 @@ def load_card(name: str, folder: Path | None = None) -> Card:
 
 
 def card_path(name: str, folder: Path | None = None) -> Path:
-    """Where the card of a mixture is looked for."""
+    """Path at which the card of a mixture is expected."""
     return (folder or shipped_folder("materials")) / f"{name}.yaml"
 
 

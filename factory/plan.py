@@ -80,7 +80,7 @@ class PlannedPoke:
 
     @property
     def derived(self) -> bool:
-        """Whether it takes another poke's solve."""
+        """True if the poke is scaled from the solve of another."""
         return self.solved_as >= 0
 
 
@@ -303,7 +303,7 @@ def differences(old: object, new: object, prefix: str = "") -> list[str]:
 
 
 def changes(old: object, new: object) -> str:
-    """What differs between two identities, in few words; another model also changes the materials."""
+    """Keys in which two identities differ; another model also changes the materials."""
     keys = differences(old, new)
     if "model" in keys:
         return "model"

@@ -121,7 +121,7 @@ class Dataset:
 
     @cached_property
     def root(self) -> Path | zipfile.Path:
-        """Where the store's files are: its folder, or the inside of its zip."""
+        """Root of the store's files: its folder, or the inside of its zip."""
         return files_of(self.path)
 
     @cached_property
@@ -135,7 +135,7 @@ class Dataset:
 
     @property
     def timed(self) -> bool:
-        """Whether frames have a time: the recipe has a course."""
+        """True if frames have a time: the recipe has a course."""
         return "time" in self.specs
 
     def array(self, name: str) -> Any:
@@ -190,7 +190,7 @@ class Dataset:
         return tuple(index for index in lacking if self.message(index) == NOT_SIMULATED)
 
     def message(self, index: int) -> str:
-        """What stopped a poke, or its error."""
+        """Reason for the end of a poke, or its error."""
         return bytes(self.table["message"][index]).rstrip(b"\0").decode(errors="replace")
 
     def status(self, index: int) -> str:
@@ -325,7 +325,7 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def is_zip(path: Path) -> bool:
-    """Whether a path is a file that is called a zip."""
+    """True if a path is a file with the suffix .zip."""
     return path.suffix == ".zip" and path.is_file()
 
 

@@ -53,7 +53,7 @@ class RodRecipe(Strict):
 
 
 class Protocol(Strict):
-    """Where and how each shape is poked.
+    """Sites, angles and depths of the pokes of each shape.
 
     Attributes
     ----------

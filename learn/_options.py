@@ -56,7 +56,7 @@ Runs = Annotated[
 
 
 def set_threads(threads: int | None) -> None:
-    """Of torch; all cores where None."""
+    """Set the number of torch's threads; None: all cores."""
     import torch
 
     torch.set_num_threads(threads or os.cpu_count() or 1)

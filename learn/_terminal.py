@@ -109,7 +109,7 @@ def print_table(console: Console, title: str, heads: list[str], rows: list[list[
 
 
 def _fits(console: Console, heads: list[str], rows: list[list[str]]) -> bool:
-    """Whether every column has room for its widest cell and for the longest word of its heading."""
+    """True if every column has room for its widest cell and for the longest word of its heading."""
     columns = zip(*([_wrapped(head) for head in heads], *rows), strict=True)
     return sum(max(len(cell) for cell in column) + 3 for column in columns) + 1 <= console.width
 

@@ -1,4 +1,4 @@
-"""How fast a run predicts one poke, and how fast the loaders read, beside yardsticks of the same machine."""
+"""Speed of one prediction and of the loaders, beside reference operations on the same machine."""
 
 from __future__ import annotations
 

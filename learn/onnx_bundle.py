@@ -142,7 +142,7 @@ def write_graph(
 
 
 def _whole_number() -> Any:
-    """How a Python number beside a tensor is written: as it is.
+    """Write a Python number beside a tensor in double precision.
 
     The exporter's own way is single precision and a cast, which takes half of the digits from numbers beside
     double tensors.

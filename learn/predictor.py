@@ -72,7 +72,7 @@ class PokePrediction:
 
     @property
     def inside(self) -> bool | None:
-        """Whether the poke is inside what the model was trained on; None where that is not known."""
+        """True if the poke is inside the domain of training; None where that is unknown."""
         if any(check.inside is False for check in self.checks):
             return False
         return None if all(check.inside is None for check in self.checks) else True
@@ -296,12 +296,12 @@ class Predictor:
 
     @cached_property
     def intervals(self) -> Intervals | None:
-        """Of the run, made by `learn.evaluate`; None without."""
+        """Intervals of the run, made by `learn.evaluate`; None without."""
         return load_intervals(self.run)
 
     @property
     def has_intervals(self) -> bool:
-        """Whether the run has intervals (made by `learn.evaluate`)."""
+        """True if the run has intervals (made by `learn.evaluate`)."""
         return self.intervals is not None
 
     def _rows(self) -> list[tuple[str, str]]:

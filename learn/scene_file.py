@@ -62,7 +62,7 @@ class Sphere(_Strict):
         return self.radius_mm, self.radius_mm, self.radius_mm
 
     def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which points (..., 3), relative to the centre [m], lie in it."""
+        """True for points (..., 3), relative to the centre [m], that lie in it."""
         return np.asarray((local**2).sum(axis=-1) <= (self.radius_mm * _MM) ** 2)
 
 
@@ -163,7 +163,7 @@ class PokeScene(_Strict):
 
     @property
     def free(self) -> bool:
-        """Whether it asks for an interior or a modulus of its own."""
+        """True if the file states an interior or a modulus of its own."""
         return self.inclusion is not None or self.shear_modulus_kPa is not None
 
 

@@ -145,11 +145,11 @@ class Domain(BaseModel):
         return checks
 
     def knows(self, kind: str | None) -> bool:
-        """Whether a kind of inclusion was trained; also where that is not known of it."""
+        """True if a kind of inclusion was trained, or if that is unknown."""
         return kind is None or self.kinds is None or kind in self.kinds
 
     def distance(self, values: Mapping[str, float], law: str | None = None) -> float:
-        """How far outside the ranges a poke is, 0 inside: the root of the sum of squares over its quantities.
+        """Distance of a poke from the ranges, 0 inside: the root of the sum of squares over its quantities.
 
         Each counts in units of its range's width, or of its value where there is no range to speak of;
         quantities of which no range is known count as 0, and another law than the dataset's as `OTHER_LAW`.
@@ -203,7 +203,7 @@ class Domain(BaseModel):
 
 
 def _excess(quantity: Quantity, low: float, high: float, value: float) -> float:
-    """How far a value lies beyond the sides of its range that matter; 0 or less inside."""
+    """Distance of a value from the sides of its range that matter; 0 or less inside."""
     slack = quantity.slack + RELATIVE_SLACK * max(abs(low), abs(high))
     under = -math.inf if quantity.sides == "high" else low - value
     over = -math.inf if quantity.sides == "low" else value - high
@@ -265,7 +265,7 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
 
 
 def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
-    """How far frames of a store lie outside a domain (`Domain.distance`), (f,).
+    """Distance of frames of a store from a domain (`Domain.distance`), shape (f,).
 
     poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside. Another law
     than the domain's counts as `Domain.distance` says.
@@ -287,7 +287,7 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
 
 
 class Interior(NamedTuple):
-    """What of an interior the quantities of a poke depend on.
+    """Data of an interior on which the quantities of a poke depend.
 
     soft: thickness of the soft tissue above the inclusion, or above the base, at each point (n,) [m]; width,
     height: of the inclusion [mm]; size: cube root of its volume [mm], 0 without one.
@@ -312,7 +312,7 @@ def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
 
 
 def interior_at(store: Store, poke: int) -> tuple[float, float]:
-    """Of one poke of the store: size of the inclusion, and the cover over it [mm]."""
+    """Size of the inclusion under one poke of the store, and the cover over it [mm]."""
     interior = interior_of(store, store.profile[int(store.geometry[poke])])
     return interior.size, 1e3 * _cover(store, interior, store.path_start[poke], store.direction[poke])
 
@@ -369,7 +369,7 @@ def poke_values(
 
 
 def contact_site(store: Store, start: Floats, direction: Floats) -> Floats:
-    """Where the indenter's axis meets the rest surface, (x, y) [m]."""
+    """Intersection of the indenter's axis with the rest surface, (x, y) [m]."""
     return np.asarray(start[:2] + (store.points[0, 2] - start[2]) / direction[2] * direction[:2])
 
 

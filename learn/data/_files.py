@@ -65,7 +65,7 @@ def displacement_reader(location: str) -> ShardReader | None:
 
 
 def _is_local(name: str) -> bool:
-    """Whether a manifest's name is a plain path within the store; it is never followed elsewhere."""
+    """True if a manifest's name is a plain path within the store; others are never followed."""
     parts = name.split("/")
     return not any(part in ("", ".", "..") or "\\" in part or ":" in part for part in parts)
 
@@ -232,7 +232,7 @@ class ShardReader:
 
 @functools.cache
 def _place(archive: Path, name: str) -> tuple[int, int]:
-    """Where in a zip the bytes of a file that was not compressed begin and end."""
+    """Range of bytes (begin, end), within a zip, of a file that was not compressed."""
     with zipfile.ZipFile(archive) as entries:
         entry = entries.getinfo(name)
     if entry.compress_type != zipfile.ZIP_STORED:

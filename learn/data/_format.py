@@ -1,4 +1,4 @@
-"""What a dataset has to hold: its attributes and arrays, and whether they agree with each other."""
+"""Required attributes and arrays of a dataset, and checks of their agreement."""
 
 from __future__ import annotations
 

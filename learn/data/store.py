@@ -41,7 +41,7 @@ _PRESSES = 1e-3  # of shear modulus x rod radius x depth: a force below that is 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clock:
-    """What the frames of a store have where the rod follows a course over time. SI units.
+    """Data of the frames of a store whose rod follows a course over time. SI units.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ class Store:
 
     @property
     def address(self) -> str:
-        """Where it lies, also seen from another folder."""
+        """Location of the store, valid from any folder."""
         return self.location if "://" in self.location else str(Path(self.location).resolve())
 
     @property
@@ -304,7 +304,7 @@ def grid_normals(grid: Floats) -> Floats:
 
 
 def rigid_masks(profile: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], Ints]:
-    """Which levels are rigid, once a distinct inclusion: (k, n, levels); and the k of each geometry (g,)."""
+    """Rigid levels of each distinct inclusion, (k, n, levels), and the k of each geometry (g,)."""
     rigid = profile == RIGID
     # a row as one value of packed bits: np.unique over rows is a thousand times slower
     bits = np.packbits(rigid.reshape(len(rigid), -1), axis=1)

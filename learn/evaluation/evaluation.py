@@ -242,14 +242,14 @@ def _part(recipe: Recipe) -> str:
 
 
 def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
-    """How far frames lie outside what the run was trained on (f,); 0 where that is not known."""
+    """Distance of frames from the domain of training, shape (f,); 0 where the domain is unknown."""
     if run.domain is None:
         return np.zeros(len(predictions.depth))
     return frame_distances(run.domain, store, predictions.poke, predictions.depth)
 
 
 def _covered(intervals: Intervals, one: Predicted) -> Covered:
-    """As intervals are stated: widened outside what was trained."""
+    """Coverage of intervals as they are stated: widened outside the domain of training."""
     return Covered(
         intervals=intervals,
         found=coverage(intervals, one.predictions, distance=one.distance),

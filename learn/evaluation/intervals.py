@@ -78,7 +78,7 @@ class Intervals:
     force_interior: tuple[float, float] = (0.0, 0.0)
 
     def over(self, size: float, cover: float) -> Intervals:
-        """Those over an inclusion of this size under this cover [mm], which ask for neither any more."""
+        """Intervals over an inclusion of this size under this cover [mm], as constants."""
         more = self.interior[0] * size + self.interior[1] * cover
         force_more = self.force_interior[0] * size + self.force_interior[1] * cover
         return replace(
@@ -263,12 +263,12 @@ def _with_spread(fitted: Floats, spread: float | Floats) -> Floats:
 
 
 def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floats, Floats, Floats]:
-    """Of distance and depth over a rod's size, and of displacement over depth."""
+    """Logarithms of distance and depth over a rod's size, and of displacement over depth."""
     return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
 
 
 class _Scale(NamedTuple):
-    """How large errors are: what `Intervals` has of the same names."""
+    """Scales of errors: the attributes of `Intervals` of the same names."""
 
     scale: list[float]
     force_scale: float

@@ -125,7 +125,7 @@ class SymmetryError:
 def symmetry_error(
     model: Predicts, scene: Scene, pokes: Pokes, *, about_normal: bool = False, rotations: int = 5
 ) -> SymmetryError:
-    """How far the prediction for a rotated scene is from the rotated prediction.
+    """Distance between the prediction for a rotated scene and the rotated prediction.
 
     Parameters
     ----------

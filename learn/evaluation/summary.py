@@ -25,7 +25,7 @@ class Value:
     sd: float
 
     def text(self, metric: Metric, *, sd: bool = True) -> str:
-        """As printed in a table, without the unit; "-" where there is no value."""
+        """Text for a table, without the unit; "-" where there is no value."""
         scale = 100 if metric.percent else 1
         if not np.isfinite(self.mean):
             return "-"

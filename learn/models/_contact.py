@@ -36,7 +36,7 @@ _REACH = 0.5  # the farthest move onto the surface
 
 
 class Exact(NamedTuple):
-    """What `Contact` calls r, push, normal and depth, in float64."""
+    """r, push, normal and depth of `Contact`, in float64."""
 
     r: Tensor
     push: Tensor
@@ -122,7 +122,7 @@ class Contact:
 
     @property
     def place(self) -> Place:
-        """What the rod's surface wants to know."""
+        """Arguments of the functions of the rod's surface."""
         return Place(self.r, self.push, self.depth, self.along, self.aside, self.edge)
 
     def vectors(self) -> tuple[Tensor, Tensor, Tensor]:
@@ -183,7 +183,7 @@ def distance(ahead: Any, aside: Any, edge: float, xp: Any = torch) -> tuple[Any,
 
 
 def travel(place: Place, xp: Any = torch) -> Any:
-    """How far the rod goes on after it meets a point that stays at rest, 0 where it does not (n, b).
+    """Path of the rod beyond its contact with a point that stays at rest, 0 where it does not meet it (n, b).
 
     Not farther than it goes at all: a point beside a leaning rod may lie behind its tip from the start.
     """

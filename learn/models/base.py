@@ -283,7 +283,7 @@ class Ensemble(Model):
         self.members = torch.nn.ModuleList(members)
 
     def prepare(self, scene: Scene) -> list[Any]:
-        """What each member prepares; members of one kind share it."""
+        """Preparation of each member; members of one class share it."""
         kinds: dict[type, Any] = {}
         for member in self._all():
             if type(member) not in kinds:

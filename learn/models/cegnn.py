@@ -134,7 +134,7 @@ def _neighbours(x: Tensor) -> Tensor:
 
 
 def _squared_distances(a: Tensor, b: Tensor) -> Tensor:
-    """Of points a (n, 3) and b (m, 3): (n, m), from differences, since products would round."""
+    """Squared distances (n, m) of a (n, 3) and b (m, 3), from differences, since products would round."""
     x, y, z = (a[:, None, k] - b[None, :, k] for k in range(3))
     return x * x + y * y + z * z
 

@@ -94,7 +94,7 @@ class InvariantGnn(Model):
         return stencils_of(scene)
 
     def encode(self, scene: Scene, prepared: tuple[Stencil, ...] | None = None) -> Encoded:
-        """What does not depend on the poke; keep it as long as geometry and weights stay."""
+        """Codes of the interior, independent of the poke; valid as long as geometry and weights stay."""
         encoded: Encoded = self.encoder(scene, prepared if prepared is not None else stencils_of(scene))
         return encoded
 

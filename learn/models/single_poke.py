@@ -250,7 +250,7 @@ def _channels(count: int, n: int) -> Tensor:
 
 
 class _Seen(NamedTuple):
-    """Of all points, from the contact, in rod radii: r and unit (3, n), push (3,), near (n,)."""
+    """Geometry of all points from the contact, in rod radii: r and unit (3, n), push (3,), near (n,)."""
 
     r: Floats
     unit: Floats
@@ -259,7 +259,7 @@ class _Seen(NamedTuple):
 
 
 class _OfFew:
-    """What `_contact.held` wants of NumPy; `np.clip` takes as long as five operations on a few points."""
+    """NumPy functions for `_contact.held`; `np.clip` takes as long as five operations on a few points."""
 
     sqrt, maximum, minimum, where, tanh = np.sqrt, np.maximum, np.minimum, np.where, np.tanh
 

@@ -1,4 +1,4 @@
-"""What a page shows, from a run and its dataset: a description, written as JSON, and arrays by name.
+"""Contents of a page, from a run and its dataset: a description, written as JSON, and arrays by name.
 
 The description is as the page's controls have it, in millimetres, degrees and kilopascals; displacements
 and the interiors' codes stay in the units of the graph (`learn.page.graph`).
@@ -47,7 +47,7 @@ class Content:
 
 
 def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pokes: int = 4) -> Content:
-    """What the page of a run shows.
+    """Contents of the page of a run.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ class Written:
 
 
 class _Stated(BaseModel):
-    """What a page says in words, and its description for the script: `page.json` of the parts' zip."""
+    """Text of a page, and its description for the script: `page.json` of the parts' zip."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

@@ -1,4 +1,4 @@
-"""What a page asks at every frame, as one ONNX graph: network, domain of validity, intervals.
+"""Evaluation of a page at every frame, as one ONNX graph: network, domain of validity, intervals.
 
 The same as `learn.real_time.RealTime` (`tests/learn/page` holds it to that), but for the interior, whose
 codes are inputs: the encoder does not travel with the page. All of it is here, so that the page's

@@ -28,7 +28,7 @@ _OF_POKE = (6, 7)  # the same at all points
 
 
 def interior_codes(model: InvariantGnn, encoded: Encoded) -> dict[str, Tensor]:
-    """What the network wants to know of the first inclusion of a scene.
+    """Input of the network on the first inclusion of a scene.
 
     Returns
     -------

@@ -18,7 +18,7 @@ from learn.training.recipe import Recipe
 
 
 class Optimiser(Protocol):
-    """What training wants of an optimiser."""
+    """Interface of an optimiser in training."""
 
     @property
     def param_groups(self) -> list[dict[str, Any]]: ...

@@ -79,7 +79,7 @@ class _Statistics(BaseModel):
 
 
 class _Content(BaseModel):
-    """What every checkpoint holds; `last.pt` holds more (`_Resumable`)."""
+    """Contents of every checkpoint; `last.pt` holds more (`_Resumable`)."""
 
     model_config = ConfigDict(arbitrary_types_allowed=True)
     version: Annotated[int, Field(strict=True)] = 1
