@@ -52,7 +52,7 @@ class Fits(Sequence[Calibration]):
 
     @property
     def converged(self) -> bool:
-        """Whether every fit is a calibration: converged, and without a lack of fit."""
+        """True if every fit is a calibration: converged, and without a lack of fit."""
         return all(r.status == "converged" for r in self.results)
 
     def of(self, material: str) -> tuple[Calibration, ...]:
@@ -147,7 +147,7 @@ class DiagnosisResult:
 
     @property
     def baseline_converged(self) -> bool:
-        """Whether the fit without any effect converged."""
+        """True if the fit without any effect converged."""
         return bool(self.diagnosis.finding.baseline.converged)
 
     def write(self, folder: str | Path) -> Path:
@@ -205,12 +205,12 @@ class PredictionResult:
 
     @property
     def sentence(self) -> str:
-        """What came out."""
+        """The result in one sentence."""
         return self.prediction.sentence()
 
     @property
     def skill(self) -> dict[str, float | None]:
-        """Of the extension over the baseline, by kind of measurement; None where there is none."""
+        """Skill of the extension over the baseline, by kind of measurement; None where there is none."""
         return {k: self.prediction.skill(r) for k, r in self.prediction.of_kind().items()}
 
     @property

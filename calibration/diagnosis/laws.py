@@ -226,7 +226,7 @@ def _says(found: Diagnosis) -> int:
 
 
 def _simpler(again: Finding, found: Finding, rules: Rules) -> bool:
-    """Whether fewer causes explain the data about as well, or as many clearly better; constants that they
+    """True if fewer causes explain the data about as well, or as many clearly better; constants that they
     bring count in the score."""
     if again.chosen is None or found.chosen is None or again.verdict not in EXPLAINED:
         return False

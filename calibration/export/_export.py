@@ -75,7 +75,7 @@ class Exported:
 
     @property
     def within(self) -> bool:
-        """Whether the program that was run gave the expected beam; True where none was run."""
+        """True if the program that was run gave the expected beam; True where none was run."""
         return self.checked is None or self.checked.from_expected <= self.checked.limit
 
 

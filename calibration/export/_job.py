@@ -1,4 +1,4 @@
-"""What a target gets to write, and what it says that it lost."""
+"""Input of a target, and the losses that it states."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """What a target wrote.
+    """Output of a target.
 
     Attributes
     ----------

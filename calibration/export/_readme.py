@@ -1,4 +1,4 @@
-"""What an export lost, with its size: README.md of its folder, and the screen."""
+"""Losses of an export, with their sizes: README.md of its folder, and the screen."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _law(job: Job) -> list[str]:
 
 
 def scene_lines(job: Job, target: Target) -> list[str]:
-    """What to expect of the scene."""
+    """Lines on the expected result of the scene."""
     if job.scene is None or job.prediction is None:
         return []
     p, share = job.prediction, target.element_share(job.scene.refinement)

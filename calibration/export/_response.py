@@ -24,7 +24,7 @@ _FREE = {"uniaxial": (1, 2), "equibiaxial": (2,), "planar": (2,)}
 
 @dataclass(frozen=True, kw_only=True)
 class Difference:
-    """How far a replacement's nominal stress is off in one test.
+    """Error of a replacement's nominal stress in one test.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def percent(value: float) -> str:
 
 
 def fibre_loss(material: Material, high: float) -> float:
-    """How much more stress along the fibres, at the largest stretch, than without them: a fraction."""
+    """Additional stress along the fibres at the largest stretch, as a fraction of the stress without them."""
     at = np.array([1.0, max(high, 1.0 + 1e-3)])
     with_them = nominal(stress_of(material), "uniaxial", at)[1]
     return float(with_them / nominal(stress_of(replace(material, fibres=None)), "uniaxial", at)[1] - 1.0)

@@ -57,7 +57,7 @@ class BeamScene:
 
     @property
     def loaded(self) -> bool:
-        """Whether there is a tip force."""
+        """True if there is a tip force."""
         return bool(np.any(self.forces))
 
     @property
@@ -75,7 +75,7 @@ class BeamScene:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Prediction:
-    """What tisim makes of the beam, and what it expects of the target.
+    """The beam by tisim, and the result expected of the target.
 
     Attributes
     ----------
@@ -200,7 +200,7 @@ def solve(scene: BeamScene) -> Reference:
 
 
 def predict(scene: BeamScene, found: Reference, form: Form, *, element_error: float) -> Prediction:
-    """What the target will make of the beam, by tisim.
+    """Result expected of the target for the beam, by tisim.
 
     element_error: how far a target's quadratic elements may be from tisim's on the same mesh, a fraction.
     """

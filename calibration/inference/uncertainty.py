@@ -283,7 +283,7 @@ class _End:
         return self._held(moved)
 
     def learn(self, tried: list[tuple[Array, Array]]) -> None:
-        """Where to try next, from (point, residuals) of this round."""
+        """Next points to evaluate, from (point, residuals) of this round."""
         known = [(self._chi2(rows), v) for v, rows in tried if np.isfinite(rows).all()]
         rise = np.inf
         if known:

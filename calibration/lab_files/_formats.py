@@ -13,7 +13,7 @@ from calibration.lab_files._text import LabFile, open_lab_file
 
 @dataclass(frozen=True, kw_only=True)
 class Importer:
-    """How the files of one machine are read.
+    """Reader of the files of one machine.
 
     Attributes
     ----------

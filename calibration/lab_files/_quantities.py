@@ -1,4 +1,4 @@
-"""What a column holds, by its name and unit: machines name the same thing in many words."""
+"""Quantity of a column, by its name and unit: machines name the same thing in many words."""
 
 from __future__ import annotations
 
@@ -95,8 +95,8 @@ def quantity(name: str, unit: Unit | None) -> Quantity | None:
 
 
 def pulls(name: str) -> bool | None:
-    """Whether positive values of a displacement or strain are a pull (True) or a push (False), where the name
-    of the column says so; None where it does not."""
+    """True if positive values of a column of displacement or strain are a pull, False if a push; None if
+    its name does not state it."""
     text = plain(name)
     if re.search(r"compress|stauch|druck|depth|indentation|tiefe", text):
         return False

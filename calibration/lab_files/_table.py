@@ -180,7 +180,7 @@ def _block(file: LabFile, sheet: Sheet, above: Sequence[Row], rows: tuple[Row, .
 
 
 def is_units(cells: Sequence[str]) -> bool:
-    """Whether a row holds units, two or more, and nothing else."""
+    """True if a row holds units, two or more, and nothing else."""
     given = [c for c in cells if c]
     return len(given) > 1 and all(unit(c) is not None or c in ("()", "[]") for c in given)
 

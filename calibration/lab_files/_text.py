@@ -63,18 +63,18 @@ class LabFile:
 
     @property
     def rows(self) -> tuple[Row, ...]:
-        """Of the first sheet: all of a text file."""
+        """Blocks of the first sheet: all of a text file."""
         return self.sheets[0].rows
 
     def has(self, *marks: str) -> bool:
-        """Whether lines of their own, but for blanks and case, are these marks."""
+        """True if lines of their own, but for blanks and case, are these marks."""
         if not self._texts:
             self._texts.extend(r.text.strip().lower() for s in self.sheets for r in s.rows)
         return all(mark.lower() in self._texts for mark in marks)
 
     @property
     def sections(self) -> bool:
-        """Whether lines of their own are marks in brackets, [step] or <DATA>: then it is no plain table."""
+        """True if lines of their own are marks in brackets, [step] or <DATA>: then it is no plain table."""
         return not self.workbook and any(
             row.text[:1] in ("[", "<") and _MARK.fullmatch(row.text.strip()) for row in self.rows
         )
@@ -144,12 +144,12 @@ def split(row: Row, separator: str) -> tuple[str, ...]:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number, in either style of decimals."""
+    """True if a cell is a number, in either style of decimals."""
     return any(p.fullmatch(cell) for p in (_POINT, _COMMA, _THOUSANDS_POINT, _THOUSANDS_COMMA))
 
 
 def is_numeric(cells: Sequence[str]) -> bool:
-    """Whether a row holds two or more numbers and nothing else."""
+    """True if a row holds two or more numbers and nothing else."""
     given = [c for c in cells if c]
     return len(given) > 1 and all(is_number(c) for c in given)
 

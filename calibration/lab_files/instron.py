@@ -38,7 +38,7 @@ def _recognises(file: LabFile) -> bool:
 
 
 def _timed(block: Block, separator: str) -> bool:
-    """Whether a table has a column of time: raw data have one, results do not."""
+    """True if a table has a column of time: raw data have one, results do not."""
     units = () if block.units is None else split(block.units, separator)
     for k, header in enumerate(split(block.header, separator)):
         name, stated = name_and_unit(header)

@@ -90,7 +90,7 @@ class HandedOn:
 
     @property
     def made(self) -> bool:
-        """Whether the material has it."""
+        """True if the material has it."""
         return self.part is not None or self.law is not None
 
 
@@ -189,7 +189,7 @@ class EffectModel:
 
     @property
     def simulated(self) -> bool:
-        """Whether its fit costs simulations."""
+        """True if its fit costs simulations."""
         return True
 
     def in_file(self, amplitude: float) -> float:
@@ -197,7 +197,7 @@ class EffectModel:
         return self.effect.in_file(amplitude)
 
     def acts_on(self, record: Any) -> bool:
-        """Whether a record can have it."""
+        """True if a record can have it."""
         return self.applies_to(record)
 
     def labels(self, record: Grouped) -> tuple[str, ...]:
@@ -283,5 +283,5 @@ def _scopes(touched: Sequence[Grouped], model: EffectModel) -> list[tuple[str, i
 
 
 def reaches(candidate: Candidate, record: Any, model: EffectModel) -> bool:
-    """Whether a candidate is in a record."""
+    """True if a candidate is in a record."""
     return model.acts_on(record) and (candidate.at == "all" or candidate.at in model.labels(record))

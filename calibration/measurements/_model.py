@@ -192,7 +192,7 @@ class MeasurementModel(ForwardModel):
         return found
 
     def states_noise(self, k: int) -> bool:
-        """Whether the lab states the noise of a record, by its index."""
+        """True if the lab states the noise of a record, by its index."""
         return not getattr(self.records[k], "estimated", False)
 
     def repeated(self) -> tuple[str, ...]:

@@ -52,7 +52,7 @@ class PointNoise:
 
     @property
     def contradicts(self) -> bool:
-        """Whether what the lab states is not what the data show."""
+        """True if what the lab states is not what the data show."""
         return self.stated and not 1.0 / FACTOR <= self.factor <= FACTOR
 
 

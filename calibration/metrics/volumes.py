@@ -49,7 +49,7 @@ def shared_volume(
 
 
 def _crossings(triangles: Array, low: Array, spacing: float) -> tuple[NDArray[np.int64], Array, Array]:
-    """Where the grid's lines pass a surface: line number, z [m], and +1 on the way in, -1 on the way out."""
+    """Intersections of the grid's lines with a surface: line number, z [m], and +1 inwards, -1 outwards."""
     flat = (triangles[:, :, :2] - low) / spacing - np.array(_OFFSET)
     lowest, highest = np.ceil(flat.min(axis=1)), np.floor(flat.max(axis=1))
     size = np.maximum(highest - lowest + 1, 0).astype(np.int64)

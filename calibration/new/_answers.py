@@ -188,7 +188,7 @@ def read_answers(path: Path) -> Answers:
 
 
 def fits(quantity: Quantity, text: str) -> bool:
-    """Whether a unit measures a quantity."""
+    """True if a unit measures a quantity."""
     given = unit(text)
     return given is not None and given.dimension == DIMENSIONS[quantity]
 

@@ -57,7 +57,7 @@ class Asker(Protocol):
         ...
 
     def confirm(self, where: str, name: str, sentence: str) -> bool:
-        """Whether something implausible is meant; name: of the check."""
+        """True if something implausible is meant; name: of the check."""
         ...
 
 

@@ -172,7 +172,7 @@ def density(work: Work, name: str, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def bar(trial: dict[str, Any], density: float) -> Bar:
-    """What the checks of plausibility look at."""
+    """Values that the checks of plausibility use."""
     ((shape, sides),) = trial["section"].items()
     height = 2 * sides["radius_mm"] if shape == "circle" else sides["height_mm"]
     return Bar(free_length=trial["free_length_mm"] * 1e-3, height=height * 1e-3, density=density)

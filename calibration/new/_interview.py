@@ -98,7 +98,7 @@ def _choice(label: str, words: tuple[str, ...]) -> str:
 
 
 def describe(file: Path, format: str, tests: tuple[LabTest, ...]) -> str:
-    """What an importer sees in a file: format, tests, columns with their quantities, parameters."""
+    """Lines on a file as an importer reads it: format, tests, columns with their quantities, parameters."""
     lines = [f"{file}: {format}, {len(tests)} test{'s' if len(tests) > 1 else ''}"]
     for number, test in enumerate(tests, 1):
         lines.append(f"  {number}: {test.name or 'the only test'}, {len(test.rows)} rows")

@@ -1,4 +1,4 @@
-"""Where the board hangs behind photographed beams: what goes into photographs.yaml."""
+"""Position of the board behind photographed beams: an entry of photographs.yaml."""
 
 from __future__ import annotations
 

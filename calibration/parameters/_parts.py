@@ -85,7 +85,7 @@ class PartCoordinates:
         return found
 
     def remarks(self, values: Values, moduli: laws.Moduli) -> list[str]:
-        """What a reader must know of the part at these values."""
+        """Notes for the reader on the part at these values."""
         return self.describe(values, moduli)
 
 

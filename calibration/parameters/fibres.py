@@ -59,7 +59,7 @@ def take_apart(part: Part) -> Values:
 
 
 def describe(values: Values, window: ProtocolWindow) -> list[str]:
-    """What a reader must know of the fibres."""
+    """Notes for the reader on the fibres."""
     del window
     said = ["the law's moduli are those without the fibres"]
     if not ALONG < values["fibres_angle_deg"] < 90.0 - ALONG:

@@ -54,7 +54,7 @@ def take_apart(part: Part) -> Values:
 
 
 def describe(values: Values, window: ProtocolWindow) -> list[str]:
-    """What the tests cannot show of it."""
+    """Properties of the part that the tests cannot show."""
     del values
     if window.peaks == 0:
         return ["no test unloads, so that nothing shows the softening: r, m and beta are not measured"]

@@ -230,7 +230,7 @@ class View:
         return _upright(np.column_stack([flat, np.ones(len(flat))]) @ self.rotation)
 
     def on_plane(self, pixels: Array, y: float) -> Array:
-        """Where the rays meet the plane y = constant [m]: x, z (k, 2) [m]."""
+        """Intersections of the rays with the plane y = constant [m]: x, z (k, 2) [m]."""
         eye, ray = self.eye, self.directions(pixels)
         return np.asarray((eye + ((y - eye[1]) / ray[:, 1])[:, None] * ray)[:, [0, 2]])
 

@@ -131,7 +131,7 @@ def run(
 
 
 def specimen_of(trial: BeamTrial) -> Specimen:
-    """What tracing has to know of a beam; section_sd holds the radius's or (width's, height's)."""
+    """Data of a beam for tracing; section_sd holds the radius's or (width's, height's)."""
     sd = trial.section_sd
     height_sd = 2 * sd[0] if len(sd) == 1 else sd[1]
     return Specimen(

@@ -101,7 +101,7 @@ def _across(grey: NDArray[np.float32], line: Array) -> tuple[Array, Array, Array
 
 
 def _half_way(t: Array, profile: Array, offset: Array, level: Array) -> Array:
-    """Where the profile crosses the level, nearest to the offset; the offset itself where it does not."""
+    """Crossing of the profile and the level nearest to the offset; the offset itself where there is none."""
     above = profile - level[:, None]
     crosses = above[:, 1:] * above[:, :-1] < 0
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -191,7 +191,7 @@ def _end_line(upper: Side, lower: Side, height: float) -> tuple[Array, Array]:
 
 
 def _corner(line: Array, middle: Array, tangent: Array, reach: float, tail: float) -> Array:
-    """Where a straight continuation of the outline's last part meets the end face."""
+    """Intersection of a straight continuation of the outline's last part with the end face."""
     normal = np.array([-tangent[1], tangent[0]])
     t, u = (line - middle) @ tangent, (line - middle) @ normal
     near = t > t[-1] - tail

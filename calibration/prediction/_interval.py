@@ -1,4 +1,4 @@
-"""What a model predicts of a record, and how well it should: intervals from five sources.
+"""Prediction of a record by a model, with intervals from five sources.
 
     predicted less measured = J du + change * d + choice + noise
 
@@ -69,7 +69,7 @@ class PredictedRecord:
 
     @property
     def sd(self) -> Array:
-        """Of measured less predicted, shape (p,)."""
+        """Standard deviation of measured less predicted, shape (p,)."""
         return np.asarray(np.sqrt(np.sum([s**2 for s in self.sds.values()], axis=0)))
 
 

@@ -1,4 +1,4 @@
-"""Which trials are meant: patterns of a command line."""
+"""Selection of trials: patterns of a command line."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ class Prediction:
         return _rms(np.concatenate([r.error(model) for r in records]))
 
     def noise(self, records: Sequence[Record]) -> float:
-        """What `rms` would be of noise alone [SI]."""
+        """Expected `rms` of noise alone [SI]."""
         return _rms(np.concatenate([r.sd(self.models[-1], "noise") for r in records]))
 
     def skill(self, records: Sequence[Record]) -> float | None:
@@ -96,7 +96,7 @@ class Prediction:
         return float(np.mean(np.concatenate(inside)))
 
     def sentence(self) -> str:
-        """What came out, for people: of each kind of measurement."""
+        """Results by kind of measurement, as text."""
         said = []
         for kind, mine in self.of_kind().items():
             unit, per_si = mine[0].shown.unit

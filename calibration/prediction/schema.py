@@ -35,7 +35,7 @@ class Curve(_Strict):
 
 
 class Score(_Strict):
-    """How well a model predicts some points.
+    """Scores of a model's prediction of some points.
 
     Attributes
     ----------

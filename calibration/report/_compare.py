@@ -42,7 +42,7 @@ class Comparison:
 
     @property
     def misses(self) -> bool:
-        """Whether the chosen law's chi-square is above what noise makes of it, by three sd."""
+        """True if the chosen law's chi-square is above what noise makes of it, by three sd."""
         freedom = max(1, self.chosen.points - len(self.chosen.u))
         return self.chosen.reduced_chi2 > 1.0 + 3.0 * sqrt(2.0 / freedom)
 

@@ -58,7 +58,7 @@ def plain(axes: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """How a law is drawn: colour, marker and line style, so that lines which coincide are seen."""
+    """Colour, marker and line style of a law, chosen so that coinciding lines are visible."""
 
     colour: str
     marker: str

@@ -143,7 +143,7 @@ def _span(found: Comparison, results: Sequence[Calibration]) -> str:
 
 
 def rule() -> str:
-    """How laws are called alike."""
+    """Explanation of how laws are compared, by their Akaike values."""
     return (
         "The law with the lowest Akaike value (chi-square + 2 per constant) leads. The Akaike difference of"
         " another law is the difference of the two chi-squares, divided by the leading law's reduced"

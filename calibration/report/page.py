@@ -76,7 +76,7 @@ Rows = list[list[Cell]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Section:
-    """What the template shows of one material; pictures by what they are of, in the page's order."""
+    """Contents of the template for one material; pictures by their subject, in the page's order."""
 
     material: str
     verdict: str

@@ -214,7 +214,7 @@ def _searched(data: Measurements) -> Parametrisation:
 
 
 def _descended(problem: Problem, start: Array) -> Polished | None:
-    """Where Gauss-Newton leads from a start; None where it fails. Relaxation times and fractions make long
+    """Result of Gauss-Newton from a start; None where it fails. Relaxation times and fractions make long
     curved valleys, along which a random search gets nowhere."""
     try:
         return polish(problem, start, **_VALLEYS)

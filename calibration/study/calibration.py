@@ -1,4 +1,4 @@
-"""What a calibration returns: a material's parameters in one law, with error bars, and how it got there."""
+"""Result of a calibration: a material's parameters in one law, with error bars, and its history."""
 
 from __future__ import annotations
 

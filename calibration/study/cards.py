@@ -25,7 +25,7 @@ _STIFFEST, _PER_RATIO = 0.8, 0.8
 
 
 def usable(result: Calibration) -> bool:
-    """Whether a calibration's parameters may go into a card: converged, or polished to error bars."""
+    """True if a calibration's parameters may go into a card: converged, or polished to error bars."""
     if result.status == "not converged":
         return bool(result.estimates)
     return result.status in ("converged", "lack of fit")

@@ -1,4 +1,4 @@
-"""What an experiment holds of one material, as objectives of a fit of one law: any mix of its trials."""
+"""Trials of one material in an experiment, of any mix, as objectives of a fit of one law."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def measurements(
 def settled_markers(
     trial: BeamTrial, belief: MaterialBelief, *, workers: int | None = None
 ) -> MarkerObjective:
-    """Where a beam's markers have come to rest: the mean of the last third of their record."""
+    """Rest positions of a beam's markers: the mean of the last third of their record."""
     first = min(float(m.time[0]) for m in trial.markers)
     last = min(float(m.time[-1]) for m in trial.markers)
     window = 2.0 / 3.0 * (last - first)

@@ -59,7 +59,7 @@ class CardParts:
 
     @property
     def content(self) -> dict[str, dict[str, Any]]:
-        """As a card states them."""
+        """Parts as a card states them."""
         return {field: part_entry(part) for field, part in self.parts.items()}
 
     def held(self, specs: Sequence[str]) -> dict[str, Part]:

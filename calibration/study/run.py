@@ -91,7 +91,7 @@ class Task:
         return f"{self.material}-{self.label}"
 
     def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
-        """What of the experiment it fits."""
+        """Measurement models of the experiment that it fits."""
         law = parts.with_parts(
             parametrisation(self.law, terms=self.terms), self.parts, experiment, self.material, self.card
         )
@@ -239,7 +239,7 @@ def _run(
 
 
 def _from_outside(law: str) -> bool:
-    """Whether a law was registered outside of tisim."""
+    """True if a law was registered outside of tisim."""
     added = getattr(laws, "added", None)  # tisim before its registry of laws has none
     return added is not None and added(law) is not None
 
@@ -329,7 +329,7 @@ def _watch(sentinel: int) -> None:
 
 
 def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
-    """What a stopped study has: finished fits, and the best candidate of each unfinished one."""
+    """State of a stopped study: finished fits, and the best candidate of each unfinished one."""
     found: list[Calibration] = []
     for task in tasks:
         store = task.store()

@@ -67,7 +67,7 @@ class HeldOut:
 
     @property
     def helps_everywhere(self) -> bool:
-        """Whether the extension predicts every fold in which it acts better than the baseline does."""
+        """True if the extension predicts every fold in which it acts better than the baseline does."""
         return bool(self.parts) and not self.worse
 
     @property
@@ -77,7 +77,7 @@ class HeldOut:
         return tuple(p.name for p, own in zip(self.parts, self._acting, strict=True) if own and not p.helps)
 
     def helps_mostly(self, *, least_skill: float, sure: float, draws: int, seed: int) -> bool:
-        """Whether the parts that it predicts better are more than chance would make them (sign test), and
+        """True if the parts that it predicts better are more than chance would make them (sign test), and
         together, with the parts drawn anew, its skill stays above `least_skill`; both as surely as `sure`."""
         acting = sum(self._acting)
         better = acting - len(self.worse)
@@ -145,7 +145,7 @@ def held_out_improvement(
 
 
 def _within(model: MeasurementModel, folds: Sequence[Rows]) -> bool:
-    """Whether some record is in several folds."""
+    """True if some record is in several folds."""
     used = model.noise.used
     return any(
         sum(bool((fold & used & (model.row_record == k)).any()) for fold in folds) > 1
@@ -246,7 +246,7 @@ def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
 
 
 def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
-    """Whether each amplitude, as it was fitted, would show in a fold alone, shape (c,)."""
+    """True if each amplitude, as it was fitted, would show in a fold alone, shape (c,)."""
     values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
     return np.asarray(values**2 * _information(chosen, model.rows(fold)) >= VISIBLE**2)
 

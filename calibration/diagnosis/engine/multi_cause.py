@@ -39,7 +39,7 @@ NOISE = 6.0  # standard deviations of chi-square that noise may leave
 
 
 def worth_fitting(baseline: Fit, now: float, promised: float, rules: Rules) -> bool:
-    """Whether causes that promise, to first order, to take this much off a chi-square may leave noise alone,
+    """True if causes that promise, to first order, to take this much off a chi-square may leave noise alone,
     or take as much more of the misfit as one cause more has to (`Rules.further_share`). Others would not be
     named, however well they fit."""
     freedom = len(baseline.z) - len(baseline.state.u)
@@ -172,7 +172,7 @@ def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[f
 
 
 def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
-    """Whether no amplitude ended at a bound: at zero it is no cause, elsewhere none that makes sense, except
+    """True if no amplitude ended at a bound: at zero it is no cause, elsewhere none that makes sense, except
     at a physical limit."""
     return not any(
         x in effect.bounds and x not in effect.physical_limits
@@ -285,7 +285,7 @@ class _Triples:
             self.found.append(three)
 
     def _all_needed(self, three: Explanation) -> bool:
-        """Whether without any one of the causes the fit would be worse by more than noise does."""
+        """True if without any one of the causes the fit would be worse by more than noise does."""
         least = chi2.isf(self.rules.extra_cause_rate, 1)
         parts = [three.fit.amplitude(c) for c in three.candidates]
         return all(value**2 >= least * sd**2 for value, sd in parts)

@@ -91,7 +91,7 @@ def assess(
 
 
 def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnown, rules: Rules) -> bool:
-    """Whether the baseline's departure is no larger than a smooth error that nobody stated may be. Never
+    """True if the baseline's departure is no larger than a smooth error that nobody stated may be. Never
     where the noise is known."""
     part = None if noise.known else relative_rms(model, baseline)
     return part is not None and part < rules.smooth_error

@@ -182,7 +182,7 @@ def fit_baseline(model: MeasurementModel) -> Fit:
 
 
 def _same(before: Fit, now: Fit) -> bool:
-    """Whether two baselines have the same residuals of the same coordinates."""
+    """True if two baselines have the same residuals of the same coordinates."""
     return before.z.shape == now.z.shape and np.array_equal(before.jacobian, now.jacobian)
 
 

@@ -55,7 +55,7 @@ def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
 
 
 def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
-    """Whether these causes take more than the others that are named beside them."""
+    """True if these causes take more than the others that are named beside them."""
     own = sum(s.value for c, s in diagnosis.shares.items() if c.effect in names)
     return 2.0 * own >= sum(s.value for s in diagnosis.shares.values())
 

@@ -45,7 +45,7 @@ class Prediction:
 
     @property
     def helps(self) -> bool:
-        """Whether the extension predicts it better than the baseline, or as well as noise allows."""
+        """True if the extension predicts it better than the baseline, or as well as noise allows."""
         return self.rms_after < self.rms_before or self.rms_after <= self.rms_noise
 
 

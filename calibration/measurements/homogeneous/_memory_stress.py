@@ -68,7 +68,7 @@ def stresses_along(material: Material, tests: Sequence[Test]) -> list[Array]:
 
 
 def _oblique(material: Material) -> bool:
-    """Whether fibres lie along none of the axes that a test has."""
+    """True if fibres lie along none of the axes that a test has."""
     direction = np.abs(np.asarray(getattr(material.fibres, "direction", (1.0, 1.0, 1.0)), dtype=float))
     return bool(np.sort(direction)[1] > 1e-12 * direction.max())
 

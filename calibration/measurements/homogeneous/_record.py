@@ -126,7 +126,7 @@ def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[
 
 
 def _alike(one: Record, other: Record) -> bool:
-    """Whether two records are of one test, repeated. Trials that name no specimen share one."""
+    """True if two records are of one test, repeated. Trials that name no specimen share one."""
     if (one.material, one.specimen, one.mode) != (other.material, other.specimen, other.mode):
         return False
     reaches = [float(r.stretch[np.argmax(np.abs(r.stretch - 1.0))] - 1.0) for r in (one, other)]
@@ -208,7 +208,7 @@ def _unloading(trial: CouponTrial, b: Stroke) -> NDArray[np.bool_]:
 
 
 def _loads_again(turn: Array) -> bool:
-    """Whether a loading follows an unloading."""
+    """True if a loading follows an unloading."""
     unloading = np.isfinite(turn)
     return bool((~unloading[int(np.argmax(unloading)) :]).any())
 

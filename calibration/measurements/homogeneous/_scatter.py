@@ -42,7 +42,7 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
 
 
 def grows(over: Array, measured: Array) -> bool:
-    """Whether the scatter of the larger half of a curve's values is clearly above that of the smaller."""
+    """True if the scatter of the larger half of a curve's values is clearly above that of the smaller."""
     left = _left(over, measured)
     if left is None or len(left[0]) < ENOUGH:
         return False

@@ -105,7 +105,7 @@ class CurveCache:
         return [self._of(r) for r in requests]
 
     def _fine_suffices(self, r: CurveRequest) -> bool:
-        """Whether the finer mesh reaches the requested depth."""
+        """True if the finer mesh reaches the requested depth."""
         fine = self._fine(r)
         return fine is not None and fine.reached >= r.depth
 

@@ -94,7 +94,7 @@ class LawCurves:
 
     @property
     def taken(self) -> bool:
-        """Whether there are curves yet."""
+        """True if there are curves yet."""
         return self._taken is not None
 
     def take(self, own: Array) -> None:

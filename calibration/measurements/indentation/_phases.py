@@ -160,7 +160,7 @@ def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[
 
 
 def _needed(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -> bool:
-    """Whether a phase is a stroke, or a hold without which the strokes beside it, extended to their best
+    """True if a phase is a stroke, or a hold without which the strokes beside it, extended to their best
     common turning point, fit worse than noise explains, and which lasts."""
     hold = phases[k]
     beside = [q for q in phases[max(k - 1, 0) : k + 2] if q.direction != 0.0]

@@ -49,7 +49,7 @@ def compliance(spectrum: Spectrum, time: Array) -> Array:
 
 
 def settled_by_moduli(baseline: Baseline) -> bool:
-    """Whether the model is of one viscous law that its shear modulus and K/G settle."""
+    """True if the model is of one viscous law that its shear modulus and K/G settle."""
     parts = {c.name for p in baseline.law.parts for c in p.coordinates}
     own = {c.name for c in baseline.law.coordinates} - parts
     viscous = any(p.field == "viscosity" for p in baseline.law.parts)

@@ -59,11 +59,11 @@ class OutlineEffect(EffectModel):
 
     @property
     def bends(self) -> bool:
-        """Whether it changes the scene, and not only its picture."""
+        """True if it changes the scene, and not only its picture."""
         return self.bend is not untouched
 
     def acts_on(self, record: Any) -> bool:
-        """Whether a trial, or the trial of a photograph, can have it."""
+        """True if a trial, or the trial of a photograph, can have it."""
         return self.applies_to(getattr(record, "trial", record))
 
     def labels(self, record: Any) -> tuple[str, ...]:

@@ -261,7 +261,7 @@ class OutlineModel(MeasurementModel):
         return base, by_u, columns
 
     def _own(self, name: str) -> bool:
-        """Whether an effect corrects what the simulator lacks beside its surrogate."""
+        """True if an effect corrects what the simulator lacks beside its surrogate."""
         solutions = self.solutions
         return self.effects[name].instead is not None and solutions.corrected_by(name) is solutions
 

@@ -199,7 +199,7 @@ class Coordinates:
 
 
 def viscous(baseline: Baseline) -> bool:
-    """Whether a baseline is of a law with a relaxation spectrum."""
+    """True if a baseline is of a law with a relaxation spectrum."""
     return any(p.field == "viscosity" for p in baseline.law.parts)
 
 

@@ -82,7 +82,7 @@ class DrawnTrial:
 
 
 def in_time(model: OutlineModel, diagnosis: Diagnosis) -> bool:
-    """Whether what is to be seen differs from one photograph of a beam to the next: a named effect does, or
+    """True if what is to be seen differs from one photograph of a beam to the next: a named effect does, or
     nothing is named and residuals that grow with time are what departs most."""
     chosen = diagnosis.chosen
     if chosen is not None:
