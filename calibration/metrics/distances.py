@@ -97,7 +97,7 @@ def point_to_surface(points: Array, surface: trimesh.Trimesh) -> Array:
 
 
 def _squared_distance(points: Array, triangles: Array) -> Array:
-    """Squared distance of points (k, 3) to triangles (k, 3, 3): within the prism to the plane, else an edge."""
+    """Squared distance of points (k, 3) to triangles (k, 3, 3): within the prism to the plane, else edge."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     normal = np.cross(b - a, c - a)
     size = (normal**2).sum(axis=1)
