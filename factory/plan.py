@@ -31,7 +31,7 @@ from factory.materials import (
 from factory.recipe import Recipe
 from tisim import Block, Inclusion, Material, Poke, Rod
 from tisim.mesh.indentation import LAYOUT
-from tisim.problems.indentation.kind import ELEMENT, leaves
+from tisim.problems.indentation.kind import CONTACT, ELEMENT, leaves
 
 log = logging.getLogger(__name__)
 
@@ -204,9 +204,10 @@ def make_plan(
             for name, material, card in zip(recipe.levels, laws, cards, strict=True)
         },
         "versions": versions(),
-        # labels of another kind of element are others, and those of other meshes
+        # labels of another kind of element are others, and those of other meshes or of another contact
         "element": ELEMENT,
         "mesh_layout": LAYOUT,
+        "contact": CONTACT,
         # stores in which each poke has a solve of its own stay as they were
         **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
     }

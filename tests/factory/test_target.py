@@ -47,7 +47,7 @@ def test_a_changed_recipe_is_refused_when_finished(
     assert not building_folder(target).exists()
 
 
-def test_another_law_another_version_and_other_meshes_are_refused(
+def test_another_law_another_version_other_meshes_and_another_contact_are_refused(
     plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "a.zarr"
@@ -58,7 +58,7 @@ def test_another_law_another_version_and_other_meshes_are_refused(
         patch.setitem(plan.identity["versions"], "tisim", "99.0")
         with pytest.raises(InputError, match=r"changed: versions\.tisim\)"):
             standin_build(plan, target)
-    for key, other in (("element", "hex8"), ("mesh_layout", 1)):
+    for key, other in (("element", "hex8"), ("mesh_layout", 1), ("contact", 1)):
         assert plan.identity[key] != other
         with monkeypatch.context() as patch:
             patch.setitem(plan.identity, key, other)
