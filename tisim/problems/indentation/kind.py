@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # scipy is imported when a scene is solved
 STEEPEST = 45.0  # of a push against the normal [degrees]
 SECONDS = 10.0  # of a default poke [core-s]
 ELEMENT: ElementKind = "hex20"  # what "default" stands for
-# raised whenever the contact's pressure or its points change: labels of two contacts are not mixed in a dataset
+# raised whenever the contact's pressure or its points change: labels of two are not mixed in a dataset
 CONTACT = 2
 
 
