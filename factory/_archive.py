@@ -1,6 +1,6 @@
-"""One Zarr zip of a finished store: stored files in the order of their names, so that a store has one zip.
+"""Write a finished store as one Zarr zip, files in the order of their names: equal stores give equal zips.
 
-The shards are compressed already: they lie in the zip as they are, and are read from it without unpacking.
+The shards are already compressed: the zip stores them as they are, and they are read without unpacking.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from factory._errors import InputError, one_line
 from factory._staging import sync_folder
 from factory._store import LEDGER, MANIFEST, DamagedError, file_faults, manifest_faults, plain_files
 
-_DATE = (1980, 1, 1, 0, 0, 0)  # the first that a zip can state
-_MODE = 0o100644 << 16  # a plain file that everybody may read
-_BIG = 2**31 - 1  # bytes, from which on an entry has the 64-bit fields
+_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date of a zip entry
+_MODE = 0o100644 << 16  # a regular file, readable by all
+_BIG = 2**31 - 1  # bytes, above which an entry has 64-bit fields
 _BLOCK = 1 << 20
 
 
 @dataclass(frozen=True)
 class Released:
-    """A zip that was written and compared.
+    """A zip that was written and verified.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Released:
         The zip, and the file with its checksum beside it.
     sha256 : str
     files, size : int
-        How many files it holds, and its bytes.
+        Number of files in it, and its size [bytes].
     """
 
     path: Path
@@ -48,14 +48,14 @@ class Released:
 def release_store(store: Path, target: Path) -> Released:
     """Write one zip of a store with its checksum beside it; the same store gives the same bytes.
 
-    It is written under another name, opened again and compared with the store's manifest, and only then gets
-    its own name: a run that was killed leaves no file that looks complete, and the next one begins anew.
+    It is written under a temporary name, reopened and compared with the store's manifest, and only then
+    renamed: a killed run leaves no file that looks complete, and the next run starts again.
 
     Raises
     ------
     InputError
-        Where the target cannot be written or is there already; DamagedError where the store is not as its
-        manifest says. Nothing is left then.
+        If the target exists or is refused (`check_release`), or its checksum file states another sum;
+        DamagedError if the store or the zip differs from the manifest. No zip is left then.
     """
     check_release(store, target)
     check_sound(store)
@@ -73,7 +73,7 @@ def release_store(store: Path, target: Path) -> Released:
         if sums.exists() and sums.read_text(encoding="utf-8", errors="replace") != line:
             raise InputError(f"{sums}: exists and states another sum: remove it, or give another --out")
         noted.write_text(line, encoding="utf-8")
-        noted.replace(sums)  # first: a zip that has its name has its checksum
+        noted.replace(sums)  # before the zip, so that a complete zip has its checksum
         size = partial.stat().st_size
         with zipfile.ZipFile(partial) as archive:
             count = len(archive.namelist())
@@ -87,12 +87,12 @@ def release_store(store: Path, target: Path) -> Released:
 
 
 def sums_file(target: Path) -> Path:
-    """Path of the checksum of a zip, in the format of `sha256sum -c`."""
+    """Path of a zip's checksum file, in the format of `sha256sum -c`."""
     return target.with_name(f"{target.name}.sha256")
 
 
 def check_release(store: Path, target: Path) -> None:
-    """Refuse a target that is there, is no zip by name, lies in the store, or in no folder."""
+    """Refuse a target that exists, is not named .zarr.zip, or lies in the store or in no existing folder."""
     if not target.name.endswith(".zarr.zip"):
         raise InputError(f"--out {target}: expected a name that ends in .zarr.zip")
     if target.exists() or target.is_symlink():
@@ -104,7 +104,7 @@ def check_release(store: Path, target: Path) -> None:
 
 
 def check_sound(store: Path) -> None:
-    """DamagedError where a store holds anything else than its manifest says."""
+    """Raise DamagedError if the files of a store differ from its manifest."""
     faults = [*file_faults(store), *manifest_faults(store)]
     if faults:
         more = f" and {len(faults) - 1} more faults" if len(faults) > 1 else ""
@@ -125,7 +125,7 @@ def _write(store: Path, path: Path) -> None:
 
 
 def zip_faults(path: Path) -> list[str]:
-    """Differences of a zip from its own manifest, one sentence a file."""
+    """Differences between a zip's files and the manifest in it, one sentence each."""
     try:
         with zipfile.ZipFile(path) as archive:
             return list(_faults(archive))
@@ -158,7 +158,7 @@ def _faults(archive: zipfile.ZipFile) -> Iterator[str]:
 
 
 def _other_outside(store: Path, path: Path) -> list[str]:
-    """Manifest and ledger, which no manifest lists, where they differ from the store's."""
+    """Differences of the manifest and the ledger, which no manifest lists, from the store's."""
     with zipfile.ZipFile(path) as archive:
         there = set(archive.namelist())
         return [

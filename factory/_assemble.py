@@ -1,7 +1,6 @@
-"""From staged results to the Zarr store: one writer, whole shards, in the order of the plan.
+"""Assemble the Zarr store from staged results: one process writes whole shards in the order of the plan.
 
-Nothing here depends on time, on the number of workers or on the order in which pokes finished, so that
-the same plan gives the same bytes.
+The bytes depend on the plan alone, not on time, the number of workers or the order in which pokes finished.
 """
 
 from __future__ import annotations
@@ -46,12 +45,12 @@ _RAGGED: dict[Rows, str] = {"frame": "depth", "node": "surface_rest", "triangle"
 
 
 def assemble(plan: Plan, staging: Staging, target: Path) -> None:
-    """Write the store beside, then put it in the target's place. Safe to repeat after any kill.
+    """Write the store in the building folder, then move it to the target; can be repeated after any kill.
 
     Raises
     ------
     DamagedResultError
-        Where a staged result cannot be read; nothing has changed then.
+        If a staged result cannot be read; the target is then unchanged.
     """
     shutil.rmtree(staging.store, ignore_errors=True)
     try:
@@ -101,7 +100,7 @@ def _write(plan: Plan, staging: Staging, folder: Path) -> None:
                 rows = derived[name] if name in derived else result[name]
                 try:
                     stream.append(rows.reshape(-1, *specs[name].row))
-                except ValueError as error:  # rows of another shape: a result changed under our hands
+                except ValueError as error:  # rows of another shape: the result changed since its check
                     raise DamagedResultError(poke.index, f"array {name}: {error}") from None
     for stream in streams.values():
         stream.finish()
@@ -115,17 +114,17 @@ def _write(plan: Plan, staging: Staging, folder: Path) -> None:
 
 
 def stored_laws(law: str) -> tuple[str, ...]:
-    """The laws that a store of that law lists."""
+    """Names behind the codes of the array `law`: `STORED_LAWS`, then `law` if it is not one of these."""
     return STORED_LAWS if law in STORED_LAWS else (*STORED_LAWS, law)
 
 
 def _stored_kinds(plan: Plan) -> tuple[str, ...]:
-    """Kinds of inclusion that the plan's store lists: the usual ones, then those that others lack."""
+    """Names behind the codes of `inclusion_kind`: `STORED_KINDS`, then any other kinds of the plan."""
     return tuple(dict.fromkeys((*STORED_KINDS, *(inclusion.kind for inclusion in plan.inclusions))))
 
 
 def _specs(plan: Plan) -> dict[str, Spec]:
-    """The arrays of the plan's store: laws and kinds of inclusion that others lack are among its codes."""
+    """Specifications of the store's arrays, with codes for the plan's own laws and inclusion kinds."""
     specs = specs_of(plan.identity)
     return {
         **specs,
@@ -135,7 +134,7 @@ def _specs(plan: Plan) -> dict[str, Spec]:
 
 
 class _Appender:
-    """Rows in, whole shards out: a shard is written once, by this process alone."""
+    """Buffer of rows that writes whole shards, each once."""
 
     def __init__(self, array: Any, spec: Spec) -> None:
         self._array, self._shard = array, spec.shard
@@ -184,8 +183,11 @@ def _create(group: zarr.Group, name: str, spec: Spec, shape: tuple[int, ...]) ->
 
 
 def compressor(dtype: np.dtype[Any]) -> zarr.codecs.BloscCodec:
-    """Blosc with lz4: streamed for training at a third of a memmap, which zstd does not reach, for 2 % more
-    bytes (benchmarks/loader_throughput.py; benchmarks/store_layout.py for what else was measured)."""
+    """Blosc with lz4, which reads faster than zstd for 2 % more bytes.
+
+    Streaming for training reaches a third of the rate of a memmap (benchmarks/loader_throughput.py); other
+    codecs are compared in benchmarks/store_layout.py.
+    """
     return zarr.codecs.BloscCodec(
         cname="lz4",
         clevel=3,
@@ -221,7 +223,7 @@ def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
 
 
 def _described(plan: Plan) -> dict[str, Any]:
-    """Moduli, parts beside the law, and fields of inclusions that no reader knows from the format."""
+    """Further attributes: moduli of a law and fields of inclusions outside the format; material parts."""
     found: dict[str, Any] = {}
     if plan.law not in STORED_LAWS:
         moduli = [laws.get(m.law).moduli(m.parameters) for m in plan.materials]
@@ -252,7 +254,7 @@ def _parameters(plan: Plan, level: int) -> list[float]:
 def _poke_arrays(
     plan: Plan, staging: Staging, done: set[int], errors: dict[int, str]
 ) -> dict[str, NDArray[Any]]:
-    """The arrays with one row a poke."""
+    """Arrays with one row per poke."""
     n = len(plan.pokes)
     pieces = (len(plan.recipe.protocol.course),)
     widths = {
@@ -324,7 +326,7 @@ def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
 
 
 def _three(dimensions: tuple[float, ...]) -> tuple[float, ...]:
-    """The first three dimensions, filled up with zeros; a shape that has more is in attribute inclusions."""
+    """First three dimensions, padded with zeros; the attribute `inclusions` holds shapes that have more."""
     return (*dimensions, 0.0, 0.0, 0.0)[:3]
 
 
@@ -333,7 +335,7 @@ def _angle(inclusion: Inclusion) -> float:
 
 
 def _provenance(staging: Staging, folder: Path) -> None:
-    """Wall times go into a file of their own: they differ from run to run, the store must not."""
+    """Write wall times to a separate file: they differ from run to run, the arrays must not."""
     ledger = read_ledger(staging.ledger_file)
     text = "".join(json.dumps(ledger[i]) + "\n" for i in sorted(ledger))
     (folder / PROVENANCE / "ledger.jsonl").write_text(text, encoding="utf-8")

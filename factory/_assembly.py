@@ -1,10 +1,10 @@
-"""Stored frames as equilibria: nodal forces by an assembly of their own, from the stored surface alone.
+"""Check the equilibrium of stored frames by an independent assembly of nodal forces.
 
-A frame stores where the surface is. Held there, the body has one equilibrium inside (found with the tangent
-of the solver, along the poke). What its stresses pull at the nodes with is then summed up here, by shape
-functions and integration points that share no code with the solver's; the law's stress at a point is that of
-`tisim.laws`. In a true equilibrium these forces vanish inside and where the surface is free, and their sums
-are the stored force on the rod and that of the fixed nodes.
+A frame stores the positions of the surface. With these prescribed, the interior has one equilibrium, found
+with the solver's tangent from frame to frame. The internal forces at the nodes are then assembled here, with
+shape functions and integration points that share no code with the solver; the stress at a point is that of
+`tisim.laws`. In a true equilibrium these forces vanish at interior and free surface nodes, and their sums
+balance the stored force on the rod and equal that of the fixed nodes.
 """
 
 from __future__ import annotations
@@ -31,35 +31,34 @@ from tisim.mesh.indentation import poke_mesh
 Array = NDArray[np.float64]
 Ints = NDArray[np.integer[Any]]
 
-# What a hex20's energy is made of (tisim.discretisation): so much at 27 points, the rest at 8; of the bulk
-# stiffness so many shear moduli at all points, the rest at the 8.
+# Integration of a hex20's energy (tisim.discretisation): this fraction at 27 points, the rest at 8; a bulk
+# modulus of this many shear moduli at all points, the rest at the 8.
 FINE_PART, BULK_EVERYWHERE = 0.3, 2.0
-# Parts of the rod's force, in units of the solver's tolerance, that nodes without contact may miss: single
-# precision of the stored surface, and the inside, which is solved to a tenth of that.
+# Limit on forces at nodes without contact, relative to the rod's force, in units of the solver's tolerance:
+# covers the single precision of the stored surface and the interior solve (to `INSIDE` of that tolerance).
 SLACK = 2.0
-# Part of the rod's force by which the sums may differ from the stored forces.
+# Limit on the difference between sums and stored forces, relative to the rod's force.
 SUMS = 0.005
 TOUCHES = 5e-6  # m: facets nearer to the rod than this may carry its force
-INSIDE = 0.1  # of the solver's tolerance: how well the inside is solved
+INSIDE = 0.1  # tolerance of the interior solve, relative to the solver's
 _ITERATIONS, _HALVINGS = 25, 5
 
 
 class NotCheckedError(Exception):
-    """Why a poke cannot be checked."""
+    """A poke cannot be checked; the text states why."""
 
 
 @dataclass(frozen=True)
 class FrameForces:
-    """Nodal forces of one frame, in parts of the rod's force.
+    """Nodal forces of one frame, relative to the rod's force.
 
     Attributes
     ----------
     frame : int
     inside, free : float
-        Root of the sum of squares over the nodes inside, and over those of the surface that neither the rod
-        nor the support holds.
+        Norm over the interior nodes, and over the surface nodes neither fixed nor touched by the rod.
     rod, base : float
-        Size of the difference between the sums and the stored forces.
+        Norm of the imbalance between the nodes' sum and the stored force, at touched and at fixed nodes.
     """
 
     frame: int
@@ -69,7 +68,7 @@ class FrameForces:
     base: float
 
     def faults(self, tolerance: float) -> list[str]:
-        """Violations of equilibrium beyond the solver's tolerance."""
+        """Violations of equilibrium, one sentence each; `tolerance` is the solver's."""
         found = []
         for what, value, limit in (
             ("forces inside", self.inside, SLACK * tolerance),
@@ -84,18 +83,18 @@ class FrameForces:
 
 @dataclass(frozen=True)
 class Assembled:
-    """Residuals that the assembly found in a dataset.
+    """Result of `check_assembly`.
 
     Attributes
     ----------
     pokes, frames : int
-        How many were checked.
+        Numbers checked.
     faults : list of str
-        Sentences, by poke.
+        Sentences, in the order of the pokes.
     not_checked : dict of int to str
-        Why a poke could not be checked, by its index.
+        Reasons why pokes could not be checked, by index.
     largest : FrameForces or None
-        Largest values over all frames, with the frame's number 0; None where none was checked.
+        Largest values over all frames, with the frame's number 0; None if none was checked.
     """
 
     pokes: int
@@ -119,12 +118,12 @@ def check_assembly(
     ----------
     data : Dataset
     pokes : int, optional
-        So many of them, spread over the dataset; default: all.
+        Number of pokes to check, spread over the dataset; default: all.
     workers : int
     plugins : sequence of str
         Modules that a worker imports first: they register laws or inclusion shapes.
     on_progress : callable, optional
-        Called with the pokes done and their number.
+        Called with the number of pokes done and in total.
     """
     chosen = np.flatnonzero(own_solves(data) & data.table["done"])
     if pokes is not None and pokes < len(chosen):
@@ -159,7 +158,7 @@ def check_assembly(
 
 
 def _checked(path: Path, index: int, plugins: tuple[str, ...]) -> list[FrameForces] | str:
-    """Answer of a worker process: the frames of a poke, or the reason why it cannot be checked."""
+    """Check a poke in a worker process; return its frames, or the reason why it cannot be checked."""
     from tisim.parallel.threads import one_thread
 
     import_plugins(plugins)
@@ -176,8 +175,8 @@ def check_poke(data: Dataset, index: int) -> list[FrameForces]:
     Raises
     ------
     NotCheckedError
-        Where the material has more than its law, the mesh cannot be made again, or no equilibrium is found
-        inside a stored surface.
+        If the material has more than its law, the mesh cannot be reproduced, or no interior equilibrium is
+        found for a stored surface.
     """
     poke = data.poke(index)
     material = _material(data, index)
@@ -217,7 +216,7 @@ def check_poke(data: Dataset, index: int) -> list[FrameForces]:
 
 
 def nodal_forces(mesh: Mesh, material: Material, x: Array) -> Array:
-    """Forces (n, 3) [N] that the stresses at positions x (n, 3) [m] pull at a hex20 mesh's nodes with."""
+    """Internal nodal forces (n, 3) [N] of a hex20 mesh at positions x (n, 3) [m]."""
     law = laws.get(material.law)
     moduli, kappa = law.moduli(material.parameters), law.kappa(material.parameters)
     everywhere = min(max(BULK_EVERYWHERE * moduli.shear_modulus - (moduli.bulk_modulus - kappa), 0.0), kappa)
@@ -238,9 +237,9 @@ def nodal_forces(mesh: Mesh, material: Material, x: Array) -> Array:
 
 
 def _stress(material: Material, F: Array, more: float) -> Array:
-    """First Piola-Kirchhoff stress (n, 3, 3) [Pa] of the law, with `more` bulk modulus than its own [Pa]."""
+    """First Piola-Kirchhoff stress (n, 3, 3) [Pa] of the law, its bulk modulus increased by `more` [Pa]."""
     stress = np.empty_like(F)
-    for begin in range(0, len(F), 8192):  # the law's tangents come along: 0.6 kB a point
+    for begin in range(0, len(F), 8192):  # in blocks: the law also returns tangents, 0.6 kB per point
         some = slice(begin, begin + 8192)
         stress[some] = laws.evaluate(material.law, material.parameters, F[some])[1]
     J = np.linalg.det(F)
@@ -254,7 +253,7 @@ def _stress(material: Material, F: Array, more: float) -> Array:
 
 @cache
 def _hex20(order: int) -> tuple[Array, Array]:
-    """Slopes (q, 20, 3) of a hex20's shape functions at order^3 Gauss points, and their weights (q,).
+    """Gradients (q, 20, 3) of a hex20's shape functions at order^3 Gauss points, and the weights (q,).
 
     The functions are those combinations of the twenty monomials r^i s^j t^k with at most one square that are
     1 at one node and 0 at the others.
@@ -281,10 +280,10 @@ def _monomials(places: Array, powers: Ints) -> Array:
 
 
 class _Inside:
-    """Positions of all nodes of each frame: the surface where it is stored, the inside in equilibrium."""
+    """Positions of all nodes, frame by frame: the surface as stored, the interior in equilibrium."""
 
     def __init__(self, mesh: Mesh, material: Material, surface: Ints, moved: Array, tolerance: Array) -> None:
-        """moved (frames, k, 3) [m]: displacement of the surface's nodes (k,); tolerance (frames,) [N]."""
+        """Take displacements `moved` (frames, k, 3) [m] of the nodes `surface`, `tolerance` (frames,) [N]."""
         from tisim.discretisation.body import Discretisation, DiscretisedBody
 
         self._mesh, self._surface, self._moved, self._tolerance = mesh, surface, moved, tolerance
@@ -300,7 +299,7 @@ class _Inside:
             yield x
 
     def _to(self, frame: int, x: Array, before: Array, moved: Array) -> Array:
-        """The inside follows from one surface to the next, in more steps where one fails."""
+        """Positions for the next surface, reached in one step or, if that fails, in 2, 4, ... steps."""
         for halving in range(_HALVINGS):
             parts = 2**halving
             at = x
@@ -316,7 +315,7 @@ class _Inside:
         raise NotCheckedError(f"no equilibrium was found inside the surface of frame {frame}")
 
     def _step(self, x: Array, aim: Array, tolerance: float) -> Array | None:
-        """Equilibrium inside a surface displaced by `aim`, from x on; None where none is found."""
+        """Interior equilibrium for the surface displaced by `aim`, from x; None without convergence."""
         from tisim.linear.direct import LinearSolveError
 
         body, solver, free = self._body, self._discretisation.solver, self._free
@@ -337,7 +336,7 @@ class _Inside:
                     return None
                 if float(np.linalg.norm(residual)) <= tolerance:
                     return x
-                if iteration % 3 == 2:  # until then the factor of the step's start serves
+                if iteration % 3 == 2:  # modified Newton: a factorisation serves three iterations
                     solver.factorise(body.stiffness(x)[0])
                 x = x.copy()
                 x[free] -= solver.solve(residual)
@@ -347,7 +346,7 @@ class _Inside:
 
 
 def _touched(mesh: Mesh, x: Array, tip: Array, direction: Array, rod: Rod) -> NDArray[np.bool_]:
-    """Nodes (n,) of facets of the top that the rod touches."""
+    """Mask (n,) of the nodes of top facets that the rod touches."""
     facets = mesh.facet_sets["top"]
     side = np.linspace(-1.0, 1.0, 9)
     r, s = (values.ravel() for values in np.meshgrid(side, side))

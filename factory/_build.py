@@ -1,4 +1,4 @@
-"""Building a dataset: resume, simulate, assemble."""
+"""Build a dataset: resume, simulate, assemble."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from factory._store import DamagedError, is_store, root_attributes
 from factory.plan import Plan, PlannedPoke, changes
 
 log = logging.getLogger(__name__)
-_ROUNDS = 3  # of simulating again what turns out damaged while the store is written
+_ROUNDS = 3  # attempts to write the store; results found damaged are simulated again in between
 
 
 @dataclass(frozen=True)
 class BuildProgress:
-    """State of a build, as `on_progress` gets it: once at the start, then after each poke.
+    """State of a build, passed to `on_progress` at the start and after each poke.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class BuildProgress:
 
 @dataclass(frozen=True)
 class Built:
-    """Outcome of a build.
+    """Result of a build.
 
     Attributes
     ----------
@@ -57,13 +57,13 @@ class Built:
     total : int
         Pokes of the plan.
     simulated : int
-        Pokes that this run simulated.
+        Number of pokes that succeeded in this run.
     errors : dict of int to str
-        Why pokes failed, by their index.
+        Error texts of failed pokes, by index.
     damaged : tuple of int
         Pokes whose staged result was damaged: simulated again, or, in a partial store, set aside.
     missing : int
-        Pokes of a partial store that are not done.
+        Number of pokes of a partial store that are not done.
     """
 
     store: Path
@@ -79,7 +79,7 @@ OnProgress = Callable[[BuildProgress], None]
 
 @dataclass(frozen=True, kw_only=True)
 class _Means:
-    """Executor of simulations: worker processes here or a dask cluster, and the function that they call."""
+    """Local worker processes or a dask cluster, and the simulator that they call."""
 
     workers: int
     cluster: str | None
@@ -110,7 +110,7 @@ def build_dataset(
     simulator: str = SIMULATOR,
     on_progress: OnProgress | None = None,
 ) -> Built:
-    """Build or complete a dataset; the same call goes on after any interruption and ends in the same bytes.
+    """Build or complete a dataset; after any interruption the same call resumes and gives the same bytes.
 
     Parameters
     ----------
@@ -120,8 +120,8 @@ def build_dataset(
     overwrite : bool
         Simulate everything again; an old store stays until the new one is complete.
     partial : bool
-        Simulate nothing: write a store of what earlier runs finished, the other pokes marked as not done.
-        Staged results stay, so that a later call goes on.
+        Simulate nothing: write a store of the pokes that earlier runs finished, with the others marked as not
+        done. Staged results are kept, so that a later call can resume.
     workers : int
         Worker processes on this machine.
     cluster : str, optional
@@ -129,7 +129,7 @@ def build_dataset(
     cluster_timeout : float
         Time [s] without a scheduler or without a worker after which the build gives up.
     simulator : str
-        "module:function" that stands for `tisim.simulate`.
+        "module:function" to call in place of `tisim.simulate`.
     on_progress : callable, optional
         Called with a `BuildProgress` at the start and after each poke.
 
@@ -141,7 +141,7 @@ def build_dataset(
     Raises
     ------
     InputError
-        In one sentence, why nothing was done, or why the build stopped. Every finished poke is kept.
+        If nothing was done or the build stopped; one sentence states why. Every finished poke is kept.
     """
     check_target(target, overwrite=overwrite)
     try:
@@ -179,7 +179,7 @@ def build_dataset(
 
 
 def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
-    """The store of what is staged; InputError where that is nothing."""
+    """Write a store of the staged results; InputError if there are none."""
     damaged = set_damaged_aside(staging, plan.pokes)
     missing = len(plan.pokes) - len(staging.finished())
     if missing == len(plan.pokes):
@@ -192,7 +192,7 @@ def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
 
 
 def check_target(target: Path, *, overwrite: bool = False) -> None:
-    """Refuse a target that is no dataset, or a damaged one that is not to be overwritten."""
+    """Refuse a target that is not a dataset, or is a damaged one and `overwrite` is False."""
     if not target.exists():
         return
     if not is_store(target):
@@ -207,7 +207,7 @@ def check_target(target: Path, *, overwrite: bool = False) -> None:
 
 
 def free_name(target: Path) -> Path:
-    """A name beside the target at which there is nothing yet: NAME-2.zarr, NAME-3.zarr ..."""
+    """First unused path beside the target: NAME-2.zarr, NAME-3.zarr ..."""
     number = 2
     while (found := target.with_name(f"{target.stem}-{number}{target.suffix}")).exists():
         number += 1
@@ -215,7 +215,7 @@ def free_name(target: Path) -> Path:
 
 
 def warn_of_full_disk(target: Path, needed: float) -> bool:
-    """Log a warning where the disk has less room than the build is expected to need [bytes]."""
+    """Log a warning, and return True, if the disk has less free space than `needed` [bytes]."""
     folder = next(path for path in (target, *target.parents) if path.exists())
     free = shutil.disk_usage(folder).free
     if free >= needed:
@@ -231,7 +231,7 @@ def warn_of_full_disk(target: Path, needed: float) -> bool:
 
 
 def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
-    """Return True if the target is complete; else make the building folder ready for this plan."""
+    """True if the target is complete; if not, prepare the building folder for this plan."""
     if overwrite:
         staging.begin(plan.identity)
         return False
@@ -240,7 +240,7 @@ def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) ->
         raise _changed(f"{staging.folder}: was begun", begun, plan, target)
     if finished is not None and finished["fingerprint"] == plan.fingerprint:
         if finished["pokes_done"] == finished["pokes"]:
-            staging.remove()  # what a build killed while tidying up has left, or our lock
+            staging.remove()  # remains of a build killed during its clean-up, or our lock
             return True
         if begun is None:
             staging.remove()
@@ -258,7 +258,7 @@ def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) ->
 
 
 def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgress | None) -> int:
-    """Simulate what is missing; returns how many pokes succeeded."""
+    """Simulate the missing pokes; return the number that succeeded."""
     done = staging.finished()
     missing = [poke for poke in plan.pokes if poke.index not in done]
     total, simulated, failed = len(plan.pokes), 0, 0
@@ -303,9 +303,9 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
 
 
 def in_turns(plan: Plan) -> list[PlannedPoke]:
-    """The pokes in the order in which they are simulated: one of each shape and material level at a time.
+    """Pokes in the order of simulation: one of each shape and material level at a time.
 
-    What is there after an interruption is a smaller dataset of the same kind, not the first shapes alone.
+    After an interruption the results are then a smaller dataset of all shapes, not of the first ones alone.
     """
     shared = plan.recipe.protocol.shared_sites
     return sorted(plan.pokes, key=lambda poke: (poke.site if poke.shared else poke.site - shared, poke.index))

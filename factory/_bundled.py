@@ -1,6 +1,6 @@
 """Recipes and material cards that come with the package.
 
-Apart from what reads them, since `factory.build --help` names them and has half a second.
+Separate from the code that reads them, so that `factory.build --help`, which names them, starts quickly.
 """
 
 from __future__ import annotations

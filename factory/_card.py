@@ -22,14 +22,14 @@ from tisim import laws
 
 LICENCE = "Apache-2.0"  # that of the programs (LICENSE); who publishes a dataset may choose another
 AUTHOR = "The tisim authors"  # as CITATION.cff
-# checks without which nothing on the card could be believed; faults of the others are stated on it
+# checks that must pass before a card is written; faults of the others are stated on it
 _NEEDED = ("attributes", "files", "checksums", "shapes", "finite values")
 FILES = ("card.md", "features.csv", "softness.csv", "features.png", "poke.png", "manifest.json", "SHA256SUMS")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Moduli:
-    """A material level: parameters as the store's identity has them, moduli at small strain [Pa]."""
+    """A material level: parameters as in the store's identity, density [kg/m3], small-strain moduli [Pa]."""
 
     level: str
     parameters: dict[str, Any]
@@ -40,7 +40,7 @@ class Moduli:
 
 @dataclass(frozen=True, kw_only=True)
 class Worst:
-    """The worst of all frames: residual and force gap as shares, penetration [m]."""
+    """Worst values over all frames: relative residual and force gap, smallest det F, penetration [m]."""
 
     residual: float
     force_gap: float
@@ -50,7 +50,7 @@ class Worst:
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """Sums of the ledger; solves: simulations that it lists with times and no error."""
+    """Times in the ledger [s]; `solves` counts its entries with times and without error."""
 
     solves: int
     core_seconds: float
@@ -60,7 +60,7 @@ class Cost:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Facts:
-    """All that the card says.
+    """Content of the card.
 
     Attributes
     ----------
@@ -71,11 +71,11 @@ class Facts:
     materials : list of Moduli
     worst : Worst
     cost : Cost or None
-        None where the store has no ledger, or one without times.
+        None if the store has no ledger, or one without times.
     date : datetime.date or None
-        When the store was completed.
+        Date of the store's completion.
     shown : int
-        The poke in the picture: the deepest.
+        Index of the poke in the picture, the deepest.
     sums : dict of str to str
         sha256 of each file of the store, by its name.
     licence : str
@@ -97,7 +97,7 @@ class Facts:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """Inputs that determine the bytes of the store."""
+        """Input on which the bytes of the store depend."""
         found: dict[str, Any] = self.data.attributes["identity"]
         return found
 
@@ -120,7 +120,7 @@ def gather(
     Raises
     ------
     InputError
-        Where an option is bad or no poke has frames; DamagedError where the store is damaged.
+        If an option is invalid or no poke has frames; DamagedError if the store is damaged.
     """
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9.+-]*", licence):
         raise InputError(f"--licence {licence}: expected an SPDX identifier, as Apache-2.0 or CC-BY-4.0")
@@ -165,7 +165,7 @@ def check_out(store: Path, out: Path, *, overwrite: bool) -> None:
 
 
 def write_card(facts: Facts, out: Path) -> None:
-    """Write the card's files (`FILES`) into a folder: all made beside it first, then put in their places."""
+    """Write the card's files (`FILES`) into a temporary folder, then move them to `out`."""
     from factory._card_figures import draw_features
     from factory._card_page import page
     from factory._figures import draw_poke
@@ -185,14 +185,14 @@ def write_card(facts: Facts, out: Path) -> None:
         (beside / "SHA256SUMS").write_text("".join(lines), encoding="utf-8")
         (beside / "card.md").write_text(page(facts), encoding="utf-8")
         out.mkdir(exist_ok=True)
-        for name in reversed(FILES):  # the page last: where it is, all it points at is
+        for name in reversed(FILES):  # the page last, so that all files it refers to exist
             (beside / name).replace(out / name)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
 
 
 def size_category(rows: int) -> str:
-    """The class of sizes that Hugging Face's dataset cards have."""
+    """Size category of Hugging Face's dataset cards."""
     for limit, name in ((1e3, "n<1K"), (1e4, "1K<n<10K"), (1e5, "10K<n<100K"), (1e6, "100K<n<1M")):
         if rows < limit:
             return name
@@ -200,7 +200,7 @@ def size_category(rows: int) -> str:
 
 
 def beside_the_paper(facts: Facts) -> bool:
-    """True if the paper's table has rows of this law and these material levels."""
+    """True if the paper's table has a row of this law and one of these material levels."""
     return any(level in _paper.PAPER.get(facts.summary.model, {}) for level in facts.summary.levels)
 
 
@@ -212,9 +212,9 @@ def _date(text: str) -> datetime.date:
 
 
 def _completed(data: Dataset) -> datetime.date | None:
-    """When the manifest, a store's last file, was written; None where copying has lost that.
+    """Date of the manifest, a store's last file; None if it was lost.
 
-    A zip and what was unpacked from it have the zip's fixed date, which says nothing.
+    Files in a zip, or unpacked from one, have the zip's fixed date instead.
     """
     if data.root != data.path:
         return None
@@ -271,7 +271,7 @@ def _cost(summary: Summary) -> Cost | None:
 
 
 def _sums(data: Dataset) -> dict[str, str]:
-    """Checksum of each file that the manifest lists, of the manifest and of the ledger."""
+    """sha256 of each file in the manifest, and of the manifest and the ledger, which it cannot list."""
     import hashlib
 
     content = read_json(data.root / MANIFEST)
@@ -285,5 +285,5 @@ def _sums(data: Dataset) -> dict[str, str]:
 
 
 def solves(facts: Facts) -> int:
-    """Pokes that are there and have a solve of their own."""
+    """Number of pokes that are done and have a solve of their own."""
     return int((own_solves(facts.data) & facts.data.table["done"]).sum())

@@ -1,4 +1,4 @@
-"""The picture of a dataset's card: how deep its pokes came and how large their forces are."""
+"""The picture of a dataset's card: depths and forces that its pokes reached."""
 
 from __future__ import annotations
 
@@ -53,6 +53,6 @@ def _bars(axes: Any, place: Any, spreads: list[Spread | None], **style: Any) -> 
     mean = np.array([spread.mean for _, spread in there])
     low = mean - [spread.low for _, spread in there]
     high = np.array([spread.high for _, spread in there]) - mean
-    # rounding may put a single poke's mean beyond it
+    # rounding may put the mean of a single poke outside its range
     reach = np.maximum([low, high], 0.0)
     axes.bar([x for x, _ in there], mean, yerr=reach, error_kw={"lw": 0.7}, **style)

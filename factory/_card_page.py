@@ -31,7 +31,7 @@ print(f"poke {{poke}}: {{1e3 * depth.max():.2f}} mm, {{(force**2).sum(axis=1).ma
 
 
 def page(facts: Facts) -> str:
-    """The whole page."""
+    """Markdown text of the whole page."""
     sections = (
         _front(facts),
         _head(facts),
@@ -60,7 +60,7 @@ def _front(facts: Facts) -> Iterator[str]:
             "zarr",
             summary.model,
         ],
-        "viewer": False,  # it reads tables, not Zarr
+        "viewer": False,  # Hugging Face's viewer reads tables, not Zarr
     }
     yield "---\n" + yaml.safe_dump(entries, sort_keys=False, allow_unicode=True).rstrip() + "\n---"
 

@@ -17,28 +17,28 @@ from factory._sampling import LEVELS, RIGID, SIZE, profiles
 from factory._store import DamagedError, file_faults, manifest_faults
 from factory.reader import Dataset, is_zip, open_dataset
 
-FORCE_BALANCE = 0.01  # of the indenter's force
-FORCE_FLOOR = 1e-3  # N: forces below that are compared with it instead
-COURSE_SLACK = 1e-6  # of the course's depth, or of its speed
-ENERGY_SLACK = 1e-9  # of the energy dissipated so far: rounding
-TIP_SLACK = 0.01  # of the frame spacing
+FORCE_BALANCE = 0.01  # relative to the indenter's force
+FORCE_FLOOR = 1e-3  # N: least force that the balance is relative to
+COURSE_SLACK = 1e-6  # relative to the course's depth, or to its speed
+ENERGY_SLACK = 1e-9  # relative to the energy dissipated so far: rounding
+TIP_SLACK = 0.01  # relative to the frame spacing
 
 Check = Callable[[Dataset], list[str]]
 
 
 @dataclass(frozen=True)
 class Verification:
-    """Results of the checks of a dataset.
+    """Faults found in a dataset.
 
     Attributes
     ----------
     path : Path
     faults : dict of str to list of str
-        Sentences by the name of the check; all checks are there.
+        Sentences by name of the check; an empty list if it found none.
     pokes, frames : int
-        How many were checked; 0 where the dataset could not be opened.
+        Numbers checked; 0 if the dataset could not be opened, `frames` also if there are faults.
     waiting : int
-        Pokes that a partial store lacks.
+        Number of pokes that a partial store lacks.
     """
 
     path: Path
@@ -59,7 +59,7 @@ def verify_dataset(path: str | Path) -> Verification:
     Raises
     ------
     InputError
-        Where there is no dataset of the factory. Damage is a fault, not an error.
+        If there is no dataset of the factory. Damage is a fault, not an error.
     """
     folder = Path(path)
     faults: dict[str, list[str]] = {}
@@ -82,7 +82,7 @@ def verify_dataset(path: str | Path) -> Verification:
 
 
 def _caught(check: Callable[[], list[str]]) -> list[str]:
-    """The faults that a check finds; what breaks it is one."""
+    """Run a check and return its faults; an exception that it raises is one."""
     try:
         return check()
     except InputError as error:
@@ -92,7 +92,7 @@ def _caught(check: Callable[[], list[str]]) -> list[str]:
 
 
 def shapes(data: Dataset) -> list[str]:
-    """Arrays are all there, with the shapes that the poke table says."""
+    """Check that all arrays exist, with shapes that agree with the poke table."""
     faults = []
     for name in data.specs:
         if name not in data.group:
@@ -131,7 +131,7 @@ def shapes(data: Dataset) -> list[str]:
 
 
 def finite(data: Dataset) -> list[str]:
-    """No NaN and no infinity anywhere; triangles point at nodes of their poke."""
+    """Check that all values are finite, and that triangles refer to nodes of their poke."""
     faults = []
     for name, spec in data.specs.items():
         if spec.dtype.startswith("f"):
@@ -148,7 +148,7 @@ def finite(data: Dataset) -> list[str]:
 
 
 def statuses(data: Dataset) -> list[str]:
-    """Every poke is done or has an error text, and says why it ended."""
+    """Check that every simulated poke succeeded and has frames, and a message if it ended early."""
     faults = []
     table, waiting = data.table, set(data.waiting)
     for index in range(data.n_pokes):
@@ -166,7 +166,7 @@ def statuses(data: Dataset) -> list[str]:
 
 
 def equilibrium(data: Dataset) -> list[str]:
-    """Every frame converged: residual, turned elements, penetration of the rod's edge."""
+    """Check the residual, det F and the penetration of the rod in every frame."""
     table = data.table
     rod = data.attributes["identity"]["recipe"]["rod"]
     round_mm = rod["edge_radius_mm"] if rod["tip"] == "flat" else rod["radius_mm"]
@@ -183,7 +183,7 @@ def equilibrium(data: Dataset) -> list[str]:
 
 
 def forces(data: Dataset) -> list[str]:
-    """The reaction of the fixed nodes is the force on the rod."""
+    """Check that the reaction at the fixed nodes balances the force on the rod in every frame."""
     rod, base = data.table["rod_force"], data.table["base_force"]
     size = np.maximum(np.linalg.norm(rod, axis=1), FORCE_FLOOR)
     gap = np.linalg.norm(base - rod, axis=1) / size
@@ -191,7 +191,7 @@ def forces(data: Dataset) -> list[str]:
 
 
 def one_solve(data: Dataset) -> list[str]:
-    """Pokes that take another's solve move as that one, with forces in proportion."""
+    """Check that pokes which reuse another's solve have its displacements and proportional forces."""
     table = data.table
     if "solved_as" not in table:
         return []
@@ -210,9 +210,9 @@ def one_solve(data: Dataset) -> list[str]:
 
 
 def motion(data: Dataset) -> list[str]:
-    """Frames lie on the rod's path, deeper one by one, apart by the spacing (the last may be nearer).
+    """Check that frames lie on the rod's path and deepen by at least the spacing (the last may be nearer).
 
-    Where the rod has a course, `time` says how far apart they are.
+    With a course only the path is checked here; `clock` checks depths and times.
     """
     table = data.table
     recipe = data.attributes["identity"]["recipe"]
@@ -233,7 +233,7 @@ def motion(data: Dataset) -> list[str]:
 
 
 def clock(data: Dataset) -> list[str]:
-    """Time rises, depth, phase and speed are those of the rod's course, and no energy comes back."""
+    """Check that time rises, depth, phase and speed follow the course, and dissipation never decreases."""
     if not data.timed:
         return []
     table = data.table
@@ -264,7 +264,7 @@ def clock(data: Dataset) -> list[str]:
 
 
 def inclusion_profiles(data: Dataset) -> list[str]:
-    """The rigid part of every stiffness profile is the inclusion that the store describes."""
+    """Check that the rigid part of every stiffness profile is the inclusion that the store describes."""
     faults, grid = [], data.table["grid_rest"]
     for geometry in range(len(data.shapes) * len(data.levels)):
         try:
@@ -281,7 +281,7 @@ def inclusion_profiles(data: Dataset) -> list[str]:
 
 
 def _frames(data: Dataset, bad: NDArray[np.bool_], what: str) -> list[str]:
-    """One fault a poke: how many of its frames, and the first."""
+    """One fault per poke with bad frames: their number and the first."""
     faults = []
     for index in np.unique(data.table["frame_poke"][bad]):
         rows = data.rows(int(index), "frame")

@@ -1,4 +1,4 @@
-"""Common parts of the commands: applications, --version, console, log, and errors of one sentence.
+"""Common code of the commands: applications, --version, console, log, and errors of one sentence.
 
 Imported before everything else of the factory, so that `--help` does not wait for the simulator.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def make_app(command: Callable[..., None], epilog: str) -> typer.Typer:
-    """A command of its own, `python -m factory.NAME`."""
+    """Application of a single command, `python -m factory.NAME`."""
     app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
     app.command(epilog=epilog)(command)
     return app
@@ -77,7 +77,7 @@ def make_console() -> Console:
 
 
 class _ToStderr(logging.Handler):
-    """Sentences of the library, as it logs them, on the stderr of the moment."""
+    """Log handler that writes to the current stderr."""
 
     def emit(self, record: logging.LogRecord) -> None:
         typer.echo(self.format(record), err=True)
@@ -85,12 +85,12 @@ class _ToStderr(logging.Handler):
 
 @contextlib.contextmanager
 def shown_errors(doing: str) -> Iterator[None]:
-    """Show the library's log on stderr, and errors that people can act on as one sentence with exit code 2.
+    """Show the library's log on stderr, and errors that users can correct as one sentence with exit code 2.
 
     Parameters
     ----------
     doing : str
-        What was being done, for errors of the system: "cannot use".
+        Start of the sentence for an OSError, e.g. "cannot use".
     """
     logger, handler = logging.getLogger("factory"), _ToStderr()
     before = logger.level
@@ -101,7 +101,7 @@ def shown_errors(doing: str) -> Iterator[None]:
     except InputError as error:
         fail(error)
     except BrokenPipeError:
-        raise  # who reads our output has gone: not an error of the input
+        raise  # the reader of our output is gone: not an input error
     except OSError as error:
         fail(InputError(describe_os_error(error, doing)))
     finally:
@@ -110,13 +110,13 @@ def shown_errors(doing: str) -> Iterator[None]:
 
 
 def fail(error: InputError) -> NoReturn:
-    """The sentence on stderr, exit code 2."""
+    """Print the error on stderr and exit with code 2."""
     typer.echo(f"error: {error}", err=True)
     raise typer.Exit(2)
 
 
 def duration(seconds: float) -> str:
-    """Seconds as people read them."""
+    """Duration as text in s, min or h."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     if seconds < 5400:
@@ -125,12 +125,12 @@ def duration(seconds: float) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """ "1 poke", "2 pokes"."""
+    """Number with its noun: "1 poke", "2 pokes"."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def size_text(count: float) -> str:
-    """Bytes as people read them."""
+    """Size as text in B, kB, MB or GB."""
     for unit in ("B", "kB", "MB"):
         if count < 1000:
             return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"

@@ -20,7 +20,7 @@ from factory.plan import PlannedPoke
 log = logging.getLogger(__name__)
 
 CLUSTER_TIMEOUT = 300.0  # s without a scheduler or without a worker, after which a build gives up
-NOTICE_SECONDS = 10.0  # after which it says what it waits for
+NOTICE_SECONDS = 10.0  # of waiting, after which the reason is logged
 _ANSWER_SECONDS = 20.0  # for the scheduler to hand over a finished result, or to count its workers
 
 
@@ -32,9 +32,9 @@ def run_cluster(
     simulator: str,
     timeout: float = CLUSTER_TIMEOUT,
 ) -> Generator[Outcome]:
-    """Simulate pokes on a dask cluster; the arrays travel back, so that only this process writes files.
+    """Simulate pokes on a dask cluster; only this process writes files, from the arrays that workers return.
 
-    dask runs a poke again where its worker was lost, three times at most.
+    dask repeats a poke whose worker was lost, three times at most.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def run_cluster(
     Yields
     ------
     Outcome
-        In the order in which they come.
+        In the order in which pokes finish.
     """
     try:
         import distributed
@@ -66,7 +66,7 @@ def run_cluster(
         client = _connected(address, cluster, timeout)
         finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
         run = os.urandom(4).hex()  # a scheduler may still remember the keys of an earlier build
-        pending: dict[Any, tuple[int, Any]] = {}  # with the futures: dask forgets what nobody holds
+        pending: dict[Any, tuple[int, Any]] = {}  # holds the futures: dask drops a result without one
         for poke in pokes:
             future = client.submit(run_poke, poke, simulator, extensions, key=f"poke-{poke.index}-{run}")
             pending[future.key] = (poke.index, future)
@@ -76,14 +76,14 @@ def run_cluster(
         raise _lost(address, one_line(error)) from None
     finally:
         if client is not None:
-            with contextlib.suppress(Exception):  # a dead scheduler cannot say goodbye
+            with contextlib.suppress(Exception):  # a dead scheduler does not answer
                 client.close(timeout=5)
         if cluster is not None:
             cluster.close()
 
 
 def _connected(address: str, cluster: Any, timeout: float) -> Any:
-    """A client of the scheduler, once it answers and has a worker."""
+    """Wait until the scheduler answers and has a worker; return a client."""
     import distributed
 
     if cluster is not None:
@@ -114,7 +114,7 @@ def _collected(
     address: str,
     timeout: float,
 ) -> Generator[Outcome]:
-    """Outcomes as their futures finish; InputError where the scheduler is gone, or all workers are."""
+    """Yield outcomes as they finish; InputError if the scheduler is lost or has no worker for too long."""
     waiting: _Wait | None = None
     while pending:
         try:
@@ -139,7 +139,7 @@ def _collected(
         else:
             text = f"{type(lost).__name__}: {one_line(lost, ERROR_LENGTH)}"
             yield Outcome(index=index, payload=None, error=text[:ERROR_LENGTH])
-        future.release()  # the cluster need not keep what we have
+        future.release()  # so that the cluster frees the result
 
 
 def _has_workers(client: Any) -> bool:
@@ -152,7 +152,7 @@ def _has_workers(client: Any) -> bool:
 def _workers(address: str, timeout: float) -> int:
     """Number of workers of the scheduler; OSError if it does not answer in time.
 
-    A client would wait without end for a port that takes the connection and says nothing.
+    A client would wait forever on a port that accepts the connection and never answers.
     """
     import distributed
 
@@ -171,21 +171,21 @@ def _lost(address: str, reason: str) -> InputError:
 
 
 class _Wait:
-    """Waiting for something: says so once after some seconds, gives up after `timeout`."""
+    """Limit on a wait: logs the state once after `NOTICE_SECONDS`, raises InputError after `timeout` [s]."""
 
     def __init__(self, state: str, timeout: float) -> None:
         self._state, self._timeout, self._began, self._noted = state, timeout, time.monotonic(), False
 
     def left(self) -> float:
-        """Seconds until it gives up."""
+        """Seconds until the limit."""
         return max(0.0, self._began + self._timeout - time.monotonic())
 
     def restart(self) -> None:
-        """Count from now on: what it waits for was there."""
+        """Restart the clock, since the condition was met in between."""
         self._began, self._noted = time.monotonic(), False
 
     def check(self, reason: str = "") -> None:
-        """Log what is waited for, once it is time; InputError when the time is over."""
+        """Log the state once after `NOTICE_SECONDS`; InputError if the limit has passed."""
         why = f" ({reason})" if reason else ""
         if self.left() <= 0.0:
             raise InputError(

@@ -1,7 +1,7 @@
-"""The rod's course over time: how a recipe states it, the course of one poke, and the phase of each frame.
+"""The rod's course over time: its form in a recipe, the course of one poke, and the phase of each frame.
 
 course:
-  - {to_mm: 6, speed_mm_per_s: [1, 20]}    # drawn for each poke, its logarithm uniform
+  - {to_mm: 6, speed_mm_per_s: [1, 20]}    # drawn log-uniformly for each poke
   - {hold_s: 10}
   - {to_mm: 0, speed_mm_per_s: 5}
   - {hold_s: 5, frames: 4}
@@ -23,12 +23,12 @@ from tisim.course import Course
 
 PHASES = ("load", "hold", "retract", "reload", "rest")
 _MM = 1e-3
-_SAME = 1e-9  # of a course's duration or of a ramp: closer than this is one place
+_SAME = 1e-9  # relative to a course's duration or to a ramp: closer points coincide
 _LONGEST = 1e9  # s
 
 
 def _speeds(value: object) -> object:
-    """One speed as the interval that it is."""
+    """Convert a single speed to an interval."""
     return (value, value) if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
@@ -40,8 +40,8 @@ class RampRecipe(Strict):
     to_mm : float
         Depth at its end.
     speed_mm_per_s : (float, float)
-        Interval from which a speed is drawn for each poke, its logarithm uniform; one number in a recipe is
-        the speed of all.
+        Interval from which the speed of each poke is drawn log-uniformly; one number in a recipe is the speed
+        of all pokes.
     """
 
     to_mm: Annotated[float, Field(ge=0, le=1e6)]
@@ -52,14 +52,14 @@ class RampRecipe(Strict):
 
 
 class HoldRecipe(Strict):
-    """The rod rests.
+    """The rod is held at its depth.
 
     Attributes
     ----------
     hold_s : float
-        How long.
+        Duration.
     frames : int
-        Frames of the rest: one at its end, and each before at half the time of the next, as relaxation goes.
+        Number of frames: one at the end, each earlier one at half the time of the next (relaxation).
     """
 
     hold_s: Annotated[float, Field(gt=0, le=_LONGEST)]
@@ -67,7 +67,7 @@ class HoldRecipe(Strict):
 
 
 def _piece(value: object) -> object:
-    """A recipe's entry as a ramp or a hold."""
+    """Validate a recipe's entry as a ramp or a hold."""
     if not isinstance(value, Mapping):
         raise PydanticCustomError("piece", "expected the keys to_mm and speed_mm_per_s, or hold_s")
     try:
@@ -80,7 +80,7 @@ Piece = Annotated[RampRecipe | HoldRecipe, BeforeValidator(_piece)]
 
 
 def check_pieces(pieces: Sequence[RampRecipe | HoldRecipe], depth_mm: float) -> None:
-    """Raise ValueError for a course that stands still, or whose deepest point is not `depth_mm`."""
+    """Raise ValueError if a course begins with a hold, has a bad ramp, or another depth than `depth_mm`."""
     now = deepest = 0.0
     for number, piece in enumerate(pieces):
         if isinstance(piece, HoldRecipe):
@@ -103,7 +103,7 @@ def check_pieces(pieces: Sequence[RampRecipe | HoldRecipe], depth_mm: float) -> 
 def draw_course(
     pieces: Sequence[RampRecipe | HoldRecipe], spacing_mm: float, random: np.random.Generator
 ) -> Course:
-    """The course of one poke [m, s], frames a spacing apart in its ramps and at rising gaps in its holds."""
+    """Draw the course of one poke [m, s]; frames are a spacing apart in ramps, at doubling times in holds."""
     course, frames = Course(), []
     for piece in pieces:
         begin, before = course.duration, course.values[-1] if course.values else 0.0
@@ -126,14 +126,14 @@ def _drawn(speeds: tuple[float, float], random: np.random.Generator) -> float:
 
 
 def deepest(scene: Poke) -> float:
-    """Travel asked for [m], with a course or without."""
+    """Requested travel [m], with or without a course."""
     return scene.depth if scene.course is None else float(max(scene.course.values))
 
 
 def phases(depths: NDArray[np.float64]) -> NDArray[np.uint8]:
     """Phase of each piece of a course, as an index into PHASES, from the depths at their ends.
 
-    Deeper is "load", or "reload" once the rod has been drawn back; a hold where it first touched is a "rest".
+    Deeper is "load", or "reload" once the rod has been retracted; a hold at depth 0 is a "rest".
     """
     moves = np.diff(depths, prepend=0.0)
     found = np.where(moves > 0.0, 0, 2)
@@ -144,7 +144,7 @@ def phases(depths: NDArray[np.float64]) -> NDArray[np.uint8]:
 
 
 def pieces_at(times: NDArray[np.float64], moments: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Piece of a course in which each moment lies; a corner belongs to the piece that ends there."""
+    """Index of the piece of a course at each moment; a corner belongs to the piece that ends there."""
     slack = _SAME * float(times[-1])
     return np.minimum(np.searchsorted(times, moments - slack), len(times) - 1).astype(np.int64)
 

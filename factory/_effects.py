@@ -1,4 +1,4 @@
-"""Effects that a diagnosis found, as a material card states them, and the material with them."""
+"""Effects that a diagnosis found in a specimen: their entries in a material card, and their material."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tisim import Material, Moduli, laws, material_from_moduli
 BASE = "neo-hookean"  # the law that effects extend
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
-# effects that a dataset takes over: the parameter that is read, and what becomes of it
+# effects that a dataset applies: the parameter that is read, and the property that it changes
 TAKEN = {
     "compressibility": ("poisson_drop", "as the bulk modulus"),
     "creep": ("per_decade", "as the modulus at 1 s, which is the card's"),
@@ -27,7 +27,7 @@ TAKEN = {
 
 
 class Amplitude(Strict):
-    """An effect's parameter, in the unit that its name ends with, and its standard deviation."""
+    """Value and standard deviation of an effect's parameter, in the unit that ends the parameter's name."""
 
     value: float
     sd: Annotated[float, Field(ge=0)]
@@ -41,17 +41,17 @@ class CardEffect(Strict):
     effect : str
         Name in the catalogue of effects.
     belongs_to : str
-        "specimen"; what belongs to a rig, a camera or a simulator is refused.
+        "specimen"; effects of a rig, a camera or a simulator are refused.
     applies_to : {"material", "shape"}
-        "material" goes with the material into any body, "shape" belongs to the form of the measured body.
+        "material": property of the material in any body; "shape": property of the measured body's geometry.
     scope : str
         "all", or the material, specimen or trial that it was found in.
     base_law : str
         The law that it extends.
     parameters : dict of str to Amplitude
-        By names that end with their unit.
+        Parameters by name; each name ends with the unit.
     valid_range : dict of str to (float, float)
-        Range of what was measured, by names that end with their unit.
+        Range of each measured quantity by name; each name ends with the unit.
     rivals : tuple of str
         Effects, or sums of effects, that explain the data equally well.
     correlations : dict of str to float
@@ -59,7 +59,7 @@ class CardEffect(Strict):
     gain : dict, optional
         Improvement on held-out data.
     becomes : {"viscosity", "softening", "fibres", "law"}, optional
-        What of the card it is. Where that is a part, the part is taken over, and not the amplitude.
+        Entry of the card that represents the effect. A part (all but "law") replaces the amplitude.
     experiment_sha256 : str
         Digest of the experiment that it was found in.
     """
@@ -88,7 +88,7 @@ class CardEffect(Strict):
         return value
 
     def left_out(self, material: str) -> str:
-        """Why a dataset of this material does not take it over, "" where it does."""
+        """Reason why a dataset of this material ignores the effect; empty if it applies it."""
         if self.applies_to == "shape":
             return "belongs to the beam's form"
         if self.scope not in ("all", material):
@@ -98,16 +98,16 @@ class CardEffect(Strict):
         return "" if self.effect in TAKEN else "no law of the static simulator has it"
 
     def describe(self) -> str:
-        """Its amplitude and its equivalent explanations in a few words."""
+        """Short text of the effect: parameters and equivalent explanations."""
         amounts = ", ".join(f"{n} {a.value:.4g} +- {a.sd:.2g}" for n, a in self.parameters.items())
         rivals = f"; equivalent to {' or '.join(self.rivals)}" if self.rivals else ""
         return f"{self.effect} ({amounts}{rivals})"
 
 
 def extended(material: Material, effects: Sequence[CardEffect], name: str) -> Material:
-    """A neo-Hookean material with those of its effects that go with it into any body; name: the mixture's.
+    """Apply to a neo-Hookean material the effects that hold in any body; `name` is that of the mixture.
 
-    InputError names the key where there is no such material.
+    InputError, with the card's key, if an effect cannot be applied.
     """
     for number, effect in enumerate(effects):
         if effect.left_out(name):
@@ -133,7 +133,7 @@ def _with(material: Material, effect: str, value: float) -> Material:
             raise ValueError(f"expected a value above -1, got {value:g}")
         return replace(material, density=material.density * (1.0 + value))
     if effect == "compressibility":
-        # what the law has without a unit, a stiffening or a locking stretch, stays
+        # the other parameters, e.g. a stiffening or a locking stretch, are kept
         scaled = law.from_moduli(moduli.shear_modulus, _bulk(moduli, value))
         own = {n: material.parameters[n] for n in law.parameters if n not in ("lam", "bulk")}
         return replace(material, parameters={**scaled, **own})
@@ -155,7 +155,7 @@ def _bulk(moduli: Moduli, drop: float) -> float:
 
 
 def _in_law(material: Material, effect: str, value: float) -> Material:
-    """A neo-Hookean material with a constant more, at the same small-strain moduli."""
+    """Extend a neo-Hookean material by one constant, at the same small-strain moduli."""
     moduli = laws.get(material.law).moduli(material.parameters)
     g, k = moduli.shear_modulus, moduli.bulk_modulus
     if effect == "strain-stiffening":
@@ -169,8 +169,10 @@ def _in_law(material: Material, effect: str, value: float) -> Material:
 
 
 def in_one_law(materials: Mapping[str, Material]) -> dict[str, Material]:
-    """All in one law, since a dataset has one set of parameters: those that stayed neo-Hookean beside one
-    that stiffens get its law, with no stiffening. InputError where several laws cannot be one."""
+    """Express all materials in one law, since a dataset has one set of parameters.
+
+    Neo-Hookean materials beside a Yeoh material become Yeoh without stiffening. InputError for other pairs.
+    """
     asked = {m.law: name for name, m in materials.items()}
     if len(asked) == 1:
         return dict(materials)

@@ -1,4 +1,4 @@
-"""One poke is one task: what runs it, in whichever process, and what such a process needs."""
+"""Run one poke as one task in any process, and prepare such processes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tisim.parallel.extensions import Extension, adopt, needed
 SIMULATOR = "tisim:simulate"
 ERROR_LENGTH = 400
 
-# one poke takes one core; more threads would only fight, and would change the order of sums
+# one core per poke; more threads would compete, and would change the order of sums
 THREAD_VARIABLES = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
@@ -30,7 +30,7 @@ Simulate = Callable[..., Sequence[Any]]
 
 
 def sendable(pokes: Sequence[PlannedPoke]) -> tuple[Extension, ...]:
-    """Laws that were registered from outside and that the pokes need, for other processes."""
+    """Laws registered from outside that the pokes need, to be sent to other processes; InputError if not."""
     found = needed([poke.scene for poke in pokes])
     if found is None:
         names = ", ".join(sorted({poke.scene.material.law for poke in pokes}))
@@ -49,7 +49,7 @@ def load_simulator(name: str) -> Simulate:
 
 
 def run_poke(poke: PlannedPoke, simulator: str = SIMULATOR, extensions: Sequence[Extension] = ()) -> Outcome:
-    """Simulate one poke; whatever goes wrong comes back as text, so that the build goes on.
+    """Simulate one poke; any error is returned as text, so that the build continues.
 
     Parameters
     ----------

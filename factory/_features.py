@@ -1,4 +1,4 @@
-"""Depths and forces that pokes reached: as the paper's table has them, and for each shape and softness."""
+"""Depths and forces reached: in the columns of the paper's table, and by shape and material level."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from factory.reader import Dataset
 
 MEASURES = ("deepest", "largest_force", "frame_depth", "frame_force")  # the columns of the paper's table
 UNITS = ("mm", "N", "mm", "N")
-# beside the statuses: pokes without a result, and those that a partial store lacks
+# labels besides the statuses: pokes without a result, and those that a partial store lacks
 FAILED, NOT_YET = "failed", "not simulated yet"
 Pair = tuple[float, float]
 
@@ -36,19 +36,19 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Features:
-    """The pokes of one shape at one softness.
+    """Features of the pokes of one shape at one material level.
 
     Attributes
     ----------
     shape, level : str
     pokes, solves, frames : int
-        Pokes asked for, those with a solve of their own, and states in equilibrium.
+        Planned pokes, those done with a solve of their own, and frames.
     deepest, force : Spread or None
-        Deepest frame [mm] and largest force [N] of each poke that has frames; None where none has.
+        Deepest frame [mm] and largest force [N] per poke that has frames; None if none has.
     reached : float or None
-        Mean of deepest frame / depth asked for.
+        Mean ratio of the deepest frame to the requested depth.
     ended : dict of str to int
-        Pokes by why they ended: a status, "failed" or "not simulated yet".
+        Number of pokes by reason of their end: a status, "failed" or "not simulated yet".
     """
 
     shape: str
@@ -63,7 +63,7 @@ class Features:
 
 
 def measures(pokes: Sequence[PokeSummary]) -> tuple[Pair, ...] | None:
-    """Mean and standard deviation of `MEASURES` [mm, N]; None where no poke has frames."""
+    """Mean and standard deviation of `MEASURES` [mm, N]; None if no poke has frames."""
     kept = [poke for poke in pokes if len(poke.depth)]
     if not kept:
         return None
@@ -77,13 +77,13 @@ def measures(pokes: Sequence[PokeSummary]) -> tuple[Pair, ...] | None:
 
 
 def features(data: Dataset, pokes: Sequence[PokeSummary]) -> list[Features]:
-    """One row a shape and softness, in the order of the store.
+    """Features by shape and material level, in the order of the store.
 
     Parameters
     ----------
     data : Dataset
     pokes : sequence of PokeSummary
-        All of its pokes that were simulated.
+        All pokes of the dataset that are done.
     """
     asked = data.table["depth_asked"]
     own = own_solves(data)
@@ -116,13 +116,13 @@ def features(data: Dataset, pokes: Sequence[PokeSummary]) -> list[Features]:
 
 
 def own_solves(data: Dataset) -> NDArray[np.bool_]:
-    """True for pokes with a solve of their own, shape (pokes,)."""
+    """True for each poke with a solve of its own, shape (pokes,)."""
     number = np.arange(data.n_pokes)
     return np.asarray(data.table.get("solved_as", number) == number)
 
 
 def write_features(rows: Sequence[Features], path: Path) -> None:
-    """features.csv: one line a shape and softness."""
+    """Write features.csv: one line per shape and material level."""
     ends = [*(str(s) for s in STATUSES), FAILED, NOT_YET]
     parts = ("mean", "sd", "min", "max")
     head = ["shape", "softness", "pokes", "solves", "frames"]
@@ -143,7 +143,7 @@ def write_features(rows: Sequence[Features], path: Path) -> None:
 
 
 def write_softness(law: str, pokes: Sequence[PokeSummary], levels: Sequence[str], path: Path) -> None:
-    """softness.csv: the columns of the paper's table, ours and the paper's; empty where it has none."""
+    """Write softness.csv: the columns of the paper's table for this dataset and the paper, or empty."""
     heads = [
         f"{name}_{part}_{unit}" for name, unit in zip(MEASURES, UNITS, strict=True) for part in ("mean", "sd")
     ]

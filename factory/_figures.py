@@ -63,7 +63,7 @@ def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:
 
 
 def _top(plan: Plan, traces: dict[int, Trace], axes: Any, figure: Figure) -> None:
-    """The deepest frame so far as a map of how far the top has sunk."""
+    """Draw a map of the top's vertical displacement in the deepest frame so far."""
     shown = [i for i, trace in traces.items() if trace.grid is not None and len(trace.depth)]
     if not shown:
         axes.set_axis_off()
@@ -123,7 +123,7 @@ def _block(poke: PokeData, axes: Any) -> None:
 
 
 def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
-    """Upright, through the rod's axis: stiffness of the block at rest, the deformed surface, the rod."""
+    """Draw the vertical section through the rod's axis: undeformed stiffness, deformed surface, rod."""
     tip = poke.rod_tip[_deepest(poke)]
     heading = np.array(poke.direction[:2])
     lean = float(np.linalg.norm(heading))
@@ -131,7 +131,7 @@ def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
     cut = _cut(poke.surface[_deepest(poke)] - np.array([*tip[:2], 0.0]), poke.triangles, heading)
     axes.add_collection(LineCollection(cut * 1e3, colors="#2171b5", linewidths=1.2))
 
-    # of the plane: the part within the block, and the columns of the grid that are nearest to it
+    # part of the plane within the block, and the grid columns nearest to it
     rest = data.table["grid_rest"]
     (low, high), height = (rest[[0, -1], [0, -1], :2] - tip[:2]), float(rest[0, 0, 2])
     ends = np.sort([low, high], axis=0)
@@ -165,12 +165,12 @@ def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
 
 
 def _cut(surface: Any, triangles: Any, heading: Any) -> Any:
-    """Section of a surface by an upright plane through the origin: segments (k, 2, 2), along heading and up.
+    """Cut of a surface by a vertical plane through the origin: segments (k, 2, 2), along the heading and z.
 
-    surface (n, 3), beside the origin in x and y but at its own height.
+    `surface` (n, 3) is relative to the origin in x and y, with absolute z.
     """
     side = surface[:, :2] @ np.array([-heading[1], heading[0]])
-    side = np.where(side == 0.0, 1e-12, side)  # through no corner
+    side = np.where(side == 0.0, 1e-12, side)  # so that no corner lies on the plane
     flat = np.stack([surface[:, :2] @ heading, surface[:, 2]], axis=1)
     first, second = triangles, np.roll(triangles, -1, axis=1)
     crossed = (side[first] > 0) != (side[second] > 0)  # none or two edges of each triangle

@@ -1,4 +1,4 @@
-"""Input that people write: YAML files read into validated models."""
+"""YAML files written by users, read into validated models."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LIMITS = Limits(depth=40, values=50_000)
 
 
 class Strict(BaseModel):
-    """Base of everything read from YAML: unknown keys, NaN and infinity are refused."""
+    """Base of all models read from YAML: unknown keys, NaN and infinity are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
 
@@ -32,7 +32,7 @@ def read_yaml(path: Path, model: type[M]) -> M:
     Raises
     ------
     InputError
-        In one sentence that names the file, the key and what was expected.
+        If the file is not valid; one sentence names the file, the key and the expected value.
     """
     try:
         return model.model_validate(as_tuples(read_mapping(path)))
@@ -46,7 +46,7 @@ def read_mapping(path: Path) -> dict[Any, Any]:
     Raises
     ------
     InputError
-        Where the file cannot be read, is no YAML, repeats a key, or exceeds a limit.
+        If the file cannot be read, is not YAML, repeats a key, or exceeds a limit.
     """
     try:
         status = path.stat()
@@ -68,7 +68,7 @@ def read_mapping(path: Path) -> dict[Any, Any]:
 
 
 def validation_sentence(error: ValidationError) -> str:
-    """Faults of an input in one sentence: all missing and unknown keys, and the first other fault."""
+    """One sentence on invalid input: all missing and unknown keys, and the first other fault."""
     problems = _flat(error.errors(include_url=False))
     missing = [_key(p["loc"]) for p in problems if p["type"] == "missing"]
     unknown = [_key(p["loc"]) for p in problems if p["type"] == "extra_forbidden"]
@@ -86,9 +86,9 @@ def validation_sentence(error: ValidationError) -> str:
 
 
 def nested_problems(error: ValidationError, *, under: tuple[int | str, ...] = ()) -> PydanticCustomError:
-    """The problems of a model that a validator calls, to be raised there: reported under the outer key.
+    """Error that a validator raises for a nested model, so that its problems appear under the outer key.
 
-    under: keys between that one and the problems.
+    `under` holds the keys between the outer key and the problems.
     """
     problems = [{**problem, "loc": (*under, *problem["loc"])} for problem in error.errors(include_url=False)]
     return PydanticCustomError("nested", "{text}", {"text": "nested", "problems": problems})

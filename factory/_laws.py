@@ -21,8 +21,10 @@ class Lame(Strict):
 
 
 class MooneyRivlin(Strict):
-    """c10, c01, bulk [Pa]: shear modulus 2 (c10 + c01). One of the two may be negative: calibrations on
-    moderate strains find that at times."""
+    """c10, c01, bulk [Pa]: shear modulus 2 (c10 + c01).
+
+    One of c10 and c01 may be negative, as in some calibrations on moderate strains.
+    """
 
     c10: Real
     c01: Real
@@ -36,7 +38,7 @@ class MooneyRivlin(Strict):
 
 
 class Ogden(Strict):
-    """mu [Pa] and alpha [-], one value a term; bulk [Pa]: shear modulus sum mu alpha / 2."""
+    """mu [Pa] and alpha [-], one value per term; bulk [Pa]: shear modulus sum mu alpha / 2."""
 
     mu: Annotated[tuple[float, ...], Field(min_length=1)]
     alpha: Annotated[tuple[float, ...], Field(min_length=1)]
@@ -82,9 +84,9 @@ class Laws(Strict):
         return self
 
     def of(self, law: str) -> dict[str, float | tuple[float, ...]] | None:
-        """Parameters under one law; None where the card does not hold them."""
+        """Parameters under one law; None if the card does not hold them."""
         found = self.model_dump(by_alias=True).get(law)
         return None if found is None else dict(found)
 
 
-LAWS = tuple(field.alias or name for name, field in Laws.model_fields.items())  # that every card holds
+LAWS = tuple(field.alias or name for name, field in Laws.model_fields.items())  # in every card

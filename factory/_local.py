@@ -28,7 +28,7 @@ _ATTEMPTS = 2  # a poke whose worker died twice is recorded as failed
 
 
 def end_with_parent(parent: int) -> None:
-    """Ends this process soon after its parent is gone (kill -9 leaves no time to say goodbye)."""
+    """End this process soon after its parent ends (kill -9 allows the parent no clean-up)."""
     while os.getppid() == parent:
         time.sleep(0.5)
     os._exit(1)
@@ -48,7 +48,7 @@ def run_local(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> 
     Yields
     ------
     Outcome
-        In the order in which they come.
+        In the order in which pokes finish.
     """
     extensions = sendable(pokes)
     waiting = deque(pokes)
@@ -75,7 +75,7 @@ def run_local(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> 
                     raise InputError(f"the workers cannot load the simulator {simulator}: {message}")
                 worker.poke = waiting.popleft() if waiting else None
                 if worker.poke is not None:
-                    with contextlib.suppress(OSError):  # a dead worker: the next wait() says so
+                    with contextlib.suppress(OSError):  # a dead worker: the next wait() reports it
                         pipe.send(worker.poke)
                 worker.ready = True
                 if worker.poke is None:
@@ -88,7 +88,7 @@ def run_local(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> 
 def _requeue_failed(
     worker: _Worker, waiting: deque[PlannedPoke], deaths: dict[int, int]
 ) -> Generator[Outcome]:
-    """Put a dead worker's poke back into the queue, or give it up after some deaths."""
+    """Put a dead worker's poke back into the queue, or report it as failed after `_ATTEMPTS` deaths."""
     _stop(worker)
     code = worker.process.exitcode
     if not worker.ready:
@@ -138,7 +138,7 @@ def _work(pipe: Connection, simulator: str, parent: int, extensions: Sequence[Ex
 
 @contextlib.contextmanager
 def _environment(variables: dict[str, str]) -> Iterator[None]:
-    """Variables that a child started inside inherits."""
+    """Set environment variables for child processes started inside."""
     before = {name: os.environ.get(name) for name in variables}
     os.environ.update(variables)
     try:
@@ -153,7 +153,7 @@ def _environment(variables: dict[str, str]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _no_interrupts() -> Iterator[None]:
-    """Children started inside never see Ctrl-C, which a terminal sends to all: we end them ourselves."""
+    """Block Ctrl-C, which a terminal sends to all, in children started inside: the parent ends them."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

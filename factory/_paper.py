@@ -1,10 +1,10 @@
-"""The paper's figures of its datasets, for comparison."""
+"""Numbers that the paper states of its datasets, for comparison."""
 
 from __future__ import annotations
 
 # "Generalizing Soft Tissue Deformation and Force Prediction Across Material Stiffness and Geometry"
 SOURCE = "the paper's table of dataset features (label data_features, section Data Generation)"
-# columns of that table: largest depth and force a poke, depth and force a snapshot
+# columns of that table: largest depth and force per poke, depth and force per snapshot
 COLUMNS = ("Sim_max [mm]", "F_max [N]", "Tip_mean [mm]", "F_mean [N]")
 # law -> material level -> mean and sd of each column
 PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
@@ -20,12 +20,12 @@ PAPER: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
     },
 }
 
-# section Data Generation, its text: 11 x 3 x 40 pokes of each law, and their snapshots in all
+# text of section Data Generation: 11 x 3 x 40 pokes of each law, and the total of their snapshots
 SHAPES, POKES_EACH = 11, 40
 SNAPSHOTS = {"ogden": 14305, "mooney-rivlin": 13672}
-DEPTH_MM = 30.0  # the largest penetration depth asked for
+DEPTH_MM = 30.0  # the largest requested depth
 
 
 def pokes_a_level() -> int:
-    """Pokes behind each row of the paper's table: all shapes at one softness."""
+    """Number of pokes in each row of the paper's table: all shapes at one material level."""
     return SHAPES * POKES_EACH

@@ -1,4 +1,4 @@
-"""Parts of a card beside its laws: viscosity, softening and fibres, by their names in `tisim.parts`.
+"""Parts of a card beside its laws: viscosity, softening and fibres, by the names of `tisim.parts`.
 
     viscosity: {kind: prony, fractions: [0.2, 0.1], times_s: [1, 30], modulus: long-time}
     softening: {kind: ogden-roxburgh, r: 2, m_J_per_m3: 2000, beta: 0.1}
@@ -19,13 +19,13 @@ from pydantic_core import PydanticCustomError
 from factory._errors import one_line
 from tisim import Material, parts
 
-UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key may end with
+UNITS = ("s", "per_s", "Pa", "J_per_m3")  # suffixes that a key may have
 FIELDS: dict[str, Any] = {
     "viscosity": parts.Viscosity,
     "softening": parts.Softening,
     "fibres": parts.Fibres,
 }
-# the unit behind a field of tisim's own parts; those from outside are written without
+# unit suffix of the fields of tisim's own parts; those of other parts have none
 _WRITTEN = {"times": "s", "m": "J_per_m3", "k1": "Pa"}
 
 
@@ -52,7 +52,7 @@ def _plain(value: Any) -> Any:
 
 
 def _reader(name: str) -> Callable[[object], object]:
-    """Reader of a part of a card's entry; faults are stated under the entry's own keys."""
+    """Validator that converts a card's entry to a part, with faults reported under the entry's keys."""
 
     def read(value: object) -> object:
         if value is None or isinstance(value, FIELDS[name]):
@@ -68,7 +68,7 @@ def _reader(name: str) -> Callable[[object], object]:
         try:
             part = kind(**found)
             part.check()
-        except ValueError as error:  # it begins with the field
+        except ValueError as error:  # its text begins with the field
             field, _, text = one_line(error).partition(": ")
             key = keys.get(field, "")
             raise _faults(("value", key, text if key else one_line(error), None)) from None
@@ -90,7 +90,7 @@ def _kind(name: str, value: Mapping[str, object]) -> type[parts.Part]:
 
 
 def _keys(kind: type[parts.Part], value: Mapping[str, object]) -> dict[str, str]:
-    """Key that states each given field; unknown, doubled and missing ones are refused."""
+    """Key of each given field; unknown, doubled and missing keys are refused."""
     found: dict[str, str] = {}
     problems: list[tuple[str, str, str, object]] = []
     known = {f.name: f for f in fields(kind) if f.init}
@@ -122,7 +122,7 @@ def _sound(value: object) -> bool:
 
 
 def _faults(*problems: tuple[str, str, str, object]) -> PydanticCustomError:
-    """Faults of an entry's keys, to be reported under them: (type, key, sentence, value)."""
+    """Error to be reported under an entry's keys; each problem is (type, key, sentence, value)."""
     listed = [
         {"type": kind, "loc": (key,) if key else (), "msg": text or kind, "input": value}
         for kind, key, text, value in problems

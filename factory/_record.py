@@ -1,4 +1,4 @@
-"""One simulated poke as arrays, and those arrays as bytes that depend on nothing else."""
+"""Convert a simulated poke to arrays, and these to bytes that depend on nothing else."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STATUSES = tuple(Status)
 COUNTERS = ("steps", "newton_iterations", "factorisations", "linear_iterations", "step_cuts")
 Arrays = dict[str, NDArray[np.generic]]
 
-# what `record` returns: kind of number and shape; a word stands for a count that several arrays share
+# arrays of `record`: kind of number and shape; a word names a count common to the arrays
 _SHAPES: dict[str, tuple[str, tuple[int | str, ...]]] = {
     "depth": ("f", ("frames",)),
     "rod_tip": ("f", ("frames", 3)),
@@ -44,28 +44,28 @@ _SHAPES: dict[str, tuple[str, tuple[int | str, ...]]] = {
     "message": ("u", ("bytes",)),
     "counters": ("i", (len(COUNTERS),)),
 }
-# what a poke with a course has besides
+# further arrays of a poke with a course
 _OF_TIME: dict[str, tuple[str, tuple[int | str, ...]]] = {
     "time": ("f", ("frames",)),
     "phase": ("u", ("frames",)),
     "rod_speed": ("f", ("frames",)),
     "dissipated_energy": ("f", ("frames",)),
 }
-_NEAR = 1e-6  # m: how far a path may be from the planned one
+_NEAR = 1e-6  # m: tolerance on the planned path
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of one poke: its arrays as bytes, or the text of the error.
+    """Result of one poke: its arrays as bytes, or an error text.
 
     Attributes
     ----------
     index : int
         Index of the poke in its plan.
     payload : bytes or None
-        The arrays (see `encode`); None where the poke failed.
+        The arrays (see `encode`); None if the poke failed.
     error : str or None
-        Why it failed.
+        Reason of the failure.
     wall, core : float
         Wall and core time [s]; they go to the ledger, never into the store's arrays.
     """
@@ -78,7 +78,7 @@ class Outcome:
 
 
 def record(scene: Poke, result: Result) -> Arrays:
-    """The arrays stored for one poke (names and units as in `_schema`)."""
+    """Arrays stored for one poke (names and units as in `_schema`); ValueError if the result is invalid."""
     mesh = result.mesh
     if mesh.symmetry:
         raise ValueError("the poke came back on a mesh cut by a mirror plane: expected the whole block")
@@ -123,7 +123,7 @@ def record(scene: Poke, result: Result) -> Arrays:
 
 
 def _of_time(scene: Poke, result: Result) -> Arrays:
-    """Arrays of a poke with a course; none without."""
+    """Further arrays of a poke with a course; empty without one."""
     if scene.course is None:
         return {}
     if result.time is None:
@@ -140,9 +140,9 @@ def _of_time(scene: Poke, result: Result) -> Arrays:
 
 
 def check_arrays(arrays: Mapping[str, NDArray[Any]], poke: PlannedPoke) -> None:
-    """Read every array of a staged result; ValueError or KeyError where it is not this poke's result.
+    """Read every array of a staged result; ValueError or KeyError if it is not this poke's result.
 
-    Results staged by earlier versions do not name their poke; their path tells where they belong.
+    Results staged by earlier versions do not name their poke; their path identifies it.
     """
     if "poke" in arrays and int(arrays["poke"]) != poke.index:
         raise ValueError(f"is the result of poke {int(arrays['poke'])}")

@@ -1,4 +1,4 @@
-"""Output of the build command: the plan, progress with the time left, and the preview beside the store."""
+"""Output of the build command: the plan, progress with the time left, and the preview picture."""
 
 from __future__ import annotations
 
@@ -33,37 +33,37 @@ log = logging.getLogger(__name__)
 _LINE_SECONDS = 20.0  # between lines where the output is no terminal
 _PICTURE_SECONDS = 120.0
 
-# Measured with Ogden on 2 cores: 12 core-s a poke to 10 mm (recipe quick), 55 s to the end, which came at
-# 24 mm on average (recipe sample, asked for 30 mm). What lies deep is dear.
+# Measured with Ogden on 2 cores: 12 core-s per poke to 10 mm (recipe quick), 55 s to the end of the poke, at
+# 24 mm on average (recipe sample, 30 mm requested). Deeper steps cost more.
 NODES = 5_500
 SECONDS_TO_10_MM = 12.0
-GROWTH = 1.4  # the power of the depth asked for that joins the two
-SECONDS_A_STEP = 0.6  # of a hold, or of another way of the rod
-FRAMES_PER_MM = 0.65  # frames a millimetre of depth: most pokes end before the whole depth
+GROWTH = 1.4  # power of the requested depth that fits both
+SECONDS_A_STEP = 0.6  # a hold, or a step of further travel
+FRAMES_PER_MM = 0.65  # fraction of the requested frames: most pokes end before the whole depth
 SURFACE_NODES = 1_700
 _COMPRESSED = 0.85
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Time and size to expect of a build.
+    """Expected time and size of a build.
 
     Attributes
     ----------
     nodes : int
-        Of a mesh.
+        Nodes per mesh.
     poke_seconds : float
-        Core time of one poke [s].
+        Time of one solve on one core [s].
     seconds : float
-        Wall time of the pokes that are missing [s].
+        Wall time of the missing pokes [s].
     size : float
-        Of the store [bytes].
+        Size of the store [bytes].
     missing : int
-        Pokes that are not done.
+        Number of pokes that are not done.
     solves : int
-        Of these, solves to do: pokes that differ by the modulus alone share one.
+        Number of solves for these; pokes that differ only by a factor of the moduli share one.
     measured : bool
-        `poke_seconds` comes from this build's ledger.
+        True if `poke_seconds` comes from this build's ledger.
     """
 
     nodes: int
@@ -76,7 +76,7 @@ class Estimate:
 
 
 def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
-    """Time and size to expect, from the ledger of the run so far or from measured defaults: a rough guess."""
+    """Estimate time and size from the ledger of the run so far, or else roughly from measured defaults."""
     staging = Staging(target)
     ledger = read_ledger(staging.ledger_file)
     walls = [float(entry["wall_seconds"]) for entry in ledger.values() if not entry.get("error")]
@@ -103,7 +103,7 @@ def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
 
 
 def _seconds_after_loading(plan: Plan) -> float:
-    """Core time of what a course adds to the way to its depth, by steps; mean of the plan's pokes [s]."""
+    """Core time of the steps that a course adds to the first loading, mean of the plan's pokes [s]."""
     each = []
     for poke in plan.pokes:
         scene = poke.scene
@@ -122,7 +122,7 @@ class Trace:
     Attributes
     ----------
     depth, force : ndarray, shape (frames,)
-        Travel of the indenter [m] and size of the force on it [N].
+        Travel of the indenter [m] and magnitude of the force on it [N].
     grid : ndarray, shape (32, 32, 3), or None
         Displacement of the grid in the deepest frame [m].
     """
@@ -133,12 +133,12 @@ class Trace:
 
 
 def preview_path(target: Path) -> Path:
-    """NAME.zarr -> NAME.png, beside it."""
+    """Path of the preview of NAME.zarr: NAME.png beside it."""
     return target.with_suffix(".png")
 
 
 def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Table:
-    """The plan, as --dry-run prints it."""
+    """Table of the plan, as printed by --dry-run."""
     protocol = plan.recipe.protocol
     table = Table(title=f"Plan: recipe {plan.recipe.name}, {plan.model}", show_header=False)
     table.add_row("store", str(target))
@@ -178,7 +178,7 @@ def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Ta
 
 
 def _course_text(plan: Plan) -> str:
-    """The pieces of the rod's course, and how long it takes."""
+    """Text of the rod's course: its pieces, its duration and its largest number of frames."""
     words = []
     for piece in plan.recipe.protocol.course:
         if isinstance(piece, HoldRecipe):
@@ -194,7 +194,7 @@ def _course_text(plan: Plan) -> str:
 
 
 def effect_lines(plan: Plan) -> list[tuple[str, str]]:
-    """Each effect of the cards: its mixture, and what becomes of it."""
+    """Mixture and text of each effect of the cards; the text states whether the dataset applies it."""
     lines = []
     for card in plan.cards:
         for effect in card.effects:
@@ -219,7 +219,7 @@ def _show(value: Any) -> str:
 
 
 class Screen:
-    """Progress of one build on a terminal (a bar) or elsewhere (a line now and then)."""
+    """Progress of one build: a bar on a terminal, otherwise a line every `_LINE_SECONDS`."""
 
     def __init__(self, plan: Plan, target: Path, console: Console, expected: Estimate) -> None:
         self._plan, self._target, self._console, self._expected = plan, target, console, expected
@@ -248,7 +248,7 @@ class Screen:
         self._bar.stop()
 
     def update(self, state: BuildProgress) -> None:
-        """The build's `on_progress`: called at the start and after each poke."""
+        """Callback `on_progress` of the build, called at the start and after each poke."""
         now = time.monotonic()
         if state.outcome is None:
             self._first = state.done
@@ -277,7 +277,7 @@ class Screen:
             self._picture = time.monotonic()
 
     def finish(self, built: Built) -> None:
-        """The last picture and where everything is."""
+        """Draw the last preview and print a summary of the build."""
         if self._traces or not preview_path(self._target).exists():
             self._draw()
         new = f"{built.simulated} simulated now"
@@ -313,5 +313,5 @@ class Screen:
 
         try:
             draw_preview(self._plan, self._traces, preview_path(self._target))
-        except OSError as error:  # a picture is not worth a build
+        except OSError as error:  # a build must not fail for its preview
             log.warning("%s.", describe_os_error(error, "no preview picture:"))

@@ -16,7 +16,7 @@ _INSIDE = 1e-7  # a point this far outside a facet, in the facet's own coordinat
 
 
 def grid_points(block: tuple[float, float, float]) -> NDArray[np.float64]:
-    """Rest positions of the grid on the top face: the middles of 32 x 32 equal cells.
+    """Rest positions of the grid on the top face: the centres of 32 x 32 equal cells.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def grid_points(block: tuple[float, float, float]) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (32, 32, 3)
-        Positions [m]; row index along y, column index along x, both upwards.
+        Positions [m]; rows in the order of y, columns in the order of x, both increasing.
     """
     x = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * block[0]
     y = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * block[1]
@@ -64,12 +64,12 @@ def interpolation(
     facets : ndarray of int
         tri3, tri6, quad4 or quad8, edges straight; a quad4 with a repeated node counts as a triangle.
     points : ndarray, shape (p, 2 or more)
-        Of which x and y are used [m]. Each belongs to the facet that holds it best.
+        Points [m], by x and y alone; each is assigned to the facet that it is outside of by the least.
 
     Raises
     ------
     ValueError
-        Where a point lies outside of all facets.
+        If a point lies outside of all facets.
     """
     columns = facets.astype(np.int64)
     corners, is_quad = _corners(columns)
@@ -103,7 +103,7 @@ def interpolation(
 
 def _corners(facets: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """Four corner columns (triangles first, then a repeated node) and which facets are true quads."""
-    if facets.shape[1] == 8:  # one with a repeated corner is a quad all the same
+    if facets.shape[1] == 8:  # a quad even with a repeated corner
         return facets[:, :4], np.ones(len(facets), dtype=bool)
     if facets.shape[1] != 4:
         return facets[:, [0, 1, 2, 2]], np.zeros(len(facets), dtype=bool)
@@ -137,7 +137,7 @@ def _inverse_bilinear(
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Coordinates in [-1, 1]^2 of targets (m, 2) in convex quads (m, 4, 2), by Newton's method.
 
-    Also which of them were found: a target far outside a skewed quad may have none.
+    Also a mask of those found: a target far outside a skewed quad may have none.
     """
     st = np.zeros_like(target)
     for _ in range(25):
@@ -149,7 +149,7 @@ def _inverse_bilinear(
         det = np.where(np.abs(det) < 1e-30, 1e-30, det)
         step_s = (residual[:, 0] * dt[:, 1] - residual[:, 1] * dt[:, 0]) / det
         step_t = (residual[:, 1] * ds[:, 0] - residual[:, 0] * ds[:, 1]) / det
-        # far-away targets of the bounding-box test may run off: they are not inside anyway
+        # targets far away, which pass the bounding-box test, may diverge: they are not inside
         st = np.clip(st - np.stack([step_s, step_t], axis=1), -3, 3)
     miss = np.abs(np.einsum("mk,mkc->mc", _bilinear(st), xy) - target).max(axis=1)
     return st, miss <= 1e-9 * np.ptp(xy, axis=1).max(axis=1)
@@ -208,7 +208,7 @@ def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
 
 
 def level_depths(height: float) -> NDArray[np.float64]:
-    """Depths below the rest surface that the levels sample [m]: the middles of 128 equal layers."""
+    """Depths of the profile levels below the rest surface [m]: mid-depths of 128 equal layers."""
     return np.asarray((np.arange(LEVELS) + 0.5) * (height / LEVELS), dtype=np.float64)
 
 
@@ -222,11 +222,11 @@ def profiles(
     grid : ndarray, shape (rows, columns, 3)
         Rest positions of the grid points [m].
     height : float
-        Of the block [m].
+        Height of the block [m].
     inclusion : Inclusion
         Its code is 1.
     stiffness : float
-        The silicone's code.
+        Code of the silicone.
 
     Returns
     -------

@@ -15,7 +15,7 @@ from factory._laws import LAWS
 from factory._record import COUNTERS, STATUSES
 from factory._sampling import LEVELS, SIZE
 
-# what the first dimension counts; "value" = surface nodes of all frames of all pokes
+# items counted by the first dimension; "value" = surface nodes of all frames of all pokes
 Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"]
 MESSAGE_BYTES = 512
 NOT_SIMULATED = "not simulated yet"  # message of the pokes that a partial store lacks
@@ -32,11 +32,11 @@ class Spec:
     Attributes
     ----------
     rows : Rows
-        What the first dimension counts.
+        Items counted by the first dimension.
     dtype : str
         NumPy type of the values.
     text : str
-        What it holds, for people.
+        Description of the content.
     dims : tuple of str
         Names of the dimensions after the first.
     row : tuple of int
@@ -189,7 +189,7 @@ SPECS: dict[str, Spec] = {
     ),
 }
 
-# of a recipe with a course alone, so that the others' stores stay as they were
+# only in stores of recipes with a course, so that the others stay as they were
 COURSE_SPECS: dict[str, Spec] = {
     "course_time": Spec(
         rows="poke", dtype="f8", units="s", dims=("course_piece",),
@@ -214,7 +214,7 @@ COURSE_SPECS: dict[str, Spec] = {
     ),
 }
 
-# where pokes that differ by the modulus alone are one solve
+# only in stores where pokes that differ by a factor of the moduli share one solve
 DERIVED_SPECS: dict[str, Spec] = {
     "solved_as": Spec(
         rows="poke", dtype="i4",
@@ -235,7 +235,7 @@ FIXED_DIMENSION = {"grid_rest": "grid_row", "level_depth": "level"}
 
 
 def specs_of(identity: Mapping[str, Any]) -> dict[str, Spec]:
-    """The arrays of a store, from a plan's identity."""
+    """Specifications of a store's arrays, by name, from a plan's identity."""
     return {
         **SPECS,
         **(COURSE_SPECS if identity["recipe"]["protocol"].get("course") else {}),

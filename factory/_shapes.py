@@ -1,11 +1,11 @@
 """The shapes of a recipe: inclusions stated one by one, or drawn from ranges of their lengths (mm).
 
 Inclusion shapes are those of `tisim.inclusions.recipe_shapes()`: one that is registered there is known here.
-An entry with the key `draw` stands for as many shapes, whose lengths are drawn between the two that it gives:
+An entry with the key `draw` gives that number of shapes, each length drawn uniformly from an interval:
 
     {kind: cube, id: cube, draw: 12, side_mm: [6, 26]}
 
-They are drawn when the recipe is read, and from there on are shapes like any others.
+They are drawn when the recipe is read, and are then shapes like any others.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ Natural = Annotated[float, Field(ge=0, le=1e6)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=60)]
 
 _MM = 1e-3
-_THINNEST_MM = 1.0  # what tisim's meshes need above and beside an inclusion, and of it above the base
-_DIGITS = 2  # of lengths drawn [mm]
-_DRAWS = 1000  # for one shape that fits
+_THINNEST_MM = 1.0  # least that tisim's meshes need above and beside an inclusion, and of it above the base
+_DIGITS = 2  # decimals of drawn lengths [mm]
+_DRAWS = 1000  # attempts to draw one shape that fits
 
 
 class Shape(Strict):
@@ -73,11 +73,11 @@ class Shape(Strict):
 
     @property
     def turned(self) -> bool:
-        """A turn about the vertical changes it."""
+        """True if a rotation about the vertical changes it."""
         return self._shape.turned
 
     def standing(self, x_mm: float, y_mm: float, angle: float) -> Inclusion:
-        """The inclusion [m] at a place of the base [mm], turned by an angle [rad]."""
+        """The inclusion [m] at a position on the base [mm], rotated about the vertical by an angle [rad]."""
         return self._shape.standing(self.lengths_mm, x_mm, y_mm, angle).scaled(_MM)
 
     @property
@@ -87,7 +87,7 @@ class Shape(Strict):
 
 @lru_cache(maxsize=64)
 def _shape_model(shape: RecipeShape) -> type[Shape]:
-    """The model of one kind of inclusion, with its lengths as keys."""
+    """Pydantic model of one kind of inclusion, with its lengths as keys."""
     keys: dict[str, Any] = {"kind": (Literal[shape.name], ...)}
     keys |= {
         f"{p.name}_mm": (Positive if p.positive else Natural, ... if p.default is None else p.default)
@@ -98,13 +98,13 @@ def _shape_model(shape: RecipeShape) -> type[Shape]:
 
 
 def of_its_kind(value: object) -> object:
-    """A recipe's entry as the model of its kind."""
+    """Validate a recipe's entry with the model of its kind."""
     return _as_model(value, _shape_model)
 
 
 def _as_model(value: object, model: Callable[[RecipeShape], type[Strict]]) -> object:
     if not isinstance(value, Mapping) or "kind" not in value:
-        return value  # the base model says what is missing
+        return value  # the base model reports what is missing
     known, kind = inclusions.recipe_shapes(), value["kind"]
     if not isinstance(kind, str) or kind not in known:
         names = ", ".join(repr(name) for name in known)
@@ -120,14 +120,14 @@ _SHAPE: TypeAdapter[Shape] = TypeAdapter(Annotated[Shape, BeforeValidator(of_its
 
 @dataclass(frozen=True, kw_only=True)
 class Room:
-    """Room for inclusions in a block [mm]: see `factory.recipe.Recipe`."""
+    """Space for inclusions in a block [mm]; fields as in `factory.recipe.Recipe`."""
 
     block_mm: tuple[float, float, float]
     border_mm: float
     cover_mm: float
 
     def fault(self, shape: Shape) -> str | None:
-        """Why a shape does not fit; None where it does."""
+        """Reason why a shape does not fit; None if it does."""
         height, cover, top = self.block_mm[2], max(self.cover_mm, _THINNEST_MM), shape.top_mm
         if top < _THINNEST_MM:
             least = f"expected at least {_THINNEST_MM:g} mm of it above the base"
@@ -140,17 +140,17 @@ class Room:
 
 
 class Drawn(Strict):
-    """Shapes of one kind, of lengths that are drawn.
+    """Shapes of one kind with random lengths.
 
     Attributes
     ----------
     kind : str
     id : str
-        What their names begin with: `ID-01`, `ID-02` and so on.
+        Prefix of their names: `ID-01`, `ID-02` and so on.
     draw : int
-        How many.
+        Number of shapes.
 
-    Each length is one number, or two between which each shape's own is drawn.
+    Each length is one number, or an interval from which it is drawn for each shape.
     """
 
     kind: str
@@ -158,7 +158,7 @@ class Drawn(Strict):
     draw: Annotated[int, Field(ge=1, le=10_000)]
 
     def shapes(self, room: Room, random: np.random.Generator) -> list[dict[str, Any]]:
-        """The shapes' entries; ValueError where none is found that fits."""
+        """Draw the entries of the shapes; ValueError if none is found that fits."""
         digits = max(2, len(str(self.draw)))
         return [self._one(f"{self.id}-{k + 1:0{digits}}", room, random) for k in range(self.draw)]
 
@@ -188,7 +188,7 @@ def _in_order(value: tuple[float, float]) -> tuple[float, float]:
 
 @lru_cache(maxsize=64)
 def _drawn_model(shape: RecipeShape) -> type[Drawn]:
-    """The model of drawn shapes of one kind, with their lengths as keys."""
+    """Pydantic model of drawn shapes of one kind, with their lengths as keys."""
     keys: dict[str, Any] = {"kind": (Literal[shape.name], ...)}
     for p in shape.parameters:
         one: Any = Positive if p.positive else Natural
@@ -204,7 +204,7 @@ _DRAWN: TypeAdapter[Drawn] = TypeAdapter(
 
 
 class _Ground(BaseModel):
-    """Keys of `factory.recipe.Recipe` from which shapes are drawn."""
+    """Keys of `factory.recipe.Recipe` that drawn shapes depend on."""
 
     model_config = ConfigDict(extra="ignore", strict=True, allow_inf_nan=False)
 
@@ -215,9 +215,9 @@ class _Ground(BaseModel):
 
 
 def with_drawn_shapes(recipe: object) -> object:
-    """A recipe as read, each entry of `shapes` that has a key `draw` replaced by the shapes drawn.
+    """Replace each entry of a recipe's `shapes` that has a key `draw` by the shapes drawn.
 
-    They are drawn from the recipe's seed and the entry's place.
+    The random generator is seeded with the recipe's seed and the entry's index.
     """
     shapes = recipe.get("shapes") if isinstance(recipe, Mapping) else None
     if not isinstance(shapes, tuple) or not any(_is_drawn(entry) for entry in shapes):

@@ -1,7 +1,7 @@
-"""Pokes that differ by a modulus alone are one solve.
+"""Pokes that differ only by a factor of the moduli share one solve.
 
-Without gravity and time the scene has no other stress to compare a modulus with: of a law W(F) and s W(F) the
-tissue moves alike, and forces are in proportion to s.
+Without gravity and without time the moduli are the only stresses of the scene: the energies W(F) and s W(F)
+give the same displacements, and forces in the ratio s.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tisim import Material, Poke, laws
 if TYPE_CHECKING:
     from factory.plan import PlannedPoke
 
-# parts of a modulus: cards are written with five digits, which is a ten thousandth of the force's own error
+# relative tolerance on moduli: cards hold five digits, and the error of the simulated force is larger
 ROUNDED = 1e-4
 FORCES = ("rod_force", "base_force")
 
 
 def modulus_ratio(material: Material, other: Material) -> float | None:
-    """s where the stress of `material` is s times that of `other` at any deformation; None where it is not.
+    """Ratio of the stress of `material` to that of `other`; None if it depends on the deformation.
 
-    Every parameter in Pa differs by the same factor, to `ROUNDED`, and every other one is the same. Materials
-    with parts beside their law have no such factor.
+    The ratio exists if every parameter in Pa differs by the same factor, to `ROUNDED`, and every other one is
+    equal. Materials with parts beside their law have none.
     """
     if material.law != other.law or material.has_parts or other.has_parts:
         return None
@@ -43,7 +43,7 @@ def modulus_ratio(material: Material, other: Material) -> float | None:
 
 
 def scale_with_modulus(scenes: Sequence[Poke]) -> bool:
-    """True if pokes have one motion at all material levels, with forces in proportion to the modulus."""
+    """True if all material levels give equal displacements, with forces proportional to the shear modulus."""
     first = scenes[0].material
     materials = {id(scene.material): scene.material for scene in scenes}.values()
     if any(scene.course is not None or any(scene.gravity) for scene in scenes):
@@ -52,7 +52,7 @@ def scale_with_modulus(scenes: Sequence[Poke]) -> bool:
 
 
 def one_solve(pokes: Sequence[PlannedPoke]) -> tuple[PlannedPoke, ...]:
-    """The pokes, each with the first one that moves alike, and by what its forces are larger."""
+    """Assign to each poke the first poke with the same displacements, and the ratio of their forces."""
     first: dict[tuple[int, int], list[PlannedPoke]] = {}
     found = []
     for poke in pokes:
@@ -75,7 +75,7 @@ def _alike(scene: Poke, other: Poke) -> float | None:
 
 
 def in_proportion(arrays: Arrays, poke: PlannedPoke) -> Outcome:
-    """The result of a poke from the arrays of the one that it is solved as; its counters are 0."""
+    """Outcome of a derived poke from the arrays of its solve: forces scaled, solver counters 0."""
     scaled = {name: np.asarray(values) for name, values in arrays.items()}
     for name in FORCES:
         scaled[name] = poke.force_factor * np.asarray(scaled[name], dtype=np.float64)
@@ -85,7 +85,7 @@ def in_proportion(arrays: Arrays, poke: PlannedPoke) -> Outcome:
 
 
 def arrays_of(outcome: Outcome) -> Arrays:
-    """The arrays of an outcome that has them."""
+    """Arrays of a successful outcome."""
     assert outcome.payload is not None
     with np.load(io.BytesIO(outcome.payload), allow_pickle=False) as file:
         return dict(file)

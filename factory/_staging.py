@@ -1,12 +1,12 @@
-"""The folder of a dataset being built: one staged result a poke, under a lock.
+"""The folder of a dataset being built: one staged result per poke, under a lock.
 
     NAME.zarr.building/
-        lock            held with flock while a builder runs: freed by the system whatever ends it
-        plan.json       what is being built
-        parts/poke-00012.npz      a staged result; written beside, synced, then renamed
+        lock            held with flock while a builder runs: released by the system however that ends
+        plan.json       identity of the plan
+        parts/poke-00012.npz      a staged result; written under another name, synced, then renamed
         parts/poke-00012.damaged-1    a staged result that could not be read; its poke is simulated again
         parts/poke-00013.error    the text of a poke that failed; tried again by the next run
-        ledger.jsonl    wall times, one line a poke
+        ledger.jsonl    wall and core times, one line per poke
         store/          the store being assembled from the staged results
 
 Only the builder's main process writes here.
@@ -93,7 +93,7 @@ class Staging:
             self._lock = None
 
     def read_plan(self) -> dict[str, Any] | None:
-        """Identity of the plan that the staged results belong to; None where there is none."""
+        """Identity of the plan that the staged results belong to; None if there is none."""
         try:
             found = read_json(self.plan_file)
         except FileNotFoundError:
@@ -105,8 +105,8 @@ class Staging:
         return found
 
     def begin(self, identity: dict[str, Any]) -> None:
-        """Clear the folder and note what is built from now on."""
-        self.plan_file.unlink(missing_ok=True)  # first: results without a plan are nobody's
+        """Clear the folder and write the identity of the plan to build."""
+        self.plan_file.unlink(missing_ok=True)  # first, since results without a plan are never used
         self.ledger_file.unlink(missing_ok=True)
         for folder in (self.results, self.store):
             shutil.rmtree(folder, ignore_errors=True)
@@ -114,7 +114,7 @@ class Staging:
         write_atomic(self.plan_file, json.dumps(identity, indent=1, sort_keys=True).encode())
 
     def stage(self, outcome: Outcome) -> None:
-        """Store the outcome of a poke for good: after this returns, no crash can lose it."""
+        """Write the outcome of a poke durably: after this returns, no crash can lose it."""
         result, note = self.result_path(outcome.index), self._note(outcome.index)
         if outcome.payload is not None:
             write_atomic(result, outcome.payload)
@@ -123,12 +123,12 @@ class Staging:
             write_atomic(note, (outcome.error or "unknown error").encode())
 
     def result_path(self, index: int) -> Path:
-        """Path of the staged result of a poke."""
+        """Path of a poke's staged result."""
         return self.results / f"poke-{index:05d}.npz"
 
     @contextlib.contextmanager
     def opened(self, index: int) -> Iterator[Mapping[str, NDArray[Any]]]:
-        """The arrays of a staged result, each read when it is asked for; DamagedResultError."""
+        """Open the arrays of a staged result, each read on access; DamagedResultError if one cannot be."""
         with contextlib.ExitStack() as stack:
             with _damage_named(index):
                 file = stack.enter_context(self.result_path(index).open("rb"))
@@ -139,7 +139,7 @@ class Staging:
             yield _Checked(index, arrays)  # outside: errors of the caller are not damage
 
     def check(self, poke: PlannedPoke) -> None:
-        """Read a staged result from end to end; DamagedResultError where it is not this poke's."""
+        """Read all of a staged result; DamagedResultError if it is damaged or not this poke's."""
         with _damage_named(poke.index), self.opened(poke.index) as arrays:
             check_arrays(arrays, poke)
 
@@ -167,7 +167,7 @@ class Staging:
         return set(self._matching(_RESULT))
 
     def errors(self) -> dict[int, str]:
-        """Texts of the pokes that failed and have not succeeded since."""
+        """Error texts, by index, of the pokes that failed and have not succeeded since."""
         finished, notes = self.finished(), self._matching(_ERROR)
         texts = {}
         for index in sorted(set(notes) - finished):
@@ -185,7 +185,7 @@ class Staging:
         return {index: path for index, path in found if path.stem == f"poke-{index:05d}"}
 
     def note_times(self, outcome: Outcome) -> None:
-        """Append to the ledger; a line torn by a crash is skipped when it is read."""
+        """Append a poke's times to the ledger; readers skip a line truncated by a crash."""
         line = json.dumps(
             {
                 "poke": outcome.index,
@@ -211,7 +211,7 @@ class Staging:
 
 
 class _Checked(Mapping[str, "NDArray[Any]"]):
-    """Arrays of a staged result; damage met while one is read is named."""
+    """Arrays of a staged result; a failed read raises DamagedResultError."""
 
     def __init__(self, index: int, arrays: Mapping[str, NDArray[Any]]) -> None:
         self._index, self._arrays = index, arrays
@@ -232,7 +232,7 @@ class _Checked(Mapping[str, "NDArray[Any]"]):
 
 @contextlib.contextmanager
 def _damage_named(index: int) -> Iterator[None]:
-    """DamagedResultError for whatever a torn, empty or foreign file makes NumPy and zipfile raise."""
+    """Convert what NumPy and zipfile raise on a truncated, empty or foreign file to DamagedResultError."""
     try:
         yield
     except (DamagedResultError, InputError):
@@ -250,7 +250,7 @@ def _damage_named(index: int) -> Iterator[None]:
 
 
 def set_damaged_aside(staging: Staging, pokes: Sequence[PlannedPoke]) -> list[int]:
-    """Set aside every staged result that is not the sound result of its poke; returns their indices."""
+    """Set aside every staged result that is not a valid result of its poke; return their indices."""
     planned = {poke.index: poke for poke in pokes}
     damaged = []
     for index in sorted(staging.finished()):
@@ -265,7 +265,7 @@ def set_damaged_aside(staging: Staging, pokes: Sequence[PlannedPoke]) -> list[in
 
 
 def write_atomic(path: Path, content: bytes) -> None:
-    """The file appears whole or not at all, and stays through a power cut."""
+    """Write a file that appears complete or not at all, and survives a power failure."""
     temporary = path.with_name(f".{path.name}.tmp")
     try:
         with temporary.open("wb") as file:

@@ -21,14 +21,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from factory._errors import InputError, describe_os_error
 from factory._input import validation_sentence
 
-PROVENANCE = "provenance"  # a Zarr group, so that its files do not disturb who lists the arrays
+PROVENANCE = "provenance"  # a Zarr group, so that its files do not disturb a listing of the arrays
 MANIFEST = f"{PROVENANCE}/manifest.json"
 LEDGER = f"{PROVENANCE}/ledger.jsonl"
 _OUTSIDE = {MANIFEST, LEDGER}  # the ledger holds wall times: no two runs agree on them
 
 
 class DamagedError(InputError):
-    """A dataset of the factory that cannot be read as it should."""
+    """The files of a dataset are damaged."""
 
 
 class _Lenient(BaseModel):
@@ -66,7 +66,7 @@ class _Identity(_Lenient):
 
 
 class _Attributes(_Lenient):
-    """Attributes on which the readers of a store rely."""
+    """Root attributes that readers of a store require."""
 
     format: int
     uuid: str
@@ -82,18 +82,18 @@ class _Attributes(_Lenient):
 
 
 def is_store(path: Path | zipfile.Path) -> bool:
-    """`path` is a dataset of the factory, or what damage has left of one."""
+    """True if `path` is a dataset of the factory, even a damaged one."""
     attributes = _raw_attributes(path)
     return (attributes is not None and "fingerprint" in attributes) or (path / MANIFEST).is_file()
 
 
 def root_attributes(store: Path | zipfile.Path) -> dict[str, Any] | None:
-    """Attributes of the store's root group; None where this is no store.
+    """Attributes of the store's root group; None if this is not a store.
 
     Raises
     ------
     DamagedError
-        Where it is a store, but its attributes are not as they should be; names the key.
+        If the attributes of a store are missing or invalid; the message names the key.
     """
     if not is_store(store):
         return None
@@ -109,7 +109,7 @@ def root_attributes(store: Path | zipfile.Path) -> dict[str, Any] | None:
 
 
 def check_identity(identity: object, where: Path) -> dict[str, Any]:
-    """The identity of a plan as it was read from a file; DamagedError names the key that is wrong."""
+    """Validate the identity of a plan read from a file; DamagedError names an invalid key."""
     try:
         _Identity.model_validate(identity)
     except ValidationError as error:
@@ -119,7 +119,7 @@ def check_identity(identity: object, where: Path) -> dict[str, Any]:
 
 
 def read_json(path: Path | zipfile.Path) -> object:
-    """Content of a JSON file; ValueError where it is damaged, OSError where it cannot be read."""
+    """Content of a JSON file; ValueError if it is damaged, OSError if it cannot be read."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except RecursionError:
@@ -136,9 +136,9 @@ def _raw_attributes(store: Path | zipfile.Path) -> dict[str, Any] | None:
 
 
 def read_ledger(path: Path | zipfile.Path) -> dict[int, dict[str, Any]]:
-    """The last sound line of each poke: index, wall_seconds, core_seconds and error text.
+    """Last valid line of each poke: index, wall_seconds, core_seconds and error text.
 
-    Lines torn by a crash or edited by hand are skipped; a ledger that cannot be read is empty.
+    Invalid lines, e.g. truncated by a crash, are skipped; an unreadable ledger counts as empty.
     """
     lines: dict[int, dict[str, Any]] = {}
     try:
@@ -162,9 +162,9 @@ def _is_sound(entry: object) -> bool:
 
 
 def plain_files(folder: Path) -> Iterator[tuple[str, Path, bool]]:
-    """Name, path and soundness of everything in a folder but its folders, sorted by name.
+    """Yield name, path and whether it is a regular file, for everything but folders, sorted by name.
 
-    A link, a pipe or a device is not sound: it is named, never followed or opened.
+    Links, pipes and devices are listed with False, and never followed or opened.
     """
     found: list[tuple[str, Path, bool]] = []
     for root, folders, files in os.walk(folder, followlinks=False):
@@ -183,7 +183,7 @@ def write_manifest(folder: Path) -> None:
 
 
 def file_faults(folder: Path) -> list[str]:
-    """Entries of a store that are neither files nor folders: links, pipes, devices."""
+    """Links, pipes and devices in a store, one sentence each."""
     return [
         f"{name}: is {'a symbolic link' if path.is_symlink() else 'no plain file'}, which no dataset contains"
         for name, path, sound in plain_files(folder)
@@ -192,7 +192,7 @@ def file_faults(folder: Path) -> list[str]:
 
 
 def manifest_faults(folder: Path) -> list[str]:
-    """Differences from the manifest, one sentence a file."""
+    """Differences between the store's files and its manifest, one sentence each."""
     path = folder / MANIFEST
     try:
         if path.is_symlink() or not path.is_file():

@@ -1,4 +1,4 @@
-"""The content of a dataset poke by poke, whether it is finished or still being built."""
+"""Summary of a dataset, poke by poke, also while it is being built."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class PokeSummary:
     index : int
     shape, level, status, message : str
     nodes : int
-        Of the volume mesh.
+        Nodes of the volume mesh.
     depth, force : ndarray, shape (frames,)
-        Travel of the indenter [m] and size of the force on it [N].
+        Travel of the indenter [m] and magnitude of the force on it [N].
     """
 
     index: int
@@ -48,18 +48,18 @@ class Summary:
     ----------
     path : Path
     finished : bool
-        The store is complete on disk; failed pokes count as finished, with their error.
+        True if there is a store (possibly partial), False if only staged results.
     model, recipe, uuid : str
     pokes : int
-        Of the plan.
+        Number of pokes in the plan.
     shapes, levels : list of str
     done : list of PokeSummary
     failed, damaged : dict of int to str
-        Error text, or damage of the staged result, by index.
+        Error texts of failed pokes, and of damaged staged results, by index.
     ledger : dict of int to dict
         Wall times by index.
     waiting : int
-        Pokes that a partial store lacks.
+        Number of pokes that a partial store lacks.
     """
 
     path: Path
@@ -78,12 +78,12 @@ class Summary:
 
 
 def summarise(path: str | Path) -> Summary:
-    """Summary of a dataset, or of the building folder where the store is not there yet.
+    """Summarise a dataset, or its building folder if there is no store yet.
 
     Raises
     ------
     InputError
-        Where there is neither, or its files are damaged.
+        If there is neither, or its files are damaged.
     """
     path = Path(path)
     building = building_folder(path)

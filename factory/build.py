@@ -166,7 +166,7 @@ def main(
 
 
 def default_target(recipe: str, model: str, materials: Path | None) -> Path:
-    """datasets/RECIPE-MODEL.zarr, or with a folder of materials datasets/RECIPE-MODEL-FOLDER.zarr."""
+    """Default store: datasets/RECIPE-MODEL.zarr, with materials datasets/RECIPE-MODEL-FOLDER.zarr."""
     name = f"{recipe}-{model}"
     if materials is not None:
         folder = materials.absolute()

@@ -1,4 +1,4 @@
-"""`python -m factory.card DATASET --out FOLDER`: the page, tables, pictures and checksums of a dataset."""
+"""`python -m factory.card DATASET --out FOLDER`: write page, tables, pictures and checksums of a dataset."""
 
 from __future__ import annotations
 

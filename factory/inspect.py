@@ -1,4 +1,4 @@
-"""`python -m factory.inspect DATASET`: the content of a dataset, and how far it got."""
+"""`python -m factory.inspect DATASET`: show the content and the progress of a dataset."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console
 
 
 def _pieces(data: Dataset, index: int, poke: PokeData) -> Iterator[tuple[str, str]]:
-    """Each piece of a poke's course: its speed or length, and the force at its first and last frame."""
+    """Phase and text of each piece of a poke's course: speed, duration, force at its first and last frame."""
     import numpy as np
 
     from factory._course import PHASES, phases, pieces_at

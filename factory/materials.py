@@ -1,7 +1,7 @@
-"""Material cards: one YAML file a mixture, with parameters for every law and what a diagnosis found.
+"""Material cards: one YAML file per mixture, with parameters of the laws and effects found by a diagnosis.
 
 A card holds the parameters of the paper's six laws, and of any other law that is registered in
-`tisim.laws` where they are known. Under a law that a card does not hold, its material has the card's
+`tisim.laws` if they are known. Under a law that a card does not hold, its material has the card's
 small-strain moduli and the law's other constants at their plain default (`Card.holds`).
 """
 
@@ -25,7 +25,7 @@ from tisim import Material, laws, material_from_moduli
 
 
 class Uncertainty(Strict):
-    """Relative bounds of the shear modulus (-0.3 = 30 % lower; null: not known) and where they come from."""
+    """Relative bounds of the shear modulus (-0.3 = 30 % lower; null: not known) and their source."""
 
     shear_modulus_low: Annotated[float, Field(gt=-1, le=0)] | None
     shear_modulus_high: Annotated[float, Field(ge=0)] | None
@@ -33,7 +33,7 @@ class Uncertainty(Strict):
 
 
 class CardBaseline(Strict):
-    """A material without its effects, as fitted to the same measurements [Pa]; see `Card.model_error`."""
+    """Material fitted to the same measurements without effects; moduli [Pa], error as `Card.model_error`."""
 
     law: Text
     shear_modulus: Modulus
@@ -50,11 +50,11 @@ class Card(Strict):
     material : str
         Name of the mixture and of the card's file.
     mixture : str
-        What was mixed.
+        Composition.
     derived : bool
-        The numbers were inferred, not measured.
+        True if the numbers were inferred, not measured.
     provenance : str
-        Where the numbers come from.
+        Source of the numbers.
     uncertainty : Uncertainty
         Relative bounds of the shear modulus.
     density : float
@@ -64,16 +64,16 @@ class Card(Strict):
     laws : Laws
         Parameters law by law.
     law : str, optional
-        The law that was fitted, or fitted best; others are filled in from its moduli, or fitted too.
+        The law that was fitted, or fitted best; parameters of others follow from its moduli or from fits.
     model_error : float, optional
-        What the fit leaves beyond noise, as a relative error of the modulus.
+        Misfit beyond noise, as a relative error of the modulus.
     baseline : CardBaseline, optional
         The material without the effects.
     effects : tuple of CardEffect
-        What a diagnosis found in the specimen beyond the neo-Hookean law (see `material_of`).
+        Effects in the specimen beyond the neo-Hookean law, found by a diagnosis (see `material_of`).
     viscosity, softening, fibres : parts of `tisim.parts`, optional
-        What the material has beside its law, whichever that is; of a Prony series, the moduli of all laws are
-        those that its `modulus` names.
+        Parts beside the law, the same for every law; with a Prony series, the moduli of all laws are those
+        that its `modulus` names.
     """
 
     material: str
@@ -93,7 +93,7 @@ class Card(Strict):
     fibres: Fibres = None
 
     def holds(self, law: str) -> bool:
-        """The card has parameters of that law; else `for_law` takes its small-strain moduli."""
+        """True if the card has parameters of the law; if not, `for_law` uses its small-strain moduli."""
         return self.laws.of(law) is not None
 
     def for_law(self, law: str) -> Material:
@@ -117,9 +117,9 @@ class Card(Strict):
 
 
 def material_of(card: Card, law: str = BASE) -> Material:
-    """The material of a card with the effects that go with it into any body, for any scene of tisim.
+    """Material of a card with the effects that hold in any body, for any scene of tisim.
 
-    Strain stiffening makes it one of the law "yeoh"; a creeping one has its modulus 1 s after loading.
+    Strain stiffening changes the law to "yeoh"; a creeping material has its modulus 1 s after loading.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def material_of(card: Card, law: str = BASE) -> Material:
     Raises
     ------
     InputError
-        Where effects were found on another law than `law`, or make no material.
+        If the effects extend another law than `law`, or cannot be applied.
     """
     mine = [e.effect for e in card.effects if not e.left_out(card.material)]
     if mine and law != BASE:
@@ -149,12 +149,12 @@ def load_card(name: str, folder: Path | None = None) -> Card:
     name : str
         Name of the mixture: the card is FOLDER/NAME.yaml.
     folder : Path, optional
-        Where cards are looked for; default: those that come with the package.
+        Folder of the cards; default: those that come with the package.
 
     Raises
     ------
     InputError
-        Where there is no such card, or it holds something else than a card should.
+        If there is no such card, or it is not valid.
     """
     path = card_path(name, folder)
     if not path.is_file():
@@ -170,12 +170,12 @@ def load_card(name: str, folder: Path | None = None) -> Card:
 
 
 def card_path(name: str, folder: Path | None = None) -> Path:
-    """Path at which the card of a mixture is expected."""
+    """Path of a mixture's card."""
     return (folder or shipped_folder("materials")) / f"{name}.yaml"
 
 
 def card_names(folder: Path) -> list[str]:
-    """Names of the cards in a folder, sorted; YAML files that are no cards (a rig's) do not count."""
+    """Names of the cards in a folder, sorted; other YAML files (a rig's) are skipped."""
     names = []
     for path in sorted(folder.glob("*.yaml")):
         try:
@@ -188,7 +188,7 @@ def card_names(folder: Path) -> list[str]:
 
 
 def check_law(model: str) -> str:
-    """`model` itself where tisim has a law of that name; InputError otherwise."""
+    """Return `model` if tisim has a law of that name; InputError otherwise."""
     if model not in laws.all_names():
         raise InputError(f"--model {model}: expected one of {', '.join(laws.all_names())}")
     return model

@@ -1,4 +1,4 @@
-"""From a recipe to its pokes: every contact point, direction and inclusion drawn from the seed."""
+"""Plan the pokes of a recipe: contact points, directions and inclusions are drawn from its seed."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tisim.problems.indentation.kind import CONTACT, ELEMENT, leaves
 
 log = logging.getLogger(__name__)
 
-FORMAT = 1  # of the store; raised whenever its arrays change meaning
+FORMAT = 1  # version of the store's format; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")
 _MM = 1e-3
 
@@ -47,7 +47,7 @@ class PlannedPoke:
     Attributes
     ----------
     index : int
-        Its place in the plan and in the store.
+        Index in the plan and in the store.
     shape, level : int
         Indices into the recipe's shapes and material levels.
     geometry : int
@@ -55,16 +55,16 @@ class PlannedPoke:
     site : int
         Number of the contact point within its set.
     shared : bool
-        The contact point is common to all material levels of the shape.
+        True if the contact point is common to all material levels of the shape.
     seed : int
         Seed that contact point and direction were drawn from.
     scene : Poke
-        What is simulated.
+        Scene to simulate.
     solved_as : int
-        Index of the poke whose solve this is: its own, or that of an earlier one which differs by the modulus
-        alone (`factory._similar`). -1 stands for its own.
+        Index of the earlier poke whose solve is reused, since the two differ only by a factor of the moduli
+        (`factory._similar`); -1 if the poke is solved itself.
     force_factor : float
-        By which the forces of that solve are multiplied.
+        Factor on the forces of that solve.
     """
 
     index: int
@@ -80,7 +80,7 @@ class PlannedPoke:
 
     @property
     def derived(self) -> bool:
-        """True if the poke is scaled from the solve of another."""
+        """True if it reuses another poke's solve."""
         return self.solved_as >= 0
 
 
@@ -92,16 +92,16 @@ class Plan:
     ----------
     recipe : Recipe
     model : str
-        The law that was asked for.
+        The requested law.
     cards : tuple of Card
     materials : tuple of Material
-        One a material level, as the cards.
+        One per material level, in the order of the cards.
     inclusions : tuple of Inclusion
-        One a shape of the recipe.
+        One per shape of the recipe.
     pokes : tuple of PlannedPoke
         In the order in which they are stored.
     identity : dict
-        What the bytes of the dataset depend on.
+        All input on which the bytes of the dataset depend.
     """
 
     recipe: Recipe
@@ -131,7 +131,7 @@ class Plan:
 
     @property
     def law(self) -> str:
-        """The law of all materials: the model, but for what effects make of it."""
+        """Law of all materials: `model`, or the law to which effects extend it."""
         return self.materials[0].law
 
     @property
@@ -153,19 +153,19 @@ def make_plan(
     materials : Path, optional
         Folder of material cards; default: those that come with the package.
     levels : sequence of str, optional
-        Names of the cards to take as material levels in place of the recipe's. Where `materials` has none of
-        the recipe's levels, its own cards are taken.
+        Names of the cards to use as material levels in place of the recipe's. By default, if `materials` has
+        none of the recipe's levels, all of its own cards are used.
 
     Returns
     -------
     Plan
-        Its pokes in the order shape, material level, shared contact points, own ones.
+        Pokes in the order shape, material level, shared contact points, own contact points.
 
     Raises
     ------
     InputError
-        Where the law is unknown, a card is missing or bad, a card does not go with the law, or an indenter
-        would leave the block through a side.
+        If the law is unknown, a card is missing, is invalid or does not fit the law or the recipe, or an
+        indenter would leave the block through a side.
     """
     check_law(model)
     recipe = _with_levels(recipe, materials, levels)
@@ -204,11 +204,11 @@ def make_plan(
             for name, material, card in zip(recipe.levels, laws, cards, strict=True)
         },
         "versions": versions(),
-        # labels of another kind of element are others, and those of other meshes or of another contact
+        # labels depend on the element type, the mesh and the contact
         "element": ELEMENT,
         "mesh_layout": LAYOUT,
         "contact": CONTACT,
-        # stores in which each poke has a solve of its own stay as they were
+        # absent if each poke has its own solve, so that such stores stay as they were
         **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
     }
     return Plan(
@@ -223,7 +223,7 @@ def make_plan(
 
 
 def _with_levels(recipe: Recipe, folder: Path | None, levels: Sequence[str] | None) -> Recipe:
-    """The recipe at the levels that were asked for, or at the folder's where it has none of the recipe's."""
+    """The recipe at the requested levels, or at all of the folder's cards if it has none of the recipe's."""
     if levels is not None:
         return recipe.with_levels(levels)
     if folder is None or any(card_path(name, folder).is_file() for name in recipe.levels):
@@ -250,7 +250,7 @@ def _card(name: str, folder: Path | None) -> Card:
 
 
 def _materials(cards: Sequence[Card], model: str, folder: Path | None) -> tuple[Material, ...]:
-    """The materials of the cards, all in one law, with what their effects make of them."""
+    """Materials of the cards with their effects, all in one law."""
     found: dict[str, Material] = {}
     for card in cards:
         try:
@@ -261,7 +261,7 @@ def _materials(cards: Sequence[Card], model: str, folder: Path | None) -> tuple[
 
 
 def _check_clock(recipe: Recipe, cards: Sequence[Card], folder: Path | None) -> None:
-    """Refuse viscous cards under a recipe without time: any speed taken silently would decide the forces."""
+    """Refuse viscous cards if the recipe has no course: the forces would depend on an assumed speed."""
     viscous = next((card for card in cards if card.viscosity is not None), None)
     if viscous is not None and not recipe.protocol.course:
         raise InputError(
@@ -271,19 +271,19 @@ def _check_clock(recipe: Recipe, cards: Sequence[Card], folder: Path | None) -> 
 
 
 def _stated(material: Material) -> dict[str, Any]:
-    """A material as plain values, its parts as a card states them; no key for a part that it lacks."""
+    """Material as plain values, parts as in a card; absent parts have no key."""
     law = {"law": material.law, "parameters": material.parameters, "density": material.density}
     return {**law, **part_entries(material)}
 
 
 def _taken(card: Card) -> dict[str, Any]:
-    """The effects that a dataset takes over from a card; no key where there are none."""
+    """Effects of a card that the dataset applies, under the key "effects"; empty if there are none."""
     taken = [e.model_dump(mode="json") for e in card.effects if not e.left_out(card.material)]
     return {"effects": taken} if taken else {}
 
 
 def versions() -> dict[str, str]:
-    """Versions that the numbers depend on."""
+    """Versions of the packages on which the numbers depend."""
     found: dict[str, str] = {}
     for package in ("tisim", "numpy", "zarr", "numcodecs"):
         try:
@@ -304,7 +304,7 @@ def differences(old: object, new: object, prefix: str = "") -> list[str]:
 
 
 def changes(old: object, new: object) -> str:
-    """Keys in which two identities differ; another model also changes the materials."""
+    """Short list of the keys in which two identities differ; "model" alone if that does."""
     keys = differences(old, new)
     if "model" in keys:
         return "model"
@@ -319,7 +319,7 @@ def _seed(root: int, key: Iterable[int]) -> int:
 
 
 def _place(recipe: Recipe, number: int) -> Inclusion:
-    """The inclusion of one shape at a random place of the base, `border_mm` away from the sides."""
+    """Inclusion of one shape at a random position on the base, at least `border_mm` from the sides."""
     shape = recipe.shapes[number]
     random = np.random.default_rng(_seed(recipe.seed, (number, 2**32 - 1)))
     room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_mm[:2]]
@@ -329,7 +329,7 @@ def _place(recipe: Recipe, number: int) -> Inclusion:
 
 
 def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) -> Poke:
-    """The poke that a seed draws: a contact point on the top, an angle to the normal and a heading."""
+    """Draw a poke from a seed: contact point on the top, angle to the normal, heading and course."""
     protocol = recipe.protocol
     random = np.random.default_rng(seed)
     room = [side / 2 - protocol.margin_mm for side in recipe.block_mm[:2]]

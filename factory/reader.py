@@ -1,4 +1,4 @@
-"""Reading a store: small tables at once, one poke's arrays when asked.
+"""Read a store: small tables as a whole, large arrays poke by poke.
 
 >>> data = open_dataset("datasets/quick-ogden.zarr")
 >>> poke = data.poke(3)
@@ -43,31 +43,31 @@ class PokeData:
     shape, level : str
         Names of the inclusion and of the material level.
     status, message : str
-        Why the simulation ended.
+        Reason why the simulation ended.
     inclusion : Inclusion
         The rigid inclusion [m].
     direction : ndarray, shape (3,)
-        Of the push, unit length.
+        Unit vector of the push.
     depth : ndarray, shape (f,)
         Travel of the indenter since first touch [m].
     rod_tip : ndarray, shape (f, 3)
         Centre of the indenter's tip [m].
     rod_force, base_force : ndarray, shape (f, 3)
-        Force of the tissue on the indenter, of the fixed nodes on the tissue [N].
+        Force of the tissue on the indenter, and of the fixed nodes on the tissue [N].
     grid : ndarray, shape (f, 32, 32, 3)
         Positions of the grid on the top [m].
     surface : ndarray, shape (f, n, 3)
-        Positions of the surface nodes [m]; `surface_rest`, shape (n, 3), at rest.
+        Positions of the surface nodes [m]; `surface_rest`, shape (n, 3), before deformation.
     triangles : ndarray, shape (t, 3)
         Outward triangles of surface nodes.
     profile : ndarray of uint8, shape (32, 32, 128)
         Stiffness under each grid point, 255 x code.
     time : ndarray, shape (f,), or None
-        Time since first touch [s]; this and the following where the recipe has a course.
+        Time since first touch [s]; None, like the following fields, if the recipe has no course.
     phase : tuple of str, length f, or None
         "load", "hold", "retract", "reload" or "rest".
     rod_speed : ndarray, shape (f,), or None
-        Change of depth in time [m/s].
+        Rate of change of the depth [m/s].
     dissipated_energy : ndarray, shape (f,), or None
         Energy that the material has lost since first touch [J].
     """
@@ -103,10 +103,10 @@ class Dataset:
     path : Path
         A folder, or a Zarr zip of `factory.release`.
     attributes : dict
-        Of the store's root: recipe, seeds, names of shapes and material levels, versions.
+        Attributes of the store's root: recipe, seeds, names of shapes and material levels, versions.
     group : zarr.Group
     table : dict of str to ndarray
-        Every array of one row a poke, a frame or a geometry, in memory.
+        All arrays but the large ones (profiles, displacements, surfaces), in memory.
     """
 
     path: Path
@@ -121,7 +121,7 @@ class Dataset:
 
     @cached_property
     def root(self) -> Path | zipfile.Path:
-        """Root of the store's files: its folder, or the inside of its zip."""
+        """Folder of the store, or root of its zip."""
         return files_of(self.path)
 
     @cached_property
@@ -130,23 +130,23 @@ class Dataset:
 
     @property
     def specs(self) -> dict[str, Spec]:
-        """The arrays that the store has, with units and contents."""
+        """Specifications of the store's arrays, by name."""
         return specs_of(self.attributes["identity"])
 
     @property
     def timed(self) -> bool:
-        """True if frames have a time: the recipe has a course."""
+        """True if frames have a time, i.e. the recipe has a course."""
         return "time" in self.specs
 
     def array(self, name: str) -> Any:
-        """The Zarr array itself; DamagedError where it is missing or its metadata are damaged."""
+        """The Zarr array itself; DamagedError if it is missing or its metadata are damaged."""
         with self._damage_named(name):
-            if not (self.root / name / "zarr.json").is_file():  # the root's metadata would hide that
+            if not (self.root / name / "zarr.json").is_file():  # the root's metadata list it nonetheless
                 raise KeyError(name)
             return self.group[name]
 
     def read(self, name: str, rows: slice | int = slice(None)) -> NDArray[Any]:
-        """Rows of an array; DamagedError where they cannot be read."""
+        """Rows of an array; DamagedError if they cannot be read."""
         array = self.array(name)
         with self._damage_named(name):
             return np.asarray(array[rows])
@@ -185,12 +185,12 @@ class Dataset:
 
     @cached_property
     def waiting(self) -> tuple[int, ...]:
-        """Pokes that a partial store (`factory.build --partial`) lacks."""
+        """Indices of the pokes that a partial store (`factory.build --partial`) lacks."""
         lacking = np.flatnonzero(~self.table["done"].astype(bool)).tolist()
         return tuple(index for index in lacking if self.message(index) == NOT_SIMULATED)
 
     def message(self, index: int) -> str:
-        """Reason for the end of a poke, or its error."""
+        """Reason why a poke ended early, or its error; may be empty."""
         return bytes(self.table["message"][index]).rstrip(b"\0").decode(errors="replace")
 
     def status(self, index: int) -> str:
@@ -205,7 +205,7 @@ class Dataset:
         return slice(start, start + int(self.table[f"{counted}_count"][index]))
 
     def check_rows(self) -> None:
-        """DamagedError where the tables are not as long as the attributes and their own counts say."""
+        """Raise DamagedError if lengths of tables contradict the attributes or the tables' own counts."""
         expected: dict[str, int] = {
             "poke": self.n_pokes,
             "geometry": len(self.shapes) * len(self.levels),
@@ -221,12 +221,12 @@ class Dataset:
                 )
 
     def inclusion(self, geometry: int) -> Inclusion:
-        """The inclusion of one row of the arrays that count geometries.
+        """The inclusion of one geometry (a row of `inclusion_*` and `profile`).
 
         Raises
         ------
         DamagedError
-            Where the row describes no inclusion, or its kind is not registered in `tisim.inclusions`.
+            If the row describes no inclusion, or its kind is not registered in `tisim.inclusions`.
         """
         try:
             if "inclusions" in self.attributes:
@@ -242,7 +242,7 @@ class Dataset:
             raise DamagedError(f"{self.path}: inclusion of geometry {geometry}: {one_line(error)}") from None
 
     def poke(self, index: int) -> PokeData:
-        """Everything about one poke; DamagedError where the store cannot be read."""
+        """All data of one poke; InputError if there is none, DamagedError if the store cannot be read."""
         if not 0 <= index < self.n_pokes:
             raise InputError(f"poke {index}: expected 0 to {self.n_pokes - 1}")
         self.check_rows()
@@ -285,7 +285,7 @@ class Dataset:
 
 
 def name_of(names: Sequence[str], number: int) -> str:
-    """The name of a code; "unknown (7)" where a damaged store has one that there is not."""
+    """Name of a code, or "unknown (7)" for an invalid code of a damaged store."""
     return names[number] if 0 <= number < len(names) else f"unknown ({number})"
 
 
@@ -295,7 +295,7 @@ def open_dataset(path: str | Path) -> Dataset:
     Raises
     ------
     InputError
-        Where there is no dataset of the factory, or one that is still being built; DamagedError where its
+        If there is no dataset of the factory, or one that is still being built; DamagedError if its
         metadata are damaged.
     """
     folder = Path(path)
@@ -325,10 +325,10 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def is_zip(path: Path) -> bool:
-    """True if a path is a file with the suffix .zip."""
+    """True if the path is a file with the suffix .zip."""
     return path.suffix == ".zip" and path.is_file()
 
 
 def files_of(path: Path) -> Path | zipfile.Path:
-    """The folder of a store, or the inside of its zip; BadZipFile where it is none."""
+    """The folder of a store, or the root of its zip; BadZipFile if that is not a valid zip."""
     return zipfile.Path(path) if is_zip(path) else path

@@ -53,7 +53,7 @@ class RodRecipe(Strict):
 
 
 class Protocol(Strict):
-    """Sites, angles and depths of the pokes of each shape.
+    """Contact points and motion of the indenter, for each shape.
 
     Attributes
     ----------
@@ -70,8 +70,8 @@ class Protocol(Strict):
     frame_spacing_mm : float
         Travel between two frames.
     course : tuple of RampRecipe and HoldRecipe
-        The rod's ramps and holds one after the other, the first from first touch, the deepest to `depth_mm`.
-        Empty: the rod is pushed to `depth_mm`, and there is no time.
+        Ramps and holds of the rod in sequence from first touch; the largest depth is `depth_mm`. If empty,
+        the rod is pushed to `depth_mm` without time.
     """
 
     shared_sites: Annotated[int, Field(ge=0, le=10_000)]
@@ -84,7 +84,7 @@ class Protocol(Strict):
 
     @model_serializer(mode="wrap")
     def _without_an_empty_course(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Recipes without a course are written, and so named, as they were before there were courses."""
+        """Omit an empty course, so that the identity of recipes without one stays as it was."""
         written: dict[str, Any] = write(self)
         return written if self.course else {k: v for k, v in written.items() if k != "course"}
 
@@ -107,7 +107,7 @@ class Recipe(Strict):
     ----------
     name, description : str
     seed : int
-        All places, directions and turns are drawn from it.
+        Seed of all positions, directions and rotations.
     block_mm : (float, float, float)
         Sides of the block.
     rod : RodRecipe
@@ -119,11 +119,11 @@ class Recipe(Strict):
     border_mm : float
         Least distance of an inclusion from the sides of the block.
     cover_mm : float
-        Least silicone above an inclusion.
+        Least thickness of silicone above an inclusion.
     refinement : float
-        Elements get smaller by this factor.
+        Factor by which elements are smaller.
     shapes : tuple of Shape
-        Inclusions, one at a time.
+        Inclusions, one per poke.
     """
 
     name: Name
@@ -169,7 +169,7 @@ class Recipe(Strict):
         return self.model_dump(mode="json", by_alias=True)
 
     def with_levels(self, levels: Sequence[str]) -> Recipe:
-        """The same recipe at other material levels; InputError where they are no names, or not different."""
+        """Copy of the recipe at other material levels; InputError if these are not valid, distinct names."""
         try:
             return Recipe.model_validate({**self.model_dump(by_alias=True), "softness": tuple(levels)})
         except ValidationError:
@@ -207,7 +207,7 @@ def load_recipe(name_or_path: str | Path) -> Recipe:
     Raises
     ------
     InputError
-        Where there is no such recipe, or the file does not hold one.
+        If there is no such recipe, or the file is not a valid one.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or text.endswith((".yaml", ".yml")) or "/" in text:

@@ -1,4 +1,4 @@
-"""`python -m factory.release DATASET --out FILE.zarr.zip`: one file of a dataset, to be published."""
+"""`python -m factory.release DATASET --out FILE.zarr.zip`: write a dataset as one file for publication."""
 
 from __future__ import annotations
 

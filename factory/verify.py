@@ -93,7 +93,7 @@ def main(
 def _assembled(
     dataset: Path, pokes: int | None, workers: int | None, plugins: list[str], show: int, console: Console
 ) -> bool:
-    """Check by assembly, with progress on stderr, and print what came out; whether it is sound."""
+    """Check by assembly with progress on stderr and print the result; True if checked without fault."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

@@ -1,6 +1,6 @@
 """Surrogates of simulated pokes: the dataset's loader, models, training, evaluation, prediction.
 
-Reads the dataset's file format and imports none of the programs that write it.
+The package reads the dataset's file format and imports none of the programs that write it.
 
 >>> import learn
 >>> predictor = learn.load("runs/quick")
@@ -19,6 +19,6 @@ try:
 except _metadata.PackageNotFoundError:  # a checkout that is not installed
     __version__ = "unknown"
 
-# the public names, in __init__.pyi, are imported when first asked for: a command's --help, and the package
+# the public names, in __init__.pyi, are imported on first use: a command's --help, and the package
 # without torch, need none
 __getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

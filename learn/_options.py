@@ -1,4 +1,4 @@
-"""Options that several of learn's commands share."""
+"""Options common to several of learn's commands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from learn.errors import InputError
 
 
 def load_plugins(files: list[Path]) -> None:
-    """Import Python files that register metrics or models. InputError where one fails."""
+    """Import Python files that register metrics or models. InputError if one fails."""
     for number, file in enumerate(files):
         spec = importlib.util.spec_from_file_location(f"learn_plugin_{number}", file)
         if not file.is_file() or spec is None or spec.loader is None:
@@ -56,7 +56,7 @@ Runs = Annotated[
 
 
 def set_threads(threads: int | None) -> None:
-    """Set the number of torch's threads; None: all cores."""
+    """Set the number of torch's threads; all cores if None."""
     import torch
 
     torch.set_num_threads(threads or os.cpu_count() or 1)

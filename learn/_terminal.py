@@ -1,4 +1,4 @@
-"""The terminal, as the commands use it: errors as one sentence, tables that fit, log messages."""
+"""Terminal output of the commands: errors as one sentence, tables that fit, log messages."""
 
 from __future__ import annotations
 
@@ -31,22 +31,20 @@ _PACKAGES = {
 
 
 def make_console() -> Console:
-    """stdout; wide where it is no terminal, so that tables and paths stay whole. Text is never read as
-    markup.
-    """
+    """Console on stdout without markup; wide if it is not a terminal, so that tables and paths stay whole."""
     width = None if sys.stdout.isatty() else 170
     return Console(soft_wrap=True, width=width, markup=False, highlight=False, emoji=False)
 
 
 def fail(message: str, code: int = 2) -> NoReturn:
-    """The sentence on stderr, and the exit code."""
+    """Print a message on stderr and exit with the code."""
     typer.echo(message, err=True)
     raise typer.Exit(code)
 
 
 @contextlib.contextmanager
 def plain_errors() -> Iterator[None]:
-    """InputError, failed file operations and missing packages as one sentence, exit code 2."""
+    """Show InputError, failed file operations and missing packages as one sentence, with exit code 2."""
     try:
         yield
     except ImportError as error:
@@ -63,7 +61,7 @@ def plain_errors() -> Iterator[None]:
 
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
-    """Lets SIGTERM end the work as Ctrl-C does."""
+    """Make SIGTERM raise KeyboardInterrupt, as Ctrl-C does."""
 
     def interrupt(_number: int, _frame: object) -> NoReturn:
         raise KeyboardInterrupt
@@ -76,7 +74,7 @@ def terminable() -> Iterator[None]:
 
 
 def duration(seconds: float) -> str:
-    """Seconds as people read them."""
+    """Duration as text in s, min or h."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     if seconds < 5400:
@@ -85,7 +83,7 @@ def duration(seconds: float) -> str:
 
 
 def print_table(console: Console, title: str, heads: list[str], rows: list[list[str]]) -> None:
-    """A table that fits the console: as it is, else transposed, else in pieces of a few columns."""
+    """Print a table that fits the console: unchanged, else transposed, else in pieces of a few columns."""
     if not _fits(console, heads, rows) and len(rows) < len(heads):
         heads, *rows = ([str(cell) for cell in column] for column in zip(heads, *rows, strict=True))
     widths = [
@@ -119,7 +117,7 @@ def _wrapped(head: str) -> str:
 
 
 class _ToConsole(logging.Handler):
-    """Messages of the library on the console, one a line."""
+    """Log handler that prints the library's messages on the console, one per line."""
 
     def __init__(self, console: Console) -> None:
         super().__init__()

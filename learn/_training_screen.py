@@ -19,7 +19,7 @@ _LINE_SECONDS = 20.0  # between lines where the output is no terminal
 
 
 class TrainingScreen:
-    """A bar on a terminal, or a line now and then."""
+    """Progress of a training: a bar on a terminal, otherwise a line every `_LINE_SECONDS`."""
 
     def __init__(self, console: Console, folder: Path, recipe: Recipe, *, quiet: bool) -> None:
         self._console, self._folder, self._recipe, self._quiet = console, folder, recipe, quiet

@@ -1,4 +1,4 @@
-"""Reading YAML written by people: every fault is one sentence, and no file can exhaust time or memory."""
+"""Read YAML written by users: every fault is one sentence, and no file can exhaust time or memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BYTES, _EVENTS, _DEPTH = 1_000_000, 20_000, 30
 
 
 class _Loader(yaml.SafeLoader):
-    """Refuses a key that stands twice in one mapping, and reads 1e-3 as a number (YAML 1.1 wants 1.0e-3)."""
+    """Loader that refuses duplicate keys, and reads 1e-3 as a number (YAML 1.1 requires 1.0e-3)."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen: set[str] = set()
@@ -33,10 +33,10 @@ _Loader.add_implicit_resolver(
 
 
 def read_yaml(path: Path) -> dict[Any, Any]:
-    """The keys and values of a YAML file. InputError for anything else.
+    """Read the keys and values of a YAML file. InputError for anything else.
 
-    Refused: files beyond 1 MB, aliases (with them a small file can stand for gigabytes, or contain itself),
-    nesting beyond 30 levels, the same key twice.
+    Refused: files beyond 1 MB, aliases (with which a small file can expand to gigabytes, or contain itself),
+    nesting beyond 30 levels, more than 20,000 values, duplicate keys.
     """
     try:
         if path.stat().st_size > _BYTES:
@@ -70,7 +70,7 @@ def _check_events(text: str) -> None:
 
 
 def first_fault(error: ValidationError) -> str:
-    """The fault to name first, as "key KEY: expectation".
+    """First fault of a validation error, as "key KEY: expectation".
 
     An unknown key comes before a missing one: it is usually the same key, misspelt.
     """
@@ -84,7 +84,7 @@ def first_fault(error: ValidationError) -> str:
         text = "this key is missing"
     elif fault["type"].startswith(("float", "int", "bool", "finite", "string")) and "input" in fault:
         text = f"{text}, got {fault['input']!r:.40}"
-    # the tag of a union is no key of the file
+    # in a union the path also has the tag, which is not a key of the file
     names = [str(part) for part in fault["loc"]]
     key = ".".join(names)
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""

@@ -1,9 +1,7 @@
-"""Baselines that a model has to beat: no motion, the nearest training poke, principal modes, an analytic
-kernel.
+"""Baselines for the models: no motion, the nearest training poke, principal modes, an analytic kernel.
 
 Each is fitted to a training part and then evaluated like a model, on the scene that it was fitted on.
-`BASELINES` holds them by the name that stands in the tables; to add one, subclass `Baseline` and enter it
-there.
+`BASELINES` holds them by their names in the tables; to add one, subclass `Baseline` and add it there.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ from learn.models import Pokes, Response, Scene, pokes_of
 Floats = NDArray[np.float64]
 MODES = 64
 _STEPS, _LEARNING_RATE, _BATCH = 3000, 2e-3, 128  # of the network behind the principal modes
-_DEPTH = 2e-3  # [m] of depth that weighs as much as one unit of `describe`
+_DEPTH = 2e-3  # [m], difference in depth that weighs as much as one unit of `describe`
 _CORES = (2.5e-3, 5e-3, 10e-3)  # [m], a of the kernel
 _RANGES = (10e-3, 30e-3)  # [m], L of the kernel
 _RIDGE = 1e-6
@@ -114,7 +112,7 @@ class Nearest(Baseline):
 
 
 class Modes(Baseline):
-    """Principal modes of the displacement over depth, their coefficients from a small network."""
+    """Principal modes of the displacement over depth, with coefficients from a small network."""
 
     def fit(self, data: MemoryDataset, scene: Scene) -> None:
         batch = data.__getitems__(np.arange(len(data)))

@@ -1,4 +1,4 @@
-"""Speed of one prediction and of the loaders, beside reference operations on the same machine."""
+"""Latency of one prediction and throughput of the loaders, with reference timings of the same machine."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _rate(frames: int, epoch: Callable[[int], Iterable[Batch]], repeats: int) ->
 def loader_rates(
     store: Store, *, batch: int = 64, shuffle_buffer: int = 4, repeats: int = 3
 ) -> dict[str, float]:
-    """Frames a second of whole epochs in random order: streamed, in memory, and a memmap. File cache warm."""
+    """Frames per second in random order, with a warm file cache: streamed, in memory, and from a memmap."""
     rows = np.arange(store.frames)
     stream = StreamDataset(store, rows, batch=batch, shuffle_buffer=shuffle_buffer, seed=1)
 
@@ -72,7 +72,7 @@ def loader_rates(
 
 @torch.inference_mode()
 def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
-    """Latency of one poke: name, threads, median and best [ms]; the interior is encoded before."""
+    """Latency of one poke: name, threads, median and best [ms]; the interior is already encoded."""
     times: list[tuple[str, str, float, float]] = []
     rows = np.arange(min(BATCH, store.frames))
     data, model, name = MemoryDataset(store, rows), run.model, run.recipe.model
@@ -114,7 +114,7 @@ def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[
 
 
 def _touched(touch: RealTime) -> None:
-    """All that a program that asks a thousand times a second may want of a poke."""
+    """Evaluate everything that a real-time program may need of a poke."""
     answer = touch(site=(3e-3, -4e-3), direction=(0.0, 0.6, -0.8), depth=5e-3)
     assert np.isfinite(answer.distance)
     assert answer.radius is None or np.isfinite(answer.radius).all()
@@ -123,7 +123,7 @@ def _touched(touch: RealTime) -> None:
 def on_device(
     model: Model, scene: Scene, pokes: Pokes, device: str, synchronize: Callable[[], None]
 ) -> Callable[[], Response]:
-    """A call that answers pokes on a device, and waits for it; model and scene are moved there."""
+    """Function that predicts pokes on a device and waits for the result; the model is moved there."""
     prepared = model.prepare(scene)
     there = model.to(device)
     ready = there.encode(scene.to(device), prepared and tuple(s.to(device) for s in prepared))
@@ -144,7 +144,7 @@ def yardstick(repeats: int) -> tuple[float, float]:
 
 
 def timed(call: Callable[[], object], repeats: int) -> tuple[float, float]:
-    """Median and best [ms]."""
+    """Median and best time of a call [ms]."""
     for _ in range(3):
         call()
     seconds = []

@@ -1,7 +1,7 @@
 """The commands: learn.train, learn.evaluate, learn.predict, learn.export, learn.bench.
 
-Nothing but the command line is imported here: `--help` answers at once, and without torch. Each command
-imports its work when it runs.
+Only the command line is imported here, so that `--help` is fast and needs no torch. Each command imports its
+modules when it runs.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def train(
 
         load_plugins(plugin or [])
         set_threads(threads)
-        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")  # a GPU's matrix products too
+        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")  # deterministic matrix products on a GPU
         torch.use_deterministic_algorithms(True, warn_only=True)
         changes = {"model": model, "fold": fold, "split": split, "seed": seed, "epochs": epochs}
         given = {key: value for key, value in changes.items() if value is not None}
@@ -382,7 +382,7 @@ def bench(
 
 
 def single(command: Callable[..., Any], epilog: str) -> typer.Typer:
-    """One command as a program of its own, for `python -m learn.COMMAND`."""
+    """Program of a single command, for `python -m learn.COMMAND`."""
     program = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
     program.command(epilog=epilog)(command)
     return program

@@ -1,11 +1,11 @@
-"""Errors that people can act on: one sentence, no traceback."""
+"""Errors that users can correct: one sentence, no traceback."""
 
 from __future__ import annotations
 
 
 class InputError(Exception):
-    """Bad input or an unusable target; its text is one sentence for people (exit code 2)."""
+    """Bad input or an unusable target; its text is one sentence for the user (exit code 2)."""
 
 
 class OutsideDomainError(InputError):
-    """A poke that is not within what the model was trained on, where only such pokes are asked for."""
+    """A poke outside the domain of validity, when only pokes inside it are requested."""

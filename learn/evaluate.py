@@ -1,4 +1,4 @@
-"""`python -m learn.evaluate`: a surrogate's errors and intervals on unseen pokes, with a report."""
+"""`python -m learn.evaluate`: a surrogate's errors and intervals on test pokes, with a report."""
 
 from learn import cli
 

@@ -1,7 +1,7 @@
-"""Metrics of predictions beside the simulated truth.
+"""Metrics of predictions against the simulated truth.
 
 `METRICS` holds every metric by name, in the order of the tables. To add one, write a function of
-`Predictions` that returns one number a frame (or a poke) and register it:
+`Predictions` that returns one number per frame (or per poke) and register it:
 
 >>> from learn.metrics import Predictions, register_metric
 >>> @register_metric("median", units="mm", text="median over all points of |predicted - true|")
@@ -22,13 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-RING_EDGES_MM = (0.0, 5.0, 10.0, 20.0, 40.0, np.inf)  # distance at rest from first contact
+RING_EDGES_MM = (0.0, 5.0, 10.0, 20.0, 40.0, np.inf)  # distance of undeformed points from first contact
 BAD_MM = 1.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Predictions:
-    """Predictions of f frames at n points beside the simulated truth. SI units.
+    """Predictions of f frames at n points, with the simulated truth. SI units.
 
     Attributes
     ----------
@@ -38,9 +38,9 @@ class Predictions:
     depth : indentation depth [m], shape (f,).
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
-    shape : name of the inclusion's shape, shape (f,); "" where it is not known.
-    interior : of the inclusion, its size (cube root of its volume) and the cover over it where the rod's axis
-        meets the surface [mm], shape (f, 2); 0 where they are not known.
+    shape : name of the inclusion's shape, shape (f,); "" if it is not known.
+    interior : size of the inclusion (cube root of its volume), and cover over it where the rod's axis meets
+        the surface [mm], shape (f, 2); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     """
@@ -85,7 +85,7 @@ class Predictions:
 
 
 def join_predictions(parts: Sequence[Predictions]) -> Predictions:
-    """The frames of all parts, in their order."""
+    """Concatenate the frames of all parts."""
     names = Predictions.__dataclass_fields__
     return Predictions(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
@@ -98,9 +98,9 @@ class Metric:
     ----------
     name, units : heading of the column.
     text : definition, one line, for the report.
-    values : function of `Predictions` that returns one number a frame (or a poke); NaN where undefined.
-    percent : printed as a percentage.
-    digits : printed after the decimal point.
+    values : function of `Predictions` that returns one number per frame (or poke); NaN if undefined.
+    percent : True to print a percentage.
+    digits : number of digits after the decimal point.
     """
 
     name: str
@@ -126,7 +126,7 @@ def register_metric(
 
     Parameters
     ----------
-    name, units, text, percent, digits : see `Metric`. A name that is taken is replaced.
+    name, units, text, percent, digits : see `Metric`. An existing name is replaced.
     """
 
     def register(function: Callable[[Predictions], Floats]) -> Callable[[Predictions], Floats]:
@@ -208,7 +208,7 @@ def relative_l2(predictions: Predictions) -> Floats:
     text="fraction of pokes with any point of any frame more than 1 mm off",
 )
 def bad_pokes(predictions: Predictions) -> Floats:
-    """One value a poke: 1 where any of its points is more than `BAD_MM` off."""
+    """One value per poke: 1 if the error of any of its points exceeds `BAD_MM`, else 0."""
     worst = predictions.distance_mm.max(axis=1)
     pokes = np.unique(predictions.poke)
     return np.array([float(worst[predictions.poke == p].max() > BAD_MM) for p in pokes])

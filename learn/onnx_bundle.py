@@ -1,16 +1,15 @@
 """A run as ONNX files, checked against torch.
 
-invariant-gnn: `encoder.onnx`, once an interior: rigid (n, levels) -> code, vectors, clear. `poke.onnx`: code,
-vectors, clear, start, direction, depth, modulus -> displacement, force. SI units. A model trained with time
-takes `clock` as well: time since contact [s], the rod's speed and its speed of approach [m/s].
+invariant-gnn: `encoder.onnx`, once per interior: rigid (n, levels) -> code, vectors, clear. `poke.onnx`:
+code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units. A model trained with
+time also takes `clock`: time since contact [s], the rod's speed and its speed of approach [m/s].
 
-cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It chooses
-neighbours anew in each layer, and its answer jumps where they change: in single precision another runtime's
-rounding is enough for that, somewhere on a grid of a thousand points. In double precision both choose alike,
-so that what is written, and what it is checked against, is the model with its weights in double precision.
+cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It searches
+neighbours in each layer, and its output jumps where they change: in single precision the rounding of another
+runtime causes this somewhere on a grid of a thousand points. In double precision both runtimes find the same
+neighbours, so that the files, and the model that they are checked against, are in double precision.
 
-`model.json` holds the points, the indenter and the domain of validity: outside it the files answer as
-confidently.
+`model.json` holds the points, the indenter and the domain of validity: the files give no warning outside it.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from learn.models._encoder import Encoded, Stencil, gathered
 from learn.training import Run
 from learn.validity import Domain
 
-TOLERANCE = 1e-5  # of the largest displacement of a poke, and of its force
+TOLERANCE = 1e-5  # relative to the largest displacement of a poke, and to its force
 _CHECKED = 8  # pokes
 CLOCK = ["time_s", "rod_speed_m_per_s", "approach_speed_m_per_s"]  # in this order
 ROD = ["start", "direction", "depth", "modulus"]  # of invariant-gnn
@@ -44,7 +43,7 @@ INPUTS = ["profile", "start", "direction", "depth"]  # of cegnn
 
 
 class PokePart(nn.Module):
-    """`InvariantGnn.decode` of one poke with plain tensors in and out, for a fixed cloud."""
+    """`InvariantGnn.decode` of one poke with plain tensors as inputs and outputs, for a fixed cloud."""
 
     def __init__(self, model: InvariantGnn, scene: Scene, stencils: tuple[Stencil, ...]) -> None:
         super().__init__()
@@ -69,7 +68,7 @@ class PokePart(nn.Module):
 
 
 class EncoderPart(nn.Module):
-    """`InvariantGnn.encode` of one interior with plain tensors in and out."""
+    """`InvariantGnn.encode` of one interior with plain tensors as inputs and outputs."""
 
     def __init__(self, model: InvariantGnn, scene: Scene, stencils: tuple[Stencil, ...]) -> None:
         super().__init__()
@@ -83,7 +82,7 @@ class EncoderPart(nn.Module):
 def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     """Write poke.onnx, and encoder.onnx for invariant-gnn, for a scene's cloud.
 
-    InputError where a package is missing, or the model has no export.
+    InputError if a package is missing, or the model has no export.
     """
     need_packages()
     if not isinstance(run.model, Cegnn | InvariantGnn):
@@ -127,13 +126,13 @@ def write_graph(
     *,
     simplify: bool = True,
 ) -> None:
-    """A module as an ONNX file, with its inputs' and outputs' names.
+    """Write a module as an ONNX file, with names of its inputs and outputs.
 
-    simplify: fold what is constant, which onnxruntime does as well when it loads the file.
+    `simplify` folds constants, which onnxruntime also does when it loads the file.
     """
-    logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it names packages that nothing here needs
+    logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it warns of packages that are not needed here
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the exporter warns of its own future
+        warnings.simplefilter("ignore")  # deprecation warnings of the exporter
         torch.onnx.export(
             part.eval(), inputs, str(path), input_names=names, output_names=out, dynamo=True,
             external_data=False, verbose=False, optimize=simplify,
@@ -142,9 +141,9 @@ def write_graph(
 
 
 def _whole_number() -> Any:
-    """Write a Python number beside a tensor in double precision.
+    """Translation of a Python number in an expression with a tensor, at the tensor's precision.
 
-    The exporter's own way is single precision and a cast, which takes half of the digits from numbers beside
+    The exporter itself writes single precision and a cast, which loses half of the digits of numbers next to
     double tensors.
     """
     onnx, script = _package("onnx"), _package("onnxscript")
@@ -160,7 +159,7 @@ def _whole_number() -> Any:
 
 
 def need_packages() -> None:
-    """InputError where a package that export needs is missing."""
+    """Raise InputError if a package that the export needs is missing."""
     for name in ("onnx", "onnxscript", "onnxruntime"):
         _package(name)
 
@@ -192,7 +191,7 @@ class OnnxBundle:
         )
 
     def encode(self, rigid: Tensor) -> dict[str, Any]:
-        """Once an interior; rigid (n, levels)."""
+        """Encode an interior, `rigid` (n, levels)."""
         code, vectors, clear = self._encoder.run(None, {"rigid": rigid.numpy()})
         return {"code": code, "vectors": vectors, "clear": clear}
 
@@ -205,7 +204,7 @@ class OnnxBundle:
 
 
 def largest_difference(folder: Path, run: Run, scene: Scene, pokes: Pokes) -> float:
-    """Largest difference from torch, relative to each poke's largest displacement, and to its force."""
+    """Largest difference from torch, relative to each poke's largest displacement or to its force."""
     if isinstance(run.model, Cegnn):
         return _cegnn_difference(_session(folder / "poke.onnx"), run.model, scene, pokes)
     onnx = OnnxBundle(folder)
@@ -228,8 +227,8 @@ def write_bundle(
 
     Returns
     -------
-    The files, the largest relative difference from torch, and the number of pokes it was found over.
-    InputError where that is above `TOLERANCE`; the files are removed then.
+    The files, the largest relative difference from torch, and the number of pokes checked. InputError if
+    the difference is above `TOLERANCE`; the files are then removed.
     """
     scene = scene_of(store)
     test = MemoryDataset(store, split_of(store, run.recipe).test)
@@ -257,7 +256,7 @@ def write_bundle(
 
 
 class CegnnPart(nn.Module):
-    """`Cegnn` of one poke with plain tensors in and out, for a fixed cloud; profile (n, levels)."""
+    """`Cegnn` of one poke with plain tensors as inputs and outputs, for a fixed cloud."""
 
     def __init__(self, model: Cegnn, scene: Scene) -> None:
         super().__init__()
@@ -284,13 +283,13 @@ def _in_double(model: Cegnn) -> Cegnn:
 
 
 def _example(scene: Scene) -> tuple[Tensor, ...]:
-    """Inputs of one poke."""
+    """Example inputs of one poke."""
     down = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
     return scene.profile[0], scene.points.mean(dim=0), down, torch.tensor(5e-3, dtype=torch.float64)
 
 
 def _cegnn_difference(session: Any, model: Cegnn, scene: Scene, pokes: Pokes) -> float:
-    """The same for cegnn, against torch in double precision."""
+    """`largest_difference` for cegnn, against torch in double precision."""
     with torch.no_grad():
         found = _in_double(model)(scene, pokes)
     worst = 0.0

@@ -1,4 +1,4 @@
-"""Predicting pokes with a trained run, from Python.
+"""Predict pokes with a trained run, from Python.
 
 >>> import learn
 >>> predictor = learn.load("runs/quick")
@@ -50,14 +50,14 @@ class PokePrediction:
 
     Attributes
     ----------
-    poke : what was asked for.
+    poke : the requested poke.
     points : rest positions of the surface's points [m], shape (n, 3).
-    displacement : of these points [m], shape (n, 3).
+    displacement : displacement of these points [m], shape (n, 3).
     force : magnitude of the force on the indenter [N].
     radius : radius of the 90 % interval at each point [m], shape (n,); None without intervals.
     force_interval : 90 % interval of the force [N]; None without intervals.
-    checks : one for each quantity: whether it is inside what the model was trained on.
-    scene, pokes : the model's own input.
+    checks : comparison of each quantity with its trained range.
+    scene, pokes : the model's input.
     """
 
     poke: PokeScene
@@ -72,14 +72,14 @@ class PokePrediction:
 
     @property
     def inside(self) -> bool | None:
-        """True if the poke is inside the domain of training; None where that is unknown."""
+        """True if the poke is inside the domain of validity; None if that is not known."""
         if any(check.inside is False for check in self.checks):
             return False
         return None if all(check.inside is None for check in self.checks) else True
 
     @property
     def outside(self) -> list[Check]:
-        """The quantities outside what was trained."""
+        """Checks of the quantities outside the domain of validity."""
         return [check for check in self.checks if check.inside is False]
 
     @property
@@ -184,19 +184,19 @@ class Predictor:
     def predict(
         self, scene: Path | str | Mapping[str, Any] | PokeScene, *, strict: bool = False
     ) -> PokePrediction:
-        """Displacement and force of one poke, and whether it is inside what was trained.
+        """Predict displacement and force of one poke, and compare it with the domain of validity.
 
         Parameters
         ----------
         scene : keys and values as in `learn.scene_file.PokeScene`, or the path of a YAML file of them.
-        strict : refuse pokes that are not inside what the model was trained on.
+        strict : refuse pokes that are not inside the domain of validity.
 
         Raises
         ------
         InputError
-            A key is wrong, or the poke does not fit the dataset's block.
+            If a key is wrong, or the poke does not fit the dataset's block.
         OutsideDomainError
-            The poke is outside what was trained, or that is not known, and `strict` is set.
+            If `strict` is set and the poke is outside the domain of validity, or that is not known.
         """
         poke = load_poke(scene)
         where = str(scene) if isinstance(scene, str | Path) else "scene"
@@ -222,17 +222,17 @@ class Predictor:
         return answer
 
     def real_time(self, interior: Mapping[str, Any]) -> RealTime:
-        """One interior for a program that asks a thousand times a second.
+        """Prepare one interior for predictions in real time (about 1 kHz).
 
         Parameters
         ----------
-        interior : keys as in `learn.scene_file.PokeScene` that say what is poked: shape or inclusion,
+        interior : keys as in `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion,
             softness or shear_modulus_kPa, and law.
 
         Raises
         ------
         InputError
-            The run's model has no such form, a key is wrong, or the inclusion does not fit the block.
+            If the run's model has no such form, a key is wrong, or the inclusion does not fit the block.
         """
         return RealTime(self, interior)
 
@@ -296,7 +296,7 @@ class Predictor:
 
     @cached_property
     def intervals(self) -> Intervals | None:
-        """Intervals of the run, made by `learn.evaluate`; None without."""
+        """Intervals of the run, made by `learn.evaluate`; None if there are none."""
         return load_intervals(self.run)
 
     @property
@@ -331,14 +331,14 @@ def _first_lower(text: str) -> str:
 
 
 def known_domain(run: Run, store: Store) -> Domain | None:
-    """The domain recorded with a run, or derived from its dataset; None where neither is at hand."""
+    """The domain recorded with a run, or derived from its dataset; None if neither is available."""
     if run.domain is not None:
         return run.domain
     return domain_of(store, split_of(store, run.recipe).train) if run.uuid == store.uuid else None
 
 
 def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:
-    """A trained run, ready to predict.
+    """Load a trained run for predictions.
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
     Raises
     ------
     InputError
-        A run or the dataset is missing or damaged, or they do not belong together.
+        If a run or the dataset is missing or damaged, or they do not belong together.
     """
     folders = [run] if isinstance(run, str | Path) else list(run)
     if not folders:

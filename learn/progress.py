@@ -30,4 +30,4 @@ OnProgress = Callable[[Progress], None]
 
 
 def ignore(_progress: Progress) -> None:
-    """The callback that does nothing."""
+    """Callback that does nothing."""

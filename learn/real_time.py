@@ -1,11 +1,11 @@
-"""Predictions for a program that asks a thousand times a second: one interior, then poke by poke.
+"""Predictions in real time (about 1 kHz): one interior, then poke by poke.
 
 >>> predictor = learn.load("runs/quick")
 >>> touch = predictor.real_time({"shape": "cube-18", "softness": "S0.5"})  # once an interior
 >>> answer = touch(site=(5e-3, -10e-3), direction=(0, 0, -1), depth=4e-3)  # each millisecond
 >>> answer.force, answer.force_interval, answer.displacement, answer.inside
 
-Lengths here are in metres. `torch.set_num_threads(1)` is the fastest where the machine has other work.
+Lengths here are in metres. `torch.set_num_threads(1)` is the fastest if the machine has other work.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ if TYPE_CHECKING:
     from learn.predictor import Predictor
 
 Floats = NDArray[np.float64]
-_ONE = 1e-6  # by which a direction's length may differ from 1
+_ONE = 1e-6  # tolerance on the length of a direction
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Answer:
-    """One poke. SI units.
+    """Prediction of one poke. SI units.
 
     Attributes
     ----------
-    displacement : of the surface's points [m], shape (n, 3), float32.
+    displacement : displacement of the surface's points [m], shape (n, 3), float32.
     force : magnitude of the force on the indenter [N].
-    force_interval : 90 % interval of the force [N]; None where the run has no intervals.
-    inside : whether the poke is inside what the model was trained on; None where that is not known.
-    distance : how far it is outside the trained ranges, 0 inside (`learn.validity.Domain.distance`); NaN
-        where that is not known.
+    force_interval : 90 % interval of the force [N]; None without intervals or without contact.
+    inside : True if the poke is inside the domain of validity; None if that is not known.
+    distance : distance from the trained ranges, 0 inside (`learn.validity.Domain.distance`); NaN if they are
+        not known.
     """
 
     displacement: NDArray[np.float32]
@@ -59,7 +59,7 @@ class Answer:
 
     @cached_property
     def radius(self) -> Floats | None:
-        """Radius of the 90 % interval at each point [m], shape (n,); None without intervals."""
+        """Radius of the 90 % interval at each point [m], shape (n,); None without intervals or contact."""
         if self._intervals is None or self._away is None:
             return None
         size = np.sqrt(np.einsum("nk,nk->n", self.displacement, self.displacement))
@@ -73,19 +73,19 @@ class RealTime:
 
     Parameters
     ----------
-    predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
-    interior : keys of `learn.scene_file.PokeScene` that say what is poked: shape or inclusion, softness or
+    predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    interior : keys of `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion, softness or
         shear_modulus_kPa, and law.
 
     Attributes
     ----------
     points : rest positions of the surface's points [m], shape (n, 3).
-    modulus : shear modulus at small strain [Pa]; may be set anew between pokes.
+    modulus : shear modulus at small strain [Pa]; may be changed between pokes.
 
     Raises
     ------
     InputError
-        Another model, a key that is wrong, or an inclusion that does not fit the dataset's block.
+        If the run has another model, a key is wrong, or the inclusion does not fit the dataset's block.
     """
 
     def __init__(self, predictor: Predictor, interior: Mapping[str, Any]) -> None:
@@ -122,14 +122,14 @@ class RealTime:
 
         Parameters
         ----------
-        site : where the rod's axis meets the rest surface, (x, y) [m].
+        site : intersection of the rod's axis with the rest surface, (x, y) [m].
         direction : unit vector of the push, (3,).
         depth : travel since first contact [m]; at 0 or less the rod does not touch, and nothing moves.
 
         Raises
         ------
         InputError
-            A value is not finite, or the direction does not point into the block or is no unit vector.
+            If a value is not finite, or the direction does not point into the block or is not a unit vector.
         """
         push = np.asarray(direction, dtype=np.float64)
         size = math.sqrt(float(push @ push))

@@ -1,9 +1,7 @@
-"""A poke to predict, as a YAML file or a dictionary; lengths in mm, angles in degrees, because people write
-it.
+"""A poke to predict, as a YAML file or a dictionary in users' units: lengths in mm, angles in degrees.
 
-The keys are those of `PokeScene`. Whatever does not fit the dataset's block is refused by name: no model can
-say anything about it. Whether a poke that fits is one that the model was trained on is `learn.validity`'s
-question.
+The keys are those of `PokeScene`. A poke that does not fit the dataset's block is refused with the name of
+the key, since no model can predict it. `learn.validity` checks whether a poke is inside the trained ranges.
 """
 
 from __future__ import annotations
@@ -26,7 +24,7 @@ from learn.models import Pokes, Scene, make_scene
 from learn.validity import shape_kind
 
 _MM = 1e-3
-STEEPEST = 45.0  # [degrees] of a push against the normal, as in the simulator
+STEEPEST = 45.0  # [degrees]: largest angle between push and normal, as in the simulator
 
 
 class _Strict(BaseModel):
@@ -50,7 +48,7 @@ class NoInclusion(_Strict):
 
 
 class Sphere(_Strict):
-    """A rigid sphere; centre_mm: in the block's frame, z above the base."""
+    """A rigid sphere; `centre_mm` is in the block's frame, z above the base."""
 
     kind: Literal["sphere"]
     radius_mm: Length
@@ -62,12 +60,12 @@ class Sphere(_Strict):
         return self.radius_mm, self.radius_mm, self.radius_mm
 
     def inside(self, local: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """True for points (..., 3), relative to the centre [m], that lie in it."""
+        """Mask of the points (..., 3), relative to the centre [m], that lie in it."""
         return np.asarray((local**2).sum(axis=-1) <= (self.radius_mm * _MM) ** 2)
 
 
 class Cylinder(_Strict):
-    """A rigid upright cylinder; centre_mm: of its middle."""
+    """A rigid upright cylinder; `centre_mm` is the centre of its volume."""
 
     kind: Literal["cylinder"]
     radius_mm: Length
@@ -84,7 +82,7 @@ class Cylinder(_Strict):
 
 
 class Cube(_Strict):
-    """A rigid cube, turned by angle_deg about the vertical; centre_mm: of its middle."""
+    """A rigid cube, rotated by `angle_deg` about the vertical; `centre_mm` is the centre of its volume."""
 
     kind: Literal["cube"]
     side_mm: Length
@@ -112,17 +110,18 @@ class PokeScene(_Strict):
 
     Attributes
     ----------
-    site_mm : where the indenter's axis meets the rest surface, (x, y), from the middle of the block.
+    site_mm : intersection of the indenter's axis with the rest surface, (x, y), in the dataset's frame, whose
+        origin is the middle of the block.
     depth_mm : travel along the push since first contact.
-    angle_deg : between the push and the surface's normal, 0 to 45.
+    angle_deg : angle between the push and the surface's normal, 0 to 45.
     heading_deg : direction of the push's horizontal part, from x towards y.
-    shape, inclusion : a shape of the dataset by name, or an inclusion of one's own; one of the two.
-    time_s, rod_speed_mm_per_s, approach_speed_mm_per_s : time since first contact, speed of the rod now (0 in
-        a hold, negative when drawn back) and from first contact on; all three, for models trained with time.
-    softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain; one of
-        the two.
-    law : material law of the tissue, by the name that datasets have for it ("ogden"). The model answers for
-        its dataset's law whatever is said here: another one is marked, and widens the intervals.
+    shape, inclusion : a shape of the dataset by name, or any other inclusion; exactly one of the two.
+    time_s, rod_speed_mm_per_s, approach_speed_mm_per_s : time since first contact, current speed of the rod
+        (0 in a hold, negative in a retraction), speed of approach; all three, for models trained with time.
+    softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain;
+        exactly one of the two.
+    law : material law of the tissue, named as in datasets ("ogden"). The model always predicts for its
+        dataset's law: another one is flagged, and widens the intervals.
     """
 
     site_mm: Pair
@@ -163,12 +162,12 @@ class PokeScene(_Strict):
 
     @property
     def free(self) -> bool:
-        """True if the file states an interior or a modulus of its own."""
+        """True if inclusion or modulus are given by value, not by a name of the dataset."""
         return self.inclusion is not None or self.shear_modulus_kPa is not None
 
 
 def load_poke(source: Path | str | Mapping[str, Any] | PokeScene) -> PokeScene:
-    """The poke of a YAML file, or with these keys; InputError names the key that is wrong."""
+    """Load a poke from a YAML file or from keys and values; InputError names a wrong key."""
     if isinstance(source, PokeScene):
         return source
     where = "scene"
@@ -219,7 +218,7 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple
 
 
 def kind_of(file: PokeScene, store: Store) -> str | None:
-    """Kind of the inclusion; None where the dataset does not say."""
+    """Kind of the inclusion; None if it is not known."""
     return file.inclusion.kind if file.inclusion else shape_kind(store, file.shape or "")
 
 
@@ -262,7 +261,7 @@ def _check_fit(file: PokeScene, store: Store, where: str) -> None:
 def _check_cover(
     file: PokeScene, store: Store, profile: NDArray[np.uint8], tip: NDArray[np.float64], where: str
 ) -> None:
-    """InputError where the tip's middle would end within the rigid inclusion."""
+    """Raise InputError if the centre of the tip would end within the rigid inclusion."""
     column = int(np.linalg.norm(store.points[:, :2] - tip[:2], axis=1).argmin())
     rigid = profile[column] == RIGID
     height = store.block_size[2]
@@ -276,9 +275,9 @@ def _check_cover(
 
 
 def first_touch(store: Store, site: Sequence[float], direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The middle of the tip [m], (3,), where the rod first touches the top.
+    """Centre of the tip [m], (3,), when the rod first touches the top.
 
-    site: where its axis meets the top, (x, y) [m]; direction: unit vector of the push.
+    `site` is the intersection of its axis with the top, (x, y) [m], `direction` the unit vector of the push.
     """
     cosine = -float(direction[2])
     sine = math.hypot(float(direction[0]), float(direction[1]))
@@ -301,7 +300,7 @@ def _modulus(file: PokeScene, store: Store, where: str) -> float:
 
 
 def _profile(file: PokeScene, store: Store, where: str) -> NDArray[np.uint8]:
-    """Interior under each point, (n, levels); silicone as 0: the model sees what is rigid alone."""
+    """Profile under each point, (n, levels); silicone around `inclusion` is 0: only rigidity is read."""
     if file.shape is not None:
         if file.shape not in store.shapes:
             raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}")

@@ -1,9 +1,9 @@
-"""Domain of validity: which pokes a model was trained on, and whether a poke to predict is one of them.
+"""Domain of validity: the ranges of the pokes that a model was trained on, and checks of pokes against them.
 
-A surrogate answers any poke with the same confidence; beyond its training the answer may be wrong by a
-factor. So the range of every quantity over the training part is recorded with the checkpoint (`domain_of`),
-and each prediction is compared with it (`Domain.check`), and intervals widen with how far outside it is
-(`Domain.distance`). The ranges are those of the pokes themselves, not of the recipe that drew them.
+A surrogate predicts any poke without a warning; outside the trained ranges the prediction may be wrong by a
+factor. The range of every quantity over the training part is therefore recorded with the checkpoint
+(`domain_of`), each prediction is compared with it (`Domain.check`), and intervals widen with the distance
+from it (`Domain.distance`). The ranges are those of the pokes themselves, not of the recipe that drew them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Quantity(NamedTuple):
-    """One quantity of a poke. sides: which end of the trained range matters; slack: absolute tolerance."""
+    """One quantity of a poke. `sides`: checked ends of the trained range; `slack`: absolute tolerance."""
 
     name: str
     units: str
@@ -51,17 +51,17 @@ QUANTITIES: dict[str, Quantity] = {
     "inclusion_width_mm": Quantity("inclusion's width", "mm", "both", 1.6),
     "inclusion_height_mm": Quantity("inclusion's height", "mm", "both", 0.3),
 }
-# of pokes of datasets with time, in the order of `Pokes.clock`
+# further quantities in datasets with time, in the order of `Pokes.clock`
 CLOCK_QUANTITIES: dict[str, Quantity] = {
     "time_s": Quantity("time since contact", "s", "both", 1e-3),
     "rod_speed_mm_per_s": Quantity("rod's speed", "mm/s", "both", 1e-2),
     "approach_speed_mm_per_s": Quantity("speed of approach", "mm/s", "both", 1e-2),
 }
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
-RELATIVE_SLACK = 1e-3  # tolerance besides the slack
-NARROW = 0.01  # of the value: a range narrower than this is none
-# The distance that another law counts as: of one silicone they differ where it was stretched further than it
-# was measured (studies/learning/paper.md).
+RELATIVE_SLACK = 1e-3  # relative tolerance, added to the slack
+NARROW = 0.01  # relative to the value: a narrower range counts as a single value
+# Distance of another law: fitted laws of one silicone differ at strains beyond the measured ones
+# (studies/learning/paper.md).
 OTHER_LAW = 0.1
 _LAW = "material law"
 KINDS = ("cube", "cylinder", "sphere", "none")
@@ -73,10 +73,10 @@ class Check:
 
     Attributes
     ----------
-    key, name : of the quantity.
-    value : of the poke; a number, or a name for the kind of inclusion.
+    key, name : key and name of the quantity.
+    value : value of the poke; a number, or a name for the kind of inclusion or the law.
     trained : the trained range or names, as text.
-    inside : None where it is not known what was trained.
+    inside : True if the value is in the trained range; None if that is not known.
     """
 
     key: str
@@ -101,9 +101,9 @@ class Domain(BaseModel):
     Attributes
     ----------
     ranges : least and largest value by key of `QUANTITIES`.
-    kinds : kinds of inclusion ("cube", "cylinder", "sphere", "none"); None where the dataset does not say.
+    kinds : kinds of inclusion ("cube", "cylinder", "sphere", "none"); None if they are not known.
     law : material law of the dataset.
-    proportional : keys of quantities of which any value is inside, since the force is in proportion to them
+    proportional : keys of quantities of which any value is inside, since the force is proportional to them
         and the displacement does not depend on them.
     """
 
@@ -117,7 +117,7 @@ class Domain(BaseModel):
     def check(self, values: Mapping[str, float], kind: str | None, law: str | None = None) -> list[Check]:
         """Every quantity of a poke (`poke_values`) against its range.
 
-        kind: of the inclusion, None if unknown; law: of the tissue, None where nothing was said of it.
+        `kind` of the inclusion is None if unknown; `law` of the tissue is None if it was not given.
         """
         checks = []
         for key, value in values.items():
@@ -145,16 +145,16 @@ class Domain(BaseModel):
         return checks
 
     def knows(self, kind: str | None) -> bool:
-        """True if a kind of inclusion was trained, or if that is unknown."""
+        """True if a kind of inclusion was trained, or if that is not known."""
         return kind is None or self.kinds is None or kind in self.kinds
 
     def distance(self, values: Mapping[str, float], law: str | None = None) -> float:
-        """Distance of a poke from the ranges, 0 inside: the root of the sum of squares over its quantities.
+        """Distance of a poke from the ranges, 0 inside: root of the sum of squares over its quantities.
 
-        Each counts in units of its range's width, or of its value where there is no range to speak of;
-        quantities of which no range is known count as 0, and another law than the dataset's as `OTHER_LAW`.
-        The kind of inclusion is no quantity: one that was not trained is no harder within the ranges
-        (studies/learning/part-of-paper.md), and only marked.
+        Each excess is relative to the width of its range, or to the value if the range is narrow; quantities
+        without a known range count as 0, a law other than the dataset's as `OTHER_LAW`. The kind of inclusion
+        does not count: an untrained kind has no larger errors within the ranges
+        (studies/learning/part-of-paper.md), and is only flagged.
         """
         total = 0.0 if law is None or law == self.law else OTHER_LAW**2
         for key, value in values.items():
@@ -177,7 +177,7 @@ class Domain(BaseModel):
 
     @classmethod
     def common(cls, domains: Sequence[Domain]) -> Domain:
-        """The part that all domains share, for an ensemble."""
+        """Intersection of the domains, for an ensemble."""
         shared = set.intersection(*(set(domain.ranges) for domain in domains))
         ranges = {
             key: (max(d.ranges[key][0] for d in domains), min(d.ranges[key][1] for d in domains))
@@ -195,7 +195,7 @@ class Domain(BaseModel):
 
     @classmethod
     def from_dict(cls, values: Any, where: str) -> Domain:
-        """From a checkpoint; InputError where it is damaged."""
+        """Read a domain from a checkpoint; InputError if it is damaged."""
         try:
             return cls.model_validate(values)
         except ValidationError as error:
@@ -203,7 +203,7 @@ class Domain(BaseModel):
 
 
 def _excess(quantity: Quantity, low: float, high: float, value: float) -> float:
-    """Distance of a value from the sides of its range that matter; 0 or less inside."""
+    """Excess of a value over the checked sides of its range; 0 or less inside."""
     slack = quantity.slack + RELATIVE_SLACK * max(abs(low), abs(high))
     under = -math.inf if quantity.sides == "high" else low - value
     over = -math.inf if quantity.sides == "low" else value - high
@@ -221,7 +221,7 @@ def _range(low: float, high: float, quantity: Quantity) -> str:
 
 
 def unknown_checks(values: Mapping[str, float], kind: str | None, law: str | None = None) -> list[Check]:
-    """The checks of a run whose training part is not known."""
+    """Checks for a run whose trained ranges are not known."""
     checks = [_unknown(key, value) for key, value in values.items()]
     checks.append(_unknown("inclusion", kind or "unknown"))
     return checks if law is None else [*checks, _unknown("law", law)]
@@ -233,7 +233,7 @@ def _unknown(key: str, value: float | str) -> Check:
 
 
 def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
-    """The domain of a training part; rows: its frames."""
+    """Domain of a training part, given by its frames `rows`."""
     frames = store.frame_poke[rows]
     values: dict[str, list[float]] = {}
     kinds: set[str | None] = set()
@@ -265,10 +265,10 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
 
 
 def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
-    """Distance of frames of a store from a domain (`Domain.distance`), shape (f,).
+    """Distance of frames of a store from a domain (`Domain.distance`), (f,).
 
-    poke, depth [m]: of the frames, (f,). Of a dataset with time, every clock counts as inside. Another law
-    than the domain's counts as `Domain.distance` says.
+    `poke` and `depth` [m] are those of the frames, (f,). Times and speeds are not compared. A law other than
+    the domain's counts as in `Domain.distance`.
     """
     found = np.empty(len(poke))
     for index in np.unique(poke):
@@ -287,10 +287,10 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
 
 
 class Interior(NamedTuple):
-    """Data of an interior on which the quantities of a poke depend.
+    """Quantities of an interior on which those of a poke depend.
 
-    soft: thickness of the soft tissue above the inclusion, or above the base, at each point (n,) [m]; width,
-    height: of the inclusion [mm]; size: cube root of its volume [mm], 0 without one.
+    `soft`: thickness of the soft tissue above the inclusion, or above the base, at each point (n,) [m];
+    `width`, `height` of the inclusion [mm]; `size`: cube root of its volume [mm], 0 without one.
     """
 
     soft: Floats
@@ -300,7 +300,7 @@ class Interior(NamedTuple):
 
 
 def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
-    """profile: stiffness under each point as stored, shape (n, levels)."""
+    """Interior of a `profile`, the stored stiffness under each point, shape (n, levels)."""
     rigid = profile == RIGID
     length, breadth, height = store.block_size
     columns = rigid.any(axis=1)
@@ -312,13 +312,13 @@ def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
 
 
 def interior_at(store: Store, poke: int) -> tuple[float, float]:
-    """Size of the inclusion under one poke of the store, and the cover over it [mm]."""
+    """Size of the inclusion of one stored poke, and the cover over it [mm]."""
     interior = interior_of(store, store.profile[int(store.geometry[poke])])
     return interior.size, 1e3 * _cover(store, interior, store.path_start[poke], store.direction[poke])
 
 
 def _cover(store: Store, interior: Interior, start: Floats, direction: Floats) -> float:
-    """Least thickness of the soft tissue [m] within a rod's radius of where its axis meets the surface."""
+    """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
     x, y = (store.points[:, :2] - contact_site(store, start, direction)).T
     square = x * x + y * y
     near = square <= max(store.rod_radius**2, float(square.min()))
@@ -335,12 +335,12 @@ def poke_values(
     modulus: float,
     clock: Floats | None = None,
 ) -> dict[str, float]:
-    """The quantities of `QUANTITIES` of one poke, in their order; those of time where it has one.
+    """Values of `QUANTITIES` for one poke, in their order, and of `CLOCK_QUANTITIES` if it has a clock.
 
     Parameters
     ----------
     interior : from `interior_of`.
-    start, direction, depth, modulus, clock : of the poke, SI units, as in `learn.models.Pokes`.
+    start, direction, depth, modulus, clock : the poke in SI units, as in `learn.models.Pokes`.
     """
     length, width, height = store.block_size
     site = contact_site(store, start, direction)
@@ -374,7 +374,7 @@ def contact_site(store: Store, start: Floats, direction: Floats) -> Floats:
 
 
 def shape_kind(store: Store, name: str) -> str | None:
-    """Kind of inclusion of a shape of the dataset; None where the dataset does not say."""
+    """Kind of inclusion of a shape of the dataset; None if it is not known."""
     try:
         shapes = store.attributes["identity"]["recipe"]["shapes"]
         return next(str(shape["kind"]) for shape in shapes if shape["id"] == name)

@@ -1,4 +1,4 @@
-"""The files of a store in a folder, in a zip or at an fsspec URL; reading errors in one sentence."""
+"""The files of a store in a folder, in a zip or at an fsspec URL, with read errors in one sentence."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from zarr.storage import FsspecStore, LocalStore, ZipStore
 from learn.errors import InputError
 
 MANIFEST = "provenance/manifest.json"
-_ABSENT = 2**64 - 1  # of a chunk that was never written: it holds zeros
+_ABSENT = 2**64 - 1  # index entry of a chunk that was never written and holds zeros
 _CHECKSUM = 4  # bytes of the index's crc32c
 _HEADER = struct.Struct("<26xHH")  # of a zip's entry: the lengths of its name and of its extra field
 
 
 @contextlib.contextmanager
 def reading(what: str) -> Iterator[None]:
-    """Turns whatever a damaged or missing file raises into an InputError that names it."""
+    """Convert any error of a damaged or missing file to an InputError that names it."""
     try:
         yield
     except InputError:
@@ -47,7 +47,7 @@ _opened: dict[tuple[int, str], zarr.Group] = {}
 
 
 def group_here(location: str, *, fresh: bool = False) -> zarr.Group:
-    """The root group, opened once a process: a loader's worker must not use its parent's connections."""
+    """The root group, opened once per process: a loader's worker must not use its parent's connections."""
     key = (os.getpid(), location)
     if fresh or key not in _opened:
         _opened[key] = Source(location).group()
@@ -57,7 +57,7 @@ def group_here(location: str, *, fresh: bool = False) -> zarr.Group:
 
 
 def displacement_reader(location: str) -> ShardReader | None:
-    """The fast reader of a local store's displacement; None where zarr has to read it."""
+    """The fast reader of a local store's displacement; None if zarr has to read it."""
     if location not in _readers:
         remote = Source(location).remote
         _readers[location] = None if remote else shard_reader(Path(location), "grid_displacement")
@@ -65,7 +65,7 @@ def displacement_reader(location: str) -> ShardReader | None:
 
 
 def _is_local(name: str) -> bool:
-    """True if a manifest's name is a plain path within the store; others are never followed."""
+    """True if a manifest's name is a plain path within the store."""
     parts = name.split("/")
     return not any(part in ("", ".", "..") or "\\" in part or ":" in part for part in parts)
 
@@ -81,7 +81,7 @@ class Source:
         return "://" in self.location
 
     def group(self) -> zarr.Group:
-        """The store's root group; InputError where there is none."""
+        """The store's root group; InputError if there is none."""
         store: LocalStore | FsspecStore | ZipStore
         if self.remote:
             with reading(self.location):
@@ -99,9 +99,9 @@ class Source:
             return zarr.open_group(store=store, mode="r", zarr_format=3)
 
     def check_manifest(self, arrays: list[str]) -> None:
-        """Every file of these arrays is there and, in a folder or zip, has the bytes of the manifest.
+        """Check that every file of these arrays exists and, in a folder or zip, has the manifest's sha256.
 
-        Zarr reads a missing chunk as zeros, so that a truncated store must be found here. Over a URL
+        Zarr reads a missing chunk as zeros, so that a truncated store must be detected here. At a URL
         only existence is checked: the bytes would have to be loaded twice.
         """
         wanted = {
@@ -135,7 +135,7 @@ class Source:
 
     @contextlib.contextmanager
     def _stored(self) -> Iterator[Callable[[str], Any]]:
-        """Opens files of a folder or zip by their names; None where there is no such file."""
+        """Yield a function that opens a file of the folder or zip by name, or returns None if missing."""
         if Path(self.location).is_dir():
             yield self._in_folder
             return
@@ -177,13 +177,14 @@ class Source:
 
 @dataclass(frozen=True)
 class ShardReader:
-    """Reads whole shards of a local store straight to where they are wanted.
+    """Reader of a local store's shards, directly into the output array.
 
     zarr-python takes three times as long for a shard of 1,024 frames as its chunks take to decompress (copies
-    and scheduling). Where the store has the factory's layout, in a folder or not compressed in a zip, its
-    shards are read here; elsewhere zarr reads them, to the same values.
+    and scheduling). Stores with the factory's layout, in a folder or not compressed in a zip, are read here;
+    others by zarr, with the same values.
 
-    location: of the store; name: of the array; rows: of it; chunk, shard: rows in each; row: shape of one.
+    `location` of the store, `name` of the array, number of `rows`, rows per `chunk` and per `shard`, shape of
+    a `row`.
     """
 
     location: Path
@@ -194,7 +195,7 @@ class ShardReader:
     row: tuple[int, ...]
 
     def read(self, start: int, stop: int, out: NDArray[np.float32]) -> None:
-        """Rows start to stop into out, (stop - start, *row). Whatever is damaged raises."""
+        """Read rows start to stop into `out`, (stop - start, *row); damaged data raise an exception."""
         for number in range(start // self.shard, -(-stop // self.shard)):
             first = number * self.shard
             low, high = max(start, first), min(stop, first + self.shard)
@@ -232,7 +233,7 @@ class ShardReader:
 
 @functools.cache
 def _place(archive: Path, name: str) -> tuple[int, int]:
-    """Range of bytes (begin, end), within a zip, of a file that was not compressed."""
+    """Offsets in a zip at which the bytes of an uncompressed file begin and end."""
     with zipfile.ZipFile(archive) as entries:
         entry = entries.getinfo(name)
     if entry.compress_type != zipfile.ZIP_STORED:
@@ -245,7 +246,7 @@ def _place(archive: Path, name: str) -> tuple[int, int]:
 
 
 def shard_reader(location: Path, name: str) -> ShardReader | None:
-    """A reader of an array of a store; None where its layout is another."""
+    """Reader of an array of a local store; None if its layout is another."""
     if location.is_file():
         with zipfile.ZipFile(location) as archive:
             compressed = any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist())

@@ -1,4 +1,4 @@
-"""Required attributes and arrays of a dataset, and checks of their agreement."""
+"""Required attributes and arrays of a dataset, and checks of their consistency."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"
 
 @dataclass(frozen=True, kw_only=True)
 class Needed:
-    """One array. row: shape of one row (None: not checked); kinds: numpy's letters for its type."""
+    """A required array. `row`: shape of one row (None: not checked); `kinds`: NumPy's letters of its type."""
 
     rows: Rows
     kinds: str = "f"
@@ -54,7 +54,7 @@ ARRAYS: dict[str, Needed] = {
     "depth": Needed(rows="frame", units="m"),
     "rod_force": Needed(rows="frame", row=(3,), units="N"),
     "grid_displacement": Needed(rows="frame", row=(GRID, GRID, 3), units="m", big=True),
-    # only where errors off the grid are asked for
+    # only for errors off the grid
     "node_start": Needed(rows="poke", kinds="i"),
     "node_count": Needed(rows="poke", kinds="i"),
     "triangle_start": Needed(rows="poke", kinds="i"),
@@ -64,7 +64,7 @@ ARRAYS: dict[str, Needed] = {
     "surface_triangle": Needed(rows="triangle", kinds="i", row=(3,), big=True),
     "surface_displacement": Needed(rows="value", row=(3,), units="m", big=True),
 }
-# of datasets whose recipe gives the rod a course over time; the others have none of them
+# only in datasets whose recipe gives the rod a course over time
 TIMED: dict[str, Needed] = {
     "time": Needed(rows="frame", units="s"),
     "phase": Needed(rows="frame", kinds="u"),
@@ -73,13 +73,13 @@ TIMED: dict[str, Needed] = {
     "course_time": Needed(rows="poke", row=None, units="s"),
     "course_depth": Needed(rows="poke", row=None, units="m"),
 }
-# of datasets in which pokes that differ by the modulus alone are one solve: the poke that was solved
+# only in datasets in which pokes that differ by a factor of the moduli share one solve: the solved poke
 SIMILAR: dict[str, Needed] = {"solved_as": Needed(rows="poke", kinds="i")}
 # fmt: on
 
 
 def check_attributes(location: str, attributes: dict[str, Any]) -> None:
-    """InputError unless the root has the attributes, each of its type."""
+    """Raise InputError unless the root has the attributes, each of its type."""
     for name in ATTRIBUTES:
         if name not in attributes:
             raise InputError(f"{location}: attribute {name} is missing")
@@ -104,7 +104,7 @@ def check_attributes(location: str, attributes: dict[str, Any]) -> None:
 def check_arrays(
     location: str, group: zarr.Group, attributes: dict[str, Any], arrays: Mapping[str, Needed]
 ) -> None:
-    """InputError unless the arrays are there, of their types, rows and units; nothing is read."""
+    """Raise InputError unless the arrays exist, with their types, rows and units; no data are read."""
     rows: dict[str, tuple[str, int]] = {}
     for name, needed in arrays.items():
         with reading(f"{location}: {name}"):
@@ -135,7 +135,7 @@ def _check_array(where: str, array: Any, needed: Needed) -> None:
 
 
 def check_rows(location: str, table: dict[str, NDArray[Any]], attributes: dict[str, Any]) -> None:
-    """InputError unless the small tables, all read, agree with each other."""
+    """Raise InputError unless the small tables, all read, are consistent."""
     count = table["frame_count"]
     if not np.array_equal(table["frame_start"], np.cumsum(count) - count):
         raise InputError(f"{location}: frame_start does not add up frame_count")

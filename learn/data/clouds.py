@@ -18,14 +18,14 @@ from learn.errors import InputError
 
 Floats = NDArray[np.float64]
 _TOP = 1e-9  # [m] from the top plane
-_AROUND = 13  # neighbours that say how dense a cloud is
+_AROUND = 13  # neighbours for an estimate of a cloud's density
 
 
 def areas(points: Floats) -> Floats:
-    """Area that each point (n, 3) of a surface stands for, in units of the mean, shape (n,).
+    """Area per point of a surface cloud (n, 3), in units of the mean, shape (n,).
 
     One over the density, estimated from the distances r of the nearest points with weights (1 - (r / h)^2)^2,
-    h the distance of the farthest of them. It moves and turns with the cloud, and jumps nowhere.
+    h the distance of the farthest of them. It is invariant to rigid motions of the cloud, and continuous.
     """
     n = len(points)
     if n <= _AROUND + 1:
@@ -37,7 +37,7 @@ def areas(points: Floats) -> Floats:
 
 
 def scattered(store: Store, count: int, *, seed: int = 0) -> Floats:
-    """Points without a grid on the block's top face, within the outermost grid points.
+    """Scattered points on the block's top face, within the outermost grid points.
 
     Returns
     -------
@@ -83,7 +83,7 @@ class SurfaceField:
     Parameters
     ----------
     store : the dataset.
-    pokes : indices of the pokes whose meshes are held in memory. InputError where a mesh has no top face.
+    pokes : indices of the pokes whose meshes are held in memory. InputError if a mesh has no top face.
     """
 
     def __init__(self, store: Store, pokes: Iterable[int]) -> None:

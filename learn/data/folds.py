@@ -34,15 +34,16 @@ def split_pokes(
     train_depth: float | None = None,
     seed: int = 0,
 ) -> Split:
-    """Parts in the ratio 7 : 2 : 2 of the groups, turned on by the fold's number (0 to 4).
+    """Split a store into parts in the ratio 7 : 2 : 2 of its groups, rotated by the fold (0 to 4).
 
-    by "shape": the groups are the inclusion shapes in the store's order, as in the paper (arXiv
-    2509.10125 and its successor): no tested shape was trained on. by "site": groups are sites (in random
-    order), for stores of few shapes; pokes of one site under several softness levels stay together, since
-    they move alike. train_softness, train_depth [m]: training and validation see only these; the test
-    part keeps everything. Of pokes that are one solve, scaled by the modulus (`Store.copies`), training
-    and validation see one, the test part all. Frames in which the rod, drawn back, does not press are
-    in no part: there is no force to predict. InputError where a part would be empty.
+    With `by` "shape" the groups are the inclusion shapes in the store's order, as in the paper (arXiv
+    2509.10125 and its successor): no tested shape was trained on. With "site" they are sites (in random
+    order), for stores of few shapes; pokes of one site at several softness levels stay together, since
+    their displacements are similar. Training and validation parts are restricted to `train_softness` and to
+    depths up to `train_depth` [m]; the test part is not. Of pokes that share one solve, scaled by the modulus
+    (`Store.copies`), training and validation parts contain one, the test part all. Frames in which the
+    retracting rod does not press are in no part: there is no force to predict. InputError if a part would be
+    empty.
     """
     if not 0 <= fold < FOLDS:
         raise InputError(f"fold {fold}: expected 0 to {FOLDS - 1}")
@@ -90,7 +91,7 @@ class SplitRecipe(Protocol):
 
 
 def split_of(store: Store, recipe: SplitRecipe) -> Split:
-    """The parts that a recipe trains and tests on."""
+    """Split a store by the keys of a recipe."""
     depth = recipe.train_depth_mm * 1e-3 if recipe.train_depth_mm else None
     return split_pokes(
         store, fold=recipe.fold, by=recipe.split, train_softness=recipe.train_softness, train_depth=depth
@@ -98,7 +99,7 @@ def split_of(store: Store, recipe: SplitRecipe) -> Split:
 
 
 def _groups(store: Store, by: SplitBy, seed: int) -> tuple[NDArray[np.int64], list[str]]:
-    """The group of each poke, -1 where it has no frames, and the groups' names."""
+    """The group of each poke, -1 if it has no frames, and the groups' names."""
     used = store.done & (store.frame_count > 0)
     group = np.full(store.pokes, -1, dtype=np.int64)
     if by == "shape":

@@ -15,11 +15,11 @@ from torch import Tensor
 from learn.data.store import Store, open_store
 
 Floats32 = NDArray[np.float32]
-_READERS = 2  # threads: decompressing takes some four times as long as dealing
+_READERS = 2  # threads: decompression takes some four times as long as shuffling
 
 
 def no_clock(count: int = 0) -> Tensor:
-    """The clock of frames without time."""
+    """Empty clock (count, 0) of frames without time."""
     return torch.empty(count, 0, dtype=torch.float64)
 
 
@@ -31,16 +31,16 @@ class Batch:
 
     Attributes
     ----------
-    frame : rows of the store, shape (b,).
-    geometry : rows of the store's profile, shape (b,).
+    frame : row of the store, shape (b,).
+    geometry : row of the store's profile, shape (b,).
     start : the indenter's tip at first contact [m], shape (b, 3).
     direction : unit vector of the push, shape (b, 3).
     depth : travel since first contact [m], shape (b,).
     modulus : shear modulus at small strain [Pa], shape (b,).
-    displacement : of the grid's points [m], shape (b, n, 3), float32.
+    displacement : displacement of the grid's points [m], shape (b, n, 3), float32.
     force : magnitude of the force on the indenter [N], shape (b,), float32.
-    clock : where the dataset has time, time since first contact [s], the rod's speed along the push and its
-        speed of approach [m/s] (`Clock`), shape (b, 3); else shape (b, 0).
+    clock : time since first contact [s], the rod's speed along the push and its speed of approach [m/s]
+        (`Clock`), shape (b, 3); shape (b, 0) if the dataset has no time.
     """
 
     frame: Tensor
@@ -62,7 +62,7 @@ class Batch:
 
 
 def make_batch(store: Store, rows: NDArray[np.int64], displacement: NDArray[np.float32]) -> Batch:
-    """The batch of these frames; displacement: theirs, (b, n, 3), not copied."""
+    """Batch of these frames, with their `displacement` (b, n, 3), which is not copied."""
     poke = store.frame_poke[rows]
     return Batch(
         frame=torch.from_numpy(rows),
@@ -78,7 +78,7 @@ def make_batch(store: Store, rows: NDArray[np.int64], displacement: NDArray[np.f
 
 
 def epoch_order(count: int, seed: int, epoch: int) -> NDArray[np.int64]:
-    """The random order of one epoch: a function of seed and epoch alone, so that a resumed run goes on."""
+    """Random order of one epoch, a function of seed and epoch alone, so that a resumed run repeats it."""
     return np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(epoch,))).permutation(count)
 
 
@@ -111,10 +111,10 @@ class MemoryDataset(torch.utils.data.Dataset[Batch]):
     def batches(
         self, size: int, *, seed: int | None = None, epoch: int = 0, rank: int = 0, world: int = 1
     ) -> Iterator[Batch]:
-        """Batches of one epoch, in random order where a seed is given.
+        """Batches of one epoch, in random order if a seed is given.
 
-        rank, world: this process's share of every batch; all processes get as many batches (the epoch's
-        last, incomplete round is left out where there is more than one process).
+        Process `rank` of `world` gets every `world`-th batch; all processes get equally many (with several
+        processes, the epoch's last incomplete round is left out).
         """
         count = len(self)
         order = np.arange(count) if seed is None else epoch_order(count, seed, epoch)
@@ -127,11 +127,11 @@ class MemoryDataset(torch.utils.data.Dataset[Batch]):
 class StreamDataset(torch.utils.data.IterableDataset[Batch]):
     """An iterable torch dataset of whole batches; with a DataLoader use `batch_size=None`.
 
-    Blocks (files of the store) come in random order into a buffer of `shuffle_buffer` blocks; batches are
-    drawn at random from the buffer while the next block is read in two other threads. So memory is bounded by
-    shuffle_buffer + 2 blocks (`bytes_held`), whatever the store's size, and every frame comes exactly once an
-    epoch. Loader workers and the ranks of torchrun each take their share of the blocks: in each, the order is
-    another.
+    Blocks (files of the store) are read in random order into a buffer of `shuffle_buffer` blocks; batches are
+    drawn at random from the buffer while two other threads read the next block. Memory is thus bounded by
+    shuffle_buffer + 2 blocks (`bytes_held`), whatever the store's size, and every frame occurs exactly once
+    per epoch. Loader workers and the ranks of torchrun each take a subset of the blocks, with a different
+    shuffle in each.
 
     >>> data = StreamDataset("https://example.org/pokes.zarr", split.train, batch=64, seed=1)
     >>> data.epoch = 3
@@ -153,7 +153,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         self.rows = np.sort(np.asarray(rows, dtype=np.int64))
         self.batch, self.shuffle_buffer, self.seed = batch, max(1, shuffle_buffer), seed
         self.rank, self.world = rank, world
-        self._block, self._chunk = self.store.block, self.store.chunk  # asking the store takes milliseconds
+        self._block, self._chunk = self.store.block, self.store.chunk  # slow to look up
         self.epoch = 0
         self._spare: list[list[Floats32]] = []
 
@@ -163,7 +163,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         return (self.shuffle_buffer + 2) * self._block * len(self.store.points) * 3 * 4
 
     def __len__(self) -> int:
-        """Frames, not batches: how many batches there are depends on the workers."""
+        """Number of frames; that of batches depends on the workers."""
         return len(self.rows)
 
     def __iter__(self) -> Iterator[Batch]:
@@ -181,12 +181,12 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
     def _deal(self, blocks: NDArray[np.int64], random: np.random.Generator) -> Iterator[Batch]:
         counts = [len(self._rows_of(int(block))) for block in blocks]
         room = min(self.shuffle_buffer * self._block, sum(counts))
-        # fresh memory costs as much as decompressing into it: an epoch hands its room to the next
+        # new memory costs as much as decompressing into it: the next epoch reuses the buffers
         buffers = self._spare.pop() if self._spare else self._buffers()
         held = buffers[0]
         rows = np.empty(room, dtype=np.int64)
-        room_to_read = buffers[1:]  # a block is read into one while the other is dealt into the buffer
-        free, full = np.arange(room), np.empty(0, dtype=np.int64)  # places in the buffer
+        room_to_read = buffers[1:]  # a block is read into one while the other is copied into the buffer
+        free, full = np.arange(room), np.empty(0, dtype=np.int64)  # positions in the buffer
         with ThreadPoolExecutor(_READERS) as readers:
             waiting = [self._ask(readers, int(block), room_to_read[0]) for block in blocks[:1]]
             for number, count in enumerate(counts):
@@ -222,7 +222,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         return int(rows[0]), int(rows[-1]) + 1
 
     def _ask(self, readers: ThreadPoolExecutor, block: int, room: Floats32) -> list[Future[Floats32]]:
-        """Reads a block's frames, cut between two chunks so that both readers have as much to do."""
+        """Read a block's frames, divided between two chunks so that both readers have equal work."""
         start, stop = self._span(block)
         chunk = self._chunk
         middle = min(max(round((start + stop) / 2 / chunk) * chunk, start), stop)

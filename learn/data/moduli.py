@@ -1,4 +1,4 @@
-"""Shear moduli at small strain of a dataset's pokes, whatever its law."""
+"""Shear moduli at small strain of a dataset's pokes, for any law."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def moduli(
 ) -> Floats:
     """Shear modulus at small strain of each poke [Pa].
 
-    From the attribute `shear_modulus` (Pa, one a softness level) where the store has it, so that any law can
+    From the attribute `shear_modulus` (Pa, one per softness level) if the store has it, so that any law can
     be read; else from the law's parameters.
     """
-    found = np.full(len(done), np.nan)  # of a poke that was not simulated
+    found = np.full(len(done), np.nan)  # for a poke that was not simulated
     given = attributes.get("shear_modulus")
     if given is not None:
         levels = attributes["softness"]
@@ -60,7 +60,7 @@ _ARRUDA_BOYCE = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 def shear_modulus(law: str, parameters: Mapping[str, float]) -> float:
     """The law's shear modulus at small strain [Pa].
 
-    parameters: by name as in the store's attribute `parameter_names` (mu_1, mu_2, ... where a parameter
+    `parameters` have the names of the store's attribute `parameter_names` (mu_1, mu_2, ... if a parameter
     has terms; moduli in Pa). InputError for an unknown law, a missing parameter or a modulus that is not
     positive.
     """

@@ -1,4 +1,4 @@
-"""Sizes of displacement and force, from the training part alone."""
+"""Statistics of displacement, depth and force, from the training part alone."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ class Statistics:
     Attributes
     ----------
     frames : number of frames.
-    displacement : root mean square over all points [m].
-    depth_mean, depth_max : of the depth [m].
-    log_force_mean, log_force_sd : of ln(force / (shear modulus x rod radius x depth)).
+    displacement : root mean square of its magnitude over all points [m].
+    depth_mean, depth_max : mean and largest depth [m].
+    log_force_mean, log_force_sd : mean and standard deviation of
+        ln(force / (shear modulus x rod radius x depth)).
     force_rms : root mean square of the force [N].
-    log_modulus_mean : mean of ln(modulus / Pa); None where pokes at all moduli move alike, with forces in
-        proportion (`Store.scales_with_modulus`).
-    log_time_mean, log_speed_mean : of ln(time since contact / s) and ln(speed of approach / (m/s)); None
-        where the dataset has no time.
+    log_modulus_mean : mean of ln(modulus / Pa); None if the modulus only scales the forces
+        (`Store.scales_with_modulus`).
+    log_time_mean, log_speed_mean : means of ln(time since contact / s) and ln(speed of approach / (m/s));
+        None if the dataset has no time.
     """
 
     frames: int
@@ -46,7 +47,7 @@ class Statistics:
 
 
 def statistics(batches: Iterable[Batch], store: Store) -> Statistics:
-    """One pass over a training part of the store. InputError for a force of zero or less."""
+    """Compute statistics in one pass over a training part. InputError if it is empty or has a zero force."""
     squares = 0.0
     points = 0
     depth, force, modulus, clock = [], [], [], []

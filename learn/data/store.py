@@ -36,20 +36,20 @@ from learn.errors import InputError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_PRESSES = 1e-3  # of shear modulus x rod radius x depth: a force below that is none
+_PRESSES = 1e-3  # relative to shear modulus x rod radius x depth: a smaller force counts as no contact
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clock:
-    """Data of the frames of a store whose rod follows a course over time. SI units.
+    """Time data of a store whose rod follows a course over time. SI units.
 
     Attributes
     ----------
     time : since first contact [s], shape (f,).
     phase : "load", "hold", "retract", "reload" or "rest", shape (f,).
-    rod_speed : change of depth in time [m/s], 0 in a hold, negative in a retraction, shape (f,).
+    rod_speed : rate of change of the depth [m/s], 0 in a hold, negative in a retraction, shape (f,).
     approach_speed : speed of the rod from first contact on, in its course's first ramp [m/s], shape (p,).
-    dissipated_energy : lost by the material since first contact [J], shape (f,).
+    dissipated_energy : energy dissipated by the material since first contact [J], shape (f,).
     """
 
     time: Floats
@@ -70,7 +70,7 @@ class Store:
     profile : stiffness under each point as stored, top level first, shape (g, n, levels), uint8.
     level_depth : depth of each level below the surface [m], shape (levels,).
     rod_radius, rod_edge : radii of the indenter and of its tip's edge, equal for a hemisphere [m].
-    done : whether a poke was simulated, shape (p,).
+    done : True for each poke that was simulated, shape (p,).
     shape, softness, geometry : indices of each poke, shape (p,).
     modulus : shear modulus at small strain [Pa], shape (p,).
     direction, path_start : unit vector of the push, and the tip at first contact [m], shape (p, 3).
@@ -78,8 +78,9 @@ class Store:
     frame_poke : poke of each frame, shape (f,).
     depth : travel since first contact [m], shape (f,).
     rod_force : force on the indenter [N], shape (f, 3).
-    solved_as : poke whose solve each poke is, its own or that of one that differs by the modulus alone, (p,).
-    clock : time of the frames and what goes with it; None where the dataset has no time.
+    solved_as : index of the poke whose solve is used: itself, or one that differs by a factor of the moduli,
+        shape (p,).
+    clock : time data of the frames; None if the dataset has no time.
     """
 
     location: str
@@ -107,14 +108,16 @@ class Store:
 
     @property
     def copies(self) -> NDArray[np.bool_]:
-        """Pokes (p,) that say nothing new: another's solve, its forces scaled by the modulus, where the
-        dataset says that at all its material levels pokes move alike."""
+        """True for pokes (p,) that repeat another's solve, with forces scaled by the modulus.
+
+        All False unless the dataset states that the modulus only scales the forces (`scales_with_modulus`).
+        """
         return (self.solved_as != np.arange(self.pokes)) & self.scales_with_modulus
 
     def clocks(self, rows: NDArray[np.int64]) -> Floats:
         """Time since contact [s], the rod's speed and its speed of approach [m/s] of frames, shape (b, 3).
 
-        Shape (b, 0) where the dataset has no time.
+        Shape (b, 0) if the dataset has no time.
         """
         if self.clock is None:
             return np.empty((len(rows), 0))
@@ -123,7 +126,7 @@ class Store:
 
     @property
     def presses(self) -> NDArray[np.bool_]:
-        """Frames in which the rod presses on the tissue, shape (f,): all, unless it is drawn back."""
+        """True for frames in which the rod presses on the tissue, shape (f,): all, unless it is retracted."""
         if self.clock is None:
             return np.ones(self.frames, dtype=bool)
         force = np.linalg.norm(self.rod_force, axis=1)
@@ -132,7 +135,7 @@ class Store:
 
     @property
     def address(self) -> str:
-        """Location of the store, valid from any folder."""
+        """URL or absolute path of the store."""
         return self.location if "://" in self.location else str(Path(self.location).resolve())
 
     @property
@@ -145,7 +148,7 @@ class Store:
 
     @property
     def scales_with_modulus(self) -> bool:
-        """Pokes at all material levels move alike, with forces in proportion to the shear modulus."""
+        """True if all material levels give equal displacements, with forces proportional to the modulus."""
         return self.attributes.get("scales_with_modulus") is True
 
     @property
@@ -178,20 +181,20 @@ class Store:
 
     @property
     def block(self) -> int:
-        """Frames that are cheapest read together: those of one file (a shard) of the displacement."""
+        """Number of frames in one file (a shard) of the displacement, which are best read together."""
         array: Any = group_here(self.location)["grid_displacement"]
         return int((array.shards or array.chunks)[0])
 
     @property
     def chunk(self) -> int:
-        """Frames that are decompressed together."""
+        """Number of frames that are decompressed together."""
         array: Any = group_here(self.location)["grid_displacement"]
         return int(array.chunks[0])
 
     def displacement(self, rows: slice, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
-        """Displacement [m] of the grid points in these frames, (frames, n, 3); out: room for it, optional.
+        """Displacement [m] of the grid points in these frames, (frames, n, 3), written to `out` if given.
 
-        InputError where the store cannot be read or holds a value that is not finite.
+        InputError if the store cannot be read or holds a value that is not finite.
         """
         start, stop, _ = rows.indices(self.frames)
         if out is None:
@@ -204,7 +207,7 @@ class Store:
                 array: Any = group_here(self.location)["grid_displacement"]
                 out[...] = np.asarray(array[start:stop]).reshape(out.shape)
         flat = out.reshape(-1)
-        if not np.isfinite(np.dot(flat, flat)):  # once over the values, nothing stored
+        if not np.isfinite(np.dot(flat, flat)):  # one pass over the values, without temporary arrays
             bad = int(np.flatnonzero(~np.isfinite(out).all(axis=(1, 2)))[0]) + start
             raise InputError(
                 f"{self.location}: grid_displacement: frame {bad} has a value that is not finite"
@@ -237,10 +240,10 @@ class Store:
 
 
 def open_store(location: str | Path, *, verify: bool = True) -> Store:
-    """A finished store in a folder or at an fsspec URL.
+    """Open a finished store in a folder, in a zip or at an fsspec URL.
 
-    verify: compare the files with the store's manifest (see `Source.check_manifest`).
-    InputError, one sentence, for anything that is not a whole store of this format in SI units.
+    `verify` compares the files with the store's manifest (see `Source.check_manifest`). InputError, one
+    sentence, for anything that is not a complete store of this format in SI units.
     """
     source = Source(str(location))
     group = group_here(source.location, fresh=True)
@@ -297,14 +300,14 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
 
 
 def grid_normals(grid: Floats) -> Floats:
-    """Unit normals of a grid of points (rows, columns, 3), columns to the right of rows: (n, 3)."""
+    """Unit normals (n, 3) of a grid of points (rows, columns, 3): step of columns x step of rows."""
     along, up = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
     normal = np.cross(along, up).reshape(-1, 3)
     return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))
 
 
 def rigid_masks(profile: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], Ints]:
-    """Rigid levels of each distinct inclusion, (k, n, levels), and the k of each geometry (g,)."""
+    """Masks of rigid levels, one per distinct inclusion (k, n, levels), and the k of each geometry (g,)."""
     rigid = profile == RIGID
     # a row as one value of packed bits: np.unique over rows is a thousand times slower
     bits = np.packbits(rigid.reshape(len(rigid), -1), axis=1)
@@ -314,7 +317,7 @@ def rigid_masks(profile: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], Ints]:
 
 
 def _clock(location: str, group: zarr.Group, table: dict[str, NDArray[Any]]) -> Clock | None:
-    """The clock of a store that has one."""
+    """The clock of a store; None if it has no time."""
     if "time" not in table:
         return None
     names = np.array(str(group["phase"].attrs.get("flag_meanings", "")).split())

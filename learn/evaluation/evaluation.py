@@ -1,4 +1,4 @@
-"""The numbers of a report on one or more runs: metrics on test parts, baselines beside, intervals."""
+"""Numbers of a report on one or more runs: metrics on test parts, baselines, intervals."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ from learn.training import Recipe, Run
 from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
-CLOUD_SEEDS = 3  # clouds of each size: one cloud has a single point near the tip
+CLOUD_SEEDS = 3  # clouds of each size, since one cloud has a single point near the tip
 _CLOUD_POKES = 6
 Floats = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 
 def parts_of(store: Store, run: Run) -> Split:
-    """The run's own parts of its own dataset; for another dataset, all frames of shapes that it has not seen.
+    """Parts of the run's own dataset; for another dataset, all frames of shapes that are new to the run.
 
-    Shapes are known by their names. A run that was split by site has seen all its shapes at some sites: all
-    frames of the other dataset are tested then. InputError where every shape was seen.
+    Shapes are identified by name; those of the training and validation parts are not new. A run that was
+    split by site is tested on all frames of another dataset. InputError if no shape is new.
     """
     if store.uuid == run.uuid:
         return split_of(store, run.recipe)
@@ -73,7 +73,7 @@ def parts_of(store: Store, run: Run) -> Split:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Covered:
-    """Intervals of a run and their coverage on its test part. radius_mm: mean over points."""
+    """Intervals of a run, with their coverage, rank correlation and mean radius on its test part."""
 
     intervals: Intervals
     found: Coverage
@@ -87,20 +87,21 @@ class Evaluation:
 
     Attributes
     ----------
-    runs, store : evaluated, on this dataset.
-    device : the models', while they predict.
-    models : names of the trained models, which stand in `folds` beside baselines.
-    folds : by name, one entry a fold: metrics by softness level.
-    frames, pokes : of the test parts together.
-    symmetry, symmetry_vertical : by run; random motions, and quarter turns about the vertical.
+    runs, store : the evaluated runs, and the dataset that they are evaluated on.
+    device : device on which the models predict.
+    models : names of the trained models; `folds` also has the baselines.
+    folds : metrics by softness level: by name, one entry per fold.
+    frames, pokes : total numbers in the test parts.
+    symmetry, symmetry_vertical : symmetry errors by run, for random motions, and for quarter turns about the
+        vertical.
     covered, across : coverage of intervals from the run's own validation part, and from the other folds.
-    no_intervals : by run, the sentence that says why it has none.
-    intervals : of each run (or ensemble): those across folds where there are any.
-    clouds : metrics by point cloud; interpolation_mm: error of their truth alone.
-    depths : metrics by model and band of depth, one entry a fold.
+    no_intervals : reason why a run has no intervals, by run.
+    intervals : intervals of each run (or ensemble), from the other folds if there are enough.
+    clouds : metrics by point cloud; interpolation_mm: error of their interpolated truth [mm].
+    depths : metrics by model and band of depth, one entry per fold.
     deeper : metrics up to and beyond the depth that was trained on.
-    outside : by run and distance outside what was trained, on another dataset than that.
-    predictions : of the first run, for pictures.
+    outside : errors by run and distance from the trained ranges, on a dataset other than the training one.
+    predictions : predictions of the first run (or ensemble), for pictures.
     """
 
     runs: list[Run]
@@ -125,7 +126,7 @@ class Evaluation:
 
     @property
     def tables(self) -> dict[str, dict[str, Row]]:
-        """Mean over folds, and standard deviation over folds where there is more than one."""
+        """Mean and standard deviation over folds; for a single fold, its own values (`over_folds`)."""
         joined = {}
         for name, folds in self.folds.items():
             levels = [level for level in folds[0] if all(level in fold for fold in folds)]
@@ -143,16 +144,16 @@ def evaluate(
     device: torch.device | str = "cpu",
     on_progress: OnProgress = ignore,
 ) -> Evaluation:
-    """Every run on its own test part; baselines fitted to each distinct training part.
+    """Evaluate every run on its own test part, with baselines fitted to each distinct training part.
 
     Parameters
     ----------
-    runs, store : to evaluate, on this dataset. On another than a run was trained on (`parts_of`) there are no
-        baselines, and the intervals are those that were kept with the run.
-    baselines, clouds : whether to fit baselines, and to predict on other point clouds.
-    ensemble : evaluate runs of one model and training part, from different seeds, as one as well, before they
-        are evaluated alone. InputError where no two runs can be joined so.
-    device : where the models predict; baselines stay on the CPU, and so do the models afterwards.
+    runs, store : runs to evaluate, and the dataset. On a dataset other than the training one (`parts_of`)
+        there are no baselines, and the intervals are those saved with the run.
+    baselines, clouds : fit baselines; predict on other point clouds.
+    ensemble : also evaluate runs of one model and training part, from different seeds, as an ensemble, before
+        the single runs. InputError if no two runs can be joined.
+    device : device on which the models predict; baselines run on the CPU, to which the models return.
     on_progress : called before each step.
     """
     found = Evaluation(runs=runs, store=store, device=torch.device(device))
@@ -198,7 +199,7 @@ def evaluate(
 
 
 class _Steps:
-    """Counts steps for the callback and the log."""
+    """Counter of steps for the callback and the log."""
 
     def __init__(self, total: int, on_progress: OnProgress) -> None:
         self._done, self._total, self._on_progress = 0, total, on_progress
@@ -211,7 +212,7 @@ class _Steps:
 
 
 def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
-    """Runs of one model and training part joined, with a name: each as a run of its first member's folder."""
+    """Ensembles of runs of one model and training part (`join_runs`), with names; InputError if none."""
     groups: dict[str, list[Run]] = {}
     for run in runs:
         groups.setdefault(f"{run.recipe.model} {_part(run.recipe)}", []).append(run)
@@ -228,7 +229,7 @@ def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
 
 
 def join_runs(runs: list[Run]) -> Run:
-    """Runs as one, an ensemble, of the first one's folder."""
+    """Join runs to an ensemble, as a run with the folder of the first."""
     return replace(
         runs[0],
         model=Ensemble([run.model for run in runs]).eval(),
@@ -237,19 +238,19 @@ def join_runs(runs: list[Run]) -> Run:
 
 
 def _part(recipe: Recipe) -> str:
-    """The keys that the parts of a store depend on."""
+    """Text of the recipe's keys on which the parts of a store depend."""
     return repr((recipe.fold, recipe.split, recipe.train_softness, recipe.train_depth_mm))
 
 
 def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
-    """Distance of frames from the domain of training, shape (f,); 0 where the domain is unknown."""
+    """Distance of frames from the run's trained ranges (f,); 0 if these are not known."""
     if run.domain is None:
         return np.zeros(len(predictions.depth))
     return frame_distances(run.domain, store, predictions.poke, predictions.depth)
 
 
 def _covered(intervals: Intervals, one: Predicted) -> Covered:
-    """Coverage of intervals as they are stated: widened outside the domain of training."""
+    """Coverage of intervals as they are stated, widened outside the trained ranges."""
     return Covered(
         intervals=intervals,
         found=coverage(intervals, one.predictions, distance=one.distance),
@@ -259,7 +260,7 @@ def _covered(intervals: Intervals, one: Predicted) -> Covered:
 
 
 def _look_closer(found: Evaluation, one: Predicted, scene: Scene, split: Split, *, clouds: bool) -> None:
-    """Symmetry, intervals, depth and clouds of one run; scene: the store's, on the model's device."""
+    """Add symmetry, intervals, depth and clouds of one run; `scene`: the store's, on the model's device."""
     run, title, predictions = one.run, one.name, one.predictions
     store, model = found.store, run.model
     name = f"{title}, fold {run.recipe.fold}"
@@ -291,7 +292,7 @@ def _look_closer(found: Evaluation, one: Predicted, scene: Scene, split: Split, 
 def _own_intervals(
     found: Evaluation, run: Run, name: str, validation: Predictions | None
 ) -> Intervals | None:
-    """From the validation part, or kept with a run of another dataset; None, with the reason noted."""
+    """Intervals from the validation part, or those saved with a run of another dataset; None if none."""
     if validation is None:
         kept = load_intervals(run)
         if kept is None:

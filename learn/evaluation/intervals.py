@@ -1,25 +1,25 @@
 """Conformal intervals: a radius around each predicted point, and a factor around the force.
 
-The score of a point is its distance error over a scale: the root of the squares of a fitted error and of the
-ensemble's spread, where there is one (normalised conformal prediction; Lei et al., JASA 113, 2018). The
-fitted error is a regression of the error's logarithm on what the rod, the depth and the prediction say. The
-pokes are dealt into parts; each part is scored by the regression on the others, and all scores calibrate, in
-rings around first contact (cross-conformal prediction; Barber et al., Ann. Statist. 49, 2021: CV+). Points of
-a poke are not independent: each poke is one draw, whose points say how its errors are distributed. The
-quantile is taken of the mean of k pokes' distributions, with a share of 1 / (k + 1) beyond all of them for
-the poke to come (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling CDFs). Fewer than 9 pokes cannot promise
-90 %: the largest score is taken then, and `promised` says what it promises. Unseen shapes are not
-exchangeable with seen ones, so that the coverage is measured, never presumed.
+The score of a point is its distance error divided by a scale: the root sum of squares of a fitted error and,
+for an ensemble, of the members' spread (normalised conformal prediction; Lei et al., JASA 113, 2018). The
+fitted error is a regression of the error's logarithm on the distance from contact, the depth and the
+predicted displacement. The pokes are divided into cross-validation folds; each fold is scored by the
+regression on the others, and all scores calibrate, in rings around first contact (cross-conformal prediction;
+Barber et al., Ann. Statist. 49, 2021: CV+). Points of a poke are not independent: each poke is one draw,
+whose points give a distribution of errors. The quantile is taken of the mean of k pokes' distributions, with
+weight 1 / (k + 1) beyond all of them for the new poke (Dunn, Wasserman and Ramdas, JASA 118, 2023: pooling
+CDFs). Fewer than 9 pokes cannot guarantee 90 %: the largest score is then used, and `promised` is the
+guaranteed coverage. New shapes are not exchangeable with trained ones, so that the coverage is measured,
+never presumed.
 
-Errors are larger over a large inclusion than over a small one, and where its cover is thin. So the fitted
-errors have a factor of the interior, e^(b V^(1/3) + c h): V is the inclusion's volume, h the cover where the
-rod's axis meets the surface. A shape is one draw of what it is to be unseen: both are fitted to five shapes
-or more.
+Errors are larger over large inclusions and under thin cover. The fitted errors therefore have a factor
+e^(b V^(1/3) + c h): V is the inclusion's volume, h the cover where the rod's axis meets the surface. With
+respect to new shapes each shape is one draw: b and c are fitted to five shapes or more.
 
-The shapes that a run was validated on are two, and do not say how a third will do. The test parts of the
-other folds are each predicted by a model that had not seen their shapes, so that they are more draws of the
-error on an unseen shape (cross-conformal prediction: Vovk, Ann. Math. Artif. Intell. 74, 2015; Barber et al.,
-Ann. Statist. 49, 2021). The run's own test part takes no part in its intervals (`across_folds`).
+A run is validated on two shapes, too few to predict the error on a third. The test parts of the other folds
+are each predicted by a model that was not trained on their shapes, so that they are further draws of the
+error on a new shape (cross-conformal prediction: Vovk, Ann. Math. Artif. Intell. 74, 2015; Barber et al.,
+Ann. Statist. 49, 2021). The run's own test part is not used for its intervals (`across_folds`).
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ from learn.training import Run
 
 Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
-_LEAST_FORCE = 1e-5  # of ln(force)
+_LEAST_FORCE = 1e-5  # least error of ln(force)
 LEVEL = 0.9
 LEAST_POKES = 2
-PARTS = 5  # into which pokes are dealt; the error's scale of each is fitted to the others
+PARTS = 5  # cross-validation folds of the pokes; the error scale of each is fitted to the others
 LEAST_FOLDS = 3
-N_FEATURES = 9  # of `_fit_scale`
-LEAST_SHAPES = 5  # that say how errors grow with the inclusion and its cover
-# Outside what was trained: after LENGTH trained ranges little is left of what was learned; a force is then
-# known to a factor of e^FORCE_UNKNOWN = 4: nine tenths on thin covers, the worst of the questions of
-# studies/learning/outside.
+N_FEATURES = 9  # of `_Scale.fit`, without those of the interior
+LEAST_SHAPES = 5  # for a fit of how errors depend on the inclusion and its cover
+# Outside the trained ranges: LENGTH, in widths of these, is the length scale of the widening; far outside, a
+# force is known to a factor of e^FORCE_UNKNOWN = 4, which holds nine tenths of the forces on thin covers, the
+# worst case of studies/learning/outside.
 LENGTH, FORCE_UNKNOWN = 0.5, 1.4
 
 
@@ -57,14 +57,14 @@ class Intervals:
 
     Attributes
     ----------
-    level : coverage that was asked for.
-    promised : coverage that so few pokes can promise at most.
-    pokes : that calibrated.
+    level : requested coverage.
+    promised : largest coverage, up to `level`, that this number of pokes can guarantee.
+    pokes : number of pokes that calibrated.
     scale : coefficients of ln(fitted error / mm).
-    factors : of the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
+    factors : factors on the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
-    interior, force_interior : by how much both fitted errors grow, in their logarithms, with each mm of the
-        inclusion's size (`learn.validity.Interior.size`) and its cover; 0 from few shapes.
+    interior, force_interior : change of the logarithms of both fitted errors per mm of the inclusion's size
+        (`learn.validity.Interior.size`) and of its cover; 0 if there are few shapes.
     """
 
     level: float
@@ -78,7 +78,7 @@ class Intervals:
     force_interior: tuple[float, float] = (0.0, 0.0)
 
     def over(self, size: float, cover: float) -> Intervals:
-        """Intervals over an inclusion of this size under this cover [mm], as constants."""
+        """Intervals over an inclusion of this size and cover [mm]; they no longer depend on these."""
         more = self.interior[0] * size + self.interior[1] * cover
         force_more = self.force_interior[0] * size + self.force_interior[1] * cover
         return replace(
@@ -92,8 +92,8 @@ class Intervals:
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
 
-        distance: how far the frames are outside what was trained, one number or (f,)
-        (`learn.validity.Domain.distance`); far outside the radius is as large as the predicted displacement.
+        `distance` from the trained ranges, a number or (f,), is `learn.validity.Domain.distance`; far outside
+        the radius is at least as large as the predicted displacement.
         """
         return self.radius_at_mm(
             _size(predictions),
@@ -114,7 +114,7 @@ class Intervals:
         interior: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
-        """The same from the size of the predicted displacement [m]; see `Predictions` for the others."""
+        """Radius [mm] from the magnitude of the predicted displacement [m]; others as in `Predictions`."""
         fitted = _scale_mm(size, away, depth, self.scale)
         if interior is not None:
             fitted = fitted * np.exp(interior @ np.array(self.interior))
@@ -130,9 +130,9 @@ class Intervals:
         interior: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
-        """The true force lies within predicted e^-x and predicted e^x.
+        """Half width x of the force's interval: from predicted force times e^-x to predicted force times e^x.
 
-        spread: of an ensemble, as `Predictions.force_spread`; the others: as above.
+        `spread` of an ensemble is as `Predictions.force_spread`; the others are as in `radius_at_mm`.
         """
         grown = 0.0 if interior is None else interior @ np.array(self.force_interior)
         fitted = self.force_scale * np.exp(grown)
@@ -150,8 +150,8 @@ class Coverage:
     Attributes
     ----------
     points, force : over all points and over all frames.
-    rings : of the points by ring of distance from first contact; NaN where there are none.
-    pokes : fraction of pokes of whose points at least the promised fraction is covered.
+    rings : fraction of points by ring of distance from first contact; NaN if there are none.
+    pokes : fraction of pokes with at least the promised fraction of points covered.
     """
 
     points: float
@@ -161,7 +161,7 @@ class Coverage:
 
 
 def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int = 0) -> Intervals:
-    """From predictions of the validation part. InputError where it has fewer than two pokes."""
+    """Fit intervals to predictions of the validation part. InputError if it has fewer than two pokes."""
     pokes = np.unique(predictions.poke)
     if len(pokes) < LEAST_POKES:
         raise InputError(too_few(len(pokes)))
@@ -189,7 +189,7 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
 
 
 def coverage(intervals: Intervals, predictions: Predictions, *, distance: float | Floats = 0.0) -> Coverage:
-    """Coverage of the intervals on these predictions; distance: outside what was trained, as `radius_mm`."""
+    """Coverage of the intervals on these predictions; `distance` is as in `Intervals.radius_mm`."""
     inside = predictions.distance_mm <= intervals.radius_mm(predictions, distance=distance)
     ring = _ring(predictions.away)
     each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
@@ -212,7 +212,10 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
 
 
 def pooled_quantile(scores: Floats, poke: NDArray[np.int64], level: float) -> float:
-    """The least score below which lie `level` of the mean distribution of k pokes, weighing k / (k + 1)."""
+    """Least score at which the mean distribution of k pokes, of weight k / (k + 1), reaches `level`.
+
+    The largest score if none does.
+    """
     _, place, counts = np.unique(poke, return_inverse=True, return_counts=True)
     order = np.argsort(scores)
     mass = np.cumsum((1 / (counts[place] * (len(counts) + 1)))[order])
@@ -223,17 +226,17 @@ def pooled_quantile(scores: Floats, poke: NDArray[np.int64], level: float) -> fl
 def rank_correlation(
     intervals: Intervals, predictions: Predictions, *, distance: float | Floats = 0.0
 ) -> float:
-    """Spearman's, of radius and error over all points: 1 where wide intervals are where large errors are."""
+    """Spearman's rank correlation of radius and error over all points."""
     radius = intervals.radius_mm(predictions, distance=distance).reshape(-1).argsort().argsort()
     error = predictions.distance_mm.reshape(-1).argsort().argsort()
     return float(np.corrcoef(radius, error)[0, 1])
 
 
 def _unknown(distance: float | Floats) -> Floats:
-    """Share of what is not known of an answer outside the training, beside an answer of nothing known.
+    """Fraction 1 - exp(-(d / LENGTH)^2) of the prior variance, at distance d from the trained ranges.
 
-    1 - exp(-(d / LENGTH)^2): the variance of a Gaussian process with a squared exponential covariance goes
-    to its prior in this way with the distance from its data (Rasmussen and Williams 2006, eqs 2.26, 4.9).
+    The variance of a Gaussian process with a squared exponential covariance returns to its prior in this way
+    with the distance from its data (Rasmussen and Williams 2006, eqs 2.26, 4.9).
     """
     return np.asarray(-np.expm1(-((np.asarray(distance) / LENGTH) ** 2)))
 
@@ -251,24 +254,24 @@ def _size(predictions: Predictions) -> Floats:
 
 
 def _scale_mm(size: Floats, away: Floats, depth: float | Floats, scale: Sequence[float] | Floats) -> Floats:
-    """The error to expect at each point [mm], by the coefficients of `_fit_scale` (Horner's scheme)."""
+    """Fitted error at each point [mm], from the coefficients of `_Scale.fit` (Horner's scheme)."""
     c, (x, t, s) = scale, _logarithms(size, away, depth)
     of_x = x * (c[1] + c[6] * t + x * (c[2] + x * c[3]))
     return np.asarray(np.exp(c[0] + t * (c[4] + t * c[5]) + of_x + s * (c[7] + s * c[8])))
 
 
 def _with_spread(fitted: Floats, spread: float | Floats) -> Floats:
-    """fitted [mm], spread [m]."""
+    """Root sum of squares [mm] of `fitted` [mm] and `spread` [m]."""
     return fitted if np.ndim(spread) == 0 and spread == 0.0 else np.hypot(fitted, np.asarray(spread) * 1e3)
 
 
 def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floats, Floats, Floats]:
-    """Logarithms of distance and depth over a rod's size, and of displacement over depth."""
+    """Logarithms of distance and depth over the rod's size, and of displacement over depth."""
     return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
 
 
 class _Scale(NamedTuple):
-    """Scales of errors: the attributes of `Intervals` of the same names."""
+    """Scale of the errors; the fields are those of `Intervals`."""
 
     scale: list[float]
     force_scale: float
@@ -277,9 +280,9 @@ class _Scale(NamedTuple):
 
     @classmethod
     def fit(cls, predictions: Predictions, many: bool) -> _Scale:
-        """Least squares of the errors' logarithms; of ln(force), the root mean square of what is left.
+        """Fit the logarithms of the errors by least squares; `force_scale` is a root mean square residual.
 
-        many: whether there are enough shapes for what differs between them.
+        `many` is True if there are enough shapes to fit the dependence on the interior.
         """
         x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
         t = np.broadcast_to(t, x.shape)
@@ -299,7 +302,7 @@ class _Scale(NamedTuple):
         )
 
     def scores(self, predictions: Predictions) -> tuple[Floats, Floats]:
-        """Errors over their scale: of points (f, n), and of forces (f,)."""
+        """Errors divided by their scale: of points (f, n), and of forces (f,)."""
         fitted = _scale_mm(_size(predictions), predictions.away, predictions.depth[:, None], self.scale)
         fitted = fitted * np.exp(predictions.interior @ np.array(self.interior))[:, None]
         force = self.force_scale * np.exp(predictions.interior @ np.array(self.force_interior))
@@ -310,29 +313,29 @@ class _Scale(NamedTuple):
 
 
 def _least_squares(parts: list[Floats], errors: Floats) -> Floats:
-    """Coefficients of the parts, of the errors' shape, in ln(error)."""
+    """Least-squares coefficients of ln(error) in the features `parts`, each of the errors' shape."""
     a = np.stack(parts, axis=-1).reshape(-1, len(parts))
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
     return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ np.log(errors).reshape(-1)))
 
 
 def too_few(pokes: int) -> str:
-    """The sentence that says why there are no intervals."""
+    """Sentence stating that there are too few validation pokes for intervals."""
     there = "there is 1" if pokes == 1 else f"there are {pokes}"
     return f"intervals need at least two validation pokes, {there}: train on a dataset of more pokes"
 
 
 def inside_alone(predictions: Predictions, distance: Floats) -> Predictions:
-    """Frames that may calibrate: those inside what was trained, where there are two pokes of them; else all.
+    """Frames for calibration: those inside the trained ranges if they are of two or more pokes, else all.
 
-    distance: of the frames (f,), `learn.validity.Domain.distance`. Outside intervals are widened by it.
+    `distance` (f,) is `learn.validity.Domain.distance`, by which intervals are widened outside.
     """
     inside = predictions.where(distance == 0.0)
     return inside if inside.pokes >= LEAST_POKES else predictions
 
 
 class Predicted(NamedTuple):
-    """A run, its name in tables, predictions of its test part, and how far these lie outside its training."""
+    """A run, its name in tables, predictions of its test part, and their distance from its trained ranges."""
 
     run: Run
     name: str
@@ -341,7 +344,7 @@ class Predicted(NamedTuple):
 
 
 def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Intervals]]:
-    """Each run that has two or more others like it but for the fold, with intervals from those alone."""
+    """Intervals of each run from the test parts of the other runs, two or more, that differ only in fold."""
     groups: dict[str, list[Predicted]] = {}
     for one in predicted:
         alike = one.run.recipe.model_copy(update={"fold": 0})

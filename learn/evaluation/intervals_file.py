@@ -1,4 +1,4 @@
-"""Intervals in a run's folder: written by `learn.evaluate`, read by whoever predicts with it."""
+"""Intervals in a run's folder: written by `learn.evaluate`, read for predictions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from learn.training.run_folder import write_whole
 
 
 def save_intervals(run: Run, intervals: Intervals) -> Path:
-    """Write them to the folder of the run, or of the first of an ensemble."""
+    """Write intervals to the folder of the run, or of the first run of an ensemble."""
     path = _path(run)
     content = {"members": _members(run), **intervals.as_dict()}
     write_whole(path, (json.dumps(content) + "\n").encode())
@@ -25,13 +25,13 @@ def save_intervals(run: Run, intervals: Intervals) -> Path:
 
 
 def replaced_text(run: Run, intervals: Intervals) -> str | None:
-    """The sentence to say when these replace intervals that more pokes calibrated; None where they do not.
+    """Warning if these intervals replace some that were calibrated on more pokes; else None.
 
-    A run that is evaluated without the other folds has its own validation part alone.
+    A run that is evaluated without the other folds is calibrated on its own validation part alone.
     """
     try:
         kept = load_intervals(run)
-    except InputError:  # damaged: written again
+    except InputError:  # damaged: it is overwritten
         return None
     if kept is None or kept.pokes <= intervals.pokes:
         return None
@@ -42,7 +42,7 @@ def replaced_text(run: Run, intervals: Intervals) -> str | None:
 
 
 def load_intervals(run: Run) -> Intervals | None:
-    """None where there are none; InputError where the file is damaged or belongs to other members."""
+    """Read a run's intervals, None if there are none; InputError if damaged or of other members."""
     path = _path(run)
     if not path.is_file():
         return None
@@ -78,13 +78,13 @@ class _File(BaseModel):
     ]
     force_scale: _Positive
     force: _Positive
-    interior: tuple[_Number, _Number] = (0.0, 0.0)  # files of before 2026-11-25 have neither
+    interior: tuple[_Number, _Number] = (0.0, 0.0)  # files from before 2026-11-25 have neither
     force_interior: tuple[_Number, _Number] = (0.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod
     def _size_alone(cls, values: Any) -> Any:
-        """Files of 2026-11-25 have the inclusion's size alone."""
+        """Convert keys of files of 2026-11-25, which have the inclusion's size alone."""
         if not isinstance(values, dict):
             return values
         old = {"inclusion": "interior", "force_inclusion": "force_interior"}

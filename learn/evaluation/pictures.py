@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 def ranked_pokes(predictions: Predictions) -> dict[str, int]:
     """Pokes with the smallest, the middle and the largest mean distance over their frames, each once.
 
-    Of two pokes there is no median; a single poke is "only".
+    Two pokes have no median; a single poke is "only".
     """
     pokes = np.unique(predictions.poke)
     means = np.array([predictions.distance_mm[predictions.poke == p].mean() for p in pokes])
@@ -56,7 +56,7 @@ def draw_learning(logs: dict[str, list[dict[str, Any]]]) -> Figure:
 
 
 def draw_poke(store: Store, predictions: Predictions, poke: int, title: str) -> Figure:
-    """A poke's deepest frame: the surface cut along the push, displacement of both, error from above."""
+    """A poke's deepest frame: section along the push, true and predicted displacement, and the error."""
     mine = np.flatnonzero(predictions.poke == poke)
     frame = mine[predictions.depth[mine].argmax()]
     side = round(len(store.points) ** 0.5)
@@ -83,7 +83,7 @@ def draw_poke(store: Store, predictions: Predictions, poke: int, title: str) -> 
 
 
 def draw_forces(predictions: Predictions) -> Figure:
-    """Force against depth: up to four pokes a softness level, simulated (line) and predicted (crosses)."""
+    """Force against depth: up to four pokes per softness level, simulated (line), predicted (crosses)."""
     names = sorted({str(s) for s in predictions.softness})
     figure = Figure(figsize=(max(6.0, 4.6 * len(names)), 3.4), layout="constrained")
     axes = figure.subplots(1, len(names), squeeze=False)
@@ -104,7 +104,9 @@ def draw_forces(predictions: Predictions) -> Figure:
 def draw_prediction(
     scene: Scene, pokes: Pokes, u: NDArray[np.float32], *, radius: Floats | None, title: str
 ) -> Figure:
-    """One predicted poke: the cut along the push with indenter and inclusion, the displacement from above.
+    """One predicted poke: section along the push with indenter and inclusion, and a map of the top.
+
+    The map shows the radius of the intervals, or the displacement without intervals.
 
     Parameters
     ----------
@@ -168,7 +170,7 @@ def encoded(figure: Figure) -> str:
 
 
 def _cut(axis: Axes, points: Floats, truth: Floats, predicted: Floats, start: Floats, push: Floats) -> None:
-    """Positions of the points in a strip along the push's heading."""
+    """Draw the positions of the points in a strip along the push's heading."""
     heading = push[:2] / max(float(np.linalg.norm(push[:2])), 1e-9)
     if np.linalg.norm(push[:2]) < 1e-6:
         heading = np.array([1.0, 0.0])
@@ -194,7 +196,7 @@ def _map(
     colours: str,
     top: float | None,
 ) -> None:
-    # the square root shows the far field beside the contact
+    # the square root makes the far field visible beside the contact
     norm = PowerNorm(0.5, vmin=0, vmax=top if top is not None else max(float(values.max()), 1e-9))
     picture = axis.imshow(
         values, origin="lower", extent=(reach[0], reach[1], reach[2], reach[3]), cmap=colours, norm=norm

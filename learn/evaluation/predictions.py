@@ -1,6 +1,4 @@
-"""Predictions of a model beside the truth: on a part of the dataset, on other point clouds, on rotated
-scenes.
-"""
+"""Predictions of a model with the simulated truth: on dataset parts, other clouds and rotated scenes."""
 
 from __future__ import annotations
 
@@ -33,13 +31,13 @@ class Predicts(Protocol):
 
 
 def predict_part(model: Predicts, scene: Scene, data: MemoryDataset, *, batch: int = 64) -> Predictions:
-    """Predictions of all frames of a part; scene: of the store's grid, on the model's device."""
+    """Predictions of all frames of a part; `scene` is that of the store's grid, on the model's device."""
     return predict_batches(model, scene, data.store, data.batches(batch))
 
 
 @torch.no_grad()
 def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterable[Batch]) -> Predictions:
-    """Predictions of these batches; scene: on the model's device."""
+    """Predictions of these batches; `scene` is on the model's device."""
     parts: list[Predictions] = []
     encoded: Any = None
     device = scene.points.device
@@ -71,7 +69,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
 
 
 def _or_zero(spread: torch.Tensor | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """The spread; zero for one model."""
+    """The spread, or zeros for a single model."""
     return np.zeros(shape) if spread is None else spread.double().cpu().numpy()
 
 
@@ -86,7 +84,7 @@ def predict_on(
 ) -> Predictions:
     """Predictions at other points of the top face, against interpolation of each poke's own surface mesh.
 
-    device : the model's.
+    `device` is the model's.
     """
     field = surfaces or SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     scene = scene_on(store, points).to(device)
@@ -94,7 +92,7 @@ def predict_on(
 
 
 def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
-    """Mean distance [mm] of that interpolation from the stored field at the grid's own points."""
+    """Mean distance [mm] between interpolated and stored displacement at the grid's points."""
     field = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     wrong = []
     for batch in _batches(store, rows, store.points, field):
@@ -107,7 +105,7 @@ def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
 def _batches(
     store: Store, rows: NDArray[np.int64], points: Floats, surfaces: SurfaceField
 ) -> Iterator[Batch]:
-    """A batch a poke."""
+    """Yield one batch per poke."""
     for poke in np.unique(store.frame_poke[rows]):
         mine = rows[store.frame_poke[rows] == poke]
         yield make_batch(store, mine, surfaces.displacement(mine, points))
@@ -115,7 +113,7 @@ def _batches(
 
 @dataclass(frozen=True)
 class SymmetryError:
-    """Largest over points, pokes and rotations: displacement [mm]; force relative to its magnitude."""
+    """Largest error over points, pokes and rotations: displacement [mm]; force relative to its magnitude."""
 
     displacement_mm: float
     force: float
@@ -125,13 +123,13 @@ class SymmetryError:
 def symmetry_error(
     model: Predicts, scene: Scene, pokes: Pokes, *, about_normal: bool = False, rotations: int = 5
 ) -> SymmetryError:
-    """Distance between the prediction for a rotated scene and the rotated prediction.
+    """Difference between the prediction for a rotated scene and the rotated prediction.
 
     Parameters
     ----------
     about_normal : quarter turns about the vertical and no translation, as in the paper; otherwise random
-    rotations
-        about any axis and translations by up to 0.1 m.
+        rotations about any axis and translations by up to 0.1 m.
+    rotations : number of random rotations.
     """
     from scipy.stats import special_ortho_group  # half a second to import
 

@@ -78,12 +78,12 @@ img { max-width: 100%; } .note { color: #555; }
 
 
 def counted(number: int, noun: str) -> str:
-    """ "1 poke", "12 pokes"."""
+    """Number with its noun: "1 poke", "12 pokes"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def verdict(found: Evaluation) -> str:
-    """The result in one sentence: errors of the first model on its test part, beside the best baseline."""
+    """One-sentence result: errors of the first model on its test part, and of the best baseline."""
     name = found.models[0]
     row = found.tables[name]["all"]
     others = {n: levels["all"]["mean"].mean for n, levels in found.tables.items() if n not in found.models}
@@ -109,7 +109,7 @@ def cautions(found: Evaluation) -> list[str]:
 
 
 def paper_table(found: Evaluation) -> Table:
-    """The paper's columns, by softness, its own rows beside."""
+    """The paper's metrics by softness level, with the paper's own rows."""
     heads = ["", "softness", *(METRICS[name].heading for name in PAPER_METRICS)]
     rows = []
     for name in found.models:
@@ -122,7 +122,7 @@ def paper_table(found: Evaluation) -> Table:
 
 
 def full_table(tables: dict[str, Row], first: str) -> Table:
-    """Every metric's mean, one row each entry."""
+    """Mean of every metric, one row per entry."""
     heads = [first, *(m.heading for m in METRICS.values())]
     rows = [
         [name, *(values[m.name].text(m, sd=False) for m in METRICS.values())]
@@ -143,7 +143,7 @@ def symmetry_table(found: Evaluation) -> Table:
 
 
 def _interval_row(name: str, entries: list[Covered]) -> list[str]:
-    """Means over the entries, but for the fewest pokes and the least promise."""
+    """Row of means over the entries; number of pokes and promised coverage are the smallest."""
     rings = [[r for r in ring if isfinite(r)] for ring in zip(*(c.found.rings for c in entries), strict=True)]
     return [
         name,
@@ -160,7 +160,7 @@ def _interval_row(name: str, entries: list[Covered]) -> list[str]:
 
 
 def interval_table(found: Evaluation) -> Table:
-    """Coverage of the intervals; no rows where there are none (see `no_intervals`)."""
+    """Coverage of the intervals; no rows if there are none (see `no_intervals`)."""
     rings = [f"{low:g}+" if high == inf else f"{low:g}-{high:g}" for low, high in pairwise(RING_EDGES_MM)]
     heads = [
         "",
@@ -182,7 +182,7 @@ def interval_table(found: Evaluation) -> Table:
 
 
 def outside_table(found: Evaluation) -> Table:
-    """Errors and coverage by distance outside what was trained."""
+    """Errors and coverage by distance from the trained ranges."""
     heads = ["", "frames", "pokes", "mean distance", "mean [mm]", "force [%]"]
     heads += [f"{what} covered{how}" for how in (", as inside", ", widened") for what in ("points", "forces")]
     rows = []
@@ -196,7 +196,7 @@ def outside_table(found: Evaluation) -> Table:
 
 
 def no_intervals(found: Evaluation) -> list[str]:
-    """A sentence for each run without intervals: why it has none."""
+    """One sentence for each run without intervals, with the reason."""
     return [f"{name}: {reason}." for name, reason in found.no_intervals.items()]
 
 

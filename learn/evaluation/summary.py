@@ -1,4 +1,4 @@
-"""Metrics of predictions as rows of tables: all frames, by softness, depth and distance from the training."""
+"""Metrics of predictions as table rows: all frames, by softness, depth, distance from trained ranges."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from learn.evaluation.intervals import Coverage, Intervals, coverage
 from learn.metrics import METRICS, Metric, Predictions
 
 DEPTH_BAND_MM = 5.0
-# of the distance outside what was trained, in widths of its ranges
+# edges of the bands of distance from the trained ranges, in widths of these
 DISTANCE_BANDS = (0.0, 0.1, 0.3, 1.0, np.inf)
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Value:
-    """Mean and standard deviation of a metric over frames (or pokes, or folds); NaN where there were none."""
+    """Mean and standard deviation of a metric over frames (or pokes, or folds); NaN if there are none."""
 
     mean: float
     sd: float
 
     def text(self, metric: Metric, *, sd: bool = True) -> str:
-        """Text for a table, without the unit; "-" where there is no value."""
+        """Text for a table, without the unit; "-" if there is no value."""
         scale = 100 if metric.percent else 1
         if not np.isfinite(self.mean):
             return "-"
@@ -37,19 +37,19 @@ Row = dict[str, Value]  # by metric
 
 
 def summarise(predictions: Predictions) -> Row:
-    """Every metric of `METRICS`."""
+    """Mean and standard deviation of every metric of `METRICS`."""
     return {name: _value(metric, predictions) for name, metric in METRICS.items()}
 
 
 def by_softness(predictions: Predictions) -> dict[str, Row]:
-    """The same for each softness level, in the order of their names, and for "all"."""
+    """Metrics for each softness level, in the order of their names, and for "all"."""
     names = sorted({str(s) for s in predictions.softness})
     rows = {name: summarise(predictions.where(predictions.softness == name)) for name in names}
     return {**rows, "all": summarise(predictions)}
 
 
 def by_depth(predictions: Predictions) -> dict[str, Row]:
-    """The same for bands of depth of `DEPTH_BAND_MM`, those that have frames."""
+    """Metrics for each band of depth, `DEPTH_BAND_MM` wide, that has frames."""
     band = np.ceil(predictions.depth * 1e3 / DEPTH_BAND_MM - 1e-6).astype(int)
     return {
         f"{DEPTH_BAND_MM * (k - 1):g} to {DEPTH_BAND_MM * k:g} mm": summarise(predictions.where(band == k))
@@ -59,15 +59,15 @@ def by_depth(predictions: Predictions) -> dict[str, Row]:
 
 @dataclass(frozen=True, kw_only=True)
 class Outside:
-    """Frames of another dataset by how far they lie outside what was trained.
+    """Errors on frames of another dataset within one band of distance from the trained ranges.
 
     Attributes
     ----------
-    frames, pokes : how many.
-    distance : mean (`learn.validity.Domain.distance`).
-    mean_mm, force : mean distance error, and mean error of the force relative to the true one.
-    calibrated, widened : coverage of the intervals as inside, and of those that widen with the distance; None
-        where the run has no intervals.
+    frames, pokes : numbers of frames and pokes.
+    distance : mean distance (`learn.validity.Domain.distance`).
+    mean_mm, force : mean displacement error [mm], and mean error of the force relative to the true one.
+    calibrated, widened : coverage of the intervals without and with their widening by the distance; None if
+        the run has no intervals.
     """
 
     frames: int
@@ -82,9 +82,9 @@ class Outside:
 def by_distance(
     predictions: Predictions, distance: Floats, intervals: Intervals | None
 ) -> dict[str, Outside]:
-    """Frames inside what was trained, and outside in bands of `DISTANCE_BANDS`; those that there are.
+    """Errors inside the trained ranges, and outside in bands of `DISTANCE_BANDS`; empty bands are left out.
 
-    distance: of the frames, (f,).
+    `distance` is that of the frames, (f,).
     """
     bands = {"inside": distance == 0.0}
     for low, high in itertools.pairwise(DISTANCE_BANDS):

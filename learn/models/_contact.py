@@ -1,13 +1,13 @@
 """Invariants of each point with respect to the indenter, and the indenter's surface.
 
 The first part gives the features: distances, angles and depths, and the geometry's code seen from the
-contact. The second is the kinematics of contact. A network of smooth functions cannot know to a hundredth of
-a millimetre where the edge of the tip lies, but the poke says it. So the displacement under the indenter is a
-mixture of the network's and of "moves with the indenter from where the two met", and points that end near its
-surface are then moved onto it. The weights of both (gates) are learned and fade out beside the indenter.
+contact. The second is the kinematics of contact. A network of smooth functions cannot locate the edge of the
+tip to a hundredth of a millimetre, but the poke determines it. So the displacement under the indenter is a
+mixture of the network's and of motion with the indenter since contact, and points that end near its surface
+are then moved onto it. The weights of both (gates) are learned and fade out beside the indenter.
 
-Lengths are in indenter radii unless said otherwise. `xp` is torch, or NumPy, whose operations on a few
-numbers cost a quarter; arrays are of its kind.
+Lengths are in indenter radii unless stated otherwise. `xp` is torch, or NumPy, whose operations on a few
+numbers cost a quarter; arrays are of the same library.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ N_POINT = 10 + len(RINGS) + 12
 N_POKE = 4
 
 
-# At first contact displacement and force over depth tend to a limit, and so does what the network is told:
-# depths below the first count as that, and the second is added under the logarithm.
+# At first contact displacement and force over depth tend to a limit, and so must the network's inputs: TOUCH
+# is the least depth, and SHALLOW is added to the depth under the logarithm.
 TOUCH, SHALLOW = 1e-3, 0.05
 N_GATES = 2
-# distances from the axis at rest, where it begins to fade and has faded:
+# undeformed distances from the axis at which a gate begins to fade and has faded:
 STICK = (1.0, 1.8)  # moving with the rod
 LAND = (2.0, 3.5)  # moving onto the surface
-_REACH = 0.5  # the farthest move onto the surface
+_REACH = 0.5  # the largest move onto the surface
 
 
 class Exact(NamedTuple):
-    """r, push, normal and depth of `Contact`, in float64."""
+    """The quantities r, push, normal and depth of `Contact`, in float64."""
 
     r: Tensor
     push: Tensor
@@ -45,12 +45,12 @@ class Exact(NamedTuple):
 
 
 class Contact:
-    """b pokes at n points; made once a prediction. All lengths in rod radii unless said otherwise.
+    """Geometry of b pokes at n points, computed once per prediction; lengths are in rod radii.
 
     r: from first contact to the points (n, b, 3); unit: r / sqrt(|r|^2 + 1); far: 1 / sqrt(|r|^2 + 1).
     push: direction (b, 3). point: invariants (n, b, N_POINT); poke: invariants (b, N_POKE).
-    near: one weight a point for each of WIDTHS, summing to 1 over the points, (w, n, b); a point weighs as
-    the area that it stands for.
+    near: weights of the points for each of WIDTHS (w, n, b), proportional to their area, summing to 1 over
+    the points.
     """
 
     def __init__(self, scene: Scene, pokes: Pokes) -> None:
@@ -130,7 +130,7 @@ class Contact:
         return self.normal.expand_as(self.unit), self.unit, self.push.expand_as(self.unit)
 
     def seen(self, code: Tensor) -> tuple[Tensor, Tensor]:
-        """A code (n, b, c) as seen from the contact: invariants of the poke (b, 9 c) and vectors (3, b, 3 c).
+        """A code (n, b, c) relative to the contact: invariants of the poke (b, 9 c), vectors (3, b, 3 c).
 
         Each width gives the code's mean near the contact and the mean of position times code, a vector
         that points to where the code is large.
@@ -149,8 +149,11 @@ class Contact:
 
 
 class Place(NamedTuple):
-    """Points at rest and the rod: r from first contact (n, b, 3), its parts along the push and aside (n, b);
-    push (b, 3), depth (b,), edge."""
+    """Undeformed points relative to the rod.
+
+    `r` from first contact (n, b, 3), its components along the push and aside (n, b); `push` (b, 3), `depth`
+    (b,), `edge`.
+    """
 
     r: Any
     push: Any
@@ -161,7 +164,7 @@ class Place(NamedTuple):
 
 
 def under_end(along: Tensor, aside: Tensor, depth: Tensor) -> list[Tensor]:
-    """Features: whether a point lies under the rod's end, and how far the rod goes on after meeting it."""
+    """Features (n, b): position under the rod's end, and travel of the rod after it meets the point."""
     near = torch.exp(-0.5 * (aside / 1.5).square() ** 2)
     go = depth - along
     return [near, near * torch.tanh(go), near * torch.tanh(4 * go), near * torch.tanh(go / depth)]
@@ -170,7 +173,8 @@ def under_end(along: Tensor, aside: Tensor, depth: Tensor) -> list[Tensor]:
 def distance(ahead: Any, aside: Any, edge: float, xp: Any = torch) -> tuple[Any, Any, Any]:
     """Signed distance from the rod, less than 0 in it, and its derivatives with respect to both arguments.
 
-    ahead: of the tip's plane, along the push; aside: from the axis; edge: radius of the rounded edge.
+    `ahead`: distance beyond the tip's plane, along the push; `aside`: distance from the axis; `edge`: radius
+    of the rounded edge.
     """
     da, ds = ahead + edge, aside - (1 - edge)
     out_a, out_s = xp.clip(da, 0.0, None), xp.clip(ds, 0.0, None)
@@ -183,9 +187,9 @@ def distance(ahead: Any, aside: Any, edge: float, xp: Any = torch) -> tuple[Any,
 
 
 def travel(place: Place, xp: Any = torch) -> Any:
-    """Path of the rod beyond its contact with a point that stays at rest, 0 where it does not meet it (n, b).
+    """Travel of the rod after it meets a point that stays at rest, 0 if it does not meet it (n, b).
 
-    Not farther than it goes at all: a point beside a leaning rod may lie behind its tip from the start.
+    It is at most the depth: a point beside an inclined rod may lie behind its tip from the start.
     """
     edge = place.edge
     over = xp.clip(place.aside - (1 - edge), 0.0, edge)
@@ -194,10 +198,10 @@ def travel(place: Place, xp: Any = torch) -> Any:
 
 
 def held(place: Place, smooth: Any, learned: Any, gates: Any, xp: Any = torch) -> Any:
-    """The displacement (n, b, 3) over depth: the closed form, or with the rod, and what is learned of either.
+    """Displacement (n, b, 3) over depth: closed form or motion with the rod, and the learned displacement.
 
-    gates: (n, b, 2), numbers from 0 to 1: how much a point moves with the rod; how much of its way to the
-    rod's surface it goes.
+    `gates` (n, b, 2) from 0 to 1: fraction of motion with the rod, and fraction of the gap to the rod's
+    surface that is closed.
     """
     stick = gates[..., 0] * fade(place.aside, STICK, xp)
     land = gates[..., 1] * fade(place.aside, LAND, xp)
@@ -209,7 +213,7 @@ def held(place: Place, smooth: Any, learned: Any, gates: Any, xp: Any = torch) -
     off = now - along[..., None] * push
     aside = xp.sqrt((off * off).sum(-1) + 1e-12)
     gap, of_a, of_s = distance(along - place.depth, aside, place.edge, xp)
-    reach = xp.clip(place.depth, None, _REACH)  # no farther than the rod has gone
+    reach = xp.clip(place.depth, None, _REACH)  # at most the travel of the rod
     step = land * reach * xp.tanh(gap / reach) / place.depth
     return u - step[..., None] * (of_a[..., None] * push + (of_s / aside)[..., None] * off)
 

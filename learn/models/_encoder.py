@@ -1,8 +1,8 @@
-"""The geometry encoder: the interior under and around each point, computed once a geometry.
+"""The geometry encoder: the interior under and around each point, computed once per geometry.
 
 Messages are weighted means over neighbourhoods, and means of directions (slopes). The weight falls smoothly
-to zero at the neighbourhood's edge, so that points at equal distance are always all in or all out, whatever
-rounding does to a rotated scene, and a mean over a denser cloud tends to the same integral.
+to zero at the neighbourhood's edge, so that rounding in a rotated scene has no effect on which points
+contribute there, and a mean over a denser cloud tends to the same integral.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from torch import Tensor, nn
 
 from learn.models.base import Scene
 
-RADII = (6.2e-3, 12.4e-3, 25e-3)  # [m], of the neighbourhoods
-BINS = 16  # of the profile's levels
+RADII = (6.2e-3, 12.4e-3, 25e-3)  # [m], radii of the neighbourhoods
+BINS = 16  # bins of the profile's levels
 
 
 class _Product(torch.autograd.Function):
     """A constant sparse matrix times a dense one (torch's own has no fast gradient).
 
-    In float32, under mixed precision too: sums over many neighbours that nearly cancel lose their digits in
-    bfloat16, and not every device has sparse products of it.
+    The product is in float32 even under mixed precision: sums over many neighbours that nearly cancel lose
+    their digits in bfloat16, and not every device has sparse products of it.
     """
 
     @staticmethod
@@ -60,10 +60,10 @@ class Sparse:
 
 @dataclass(frozen=True, eq=False)
 class Gathered:
-    """The same by gathering neighbours, where sparse products are not to be had (ONNX).
+    """The product of `Sparse` by gathering neighbours, for runtimes without sparse products (ONNX).
 
-    index, weight: (rows, most neighbours), padded with weights of zero. Matrices of which rows k, k + n, ...
-    share their neighbours (`parts` of them) gather once: weight (n, parts, neighbours).
+    `index` (n, neighbours) and `weight` (n, parts, neighbours) are padded with weights of zero: rows k,
+    k + n, ... of the matrix (`parts` of them) have the same neighbours, which are gathered once.
     """
 
     index: Tensor
@@ -81,8 +81,11 @@ class Gathered:
 
 @dataclass(frozen=True, eq=False)
 class Stencil:
-    """Neighbourhoods of one radius. mean: (n, c) -> (n, c). slope: (n, c) -> (3 n, c), the components of
-    the mean of (x_j - x_i) / radius times the value at j, x of all points first."""
+    """Neighbourhoods of one radius.
+
+    `mean`: (n, c) -> (n, c). `slope`: (n, c) -> (3 n, c), the components of the mean of (x_j - x_i) / radius
+    times the value at j, x of all points first.
+    """
 
     mean: Sparse | Gathered
     slope: Sparse | Gathered
@@ -92,10 +95,7 @@ class Stencil:
 
 
 def stencil(points: NDArray[np.float64], radius: float, area: NDArray[np.float64]) -> Stencil:
-    """The stencil of a cloud (n, 3) [m], neighbours nearer than radius [m], each point its own as well.
-
-    Points weigh as the area (n,) that they stand for.
-    """
+    """Stencil of a cloud (n, 3) [m]: each point and its neighbours within `radius` [m], area-weighted."""
     n = len(points)
     pairs = KDTree(points).query_pairs(radius, output_type="ndarray")
     own = np.arange(n)
@@ -112,7 +112,7 @@ def stencil(points: NDArray[np.float64], radius: float, area: NDArray[np.float64
 
 
 def gathered(s: Stencil) -> Stencil:
-    """The same stencil, by gathering."""
+    """Convert a stencil of sparse matrices to one that gathers."""
     assert isinstance(s.mean, Sparse)
     assert isinstance(s.slope, Sparse)
     mean = s.mean.matrix
@@ -145,7 +145,7 @@ def _sparse(
 def _torch(matrix: Any) -> Tensor:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Sparse CSR tensor support is in beta")
-        # torch 2.7 to 2.12 say so whatever `check_invariants` is
+        # torch 2.7 to 2.12 warn whatever `check_invariants` is
         warnings.filterwarnings("ignore", "Sparse invariant checks are implicitly disabled")
         return torch.sparse_csr_tensor(
             torch.from_numpy(matrix.indptr.astype(np.int64)),
@@ -158,10 +158,10 @@ def _torch(matrix: Any) -> Tensor:
 
 @dataclass(frozen=True, eq=False)
 class Encoded:
-    """k inclusions under n points. code (n, k, c): invariant; vectors (3, n, k, v): they turn with the scene;
-    clear (n, k): share of each column that lies above the inclusion.
+    """Encoded scene of k inclusions under n points.
 
-    stencils: the cloud's neighbourhoods at `RADII`. scene: what was encoded.
+    `code` (n, k, c) is invariant, `vectors` (3, n, k, v) rotate with the scene, `clear` (n, k) is the
+    fraction of each column above the inclusion; `stencils` are the cloud's neighbourhoods at `RADII`.
     """
 
     scene: Scene
@@ -193,12 +193,12 @@ class GeometryEncoder(nn.Module):
         """Codes and vectors of every inclusion of the scene."""
         levels = scene.rigid.shape[2]
         binned = scene.rigid.reshape(*scene.rigid.shape[:2], BINS, levels // BINS).mean(dim=3)
-        # how much soft tissue lies above the inclusion, and how much of the column is rigid
+        # fractions of the column: above the inclusion, and rigid
         clear = (scene.rigid.cumsum(dim=2) < 0.5).float().mean(dim=2, keepdim=True)
         share = scene.rigid.mean(dim=2, keepdim=True)
         values = self.profile(torch.cat([binned, clear, share], dim=2)).permute(1, 0, 2)
         normals = scene.normals.float().T[:, :, None, None]
-        # a constant beside the values: its slope is where the cloud ends
+        # a constant channel, whose slope marks the edge of the cloud
         h = torch.nn.functional.silu(self.first(_with_one(values), stencils, normals))
         code = self.second(_with_one(h), stencils, normals)
         thin = self.narrow(code)
@@ -207,7 +207,7 @@ class GeometryEncoder(nn.Module):
 
 
 class _Round(nn.Module):
-    """Means and slopes at every scale into a small network at each point."""
+    """Round of messages: means and slopes at every scale enter a small network at each point."""
 
     def __init__(self, wide: int, out: int) -> None:
         super().__init__()

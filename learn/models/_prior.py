@@ -1,9 +1,9 @@
 """A closed form that the network corrects: fields like a point load's on an elastic layer, fitted linearly.
 
 u / depth = sum_k c_k g_k v_k: g falls as 1 / sqrt(r^2 + a^2) (Boussinesq's half space) times exp(-r / L) (the
-fixed base below); v is the surface normal, the direction from first contact, that of the push; each with
+fixed base below); v is the surface normal, the direction from first contact or that of the push; each with
 factors of inclination, depth and the soft tissue below the contact. It is fitted to the training part
-by weighted least squares before the network starts, and stays fixed.
+by weighted least squares before the network is trained, and stays fixed.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from learn.models._contact import Contact
 
 CORES = (1.0, 2.0, 4.0)  # a, rod radii
 RANGES = (4.0, 12.0)  # L, rod radii
-POKE_FACTORS = 7  # of the poke alone; one more varies from point to point
+POKE_FACTORS = 7  # that depend on the poke alone; one more varies from point to point
 _RIDGE = 1e-6
 _NEAR = 20.0  # weight of points near first contact, as in training
 _NEAR_WIDTH = 2.4  # rod radii
 
 
 class Prior(nn.Module):
-    """coefficients: (cores x ranges, factors, 3)."""
+    """The closed form, with `coefficients` (cores x ranges, factors, 3)."""
 
     coefficients: Tensor
 
@@ -36,7 +36,7 @@ class Prior(nn.Module):
 
     @torch.no_grad()
     def forward(self, contact: Contact, soft: Tensor) -> Tensor:
-        """Displacement over depth (n, b, 3), worked out in float64: large terms nearly cancel."""
+        """Displacement over depth (n, b, 3), computed in float64, since large terms nearly cancel."""
         radial, factors, turn, vectors = _parts(contact, soft)
         c = self.coefficients
         of_poke = torch.einsum("bf,kfv->bkv", factors, c[:, :-1])
@@ -45,7 +45,7 @@ class Prior(nn.Module):
 
     @torch.no_grad()
     def fit(self, samples: Iterable[tuple[Contact, Tensor, Batch]]) -> None:
-        """Least squares over these frames, points near first contact weighing more."""
+        """Fit by least squares over these frames, with larger weights near first contact."""
         size = self.coefficients.numel()
         normal = torch.zeros(size, size, dtype=torch.float64)
         right = torch.zeros(size, dtype=torch.float64)
@@ -68,7 +68,7 @@ class Prior(nn.Module):
 
 
 def _parts(contact: Contact, soft: Tensor) -> tuple[Tensor, Tensor, Tensor, tuple[Tensor, Tensor, Tensor]]:
-    """Radial functions (n, b, k), factors of the poke (b, f), cosine of direction and push (n, b)."""
+    """Radial functions (n, b, k), factors of a poke (b, f), cosine of direction and push (n, b), vectors."""
     r, push, normal, depth = contact.exact
     square = r.square().sum(dim=2)
     size = torch.sqrt(square + 1e-6)
@@ -76,7 +76,7 @@ def _parts(contact: Contact, soft: Tensor) -> tuple[Tensor, Tensor, Tensor, tupl
         [torch.rsqrt(square + a * a) * torch.exp(-size / length) for a in CORES for length in RANGES], dim=2
     )
     unit = r * torch.rsqrt(square + 1)[..., None]
-    lean = (contact.here * push).sum(dim=1) + 0.8  # about zero
+    lean = (contact.here * push).sum(dim=1) + 0.8  # centred near zero
     deep = depth / 4
     factors = [torch.ones_like(deep), lean, deep, soft.double(), deep * lean, deep * deep, deep * soft]
     return radial, torch.stack(factors, dim=1), (unit * push).sum(dim=2), (normal, unit, push)

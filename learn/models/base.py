@@ -1,6 +1,6 @@
 """Inputs and outputs of a model, the class that a model derives from, ensembles, and the registry of models.
 
-To add a model, derive from `Model` in a file of its own and register it:
+To add a model, derive from `Model` in a separate file and register it:
 
 >>> from learn.models import Model, register_model
 >>> @register_model("mine", version=1)
@@ -10,7 +10,7 @@ To add a model, derive from `Model` in a file of its own and register it:
 ...     def decode(self, encoded, pokes): ...
 
 `learn.train --model mine --plugin FILE` imports the file and trains it; recipes, checkpoints, tables and
-`learn.predict` know it by its name.
+`learn.predict` refer to it by its name.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class Scene:
     ----------
     points : rest positions [m], shape (n, 3), float64.
     normals : outward unit normals, shape (n, 3), float64.
-    area : that each point stands for, in any unit, shape (n,), float64: sums over points are integrals.
+    area : area of each point, in any unit, shape (n,), float64: weighted sums over points are integrals.
     profile : stiffness codes under each point from 0 to 1 (rigid), top level first, shape (g, n, levels).
-    rigid : 1 where a level is rigid, one entry a distinct inclusion, shape (k, n, levels).
+    rigid : 1 where a level is rigid, one entry per distinct inclusion, shape (k, n, levels).
     rigid_index : inclusion of each interior, shape (g,).
     level_depth : depth of each level below the surface [m], shape (levels,), float64.
     rod_radius, rod_edge : radii of the indenter and of its rounded edge [m], as in `Store`.
@@ -65,7 +65,7 @@ class Scene:
         return replace(self, **moved)
 
     def only(self, geometries: NDArray[np.int64]) -> Scene:
-        """The same points over these interiors alone, so that no other is encoded; indices stay."""
+        """The same points over these interiors alone, so that no other is encoded; their indices are kept."""
         used = torch.from_numpy(np.unique(geometries)).to(self.rigid_index.device)
         kept, place = torch.unique(self.rigid_index[used], return_inverse=True)
         index = torch.zeros_like(self.rigid_index)
@@ -94,7 +94,7 @@ def make_scene(
     rod_radius: float,
     rod_edge: float,
 ) -> Scene:
-    """The scene of any point cloud; profile as stored (255 = rigid), (g, n, levels)."""
+    """Scene of any point cloud; `profile` (g, n, levels) as stored (255 = rigid)."""
     masks, index = rigid_masks(profile)
     return Scene(
         points=torch.from_numpy(np.ascontiguousarray(points)),
@@ -145,7 +145,7 @@ class Pokes:
     depth : travel since first contact [m], shape (b,).
     modulus : shear modulus at small strain [Pa], shape (b,).
     clock : time since first contact [s], the rod's speed along the push and its speed of approach [m/s],
-        shape (b, 3); shape (b, 0) where there is no time.
+        shape (b, 3); shape (b, 0) without time.
     """
 
     geometry: Tensor
@@ -174,7 +174,7 @@ class Response:
 
     Attributes
     ----------
-    displacement : of the scene's points [m], shape (b, n, 3).
+    displacement : displacement of the scene's points [m], shape (b, n, 3).
     force : magnitude of the force on the indenter [N], shape (b,).
     spread : standard deviation of an ensemble's displacements [m], shape (b, n); None for one model.
     force_spread : standard deviation of an ensemble's ln(force), shape (b,); None for one model.
@@ -187,14 +187,14 @@ class Response:
 
 
 class Model(nn.Module):
-    """A network that predicts pokes in three steps; the result of each is kept as long as its input stays.
+    """A network that predicts pokes in three steps; each result is reusable while its input is unchanged.
 
     Attributes
     ----------
-    free_interior : the model accepts interiors and moduli that the dataset does not hold.
-    takes_clock : the model reads `Pokes.clock`, and needs it; only such models are trained on datasets with
+    free_interior : True if the model accepts interiors and moduli that the dataset does not hold.
+    takes_clock : True if the model requires `Pokes.clock`; only these models are trained on datasets with
         time.
-    outputs : names of the last layers' matrices, which an optimiser of hidden layers leaves to another.
+    outputs : names of the last layers' matrices, which an optimiser for hidden layers excludes.
     """
 
     free_interior: bool = False
@@ -202,7 +202,7 @@ class Model(nn.Module):
     outputs: frozenset[str] = frozenset()
 
     def warm_start(self, batches: Iterable[Batch], scene: Scene) -> None:
-        """Fit, before training, the parts that are not trained; batches: some of the training part."""
+        """Fit the parts that are not trained, before training, to some batches of the training part."""
 
     def prepare(self, scene: Scene) -> Any:  # noqa: ARG002 - not every model has something to prepare
         """Quantities that depend on the points alone, neither on weights nor on interiors."""
@@ -227,7 +227,7 @@ F = TypeVar("F", bound=Factory)
 
 @dataclass(frozen=True, kw_only=True)
 class RegisteredModel:
-    """A model by name. make: builds it from the training part's statistics; version: of its architecture."""
+    """A model by name: `make` builds it from training statistics, `version` is that of its architecture."""
 
     make: Factory
     version: int
@@ -242,8 +242,8 @@ def register_model(name: str, *, version: int = 1) -> Callable[[F], F]:
 
     Parameters
     ----------
-    name : by which recipes, checkpoints and tables know the model. A name that is taken is replaced.
-    version : of the architecture; checkpoints of another version are refused.
+    name : name of the model in recipes, checkpoints and tables. An existing name is replaced.
+    version : version of the architecture; checkpoints of another version are refused.
     """
 
     def register(make: F) -> F:
@@ -254,7 +254,7 @@ def register_model(name: str, *, version: int = 1) -> Callable[[F], F]:
 
 
 def make_model(name: str, statistics: Statistics) -> Model:
-    """A fresh model by name; its weights come from torch's random state. InputError for an unknown name."""
+    """Make a model by name, with weights from torch's random state. InputError for an unknown name."""
     name = OLD_NAMES.get(name, name)
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
@@ -283,7 +283,7 @@ class Ensemble(Model):
         self.members = torch.nn.ModuleList(members)
 
     def prepare(self, scene: Scene) -> list[Any]:
-        """Preparation of each member; members of one class share it."""
+        """Prepared quantities of each member, computed once per class of members."""
         kinds: dict[type, Any] = {}
         for member in self._all():
             if type(member) not in kinds:
@@ -291,12 +291,12 @@ class Ensemble(Model):
         return [kinds[type(member)] for member in self._all()]
 
     def encode(self, scene: Scene, prepared: list[Any] | None = None) -> list[Any]:
-        """Each member's own."""
+        """Encoded quantities of each member."""
         ready = prepared if prepared is not None else self.prepare(scene)
         return [member.encode(scene, part) for member, part in zip(self._all(), ready, strict=True)]
 
     def decode(self, encoded: list[Any], pokes: Pokes) -> Response:
-        """The members' mean, with their spread."""
+        """Mean response of the members, with their spread."""
         found = [member.decode(part, pokes) for member, part in zip(self._all(), encoded, strict=True)]
         u = torch.stack([p.displacement for p in found])
         logs = torch.log(torch.stack([p.force for p in found]))

@@ -5,8 +5,8 @@ each of 4 layers that share one set of weights; width 64, SiLU; h of 128 stiffne
 Not public, and chosen here: coordinates in units of 10 mm in the block's own frame; heights in the same
 units; C_h is the columns (values, then heights) under the points nearest to start and end of the rod's path;
 outputs in units of the training part's root mean square. It is not equivariant: phi_s, phi_t and the heads
-act on coordinates, as published. Each edge's first linear map is applied to its two points before it is
-gathered, and the head's to what all points share once a poke, which changes speed and nothing else.
+act on coordinates, as published. The first linear map of an edge is applied to its two points before they are
+gathered, and that of the head once per poke to the inputs common to all points, which only changes the speed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ UNIT = 1e-2  # m
 NEIGHBOURS = 5  # the point itself is one
 LAYERS = 4
 HIDDEN = 64
-_TIE = {torch.float32: 1e-7, torch.float64: 1e-14}  # of a squared distance, from one index to the next
+_TIE = {torch.float32: 1e-7, torch.float64: 1e-14}  # added to squared distances per index, to break ties
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ class Cegnn(Model):
         return Response(displacement=u, force=self.force_head(pooled)[:, 0] * self.force_unit)
 
     def _head(self, layers: Tensor, path: Tensor) -> Tensor:
-        """The head of layers (b, n, 12) and path (b, c); what all points share is mapped once a poke."""
+        """The head of layers (b, n, 12) and path (b, c); the path is mapped once per poke."""
         first, *others = self.head
         assert isinstance(first, nn.Linear)
         of_layers, of_path = first.weight.split([layers.shape[2], path.shape[1]], dim=1)
@@ -122,10 +122,12 @@ def _nearest(points: Tensor, places: Tensor) -> Tensor:
 
 
 def _neighbours(x: Tensor) -> Tensor:
-    """Indices (b, n, k) of the k nearest points, the point itself among them; of equals, those of lower index
-    (at the rim of a grid there are such, which rounding would choose among)."""
+    """Indices (b, n, k) of the k nearest points, the point itself among them.
+
+    Ties, which occur at the edge of a grid, go to the lower index and not by rounding.
+    """
     order = torch.arange(x.shape[1], dtype=x.dtype, device=x.device) * _TIE[x.dtype]
-    with torch.no_grad():  # sample by sample, whose distances stay in the cache
+    with torch.no_grad():  # sample by sample, so that the distances stay in the cache
         found = [
             (_squared_distances(part, part) + order).topk(NEIGHBOURS, dim=1, largest=False).indices
             for part in x.detach()
@@ -134,7 +136,7 @@ def _neighbours(x: Tensor) -> Tensor:
 
 
 def _squared_distances(a: Tensor, b: Tensor) -> Tensor:
-    """Squared distances (n, m) of a (n, 3) and b (m, 3), from differences, since products would round."""
+    """Squared distances (n, m) of points a (n, 3) and b (m, 3), from differences: products lose digits."""
     x, y, z = (a[:, None, k] - b[None, :, k] for k in range(3))
     return x * x + y * y + z * z
 

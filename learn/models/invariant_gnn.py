@@ -1,14 +1,13 @@
-"""Equivariant graph network: invariants at each point give the coefficients of vectors that rotate with the
-scene.
+"""Equivariant graph network: invariants of points give coefficients of vectors that rotate with the scene.
 
 Only distances, angles and depths enter the networks, and the displacement is a sum of vectors that rotate
 with the scene (surface normal, direction from the contact, direction of the push, slopes of codes and of
 messages). So a rotated, mirrored or translated scene gives the rotated, mirrored or translated displacement,
-and the same force, to rounding. Interior and neighbourhoods are encoded once a geometry (`encode`), a poke
+and the same force, to rounding. Interior and neighbourhoods are encoded once per geometry (`encode`), a poke
 costs `decode` alone. The displacement is predicted in units of the depth, the force in units of shear modulus
 times rod radius times depth: without gravity the force of one elastic law is proportional to its moduli, and
-the modulus is no input of the networks where the dataset says that all its levels are of such a law.
-Where the dataset has time, the time since contact and the rod's speeds are invariants of the poke as well.
+the modulus is not an input of the networks if the dataset states that its levels differ by a factor alone.
+If the dataset has time, the time since contact and the rod's speeds are also invariants of the poke.
 """
 
 from __future__ import annotations
@@ -29,21 +28,21 @@ from learn.models._encoder import Encoded, GeometryEncoder, Stencil, means, slop
 from learn.models._prior import Prior
 from learn.models.base import Model, Pokes, Response, Scene, pokes_of, register_model
 
-SEEN = 6  # channels of the code that the contact looks at
+SEEN = 6  # channels of the code in the features of the contact
 N_CLOCK = 3  # invariants of a poke with time
 
 
-# version 1 did not know the indenter's surface; 2 counted points, not area, and knew a modulus of no effect
+# version 1 lacked the indenter's surface; 2 weighted points equally, and had a modulus input without effect
 @register_model("invariant-gnn", version=3)
 class InvariantGnn(Model):
     """The surrogate.
 
     Parameters
     ----------
-    statistics : of the training part; they set the units of modulus and force.
+    statistics : statistics of the training part, which set the units of modulus and force.
     hidden : width of the trunk.
     messages, directions : channels of the messages' means and slopes.
-    scales : of the encoder's radii, those of each round of messages.
+    scales : indices of the encoder's radii in each round of messages.
     vectors : channels of the encoder's slopes, at each of its two larger radii.
     """
 
@@ -94,7 +93,7 @@ class InvariantGnn(Model):
         return stencils_of(scene)
 
     def encode(self, scene: Scene, prepared: tuple[Stencil, ...] | None = None) -> Encoded:
-        """Codes of the interior, independent of the poke; valid as long as geometry and weights stay."""
+        """Quantities that do not depend on the poke; reusable while geometry and weights are unchanged."""
         encoded: Encoded = self.encoder(scene, prepared if prepared is not None else stencils_of(scene))
         return encoded
 
@@ -139,7 +138,7 @@ class InvariantGnn(Model):
 
         pooled = [torch.einsum("nb,nbc->bc", contact.near[k], out) for k in (0, 1)]
         kappa = self.force_head(torch.cat([*pooled, about], dim=1))[:, 0]
-        depth = pokes.depth.clamp(min=0.0)  # a rod that is not in touch does nothing
+        depth = pokes.depth.clamp(min=0.0)  # no response without contact
         unit_force = (pokes.modulus * depth).float() * (scene.rod_radius * self.force_unit)
         return Response(
             displacement=(u * depth.float()[None, :, None]).permute(1, 0, 2),
@@ -147,13 +146,13 @@ class InvariantGnn(Model):
         )
 
     def _of_modulus(self, pokes: Pokes) -> list[Tensor]:
-        """The modulus' logarithm, where more than the force's size depends on it."""
+        """Centred logarithm of the modulus, unless the modulus only scales the force."""
         if self.log_modulus is None:
             return []
         return [(torch.log(pokes.modulus) - self.log_modulus).float()[:, None]]
 
     def _of_clock(self, pokes: Pokes) -> list[Tensor]:
-        """Invariants of time: its logarithm, that of the speed of approach, and speed over that."""
+        """Invariants of time: centred logarithms of time and speed of approach, and the ratio of speeds."""
         if self.log_time is None or self.log_speed is None:
             return []
         if not pokes.clock.shape[1]:
@@ -178,7 +177,7 @@ def _soft(encoded: Encoded, contact: Contact, inclusion: Tensor) -> Tensor:
 
 
 class _Messages(nn.Module):
-    """One round: means and slopes of a thin copy of h at some scales, seen along the scene's vectors."""
+    """One round: means, and slopes along the scene's vectors, of a narrow copy of h at some scales."""
 
     def __init__(self, hidden: int, messages: int, directions: int, scales: tuple[int, ...]) -> None:
         super().__init__()

@@ -1,9 +1,9 @@
-"""One poke at a time over one interior, as fast as torch and NumPy go: what a haptic loop calls.
+"""Fast prediction of one poke at a time over one interior, for haptic loops.
 
-The same numbers as `InvariantGnn.decode` but for rounding. What makes it faster: everything that does not
-depend on the poke is made once; a channel is a row of all points, so that each operation runs along them, and
-products write where the next one reads; small arrays are NumPy's, whose operations cost a quarter of torch's,
-products are torch's; the rod's surface is looked at near the rod alone.
+Results equal those of `InvariantGnn.decode` to rounding. It is faster for these reasons: everything that does
+not depend on the poke is computed once; a channel is a row of all points, so that each operation runs along
+them, and products write where the next one reads; small arrays use NumPy, whose operations cost a quarter of
+torch's, products use torch; the rod's surface is evaluated near the rod alone.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from learn.models.invariant_gnn import InvariantGnn, _Messages
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
 
-# rows of the buffer: columns of `Contact.point` that they stand for, with their signs
+# columns of `Contact.point` in the rows of the buffer, with their signs
 _PLAIN = [(0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (8, 1), (9, 1)]
 _BUMPS = [(10 + k, 1) for k in range(10)]
 _EXP = [(21, 1), (22, 1), (25, 1), (26, 1)]
@@ -37,7 +37,7 @@ _OF_POKE = (6, 7)  # the same at all points
 
 
 class SinglePoke:
-    """model: trained; encoded: of the scene, on the CPU; inclusion: row of `encoded.scene.rigid`."""
+    """Predictor of single pokes; `encoded` is on the CPU, `inclusion` is a row of `encoded.scene.rigid`."""
 
     @torch.inference_mode()
     def __init__(self, model: InvariantGnn, encoded: Encoded, inclusion: int = 0) -> None:
@@ -68,10 +68,10 @@ class SinglePoke:
         self._toward = weight[first : first + seen].numpy()
         self._of_depth = weight[list(_OF_POKE)].numpy()
         self._of_poke = model.from_poke.weight.numpy()
-        nothing = torch.zeros(4, weight.shape[1])  # of the direction from the contact, and of the poke
+        nothing = torch.zeros(4, weight.shape[1])  # for the direction from the contact, and for the poke
         self._first = torch.cat([mine, nothing, weight[first + seen :]]).T.contiguous()
         self._own = len(mine)  # the column at which those four begin
-        # memory seen from both sides
+        # memory common to torch and NumPy
         self._rows_there = _channels(self._first.shape[1], n).fill_(1.0)
         self._rows, self._first_here = self._rows_there.numpy(), self._first.numpy()
         self._entered = _channels(len(self._first), n)
@@ -87,7 +87,7 @@ class SinglePoke:
             slopes = part.directions * len(part.scales)
             self._rounds.append(_Round(part, encoded.stencils, self._radius, shift))
             shift = shift + part.back.bias
-        # of the vectors that the outputs weigh: those that stay, and room for those of a poke
+        # vectors that the outputs weight: the constant ones, and memory for those of a poke
         self._basis = np.empty((3, 3 + v + slopes, n), dtype=np.float32)
         self._basis[:, 0], self._basis[:, 3 : 3 + v] = self._normals, self._vectors
         self._products = np.empty_like(self._basis)
@@ -103,10 +103,10 @@ class SinglePoke:
     def __call__(
         self, start: Doubles, direction: Doubles, depth: float, modulus: float
     ) -> tuple[Floats, float]:
-        """Displacement of the points (n, 3) [m] and size of the force [N].
+        """Displacement of the points (n, 3) [m] and magnitude of the force [N].
 
-        start: of the rod's tip at first contact (3,) [m]; direction: unit (3,), both float64; depth [m];
-        modulus: small-strain shear modulus [Pa].
+        `start`: rod's tip at first contact (3,) [m]; `direction`: unit vector (3,), both float64; `depth`
+        [m]; `modulus`: small-strain shear modulus [Pa].
         """
         deep = max(depth / self._radius, _contact.TOUCH)
         r64 = self._points - (start / self._radius)[:, None]
@@ -160,9 +160,9 @@ class SinglePoke:
     def _about(
         self, r: Floats, near: Floats, here: Floats, push: Floats, poke: tuple[float, float, float]
     ) -> tuple[Floats, Floats]:
-        """Invariants of the poke, and the vectors to where the code is large (3, c), as `Contact.seen`.
+        """Invariants of the poke, and first moments (3, c) of the code about the contact, as `Contact.seen`.
 
-        poke: depth over radius, its logarithm as `Contact` has it, modulus [Pa].
+        `poke`: depth over radius, its logarithm as in `Contact`, modulus [Pa].
         """
         deep, log_deep, modulus = poke
         facing = float(here @ push)
@@ -177,7 +177,7 @@ class SinglePoke:
         return np.concatenate(parts, dtype=np.float32), toward
 
     def _fill(self, r: Floats, square: Floats, push: Floats, deep: float) -> tuple[Floats, Floats, Floats]:
-        """The features of all points, a row each; direction from the contact, distances along and aside."""
+        """Fill in the features of all points; return direction from contact, distances along and aside."""
         rows = self._rows
         far = np.divide(1, np.sqrt(square + 1), out=rows[0])
         unit, along = r * far, push @ r
@@ -220,8 +220,8 @@ class SinglePoke:
     ) -> Floats:
         """The closed form (3, n), as `Prior.forward`: sums of terms that nearly cancel, in float64.
 
-        square: of the distance from the contact; poke: depth, soft share of the column, and the part of the
-        push along the normal.
+        `square`: squared distance from the contact; `poke`: depth, soft fraction of the column, and component
+        of the push along the normal.
         """
         deep, soft, facing = poke
         size = np.sqrt(square + 1e-6)
@@ -241,16 +241,16 @@ def _column(*values: float) -> Floats:
 
 
 def _channels(count: int, n: int) -> Tensor:
-    """Memory of some channels of n points.
+    """Allocate channels of n points.
 
-    Rows that begin a multiple of 4 KiB apart, as those of 1,024 points, would share their places in the
+    Rows that begin a multiple of 4 KiB apart, as for 1,024 points, would map to the same sets of the
     processor's cache.
     """
     return torch.empty(count, n + 16)[:, :n]
 
 
 class _Seen(NamedTuple):
-    """Geometry of all points from the contact, in rod radii: r and unit (3, n), push (3,), near (n,)."""
+    """Points relative to the contact, in rod radii: r and unit (3, n), push (3,), weights near (n,)."""
 
     r: Floats
     unit: Floats
@@ -270,7 +270,7 @@ class _OfFew:
 
 
 class _Layer:
-    """W (x + shift) + b, of x (c, n)."""
+    """Linear layer W (x + shift) + b, of x (c, n)."""
 
     def __init__(self, layer: nn.Linear, shift: Tensor | None = None) -> None:
         bias = layer.bias if shift is None else layer.bias + layer.weight @ shift
@@ -283,13 +283,13 @@ class _Layer:
 class _Round:
     """`_Messages` of one poke.
 
-    The mean of (x_j - x_i) v_j is that of r_j v_j less r_i times that of v_j, r from the contact: one sparse
-    product gives means and slopes at all scales. Codes come and go less the biases of earlier rounds'
-    last layers (`shift`), which the layers that read them add in theirs.
+    With r from the contact, mean((x_j - x_i) v_j) = mean(r_j v_j) - r_i mean(v_j): one sparse product gives
+    means and slopes at all scales. Codes are passed without the biases of earlier rounds' last layers
+    (`shift`), which the layers that read them include in their own.
 
     Attributes
     ----------
-    input : where the code (hidden, n) is to be.
+    input : memory for the input code (hidden, n).
     """
 
     def __init__(self, part: _Messages, stencils: tuple[Stencil, ...], unit: float, shift: Tensor) -> None:
@@ -303,7 +303,7 @@ class _Round:
         self._whole, self._mix = part.whole.weight.numpy(), part.mix.weight.contiguous()
         bias = part.mix.bias + part.mix.weight[:, :hidden] @ shift + part.whole(shift)
         self._mix_bias = bias.numpy()
-        # memory seen from both sides
+        # memory common to torch and NumPy
         self._x, self._carried = _channels(part.mix.in_features, n), _channels(m + 4 * d, n)
         self._mixed = _channels(hidden, n)
         self.input, self._thinned = self._x[:hidden], self._carried[: m + d]
@@ -334,8 +334,7 @@ class _Round:
 
 
 def _stacked(operators: Sequence[Sparse | Gathered]) -> Tensor:
-    """Their matrices one below the other, with indices of 32 bits, which each product would make of longer
-    ones."""
+    """Matrices stacked by rows, with 32-bit indices, to which each product would convert longer ones."""
     matrices = [operator.matrix for operator in operators if isinstance(operator, Sparse)]
     assert len(matrices) == len(operators)
     rows = [torch.zeros(1, dtype=torch.int32)]

@@ -1,7 +1,7 @@
-"""Contents of a page, from a run and its dataset: a description, written as JSON, and arrays by name.
+"""Content of a page, from a run and its dataset: a description, written as JSON, and arrays by name.
 
-The description is as the page's controls have it, in millimetres, degrees and kilopascals; displacements
-and the interiors' codes stay in the units of the graph (`learn.page.graph`).
+The description has the units of the page's controls, millimetres, degrees and kilopascals; displacements
+and the interiors' codes have those of the graph (`learn.page.graph`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Content:
     inputs: list[Inputs] = field(default_factory=list)
 
     def packed(self) -> tuple[dict[str, Any], bytes]:
-        """The description with the place of each array, and all arrays after each other."""
+        """The description with type, shape and offset of each array, and all arrays concatenated."""
         places, parts, offset = {}, [], 0
         for name, array in self.arrays.items():
             places[name] = {"type": array.dtype.name, "shape": list(array.shape), "offset": offset}
@@ -47,18 +47,18 @@ class Content:
 
 
 def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pokes: int = 4) -> Content:
-    """Contents of the page of a run.
+    """Content of the page of a run.
 
     Parameters
     ----------
-    predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
-    shapes : inclusions of the dataset to choose from; None: all. A block without one is there as well.
-    pokes : how many simulated pokes of the test part, at most.
+    predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    shapes : inclusions of the dataset to offer; None: all. A block without inclusion is always offered.
+    pokes : largest number of simulated pokes of the test part.
 
     Raises
     ------
     InputError
-        Another model, or a shape that the dataset does not have.
+        If the run has another model, or the dataset lacks a shape.
     """
     run, store, domain = predictor.run, predictor.store, predictor.domain
     model = run.model
@@ -75,7 +75,7 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
     split = split_of(store, run.recipe)
     tested = np.unique(store.frame_poke[split.test])
     seen = {store.shapes[k] for k in store.shape[store.frame_poke[split.train]].tolist()}
-    # those of the test part first: by them a surrogate is judged
+    # shapes of the test part first: on them the surrogate is evaluated
     order = dict.fromkeys([*store.shape[tested].tolist(), *store.shape[store.done].tolist()])
     names = [store.shapes[k] for k in order if shapes is None or store.shapes[k] in shapes]
     scene = scene_of(store)
@@ -116,7 +116,7 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
 
 
 def _interior(store: Store, name: str, seen: bool) -> tuple[NDArray[np.uint8], str | None, str]:
-    """Profile as stored, kind of inclusion, and the name to choose it by."""
+    """Stored profile, kind of inclusion, and label in the page's menu."""
     if name == NO_INCLUSION:
         return np.zeros_like(store.profile[0]), NO_INCLUSION, "no inclusion"
     mine = (store.shape == store.shapes.index(name)) & store.done
@@ -125,14 +125,14 @@ def _interior(store: Store, name: str, seen: bool) -> tuple[NDArray[np.uint8], s
 
 
 def _spans(profile: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """First rigid level under each point, and the level after the last, (n, 2); 0, 0 where there is none."""
+    """First rigid level under each point, and the level after the last, (n, 2); 0, 0 if there is none."""
     rigid = profile == RIGID
     first, last = rigid.argmax(axis=1), rigid.shape[1] - rigid[:, ::-1].argmax(axis=1)
     return np.where(rigid.any(axis=1)[:, None], np.stack([first, last], axis=1), 0).astype(np.uint8)
 
 
 def _start(store: Store, about: dict[str, Any]) -> dict[str, Any]:
-    """The poke that the page opens with: the first simulated one, at three quarters of its depth."""
+    """Initial poke of the page: the first simulated one at three quarters of its depth, or a central one."""
     if about["simulated"]:
         first = about["simulated"][0]
         return {**first["poke"], "depth": 0.75 * first["depths"][-1]}

@@ -1,4 +1,4 @@
-"""The page's sliders and its table of what was trained, in millimetres, degrees and kilopascals."""
+"""The page's sliders and its table of trained ranges, in millimetres, degrees and kilopascals."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from learn.data import Store
 from learn.scene_file import STEEPEST
 from learn.validity import QUANTITIES, Domain
 
-_BEYOND = 1.5  # by which sliders reach beyond what was trained, so that one sees where it ends
+_BEYOND = 1.5  # ratio of the depth slider's end to the trained depth, so that the limit is visible
 DEGREES = "\N{DEGREE SIGN}"
 
 
 def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
-    """By key of the page's poke: limits, units, what of it was trained ({range, text}; None: not known)."""
+    """Sliders by key of the page's poke: limits, units, trained range ({range, text}; None: not known)."""
     half = np.array(store.block_size[:2]) / 2 - store.rod_radius
     low, high = ((store.middle - half) * 1e3).tolist(), ((store.middle + half) * 1e3).tolist()
     moduli = store.modulus[store.done] * 1e-3
@@ -47,7 +47,7 @@ def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
 def _along(
     k: int, low: list[float], high: list[float], store: Store, domain: Domain | None
 ) -> dict[str, Any]:
-    """The slider of x or y: what was trained is a distance from the block's sides."""
+    """The slider of x or y, its trained range from the trained distance to the block's sides."""
     trained = None
     if domain is not None and "site_to_side_mm" in domain.ranges:
         reach = store.block_size[k] * 5e2 - domain.ranges["site_to_side_mm"][0]
@@ -70,7 +70,7 @@ def _trained(domain: Domain | None, key: str) -> dict[str, Any] | None:
 
 
 def checks(domain: Domain | None) -> list[dict[str, Any]]:
-    """Rows of the table, in the order of the graph's `beyond`; empty where nothing is known."""
+    """Rows of the table, in the order of the graph's `beyond`; empty without a domain."""
     if domain is None:
         return []
     found = domain.check(dict.fromkeys(QUANTITIES, 0.0), "none")
@@ -94,5 +94,5 @@ def levels(store: Store) -> list[dict[str, Any]]:
 
 
 def middle_modulus(store: Store) -> float:
-    """Geometric mean of the levels' moduli [kPa]."""
+    """Geometric mean of the pokes' moduli [kPa]."""
     return math.exp(np.log(store.modulus[store.done]).mean()) * 1e-3

@@ -1,9 +1,9 @@
-"""One HTML file from a page's content: bundled script, network, arrays and onnxruntime, all of it inside.
+"""Write a page's content as one self-contained HTML file: script, network, arrays and onnxruntime.
 
-What is the run's own (`Parts`) is a tenth of it, and can be kept to make the page from later.
+The data of the run (`Parts`) are a tenth of it, and can be saved to make the page later.
 
 The script and onnxruntime's WebAssembly come from `bundle/`, made by `js/build.mjs` and shipped with the
-package. What is large is gzipped and in base64; the browser unpacks it.
+package. Large members are gzipped and base64-encoded; the browser unpacks them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from learn.page.graph import write_page_graph
 from learn.predictor import Predictor
 from learn.training.run_folder import write_whole
 
-LARGEST = 10e6  # bytes of the file, gzipped
+LARGEST = 10e6  # bytes of the gzipped file
 _MEMBERS = ("page.json", "arrays.bin", "poke.onnx")
 _SLIDERS = {
     "depth": "Depth",
@@ -47,7 +47,7 @@ _SLIDERS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """A page that was written: its file, its size and its size gzipped [bytes], what can be chosen in it."""
+    """A written page: file, size and gzipped size [bytes], numbers of interiors and of simulated pokes."""
 
     path: Path
     size: int
@@ -57,7 +57,7 @@ class Written:
 
 
 class _Stated(BaseModel):
-    """Text of a page, and its description for the script: `page.json` of the parts' zip."""
+    """Texts of a page, and its description for the script: `page.json` of the parts' zip."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -69,12 +69,12 @@ class _Stated(BaseModel):
 
 @dataclass(frozen=True, kw_only=True)
 class Parts:
-    """All of a page that is its run's own: with the script and onnxruntime of the package it is the page.
+    """Data of a page that depend on its run; the package adds the script and onnxruntime.
 
     Attributes
     ----------
-    title, lead, notes : in words.
-    about : description for the script, with the place of each array.
+    title, lead, notes : texts.
+    about : description for the script, with the offset of each array.
     arrays, graph : bytes of the arrays, and of the network (ONNX).
     """
 
@@ -86,7 +86,7 @@ class Parts:
     graph: bytes
 
     def save(self, path: Path) -> None:
-        """Write them as one zip, of a megabyte or two, that `load` reads."""
+        """Write the parts as one zip, of a megabyte or two, that `load` reads."""
         stated = _Stated(title=self.title, lead=self.lead, notes=self.notes, about=self.about)
         path.parent.mkdir(parents=True, exist_ok=True)
         whole = io.BytesIO()
@@ -98,7 +98,7 @@ class Parts:
 
     @staticmethod
     def load(path: Path) -> Parts:
-        """From the zip that `save` wrote; InputError where it is no such file."""
+        """Read the zip that `save` wrote; InputError if the file is not one."""
         try:
             with zipfile.ZipFile(path) as file:
                 text, arrays, graph = (file.read(name) for name in _MEMBERS)
@@ -112,7 +112,7 @@ class Parts:
         return Parts(**dict(stated), arrays=arrays, graph=graph)
 
     def write(self, path: Path) -> Written:
-        """Write the page; InputError where it is larger than `LARGEST`."""
+        """Write the page; InputError if it is larger than `LARGEST`."""
         text = _html(self).encode()
         gzipped = len(gzip.compress(text, 6))
         interiors, shown = self.about["interiors"], self.about["simulated"]
@@ -131,13 +131,13 @@ def parts_of(predictor: Predictor, *, shapes: list[str] | None = None, pokes: in
 
     Parameters
     ----------
-    predictor : of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
     shapes, pokes : see `learn.page.content.content_of`.
 
     Raises
     ------
     InputError
-        A model or a shape that has no page, or a package that is missing.
+        If the model or a shape has no page, or a package is missing.
     """
     content = content_of(predictor, shapes=shapes, pokes=pokes)
     with tempfile.TemporaryDirectory() as folder:
@@ -159,7 +159,7 @@ def parts_of(predictor: Predictor, *, shapes: list[str] | None = None, pokes: in
 def write_page(
     predictor: Predictor, path: Path, *, shapes: list[str] | None = None, pokes: int = 4
 ) -> Written:
-    """Write a run's live page: the `parts_of` it, written to an HTML file."""
+    """Write a run's live page (`parts_of`) to an HTML file."""
     return parts_of(predictor, shapes=shapes, pokes=pokes).write(path)
 
 
@@ -240,7 +240,7 @@ def _notes(predictor: Predictor, content: Content) -> list[str]:
 
 
 def _halo(content: Content) -> dict[str, float] | None:
-    """Ends of the halo's scale [mm], round numbers: radii beside and near the contact of the pokes shown."""
+    """Ends of the halo's scale [mm]: median and largest interval radius of the pokes shown, rounded."""
     part = content.graph
     if part.intervals is None:
         return None
@@ -267,5 +267,5 @@ def _ask(content: Content, poke: dict[str, Any]) -> tuple[torch.Tensor, ...]:
 
 
 def _round(value: float) -> float:
-    """To one significant digit."""
+    """Round to one significant digit."""
     return float(f"{value:.0e}")

@@ -1,18 +1,17 @@
-"""Evaluation of a page at every frame, as one ONNX graph: network, domain of validity, intervals.
+"""Computation of a page at every frame as one ONNX graph: network, domain of validity, intervals.
 
-The same as `learn.real_time.RealTime` (`tests/learn/page` holds it to that), but for the interior, whose
-codes are inputs: the encoder does not travel with the page. All of it is here, so that the page's
-JavaScript has nothing to work out.
+It equals `learn.real_time.RealTime` (checked by `tests/learn/page`), except that the codes of the interior
+are inputs: the page does not contain the encoder. The page's JavaScript repeats none of this computation.
 
 Inputs, SI units, of one poke over one interior:
 
 - poke (6,), float64: site x, y [m]; angle between push and vertical, heading of its horizontal part [rad];
   depth [m]; shear modulus [Pa];
-- base, looked, vectors, clear, soft, about: of the interior (`interior_inputs`).
+- base, looked, vectors, clear, soft, about: the interior (`interior_inputs`).
 
 Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push.
-Where the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of
-inclusion last, and distance (). Where the run has intervals: factor (), of the force's 90 % interval, and
+If the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of
+inclusion last, and distance (). If the run has intervals: factor () of the force's 90 % interval, and
 radius (n,) [m].
 """
 
@@ -38,8 +37,8 @@ from learn.page.network import RowNetwork, interior_codes
 from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
-_FAR = 1e30  # of a side of a range that does not matter
-_LEAST_DEPTH = 1e-6  # [m]: a logarithm has to be taken of a rod that does not touch, too
+_FAR = 1e30  # limit of a range on a side that is not checked
+_LEAST_DEPTH = 1e-6  # [m]: keeps the logarithm finite for a rod that does not touch
 
 Inputs = dict[str, NDArray[np.float32] | NDArray[np.float64]]
 
@@ -57,9 +56,9 @@ def interior_inputs(
 
     Parameters
     ----------
-    scene, stencils : the store's points, and what `model.prepare` made of them.
+    scene, stencils : scene of the store's points, and the result of `model.prepare`.
     profile : stiffness under each point as stored, shape (n, levels).
-    trained_kind : False where this kind of inclusion was not trained on.
+    trained_kind : False if this kind of inclusion was not trained on.
 
     Returns
     -------
@@ -80,7 +79,7 @@ def interior_inputs(
 
 
 class PagePart(nn.Module):
-    """One poke with plain tensors in and out; see the module."""
+    """One poke with plain tensors as inputs and outputs; see the module."""
 
     def __init__(
         self,
@@ -112,7 +111,7 @@ class PagePart(nn.Module):
             self.force_interior = torch.tensor(intervals.force_interior, dtype=torch.float64)
 
     def outputs(self) -> list[str]:
-        """Names of what `forward` returns."""
+        """Names of the outputs of `forward`."""
         names = ["displacement", "force", "tip", "direction"]
         names += ["values", "beyond", "distance"] if self.ranges is not None else []
         return names + (["factor", "radius"] if self.intervals is not None else [])
@@ -186,7 +185,7 @@ class PagePart(nn.Module):
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
         logs = logs + interior @ self.interior
         ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
-        # 1 - exp(-t) as -expm1(-t), which no runtime has in double: small t loses digits that no one sees
+        # not -expm1(-t), which no runtime has in double: the digits lost at small t are negligible
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
@@ -196,7 +195,7 @@ class PagePart(nn.Module):
 
 
 class _Ranges(nn.Module):
-    """`learn.validity.Domain`: how far each quantity is beyond its range, and the distance of all."""
+    """`learn.validity.Domain` as a module: excess of each quantity over its range, and their norm."""
 
     def __init__(self, domain: Domain) -> None:
         super().__init__()
@@ -215,14 +214,14 @@ class _Ranges(nn.Module):
         )
 
     def forward(self, values: Tensor, kind: Tensor) -> tuple[Tensor, Tensor]:
-        """Beyond (q + 1,), in widths of the ranges, 0 inside; and its length but for the kind."""
+        """Excess (q + 1,) in widths of the ranges, 0 inside, the kind last; and its norm without the kind."""
         excess = torch.maximum(self.low - values, values - self.high) - self.slack
         beyond = excess.clamp(min=0.0) / self.width
         return torch.cat([beyond, kind[None]]), torch.sqrt(beyond.square().sum())
 
 
 def write_page_graph(part: PagePart, example: Inputs, path: Path) -> None:
-    """The graph as an ONNX file; example: the inputs of any interior."""
+    """Write the graph as an ONNX file; `example` holds the inputs of any interior."""
     need_packages()
     poke = torch.tensor([0.0, 0.0, 0.1, 0.3, 5e-3, 1e4], dtype=torch.float64)
     inputs = (poke, *(torch.from_numpy(example[name]) for name in INPUTS[1:]))

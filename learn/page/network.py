@@ -1,9 +1,9 @@
-"""`InvariantGnn.decode` of one poke over one interior, in the operations that a browser is quickest at.
+"""`InvariantGnn.decode` of one poke over one interior, in operations that are fast in a browser.
 
-The same numbers but for rounding. A browser's runtime spends most of its time on the number of operations
-and on arrays of a few columns, so: quantities of all points are rows (k, n); features are joined once and
-go through one product; a round of messages gathers its neighbours once for means and slopes. See
-`learn.models.single_poke` for the same on NumPy.
+Results agree to rounding. In a browser's runtime the cost is dominated by the number of operations and by
+arrays of few columns, so: quantities of all points are rows (k, n); features are concatenated once and enter
+one product; a round of messages gathers its neighbours once for means and slopes.
+`learn.models.single_poke` is the counterpart on NumPy.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _OF_POKE = (6, 7)  # the same at all points
 
 
 def interior_codes(model: InvariantGnn, encoded: Encoded) -> dict[str, Tensor]:
-    """Input of the network on the first inclusion of a scene.
+    """Inputs of `RowNetwork` for the first inclusion of a scene.
 
     Returns
     -------
@@ -44,7 +44,7 @@ def interior_codes(model: InvariantGnn, encoded: Encoded) -> dict[str, Tensor]:
 
 
 class RowNetwork(nn.Module):
-    """model: trained without time; scene, stencils: the points, and what `model.prepare` made of them."""
+    """Network of one poke, from a model trained without time; `stencils` is `model.prepare(scene)`."""
 
     def __init__(self, model: InvariantGnn, scene: Scene, stencils: tuple[Stencil, ...]) -> None:
         super().__init__()
@@ -79,7 +79,7 @@ class RowNetwork(nn.Module):
         r64 = self.points - (start / self.radius)[:, None]
         deep64 = (depth / self.radius).clamp(min=_contact.TOUCH)
         square = (r64 * r64).sum(dim=0)
-        # in float64 up to where the network begins: rounding there would be the runtime's own
+        # in float64 up to the network's inputs, so that rounding does not depend on the runtime
         near64 = torch.softmax(self.widths * square + self.log_area, dim=1)  # (w, n)
         here = near64[:1] @ self.normals.T  # (1, 3)
         looked64 = looked.double()
@@ -131,7 +131,7 @@ class RowNetwork(nn.Module):
 
         pooled = (near[:2] @ out).reshape(1, -1)
         kappa = model.force_head(torch.cat([pooled, of_poke], dim=1))[0, 0]
-        pressed = depth.clamp(min=0.0)  # a rod that is not in touch does nothing
+        pressed = depth.clamp(min=0.0)  # no response without contact
         unit_force = (modulus * pressed).float() * (self.radius * model.force_unit)
         return u * pressed.float(), unit_force * softplus(kappa)
 
@@ -139,7 +139,7 @@ class RowNetwork(nn.Module):
         self, square: Tensor, far: Tensor, unit: Tensor, push: Tensor, along: Tensor, off: Tensor,
         aside: Tensor, deep: Tensor,
     ) -> list[Tensor]:  # fmt: skip
-        """Rows of the invariants of `Contact.point`, in the order of `_PLAIN` and so on; from float64."""
+        """Rows of `Contact.point` in the order of `_PLAIN`, `_EXP`, `_TANH`, `_UNDER`; inputs in float64."""
         lift, lean = (unit * self.normals).sum(dim=0), (push[:, None] * self.normals).sum(dim=0)
         turn = along * far
         flat = turn - lift * lean
@@ -169,7 +169,7 @@ class RowNetwork(nn.Module):
         return h + part.back(silu(part.mix(torch.cat(parts, dim=1)) + whole)), slopes
 
     def _smooth(self, r: Tensor, push: Tensor, deep: Tensor, soft: Tensor, lean: Tensor) -> Tensor:
-        """The closed form (3, n), as `Prior.forward`: large terms nearly cancel."""
+        """Closed form (3, n) as in `Prior.forward`, in float64, since large terms nearly cancel."""
         square = (r * r).sum(dim=0)
         cores = torch.rsqrt(square + self.cores)
         falls = torch.exp(torch.sqrt(square + 1e-6) * self.ranges)
@@ -199,6 +199,6 @@ class _Near(nn.Module):
         self.weight = torch.cat([mean.weight, slope.weight], dim=1)
 
     def forward(self, values: Tensor) -> Tensor:
-        """values: (n, c)."""
+        """Mean and slopes of `values` (n, c)."""
         near = values.index_select(0, self.index).reshape(len(values), self.count, -1)
         return torch.matmul(self.weight, near)

@@ -1,4 +1,4 @@
-"""Simulated pokes of the test part, quantised, for the page to show beside the surrogate's answers."""
+"""Simulated pokes of the test part, quantised, which the page shows beside the surrogate's predictions."""
 
 from __future__ import annotations
 
@@ -11,26 +11,28 @@ from numpy.typing import NDArray
 from learn.data import Store
 from learn.validity import contact_site
 
-STEPS = 32767  # of the largest component of a frame: a displacement is off by half a step at most
+STEPS = 32767  # in the largest component of a frame: the rounding error is half a step at most
 
 
 def choose(store: Store, tested: NDArray[np.int64], shapes: list[str], most: int) -> list[int]:
-    """Pokes of the test part over these shapes, at most so many, from all over their order."""
+    """At most `most` pokes of the test part over these shapes, evenly spread over their order."""
     shown = np.array([p for p in tested if store.shapes[store.shape[p]] in shapes], dtype=np.int64)
     picked = np.linspace(0, len(shown) - 1, min(most, len(shown))).round().astype(int)
     return shown[picked].tolist() if len(shown) else []
 
 
 def quantised(moved: NDArray[np.float32]) -> tuple[NDArray[np.int16], list[float]]:
-    """Displacements (f, n, 3) as 16-bit steps, and a step of each frame [m]."""
+    """Displacements (f, n, 3) as 16-bit numbers of steps, and the step of each frame [m]."""
     largest = np.abs(moved).max(axis=(1, 2)).astype(np.float64)
     step = np.where(largest > 0, largest, 1.0) / STEPS
     return np.rint(moved / step[:, None, None]).astype(np.int16), step.tolist()
 
 
 def described(store: Store, poke: int, interior: int) -> tuple[dict[str, Any], NDArray[np.int16]]:
-    """A poke as the page's controls have it (mm, degrees, kPa), with depths [mm], forces [N] and steps [m] of
-    its frames; and its displacements."""
+    """Description of a poke in the controls' units (mm, degrees, kPa), and its quantised displacements.
+
+    The description also holds depths [mm], forces [N] and steps [m] of the frames.
+    """
     rows = slice(int(store.frame_start[poke]), int(store.frame_start[poke] + store.frame_count[poke]))
     keep = store.presses[rows]
     moved, steps = quantised(store.displacement(rows)[keep])

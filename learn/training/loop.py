@@ -36,26 +36,26 @@ from learn.training.run_folder import (
 )
 from learn.validity import domain_of
 
-_DIVERGED = 10.0  # times the first epoch's loss
-_WARM_FRAMES = 600  # for what is fitted before training
-_FEWEST = 0.4  # of the points, under point dropout
-_FLOOR = 0.01  # of the learning rate, at the end of a cosine
+_DIVERGED = 10.0  # ratio to the lowest training loss of an epoch
+_WARM_FRAMES = 600  # for the warm start
+_FEWEST = 0.4  # least fraction of the points under point dropout
+_FLOOR = 0.01  # fraction of the learning rate at the end of a cosine
 
 
 class DivergedError(Exception):
-    """The loss ran away; the last good checkpoint stands. Its text is one sentence."""
+    """The loss diverged; the last good checkpoint is kept. The text is one sentence."""
 
 
 class Trainer:
-    """One run in `folder`; `train()` does the work.
+    """Trainer of one run in `folder`.
 
     Parameters
     ----------
     store : the dataset.
-    recipe : how to train.
-    folder : of the run; it is made if need be.
+    recipe : the training recipe.
+    folder : folder of the run; created if necessary.
     process_group : this process among those of torchrun; by default the only one, on the CPU.
-    resume : go on from the folder's `last.pt`. InputError where there is none, or it is another run's.
+    resume : continue from the folder's `last.pt`. InputError if there is none, or it is another run's.
     on_progress : called after each batch and each epoch.
 
     Attributes
@@ -109,7 +109,7 @@ class Trainer:
         self.domain = domain_of(store, self.split.train)
         self.scene = scene.only(store.geometry[store.frame_poke[self.split.train]])
         self.scene_validation = scene.only(store.geometry[store.frame_poke[self.split.validation]])
-        # neighbourhoods are of the points alone, which all scenes share
+        # neighbourhoods depend on the points alone, which are the same in all scenes
         self.prepared = self.model.prepare(scene)
 
     def train(self) -> None:
@@ -118,9 +118,9 @@ class Trainer:
         Raises
         ------
         DivergedError
-            The loss is not finite, or ten times the best; the last good checkpoint stands.
+            If the loss is not finite, or above ten times the best; the last good checkpoint is kept.
         OSError
-            A checkpoint or the log could not be written; the last good checkpoint stands.
+            If a checkpoint or the log cannot be written; the last good checkpoint is kept.
         """
         if self.group.is_main:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -177,7 +177,7 @@ class Trainer:
         )
 
     def _batch(self) -> int:
-        """Frames of a batch that this process takes."""
+        """Number of frames per batch in this process."""
         if self.recipe.batch % self.group.world:
             raise InputError(
                 f"recipe {self.recipe.name}: key batch: {self.recipe.batch} frames cannot be split among "
@@ -240,7 +240,7 @@ class Trainer:
         return loss
 
     def _augmented(self, batch: Batch) -> tuple[Scene, Any, Batch]:
-        """The batch with its points jittered, or on some of its points; a function of seed and step alone."""
+        """Jitter and drop points of a batch at random; a function of seed and step alone."""
         scene, prepared, recipe = self.scene, self.prepared, self.recipe
         device = batch.displacement.device
         jitter = self._random(2)
@@ -267,7 +267,7 @@ class Trainer:
         return np.random.default_rng(key)
 
     def _learning_rate(self, within: float) -> float:
-        """At a fraction of the current epoch: warm-up, then constant or a cosine."""
+        """Rate at the fraction `within` of the current epoch: warm-up, then constant or a cosine."""
         recipe = self.recipe
         done = (self.epoch + within) / recipe.epochs
         if done < recipe.warmup:
@@ -342,7 +342,7 @@ class Trainer:
         save_checkpoint(self.folder / LAST, {**about, **state})
 
     def _checkpoint(self, resume: bool) -> dict[str, Any] | None:
-        """The checkpoint to resume from; InputError where it is another run's, or would be overwritten."""
+        """Checkpoint to resume from; InputError if it is another run's, or would be overwritten."""
         path = self.folder / LAST
         if not resume:
             if path.exists():

@@ -1,7 +1,7 @@
 """Optimisers by name: Adam, and Muon for the matrices of hidden layers with Adam for the rest.
 
-Muon takes the step of a matrix along the nearest orthogonal one to its momentum, so that directions in which
-gradients are small are learned as fast as the others (Jordan et al. 2024, https://kellerjordan.github.io/posts/muon).
+Muon steps a matrix along the orthogonal matrix nearest to its momentum, so that directions of small gradients
+are learned as fast as the others (Jordan et al. 2024, https://kellerjordan.github.io/posts/muon).
 Its steps are scaled to the size of Adam's (Liu et al. 2025, arXiv:2502.16982, section 2.2), so that one
 learning rate serves both.
 """
@@ -18,7 +18,7 @@ from learn.training.recipe import Recipe
 
 
 class Optimiser(Protocol):
-    """Interface of an optimiser in training."""
+    """Interface of an optimiser, as used by training."""
 
     @property
     def param_groups(self) -> list[dict[str, Any]]: ...
@@ -33,7 +33,7 @@ class Optimiser(Protocol):
 
 
 class Joined:
-    """Several optimisers as one, each of its own parameters."""
+    """Several optimisers as one, each with its own parameters."""
 
     def __init__(self, *members: torch.optim.Optimizer) -> None:
         self._members = members
@@ -59,13 +59,13 @@ class Joined:
 
 
 def make_optimiser(model: Model, recipe: Recipe) -> Optimiser:
-    """The recipe's optimiser of a model's parameters."""
+    """The recipe's optimiser for a model's parameters."""
     rate = recipe.learning_rate
     if recipe.optimiser == "adam":
         return torch.optim.Adam(model.parameters(), lr=rate)
     hidden = [p for name, p in model.named_parameters() if p.ndim == 2 and name not in model.outputs]
     chosen = {id(p) for p in hidden}
     rest: list[nn.Parameter] = [p for p in model.parameters() if id(p) not in chosen]
-    # without Muon's usual decay of the weights: Adam here has none either
+    # without Muon's usual weight decay: Adam here has none either
     muon = torch.optim.Muon(hidden, lr=rate, weight_decay=0.0, adjust_lr_fn="match_rms_adamw")
     return Joined(muon, torch.optim.Adam(rest, lr=rate))

@@ -1,4 +1,4 @@
-"""One process, or several that torchrun started: each takes its part of every batch."""
+"""One process, or several started by torchrun, each with an equal fraction of every batch."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from learn.errors import InputError
 
 @dataclass(frozen=True)
 class ProcessGroup:
-    """Process `rank` of `world`, on `device`; joined: torchrun started it, alone or with others."""
+    """Process `rank` of `world`, on `device`; `joined` if torchrun started it, alone or with others."""
 
     rank: int
     world: int
@@ -26,7 +26,7 @@ class ProcessGroup:
         return self.rank == 0
 
     def average_gradients(self, model: nn.Module) -> None:
-        """Every process's gradient becomes the mean of all."""
+        """Replace the gradients of every process by the mean over all processes."""
         if not self.joined:
             return
         gradients = [p.grad for p in model.parameters() if p.grad is not None]
@@ -37,7 +37,7 @@ class ProcessGroup:
             g.copy_(part.reshape(g.shape))
 
     def all_true(self, value: bool) -> bool:
-        """True where it is for every process: none may wait for a batch that another does not have."""
+        """True if `value` is true in every process: none may wait for a batch that another does not have."""
         if not self.joined:
             return value
         vote = torch.tensor(float(value), device=self.device)
@@ -62,9 +62,9 @@ class ProcessGroup:
 
 
 def make_process_group(device: str = "auto") -> ProcessGroup:
-    """From torchrun's environment; device "auto" is this process's GPU where there is one.
+    """Make the process group of torchrun's environment; device "auto" is this process's GPU if there is one.
 
-    InputError where torch does not know the device, it is not there, or a GPU would be shared.
+    InputError if torch does not know the device, it is missing, or two processes would share a GPU.
     """
     joined = "WORLD_SIZE" in os.environ
     world, rank = int(os.environ.get("WORLD_SIZE", "1")), int(os.environ.get("RANK", "0"))
@@ -85,9 +85,9 @@ def make_process_group(device: str = "auto") -> ProcessGroup:
 
 
 def make_device(device: str = "auto") -> torch.device:
-    """The device of that name; "auto" is the GPU where there is one.
+    """The device of that name; "auto" is the GPU if there is one.
 
-    InputError where torch does not know the device, or it is not there.
+    InputError if torch does not know the device, or it is missing.
     """
     if device == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")

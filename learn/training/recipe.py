@@ -1,6 +1,4 @@
-"""Recipes: how a model is trained, by name or as a YAML file of the same keys; and the loss that they
-describe.
-"""
+"""Training recipes, by name or as a YAML file of the same keys, and the loss that they define."""
 
 from __future__ import annotations
 
@@ -29,8 +27,8 @@ OLD_KEYS = {
     "pool": "shuffle_buffer",
     "thin": "point_dropout",
 }
-_SMOOTH = 1e-3  # [mm]: a distance below it counts as its square
-_LEAST = 1e-6  # [N], of a predicted force under the logarithm
+_SMOOTH = 1e-3  # [mm]: smaller distances count quadratically
+_LEAST = 1e-6  # [N], lower limit of a predicted force under the logarithm
 
 
 class Recipe(BaseModel):
@@ -38,30 +36,29 @@ class Recipe(BaseModel):
 
     Attributes
     ----------
-    name : of the recipe; part of the default name of a run's folder.
+    name : name of the recipe; part of the default name of a run's folder.
     model : a name of `learn.models.MODELS`.
     split, fold, train_softness, train_depth_mm : see `learn.data.split_pokes`.
-    seed : of weights, order of frames, point dropout and jitter.
-    epochs, batch : passes over the training part; frames a step.
-    optimiser : "adam", or "muon" for the matrices of hidden layers, beside Adam for the other parameters
+    seed : seed of weights, order of frames, point dropout and jitter.
+    epochs, batch : passes over the training part; frames per step.
+    optimiser : "adam", or "muon" for the matrices of hidden layers with Adam for the other parameters
         (`learn.training.optimisers`).
     learning_rate, schedule, warmup : the optimiser's rate; "cosine" falls to 1 % of it over the epochs;
         warmup is the fraction of all steps over which it rises.
     clip : largest norm of the gradient (0: none).
-    ema_decay : of the exponential moving average of the weights, which is validated and kept (0: the
-    weights).
+    ema_decay : decay of the exponential moving average of the weights, which is validated and kept (0: the
+        weights themselves).
     near_weight, near_width_mm : a point at distance r from first contact has the weight
         1 + near_weight exp(-r^2 / (2 near_width^2)) in the displacement's loss, a weighted mean distance
         [mm].
-    depth_power : a frame has the weight depth^-depth_power in it: 0 counts millimetres, 1 fractions of the
-        depth.
+    depth_power : a frame has the weight depth^-depth_power in that loss: 0 weights absolute errors, 1 errors
+        relative to the depth.
     force_loss, force_weight : "log" is ``|ln(predicted / true)|``, "square" the squared error over the
-        training part's mean square; its weight against the displacement's loss.
-    point_dropout : fraction of the batches that see a random 40 to 100 % of the points, for other clouds.
+        training part's mean square; the weight is relative to the displacement's loss.
+    point_dropout : fraction of the batches that have a random 40 to 100 % of the points, for other clouds.
     point_jitter : fraction of the batches in which each point is moved at random within its cell of the grid,
-        with the displacement interpolated from the surface meshes: points that no grid point of the few
-        training sites comes near, such as the middle of the contact, are then trained on. Needs data
-        "memory".
+        with the displacement interpolated from the surface meshes. This trains positions that are far from
+        the grid points of the few training sites, such as the middle of the contact. Needs data "memory".
     data, shuffle_buffer : frames in memory, or streamed through a buffer of this many blocks.
     mixed_precision : bfloat16 on a GPU.
     """
@@ -97,7 +94,7 @@ class Recipe(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _old_keys(cls, values: Any) -> Any:
-        """Keys of recipes and checkpoints written before they were renamed."""
+        """Rename the old keys of earlier recipes and checkpoints."""
         if not isinstance(values, dict):
             return values
         for old, new in OLD_KEYS.items():
@@ -121,7 +118,7 @@ class Recipe(BaseModel):
 
 
 RECIPES: dict[str, Recipe] = {
-    # the default of the key is what recipes and checkpoints without it were trained with
+    # the key's default is the optimiser of recipes and checkpoints from before the key
     "fast": Recipe(optimiser="muon"),
     "quick": Recipe(
         name="quick",
@@ -134,7 +131,7 @@ RECIPES: dict[str, Recipe] = {
         depth_power=0.0,
         point_jitter=0.5,
     ),
-    # the paper's model trained as the surrogate is: at the published learning rate, 200 epochs are a day of
+    # the paper's model trained like the surrogate: at the published learning rate, 200 epochs take a day on
     # one core
     "cegnn": Recipe(name="cegnn", model="cegnn", epochs=20, point_dropout=0.0),
     # Adam 1e-4, batches of 64, 200 epochs, as published; the weights of the loss are not public
@@ -159,7 +156,7 @@ RECIPES: dict[str, Recipe] = {
 
 
 def load_recipe(name: str) -> Recipe:
-    """A recipe by name or from a YAML file; InputError names the key that is wrong."""
+    """Load a recipe by name or from a YAML file; InputError names a wrong key."""
     if name in RECIPES:
         return RECIPES[name]
     path = Path(name)
@@ -169,7 +166,7 @@ def load_recipe(name: str) -> Recipe:
 
 
 def check_recipe(values: object, where: str) -> Recipe:
-    """The recipe with these values; where: named by an InputError."""
+    """Validate the values of a recipe; `where` begins the text of an InputError."""
     try:
         return Recipe.model_validate(values)
     except ValidationError as error:

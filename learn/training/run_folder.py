@@ -1,8 +1,8 @@
-"""A run's folder: checkpoints, written whole or not at all, and the log.
+"""A run's folder: checkpoints, written atomically, and the log.
 
 `last.pt` holds everything that training needs to resume; `best.pt` the weights of the best epoch on the
 validation part. Both carry the dataset's uuid, the recipe, the statistics and the domain of validity.
-`log.jsonl` has a line of JSON an epoch; TensorBoard events stand beside it where tensorboardX is installed.
+`log.jsonl` has a line of JSON per epoch; TensorBoard events are added if tensorboardX is installed.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ class Run:
 
     Attributes
     ----------
-    folder : of the run.
-    recipe, statistics : that it was trained with.
-    uuid, law, location : of the dataset that it was trained on.
+    folder : folder of the run.
+    recipe, statistics : recipe and statistics that it was trained with.
+    uuid, law, location : identifier, law and location of the training dataset.
     groups : shapes or sites of the parts "train", "validation" and "test".
-    epoch : that was kept, counted from 1.
-    model : in evaluation mode, on the CPU.
+    epoch : the epoch that was kept, counted from 1.
+    model : the model in evaluation mode, on the CPU.
     domain : domain of validity; None for runs trained before it was recorded (see
-    `learn.validity.domain_of`).
+        `learn.validity.domain_of`).
     members : folders of the runs that were joined to this one as an ensemble; empty for one run.
     """
 
@@ -79,7 +79,7 @@ class _Statistics(BaseModel):
 
 
 class _Content(BaseModel):
-    """Contents of every checkpoint; `last.pt` holds more (`_Resumable`)."""
+    """Content of every checkpoint; `last.pt` holds more (`_Resumable`)."""
 
     model_config = ConfigDict(arbitrary_types_allowed=True)
     version: Annotated[int, Field(strict=True)] = 1
@@ -104,12 +104,12 @@ class _Resumable(_Content):
 
 
 def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
-    """Write beside, then put in place: a kill or a full disk leaves the old file or the new one.
+    """Write a checkpoint atomically: a kill or a full disk leaves the old file or the new one.
 
     Raises
     ------
     OSError
-        Nothing could be written; the file that was there stands.
+        If it cannot be written; the old file is kept.
     """
     buffer = io.BytesIO()
     torch.save({"format": FORMAT, **content}, buffer)
@@ -117,7 +117,7 @@ def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """The file holds these bytes, or what it held before."""
+    """Write a file atomically: it holds these bytes, or its earlier content."""
     beside = path.with_suffix(".part")
     try:
         with beside.open("wb") as file:
@@ -132,7 +132,7 @@ def write_whole(path: Path, data: bytes) -> None:
 
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
-    """A checkpoint's content; InputError where it is missing, damaged or of another format."""
+    """A checkpoint's content; InputError if it is missing, damaged or of another format."""
     if not path.is_file():
         raise InputError(f"{path}: no such checkpoint")
     try:
@@ -151,7 +151,7 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
 
 
 def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
-    """InputError where a checkpoint was trained on another dataset."""
+    """Raise InputError if a checkpoint was trained on another dataset."""
     if content["uuid"] != store.uuid:
         raise InputError(
             f"{path}: trained on dataset {content['uuid']}, but {store.location} is {store.uuid}"
@@ -159,7 +159,7 @@ def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
 
 
 def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
-    """A checkpoint's recipe; InputError where it is damaged, or its model is of another version."""
+    """A checkpoint's recipe; InputError if it is damaged, or its model is of another version."""
     recipe = check_recipe(content["recipe"], str(path))
     found, now = content.get("version", 1), MODELS[recipe.model].version
     if found != now:
@@ -170,7 +170,7 @@ def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
 
 
 def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, name: str) -> None:
-    """Into the model; InputError where they do not fit it or are not finite."""
+    """Load weights into the model; InputError if they do not fit it or are not finite."""
     try:
         model.load_state_dict(weights)
     except RuntimeError as error:
@@ -181,7 +181,7 @@ def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, nam
 
 
 def load_run(folder: Path | str) -> Run:
-    """The best model of a run's folder. InputError where there is none, or it is damaged."""
+    """Load the best model of a run's folder. InputError if there is none, or it is damaged."""
     path = Path(folder) / BEST
     content = load_checkpoint(path)
     recipe = recipe_of(content, path)
@@ -205,7 +205,7 @@ def load_run(folder: Path | str) -> Run:
 
 
 class Log:
-    """Appends to RUN/log.jsonl. In a resumed run, lines of epochs that will be trained again are dropped."""
+    """Log of a run, RUN/log.jsonl. On resuming, lines of epochs to be trained again are dropped."""
 
     def __init__(self, folder: Path, *, epochs_done: int) -> None:
         self._path = folder / LOG
@@ -219,7 +219,7 @@ class Log:
             self._board = module.SummaryWriter(str(folder / "tensorboard"), purge_step=epochs_done)
 
     def add(self, line: dict[str, Any]) -> None:
-        """One epoch's line."""
+        """Append one epoch's line."""
         with self._path.open("a", encoding="utf-8") as file:
             file.write(json.dumps(line) + "\n")
         if self._board is not None:
@@ -228,14 +228,14 @@ class Log:
                     self._board.add_scalar(key, value, line["epoch"])
 
     def close(self) -> None:
-        """Write what TensorBoard still holds."""
+        """Flush and close TensorBoard."""
         if self._board is not None:
-            with contextlib.suppress(OSError):  # a full disk was said already
+            with contextlib.suppress(OSError):  # a full disk was reported already
                 self._board.close()
 
 
 def read_log(folder: Path) -> list[dict[str, Any]]:
-    """The log's whole lines, up to the first that is damaged: a kill can cut the last one."""
+    """Valid lines of the log, up to the first damaged one: a kill can truncate the last."""
     path = folder / LOG
     if not path.is_file():
         return []
