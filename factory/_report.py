@@ -39,7 +39,7 @@ NODES = 5_500
 SECONDS_TO_10_MM = 12.0
 GROWTH = 1.4  # power of the requested depth that fits both
 SECONDS_A_STEP = 0.6  # a hold, or a step of further travel
-FRAMES_PER_MM = 0.65  # fraction of the requested frames: most pokes end before the whole depth
+FRAMES_REACHED = 0.65  # fraction of the requested frames: many pokes end before the whole depth
 SURFACE_NODES = 1_700
 _COMPRESSED = 0.85
 
@@ -85,7 +85,7 @@ def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
     finished = staging.finished()
     missing = max(len(plan.pokes) - len(finished), 0)
     solves = sum(not poke.derived and poke.index not in finished for poke in plan.pokes)
-    frames = FRAMES_PER_MM * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm
+    frames = FRAMES_REACHED * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm
     course = plan.pokes[0].scene.course
     if course is not None:
         frames = len(course.frames or ())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -69,10 +70,11 @@ def _check_events(text: str) -> None:
             raise InputError(f"more than {_EVENTS} values")
 
 
-def first_fault(error: ValidationError) -> str:
+def first_fault(error: ValidationError, source: Mapping[str, Any] | None = None) -> str:
     """First fault of a validation error, as "key KEY: expectation".
 
-    An unknown key comes before a missing one: it is usually the same key, misspelt.
+    An unknown key comes before a missing one: it is usually the same key, misspelt. `source` is the validated
+    input; models with a tagged union need it, since pydantic's path to a fault has the tag too.
     """
     faults = error.errors(include_url=False)
     faults.sort(key=lambda fault: fault["type"] not in ("extra_forbidden", "invalid_key"))
@@ -84,8 +86,17 @@ def first_fault(error: ValidationError) -> str:
         text = "this key is missing"
     elif fault["type"].startswith(("float", "int", "bool", "finite", "string")) and "input" in fault:
         text = f"{text}, got {fault['input']!r:.40}"
-    # in a union the path also has the tag, which is not a key of the file
-    names = [str(part) for part in fault["loc"]]
-    key = ".".join(names)
+    key = ".".join(_keys(fault["loc"], source))
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     return f"key {key}: {text}{more}" if key else f"{text}{more}"
+
+
+def _keys(path: tuple[Any, ...], source: Any) -> list[str]:
+    """The keys on the path to a fault, without the tag of a union, which is not a key of the source."""
+    kept = []
+    for part in path[:-1]:
+        if isinstance(source, Mapping) and part not in source:
+            continue
+        kept.append(str(part))
+        source = source[part] if isinstance(source, Mapping | list) else None
+    return [*kept, *map(str, path[-1:])]

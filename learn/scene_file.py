@@ -179,7 +179,7 @@ def load_poke(source: Path | str | Mapping[str, Any] | PokeScene) -> PokeScene:
     try:
         return PokeScene.model_validate(dict(source))
     except ValidationError as error:
-        raise InputError(f"{where}: {first_fault(error)}") from None
+        raise InputError(f"{where}: {first_fault(error, source)}") from None
 
 
 def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple[Scene, Pokes]:

@@ -67,9 +67,9 @@ def predictor(run: Path) -> Predictor:
         (
             "shape: shape-1",
             SPHERE.replace("radius_mm: 8", "radius_mm: .nan"),
-            "key inclusion.sphere.radius_mm: ",
+            "key inclusion.radius_mm: ",
         ),
-        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, .nan, 8]"), "key inclusion.sphere.centre_mm.1: "),
+        ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, .nan, 8]"), "key inclusion.centre_mm.1: "),
         ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[60, 0, 8]"), "within the block, x -50 to 50 mm"),
         ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, 0, 30]"), "within the block, z 0 to 32 mm"),
         ("shape: shape-1", SPHERE.replace("[0, 0, 8]", "[0, 0, -9]"), "within the block, z 0 to 32 mm"),
