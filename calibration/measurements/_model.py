@@ -281,11 +281,6 @@ class MeasurementModel(ForwardModel):
             measured=np.zeros(rows),
         )
 
-    def pictures(self, diagnosis: Any) -> list[Any]:
-        """Pictures for the page of a diagnosis. ValueError where a simulation has no answer."""
-        del diagnosis
-        return []
-
     # -- lack of fit, folds, scores --
 
     def discrepancy_basis(self) -> Mapping[str, Array]:

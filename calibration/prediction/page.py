@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from calibration.pages import BAND, COLOURS, INK, Cell, Picture, paper, picture, plain, template
 from calibration.prediction._interval import SOURCES, WIDTH, Record
 from calibration.prediction.run import BASELINE, EXTENDED, Prediction
 from calibration.prediction.schema import Entry, PredictionFile, RecordEntry, file_of
-from calibration.report import BAND, COLOURS, INK, Cell, Picture, paper, picture, plain, template
 
 MOST = 12  # records in the picture
 COLUMNS = 3

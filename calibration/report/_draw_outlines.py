@@ -14,7 +14,7 @@ from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.turned import turned
-from calibration.report._figure import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
+from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
 from calibration.study.calibration import Calibration
 from tisim.view import View
 

@@ -11,7 +11,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from calibration.experiment.model import Experiment
 from calibration.inference import Estimate
-from calibration.report._figure import FAINT, Picture, looks, paper, picture, plain
+from calibration.pages import FAINT, Picture, looks, paper, picture, plain
 from calibration.report._tables import beam_lengths
 from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration

@@ -14,7 +14,7 @@ from calibration.measurements.homogeneous import nominal_stress, percent_error, 
 from calibration.measurements.homogeneous._record import Record
 from calibration.measurements.indentation.model import IndentationModel
 from calibration.measurements.objective import ModelObjective
-from calibration.report._figure import BAND, COLOURS, FAINT, INK, Look, Picture, looks, paper, picture, plain
+from calibration.pages import BAND, COLOURS, FAINT, INK, Look, Picture, looks, paper, picture, plain
 from calibration.study.calibration import Calibration
 from tisim import Material
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isfinite
 
 from calibration.experiment.model import BeamTrial, Experiment
+from calibration.pages import NOTHING, Cell, millimetres, seconds, significant
 from calibration.parameters import parametrisation
 from calibration.report._compare import Comparison
-from calibration.report._words import NOTHING, interval, millimetres, seconds, shear, significant
+from calibration.report._words import interval, shear
 from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration
 
@@ -37,15 +37,6 @@ HELD_OUT_HEADINGS = (
     "registered / mm",
     "χ² / points",
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Cell:
-    """text for people; value in SI, as the result's JSON has it; mark: a CSS class."""
-
-    text: str
-    value: float | None = None
-    mark: str = ""
 
 
 def law_rows(

@@ -13,16 +13,15 @@ from typing import Any
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.measurements.homogeneous.model import HomogeneousModel
 from calibration.measurements.objective import ModelObjective
+from calibration.pages import NOTHING, Cell, Picture, significant, template, turned_parts
 from calibration.parameters import part_kind
 from calibration.report._compare import Comparison, Moved, compare, far_nuisances
 from calibration.report._draw_outlines import contours, draw_residuals, draw_trial
 from calibration.report._draw_parameters import draw_held_out, draw_parameters
 from calibration.report._draw_records import Coupon, coupon_errors, draw_coupons, draw_indentations
-from calibration.report._figure import Picture
-from calibration.report._html import PAGE, template
-from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS, Cell, held_out_rows, law_rows
-from calibration.report._turned import turned_parts
-from calibration.report._words import NOTHING, blind, headline, rule, significant, troubles, unidentified
+from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS, held_out_rows, law_rows
+from calibration.report._template import PAGE
+from calibration.report._words import blind, headline, rule, troubles, unidentified
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import Measurements, measurements
 from tisim.view import View

@@ -1,5 +1,9 @@
-"""What the pictures of a diagnosis share, whatever was measured: how a domain hands them in, bars, curves."""
+"""Figures of a diagnosis: what all kinds of measurement share, and the figures of each kind.
 
+`figures_of(model, diagnosis)` draws them; a kind of measurement registers its own by `figures_of.register`.
+"""
+
+from calibration.diagnosis.drawing import homogeneous, indentation, outlines, release
 from calibration.diagnosis.drawing._bars import AFTER, BEFORE, paired_bars
 from calibration.diagnosis.drawing._curves import (
     DrawnCurve,
@@ -7,7 +11,7 @@ from calibration.diagnosis.drawing._curves import (
     legend_of,
     most_telling,
 )
-from calibration.diagnosis.drawing._domain import Figure, Section
+from calibration.diagnosis.drawing._domain import Figure, Section, figures_of
 from calibration.diagnosis.drawing._labels import label, label_of_causes
 from calibration.diagnosis.drawing._panels import (
     PANELS,
@@ -29,13 +33,18 @@ __all__ = [
     "before_and_after",
     "dots",
     "draw_rms",
+    "figures_of",
+    "homogeneous",
+    "indentation",
     "label",
     "label_of_causes",
     "legend_handles",
     "legend_of",
     "measured_and_simulated",
     "most_telling",
+    "outlines",
     "paired_bars",
     "per_trial",
+    "release",
     "titled",
 ]

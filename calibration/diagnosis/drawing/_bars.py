@@ -9,7 +9,7 @@ import matplotlib.figure
 import numpy as np
 
 from calibration.diagnosis.drawing._labels import label
-from calibration.report import COLOURS, INK, paper, plain, significant
+from calibration.pages import COLOURS, INK, paper, plain, significant
 
 BEFORE, AFTER = COLOURS[0], COLOURS[1]
 

@@ -1,12 +1,15 @@
-"""A picture of the page of a diagnosis, as `MeasurementModel.pictures` returns it."""
+"""Figures of the page of a diagnosis, and the function that a kind of measurement registers for its own."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import singledispatch
 from typing import Literal
 
 import matplotlib.figure
 
+from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.measurements._model import MeasurementModel
 from tisim.view import View
 
 Section = Literal["shapes", "residuals"]
@@ -26,3 +29,18 @@ class Figure:
     figure: matplotlib.figure.Figure
     section: Section = "shapes"
     view: View | None = None
+
+
+@singledispatch
+def figures_of(model: MeasurementModel, diagnosis: Diagnosis) -> list[Figure]:
+    """Figures of a diagnosis, by the class of its measurement model; none for a kind that registers nothing.
+
+    A kind of measurement registers its own by `figures_of.register(Model)`.
+
+    Raises
+    ------
+    ValueError
+        If a simulation has no result.
+    """
+    del model, diagnosis
+    return []

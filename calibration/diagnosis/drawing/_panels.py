@@ -14,7 +14,7 @@ from calibration.diagnosis.drawing._curves import Drawn, DrawnCurve, missing, mo
 from calibration.diagnosis.drawing._domain import Figure, Section
 from calibration.diagnosis.drawing._labels import label
 from calibration.diagnosis.engine.verdict import Diagnosis
-from calibration.report import INK, paper, plain, significant
+from calibration.pages import INK, paper, plain, significant
 
 Array = NDArray[np.float64]
 

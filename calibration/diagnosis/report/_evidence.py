@@ -12,7 +12,7 @@ from calibration.diagnosis.drawing import label_of_causes
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.search import Finding, Rules
 from calibration.diagnosis.report._words import headline
-from calibration.report import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
+from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
 
 CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
 ALARM, RARE = 0.05, Rules().false_alarm_rate  # chances of noise alone, drawn as lines

@@ -7,7 +7,7 @@ from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._evidence import ALARM, RARE
 from calibration.diagnosis.report._words import SUSPECT, chance, pattern, tiny
 from calibration.measurements._model import MeasurementModel
-from calibration.report import listed, significant
+from calibration.pages import listed, significant
 
 
 def alarm(diagnosis: Diagnosis) -> str:

@@ -10,7 +10,7 @@ from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._units import quantity_and_unit
 from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
-from calibration.report import NOTHING, Cell, listed, significant, with_sd
+from calibration.pages import NOTHING, Cell, listed, significant, with_sd
 
 Rows = list[list[Cell]]
 

@@ -7,7 +7,7 @@ from calibration.diagnosis.engine.null import EVERYTHING
 from calibration.diagnosis.engine.search import Finding
 from calibration.measurements._baseline import SPECIMENS
 from calibration.measurements._effect import EffectModel, Owner
-from calibration.report import significant
+from calibration.pages import significant
 
 SUSPECT = 0.005  # a chance below is no accident
 

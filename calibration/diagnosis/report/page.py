@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
-from calibration.diagnosis.drawing import Figure
+from calibration.diagnosis.drawing import Figure, figures_of
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report import _tables as tables
 from calibration.diagnosis.report._evidence import draw_evidence
@@ -14,7 +14,7 @@ from calibration.diagnosis.report._method import alarm, lack_of_fit, method, tro
 from calibration.diagnosis.report._template import PAGE
 from calibration.diagnosis.report._words import headline
 from calibration.measurements._model import MeasurementModel
-from calibration.report import Picture, file_name, picture, template, turned_parts
+from calibration.pages import Picture, file_name, picture, template, turned_parts
 
 LONGEST = 60  # letters of a picture's file name
 
@@ -23,12 +23,12 @@ def write_report(diagnosis: Diagnosis, model: MeasurementModel, folder: Path, *,
     """Write `folder/report.html` and its pictures (`folder/*.png`); their paths, the page first.
 
     model: the one that was diagnosed, its nuisances taken at the baseline; what type it has decides whose
-    pictures are shown (see `pictures_of`). title: of the page, any text.
+    pictures are shown (see `figures_of`). title: of the page, any text.
     """
     evidence = draw_evidence(diagnosis.finding)
     extra: list[str] = []
     try:
-        figures = model.pictures(diagnosis)
+        figures = figures_of(model, diagnosis)
     except ValueError as problem:  # a simulation that has no answer: the rest of the page still stands
         figures, extra = [], [f"The pictures of shapes and residuals are missing: {problem}."]
     pictures = _pictures(figures, taken={evidence.name})

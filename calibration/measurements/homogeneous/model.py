@@ -410,8 +410,3 @@ class HomogeneousModel(MeasurementModel):
             unit=self.unit,
             measured=r.stress,
         )
-
-    def pictures(self, diagnosis: Any) -> list[Any]:
-        from calibration.measurements.homogeneous.pictures import pictures
-
-        return pictures(self, diagnosis)

@@ -393,8 +393,3 @@ class IndentationModel(MeasurementModel):
             measured=r.force,
             of_rows=None if rows == r.points else np.eye(r.points, rows),
         )
-
-    def pictures(self, diagnosis: Any) -> list[Any]:
-        from calibration.measurements.indentation.pictures import pictures
-
-        return pictures(self, diagnosis)

@@ -88,7 +88,7 @@ class Nuisances:
 
 def sentence(outlines: Sequence[TracedOutline], uncorrected: str) -> str:
     """What the noise consists of, for people. uncorrected : why the mesh's error is not; "" where it is."""
-    from calibration.report import significant
+    from calibration.pages import significant
 
     def span(values: list[float]) -> str:
         low, high = significant(min(values), 2), significant(max(values), 2)

@@ -396,11 +396,6 @@ class OutlineModel(MeasurementModel):
             of_rows=p.basis,
         )
 
-    def pictures(self, diagnosis: Any) -> list[Any]:
-        from calibration.measurements.outlines.pictures import pictures
-
-        return pictures(self, diagnosis)
-
 
 def _traced(result: Result, old: TracedPhotograph, images: Sequence[Image]) -> TracedOutline:
     upper, lower = (shown(line, images) for line in edges(result))

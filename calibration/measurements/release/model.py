@@ -347,8 +347,3 @@ class ReleaseModel(MeasurementModel):
             " time a material, the time of each release and the shape at it, 0.3 % of the modulus from one"
             " load to another."
         )
-
-    def pictures(self, diagnosis: Any) -> list[Any]:
-        from calibration.measurements.release.pictures import pictures
-
-        return pictures(self, diagnosis)

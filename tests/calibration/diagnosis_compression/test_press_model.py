@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from calibration.diagnose import app
 from calibration.diagnosis import model_of
 from calibration.diagnosis.catalogue import effects_of
+from calibration.diagnosis.drawing import figures_of
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.screening import screen
@@ -181,9 +182,9 @@ def test_which_coupons_are_presses() -> None:
 def test_pictures_and_words() -> None:
     model = press_model(both(sliding, seed=1))
     found = diagnose(model, gain=False)
-    names = [p.name for p in model.pictures(found)]
+    names = [p.name for p in figures_of(model, found)]
     assert names == ["residuals", "curves", "rms"]  # the curves lie on each other
-    for p in model.pictures(found):
+    for p in figures_of(model, found):
         p.figure.savefig(io.BytesIO(), format="png")
     assert "too few repeats" in model.noise_sentence()
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from diagnosis_coupon_cases import Array, coupon_model, experiment, neo_hookean, ramps, trial
 
+from calibration.diagnosis.drawing import figures_of
 from calibration.diagnosis.engine.run import diagnose
 
 
@@ -16,7 +17,7 @@ def test_the_first_picture_shows_the_departure(size: float, first: str) -> None:
 
     made = experiment(trial("pull", "uniaxial", ramps(2.0, 1, 30), stress, sd=100.0))
     model = coupon_model(made)
-    figures = model.pictures(diagnose(model, gain=False))
+    figures = figures_of(model, diagnose(model, gain=False))
     shown = [f.name for f in figures if f.section == "shapes"]
     assert shown[0] == first
     assert {f.name for f in figures} == {"curves", "residuals", "rms"}

@@ -13,6 +13,7 @@ from diagnosis_coupon_cases import Array, G, coupon_model, experiment, neo_hooke
 from matplotlib.image import imread
 
 from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.drawing import figures_of
 from calibration.diagnosis.engine.advice import advise
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.search import search
@@ -85,7 +86,7 @@ def test_stiffening_and_locking_part_further_out() -> None:
 
 def test_pictures_show_something() -> None:
     model, found = diagnosed()
-    pictures = model.pictures(found)
+    pictures = figures_of(model, found)
     by_name = {p.name: p for p in pictures}
     assert list(by_name) == ["residuals", "curves", "rms"]  # the curves lie on each other
     for p in pictures:
@@ -104,7 +105,7 @@ def test_pictures_without_a_cause() -> None:
     model = coupon_model(experiment(trial("$odd_name$ <b>", "planar", ramps(1.6, 1))))
     found = diagnose(model)
     assert found.finding.verdict == "none"
-    for p in model.pictures(found):
+    for p in figures_of(model, found):
         p.figure.savefig(io.BytesIO(), format="png")
 
 

@@ -18,6 +18,7 @@ from typer.testing import CliRunner
 
 from benchmarks.blind.release import Truth, beam, write_bars
 from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.drawing import figures_of
 from calibration.diagnosis.engine.fitting import fit as fit_causes
 from calibration.diagnosis.engine.run import diagnose
 from calibration.diagnosis.engine.search import fit_baseline
@@ -111,7 +112,7 @@ def test_the_gain_is_measured_on_what_was_not_seen() -> None:
 
 def test_pictures_show_something() -> None:
     model, found = diagnosed(RELAXING)
-    pictures = model.pictures(found)
+    pictures = figures_of(model, found)
     assert [p.name for p in pictures] == ["motion", "residuals", "rms"]
     for p in pictures:
         file = io.BytesIO()

@@ -10,14 +10,15 @@ from bent_beams import bent_folder
 from diagnosis_cases import Page
 
 from calibration.diagnosis import Diagnosis, Rules, diagnose
+from calibration.diagnosis.drawing import figures_of
+from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial, drawn, rms_of, told
+from calibration.diagnosis.drawing.outlines._grid import grid_of
+from calibration.diagnosis.drawing.outlines._look import magnification
+from calibration.diagnosis.drawing.outlines._residuals import middles
 from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.report import write_report
 from calibration.experiment import read
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.pictures._drawn import DrawnTrial, drawn, rms_of, told
-from calibration.measurements.outlines.pictures._grid import grid_of
-from calibration.measurements.outlines.pictures._look import magnification
-from calibration.measurements.outlines.pictures._residuals import middles
 from calibration.measurements.outlines.turned import turned
 
 LEFT = ("residual-curvature", "creep")  # of the catalogue, to keep the test short
@@ -132,5 +133,5 @@ def test_the_page_has_them(bent: tuple[Diagnosis, OutlineModel], tmp_path: Path)
     assert "Measured outlines over the beams of the baseline extended by residual-curvature" in page.text
     assert "correlated over 5.0 mm" in page.text
     assert "The mesh's error is corrected by a finer mesh" in page.text
-    shown = next(f for f in bent[1].pictures(bent[0]) if f.name == "shapes")
+    shown = next(f for f in figures_of(bent[1], bent[0]) if f.name == "shapes")
     assert "times magnified" in shown.caption

@@ -15,7 +15,8 @@ from diagnosis_cases import Kind, LinearModel, Page, diagnosis, numbers
 from matplotlib.image import imread
 
 from calibration.diagnosis import Diagnosis
-from calibration.diagnosis.report import Figure, paired_bars, write_report
+from calibration.diagnosis.drawing import Figure, figures_of, paired_bars
+from calibration.diagnosis.report import write_report
 from calibration.diagnosis.report._tables import fold_rows
 
 KINDS: tuple[Kind, ...] = ("none", "found", "ambiguous", "unexplained")
@@ -24,23 +25,27 @@ ODD = "$\\frac{a$ _^{} 材料 \U0001f9ea \N{COMBINING ACUTE ACCENT}\t" + 60 * "l
 
 
 class DrawnModel(LinearModel):
-    """A kind that draws."""
-
-    def pictures(self, made: Diagnosis) -> list[Figure]:
-        after = [2.0] if made.extended else None
-        bars = paired_bars([self.place], [3.0], after, quantity="rms / mm", noise=1.0, held_out=None)
-        return [
-            Figure(name=self.place, caption=f"shapes of {self.place}", figure=_curve()),
-            Figure(name=self.place, caption="bars", figure=bars, section="residuals"),
-        ]
+    """A kind of measurement with figures of its own."""
 
 
 class MuteModel(LinearModel):
     """A kind whose beam has no equilibrium to draw."""
 
-    def pictures(self, made: Diagnosis) -> list[Figure]:
-        del made
-        raise ValueError("no equilibrium at this state")
+
+@figures_of.register(DrawnModel)
+def _drawn(model: DrawnModel, made: Diagnosis) -> list[Figure]:
+    after = [2.0] if made.extended else None
+    bars = paired_bars([model.place], [3.0], after, quantity="rms / mm", noise=1.0, held_out=None)
+    return [
+        Figure(name=model.place, caption=f"shapes of {model.place}", figure=_curve()),
+        Figure(name=model.place, caption="bars", figure=bars, section="residuals"),
+    ]
+
+
+@figures_of.register(MuteModel)
+def _mute(model: MuteModel, made: Diagnosis) -> list[Figure]:
+    del model, made
+    raise ValueError("no equilibrium at this state")
 
 
 def _curve() -> matplotlib.figure.Figure:

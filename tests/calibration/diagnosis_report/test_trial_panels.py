@@ -16,7 +16,7 @@ from calibration.diagnosis.drawing import (
     per_trial,
     titled,
 )
-from calibration.report import paper
+from calibration.pages import paper
 
 
 def curve(name: str, size: float, *, extended: bool = True) -> DrawnCurve:

@@ -8,8 +8,9 @@ import pytest
 from report_cases import beam_folder, calibration, failed
 
 from calibration.experiment import read
+from calibration.pages import significant, with_sd
 from calibration.report._compare import compare, far_nuisances
-from calibration.report._words import significant, verdict, with_sd
+from calibration.report._words import verdict
 
 
 def test_laws_that_are_alike() -> None:

@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib import colormaps
 from matplotlib.patches import Rectangle
 
-from calibration.measurements.outlines.pictures._drawn import DrawnTrial
-from calibration.report import INK
+from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial
+from calibration.pages import INK
 
 MEASURED, EXTENDED = "Blues", "Oranges"
 CLAMP = "#6B7480"

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 from matplotlib.lines import Line2D
 
-from calibration.diagnosis.drawing import Figure, label, paired_bars
+from calibration.diagnosis.drawing._bars import paired_bars
+from calibration.diagnosis.drawing._domain import Figure
+from calibration.diagnosis.drawing._labels import label
+from calibration.diagnosis.drawing.outlines._drawn import Array, DrawnTrial, rms_of
+from calibration.diagnosis.drawing.outlines._grid import grid_of, left_out
+from calibration.diagnosis.drawing.outlines._look import EXTENDED, MEASURED, shade
 from calibration.diagnosis.engine.verdict import Diagnosis
-from calibration.measurements.outlines.pictures._drawn import Array, DrawnTrial, rms_of
-from calibration.measurements.outlines.pictures._grid import grid_of, left_out
-from calibration.measurements.outlines.pictures._look import EXTENDED, MEASURED, shade
-from calibration.report import BAND, COLOURS, INK, paper, plain
+from calibration.pages import BAND, COLOURS, INK, paper, plain
 
 SAMPLES = 60
 MEAN = {MEASURED: COLOURS[0], EXTENDED: COLOURS[1]}

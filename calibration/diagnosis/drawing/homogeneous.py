@@ -10,24 +10,20 @@ import numpy as np
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from calibration.diagnosis.drawing import (
+from calibration.diagnosis.drawing._curves import DrawnCurve, before_and_after, legend_of, most_telling
+from calibration.diagnosis.drawing._domain import Figure, Section, figures_of
+from calibration.diagnosis.drawing._panels import (
     PANELS,
-    DrawnCurve,
-    Figure,
-    Section,
-    before_and_after,
     draw_rms,
     legend_handles,
-    legend_of,
     measured_and_simulated,
-    most_telling,
     per_trial,
     titled,
 )
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements.homogeneous._record import Record
 from calibration.measurements.homogeneous.model import HomogeneousModel
-from calibration.report import COLOURS, INK
+from calibration.pages import COLOURS, INK
 
 Array = NDArray[np.float64]
 
@@ -79,7 +75,8 @@ def drawn(model: HomogeneousModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
     ]
 
 
-def pictures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[Figure]:
+@figures_of.register(HomogeneousModel)
+def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[Figure]:
     """Curves, residuals with the noise's band, and rms. ValueError where a law has no stress."""
     records = drawn(model, diagnosis)
     if not all(np.isfinite(d.before).all() for d in records):

@@ -2,16 +2,17 @@
 
 from dataclasses import replace
 
-from calibration.diagnosis.drawing import Figure
+from calibration.diagnosis.drawing._domain import Figure, figures_of
+from calibration.diagnosis.drawing.outlines._drawn import drawn, in_time, told
+from calibration.diagnosis.drawing.outlines._residuals import draw_residuals, draw_rms
+from calibration.diagnosis.drawing.outlines._shapes import draw_shapes
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.pictures._drawn import drawn, in_time, told
-from calibration.measurements.outlines.pictures._residuals import draw_residuals, draw_rms
-from calibration.measurements.outlines.pictures._shapes import draw_shapes
 from calibration.measurements.outlines.turned import turned
 
 
-def pictures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
+@figures_of.register(OutlineModel)
+def outline_figures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
     """Shapes with the misfit magnified, what is left along the beams, and its rms.
 
     ValueError where a beam has no equilibrium.

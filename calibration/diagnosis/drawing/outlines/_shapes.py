@@ -9,10 +9,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from calibration.diagnosis.drawing import AFTER, BEFORE, Figure, label
-from calibration.measurements.outlines.pictures._drawn import DrawnEdge, DrawnPhotograph, DrawnTrial
-from calibration.measurements.outlines.pictures._grid import Grid, grid_of, left_out
-from calibration.measurements.outlines.pictures._look import (
+from calibration.diagnosis.drawing._bars import AFTER, BEFORE
+from calibration.diagnosis.drawing._domain import Figure
+from calibration.diagnosis.drawing._labels import label
+from calibration.diagnosis.drawing.outlines._drawn import DrawnEdge, DrawnPhotograph, DrawnTrial
+from calibration.diagnosis.drawing.outlines._grid import Grid, grid_of, left_out
+from calibration.diagnosis.drawing.outlines._look import (
     EXTENDED,
     MEASURED,
     clamps,
@@ -20,7 +22,7 @@ from calibration.measurements.outlines.pictures._look import (
     scale_bar,
     shade,
 )
-from calibration.report import BAND, paper
+from calibration.pages import BAND, paper
 
 WIDE = 11.0  # inches
 LETTER = 0.075  # inches that one of a panel's title takes

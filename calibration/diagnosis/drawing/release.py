@@ -9,23 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.drawing import (
-    AFTER,
-    BEFORE,
-    DrawnCurve,
-    Figure,
-    before_and_after,
-    dots,
-    draw_rms,
-    legend_handles,
-    legend_of,
-    per_trial,
-    titled,
-)
+from calibration.diagnosis.drawing._bars import AFTER, BEFORE
+from calibration.diagnosis.drawing._curves import DrawnCurve, before_and_after, legend_of
+from calibration.diagnosis.drawing._domain import Figure, figures_of
+from calibration.diagnosis.drawing._panels import dots, draw_rms, legend_handles, per_trial, titled
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements.release._record import Record
 from calibration.measurements.release.model import ReleaseModel
-from calibration.report import INK
+from calibration.pages import INK
 
 Array = NDArray[np.float64]
 
@@ -55,7 +46,8 @@ class DrawnRelease(DrawnCurve):
     lines: tuple[Array, Array, Array | None]
 
 
-def pictures(model: ReleaseModel, diagnosis: Diagnosis) -> list[Figure]:
+@figures_of.register(ReleaseModel)
+def release_figures(model: ReleaseModel, diagnosis: Diagnosis) -> list[Figure]:
     """The tip, its residuals, and the rms of all markers. ValueError where a beam has no equilibrium."""
     releases = drawn(model, diagnosis)
     after = legend_of(diagnosis)

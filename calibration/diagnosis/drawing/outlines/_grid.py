@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from calibration.measurements.outlines.pictures._drawn import DrawnTrial
+from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial
 
 MOST = 30  # panels of one picture
 WIDEST = 5  # panels beside each other where the trials make no grid

@@ -10,16 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.drawing import (
-    AFTER,
-    BEFORE,
-    DrawnCurve,
-    Figure,
-    before_and_after,
+from calibration.diagnosis.drawing._bars import AFTER, BEFORE
+from calibration.diagnosis.drawing._curves import DrawnCurve, before_and_after, legend_of
+from calibration.diagnosis.drawing._domain import Figure, figures_of
+from calibration.diagnosis.drawing._panels import (
     dots,
     draw_rms,
     legend_handles,
-    legend_of,
     measured_and_simulated,
     per_trial,
     titled,
@@ -27,7 +24,7 @@ from calibration.diagnosis.drawing import (
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation.model import IndentationModel
-from calibration.report import BAND, INK
+from calibration.pages import BAND, INK
 
 Array = NDArray[np.float64]
 
@@ -73,7 +70,8 @@ def drawn(model: IndentationModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
     ]
 
 
-def pictures(model: IndentationModel, diagnosis: Diagnosis) -> list[Figure]:
+@figures_of.register(IndentationModel)
+def indentation_figures(model: IndentationModel, diagnosis: Diagnosis) -> list[Figure]:
     """Forces over depth, residuals over time with the noise's band, and rms."""
     records = drawn(model, diagnosis)
     after = legend_of(diagnosis)
