@@ -308,7 +308,7 @@ def predict(
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     report = on_progress or to_log
 
-    def say(text: str) -> None:
+    def message(text: str) -> None:
         report(Progress(message=text))
 
     if calibrate is not None and predict is not None:
@@ -322,7 +322,7 @@ def predict(
             extend=tuple(extend),
             seed=seed,
             workers=workers,
-            say=say,
+            on_progress=message,
         )
         return PredictionResult(found)
     assert cards is not None
@@ -335,7 +335,7 @@ def predict(
             domain=domain,
             specimen_scatter=specimen_scatter,
             workers=workers,
-            say=say,
+            on_progress=message,
         )
     )
 

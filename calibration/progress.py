@@ -54,6 +54,7 @@ class FitProgress(Progress):
 
 
 OnProgress = Callable[[Progress], None]
+OnMessage = Callable[[str], None]  # progress of one piece of work, as a sentence
 
 
 def to_log(progress: Progress) -> None:

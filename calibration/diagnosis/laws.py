@@ -16,7 +16,7 @@ import numpy as np
 
 from calibration.diagnosis.engine.fitting import TOLERANCE, Fit, fit
 from calibration.diagnosis.engine.resampling import test_of
-from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.run import Searched, concluded, searched
 from calibration.diagnosis.engine.search import Finding
 from calibration.diagnosis.engine.verdict import Diagnosis
@@ -25,6 +25,7 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import Source
 from calibration.measurements._state import State
 from calibration.parameters import parametrisation
+from calibration.progress import OnMessage
 
 AUTO = "auto"
 PREFERRED = "leave-one-fifth-out"  # folds; others where the model has none of these
@@ -118,7 +119,7 @@ def diagnose_with_law(
     rules: Rules | None = None,
     gain: bool = True,
     noise: Source = "stated",
-    on_progress: Progress = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> tuple[Diagnosis, MeasurementModel]:
     """A diagnosis, and the model that it was made with.
 
@@ -196,7 +197,7 @@ def _causes(found: Finding) -> int:
 
 
 def _said(
-    first: Searched, again: Searched | None, richer: bool, *, gain: bool, on_progress: Progress
+    first: Searched, again: Searched | None, richer: bool, *, gain: bool, on_progress: OnMessage
 ) -> tuple[MeasurementModel, Diagnosis]:
     """What the rounds come to. Only what is said is concluded, where the search tells which round that is.
 
@@ -235,7 +236,7 @@ def _simpler(again: Finding, found: Finding, rules: Rules) -> bool:
     return better >= (-rules.score_tolerance if fewer > 0 else rules.score_tolerance) and fewer >= 0
 
 
-def choose_law(model: MeasurementModel, *, on_progress: Progress = lambda _: None) -> LawChoice:
+def choose_law(model: MeasurementModel, *, on_progress: OnMessage = lambda _: None) -> LawChoice:
     """Compare a model's laws as baselines, without effects, by measurements that their fits have not seen.
 
     ValueError where the simplest has no answer.

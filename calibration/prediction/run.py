@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -26,9 +26,9 @@ from calibration.prediction._cards import (
     read_cards,
 )
 from calibration.prediction._interval import WIDTH, Calibrated, Record, predict_records
+from calibration.progress import OnMessage
 
 Array = NDArray[np.float64]
-Say = Callable[[str], None]
 
 Name = Literal["baseline", "extended"]
 BASELINE: Final = "baseline"
@@ -134,7 +134,7 @@ def from_cards(
     specimen_scatter: float | None = None,
     workers: int | None = None,
     source: str = "",
-    say: Say = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Prediction:
     """All trials of an experiment whose material has a card, predicted from the cards.
 
@@ -179,7 +179,7 @@ def from_cards(
         for kind, own in compared(mine):
             if domain not in (None, kind.name, kind.old_name):
                 continue
-            say(f"predicting {kind.name} of {material}")
+            on_progress(f"predicting {kind.name} of {material}")
             predicted, outside = _by_cards(kind, own, models, scatter, workers)
             records += predicted
             notes += outside

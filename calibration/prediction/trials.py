@@ -6,6 +6,7 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +28,10 @@ from calibration.prediction.run import (
     UNSEEN,
     Name,
     Prediction,
-    Say,
     beyond,
     from_cards,
 )
+from calibration.progress import OnMessage
 
 Rows = NDArray[np.bool_]
 Make = Callable[..., MeasurementModel]
@@ -46,7 +47,7 @@ def from_trials(
     extend: Sequence[str] = (),
     seed: int = 0,
     workers: int | None = None,
-    say: Say = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Prediction:
     """Trials of an experiment, predicted from a diagnosis of others: its baseline, and the causes that it
     names. Trials of another kind of measurement are predicted from the cards that it would write.
@@ -72,27 +73,34 @@ def from_trials(
             raise InputError(f"trial {t.id}: material {t.material}: expected one of the trials to fit")
     if _same_kind(kind, theirs):
         found = _within(
-            kind, experiment, fitted, wanted, law=law, extend=extend, seed=seed, workers=workers, say=say
+            kind,
+            experiment,
+            fitted,
+            wanted,
+            law=law,
+            extend=extend,
+            seed=seed,
+            workers=workers,
+            on_progress=on_progress,
         )
         return replace(found, source=source, seconds=time.monotonic() - begun)
     if extend:
         raise OptionError("extend", ", ".join(extend), "expected trials of one kind of measurement")
-    from calibration.api import diagnose
+    from calibration.diagnosis import Rules, model_of
     from calibration.diagnosis.card import write_cards
+    from calibration.diagnosis.laws import diagnose_with_law
 
-    result = diagnose(
-        ours,
-        domain=kind.name,
-        law=law,
-        gain=False,
-        seed=seed,
-        workers=workers,
-        on_progress=lambda p: say(str(p)),
-    )
+    make = partial(model_of, ours, kind=kind.name, workers=workers)
+    try:
+        diagnosis, _ = diagnose_with_law(
+            make, law=law, rules=Rules(seed=seed), gain=False, on_progress=on_progress
+        )
+    except ValueError as error:  # the baseline has no equilibrium anywhere
+        raise InputError(f"{ours.folder}: the baseline cannot be calibrated: {error}") from error
     with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
-        write_cards(Path(folder), result.diagnosis, ours)
-        found = from_cards(Path(folder), theirs, workers=workers, source=source, say=say)
-    notes = (result.sentence, *found.notes)
+        write_cards(Path(folder), diagnosis, ours)
+        found = from_cards(Path(folder), theirs, workers=workers, source=source, on_progress=on_progress)
+    notes = (diagnosis.sentence(), *found.notes)
     return replace(found, notes=notes, seconds=time.monotonic() - begun)
 
 
@@ -115,7 +123,7 @@ class _Fitted:
     rivals: tuple[Fit, ...] = ()
 
 
-def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
+def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fitted:
     """By a diagnosis."""
     from calibration.diagnosis import Rules
     from calibration.diagnosis.laws import diagnose_with_law
@@ -127,7 +135,9 @@ def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
         asked[id(made)] = options
         return made
 
-    found, model = diagnose_with_law(noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=say)
+    found, model = diagnose_with_law(
+        noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=on_progress
+    )
     fits: dict[Name, Fit] = {BASELINE: found.finding.baseline}
     rivals: tuple[Fit, ...] = ()
     if found.chosen is not None:
@@ -138,19 +148,19 @@ def _searched(make: Make, *, law: str, seed: int, say: Say) -> _Fitted:
     return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence(), rivals=rivals)
 
 
-def _stated(make: Make, *, law: str, effects: Sequence[str], say: Say) -> _Fitted:
+def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMessage) -> _Fitted:
     """With the effects that are asked for, each in all trials that can have it, in its best variant."""
     from calibration.diagnosis.catalogue import true_name
     from calibration.diagnosis.laws import AUTO, law_of
 
     options: dict[str, Any] = {} if law == AUTO else dict(zip(("law", "terms"), law_of(law), strict=True))
     model = make(**options)
-    say("fitting the baseline")
+    on_progress("fitting the baseline")
     start = State(u=model.start())
     model.update_nuisances(start)
     base = best = fit(model, start)
     for name in (true_name(model.kind, n) for n in effects):
-        say(f"fitting {name}")
+        on_progress(f"fitting {name}")
         forms = [
             c for c in model.candidates if c.effect == name and c.at == "all" and model.visible.get(c, True)
         ]
@@ -194,7 +204,7 @@ def _within(
     extend: Sequence[str],
     seed: int,
     workers: int | None,
-    say: Say,
+    on_progress: OnMessage,
 ) -> Prediction:
     """The diagnosis' model once more, of all these trials, of which a part is fitted: coordinates and effects
     are the same."""
@@ -210,13 +220,13 @@ def _within(
     notes = []
     try:
         if extend:
-            found = _stated(make, law=law, effects=extend, say=say)
+            found = _stated(make, law=law, effects=extend, on_progress=on_progress)
         else:
-            found = _searched(make, law=law, seed=seed, say=say)
+            found = _searched(make, law=law, seed=seed, on_progress=on_progress)
         model = model_of(together, kind=kind.name, workers=workers, **found.options)
         fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
         train = model.subset(fold, others=True)
-        say("predicting")
+        on_progress("predicting")
 
         def again(old: Fit, name: str) -> tuple[MeasurementModel, Calibrated]:
             known = dict(zip(found.model.names, old.state.u, strict=True))

@@ -17,11 +17,12 @@ from scipy.stats import chi2
 from calibration.diagnosis.engine.explanation import Explanation, Names, explain
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.null import Null
-from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.screening import Screen, multiplicity_penalty, screen
 from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import Linearisation
+from calibration.progress import OnMessage
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,7 @@ def with_second(
     columns: Array,
     null: Null,
     rules: Rules,
-    on_progress: Progress,
+    on_progress: OnMessage,
 ) -> list[Explanation]:
     """Pairs of causes, where one more beside the best improves chi-square by more than noise would.
 
@@ -103,7 +104,7 @@ def _beside(
     z: Array,
     null: Null,
     rules: Rules,
-    on_progress: Progress,
+    on_progress: OnMessage,
 ) -> list[Explanation]:
     """The best cause with each of the effects that promise most beside it, confirmed."""
     found = []
@@ -127,7 +128,7 @@ def hiding_each_other(
     linear: Linearisation,
     null: Null,
     rules: Rules,
-    on_progress: Progress,
+    on_progress: OnMessage,
 ) -> list[Explanation]:
     """Pairs of causes of which neither alone improves chi-square by more than noise would, but both do."""
     found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, on_progress)
@@ -143,7 +144,7 @@ def _pairs(
     target: Array,
     null: Null,
     rules: Rules,
-    on_progress: Progress,
+    on_progress: OnMessage,
     *,
     baseline: Fit | None = None,
 ) -> list[Explanation]:
@@ -186,7 +187,7 @@ def with_third(
     pairs: Sequence[Explanation],
     null: Null,
     rules: Rules,
-    on_progress: Progress,
+    on_progress: OnMessage,
 ) -> list[Explanation]:
     """Sets of three of which all are needed: one more beside the best pairs, where it improves chi-square
     by more than noise would, or three others that promise more. Then others are tried in the place of each,
@@ -208,7 +209,7 @@ class _Triples:
     """What has been tried of three causes, and what was found. found: sets of which all three are needed."""
 
     def __init__(
-        self, model: MeasurementModel, baseline: Fit, null: Null, rules: Rules, on_progress: Progress
+        self, model: MeasurementModel, baseline: Fit, null: Null, rules: Rules, on_progress: OnMessage
     ) -> None:
         self.model, self.baseline = model, baseline
         self.null, self.rules, self.on_progress = null, rules, on_progress

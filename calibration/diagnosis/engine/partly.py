@@ -26,10 +26,11 @@ from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut, Predictions, held_out_improvement
 from calibration.diagnosis.engine.multi_cause import inside_bounds
 from calibration.diagnosis.engine.remainder import relative_rms
-from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.shares import Interval, Misfit, Shares
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import NoiseKnown
+from calibration.progress import OnMessage
 
 EACH = 2  # sets of as many causes that are tried
 
@@ -65,7 +66,7 @@ def assess(
     rules: Rules,
     noise: NoiseKnown,
     *,
-    on_progress: Progress = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Assessed | None:
     """The explanation that may be named, or the one that comes nearest (`against` says why it is not named);
     None where there is none at all.

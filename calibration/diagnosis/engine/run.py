@@ -13,7 +13,7 @@ from calibration.diagnosis.engine.model_error import model_error_of
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.partly import Assessed, assess, within_smooth_error
 from calibration.diagnosis.engine.remainder import about_remainder, remainder_of
-from calibration.diagnosis.engine.search import Finding, Progress, Rules, search
+from calibration.diagnosis.engine.search import Finding, Rules, search
 from calibration.diagnosis.engine.shares import Interval, Shares
 from calibration.diagnosis.engine.verdict import Diagnosis, Numbers, Subject, reduced, undetectable
 from calibration.measurements._baseline import SPECIMENS
@@ -21,6 +21,7 @@ from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import NoiseKnown, Source
 from calibration.measurements._state import State
+from calibration.progress import OnMessage
 
 # Nuisances and the mesh's error are taken at an explanation again as long as it moves by more than this
 # fraction of its standard deviation: effects next to a clamp act a third too strongly on the search's mesh.
@@ -50,7 +51,7 @@ def diagnose(
     rules: Rules | None = None,
     gain: bool = True,
     noise: Source = "stated",
-    on_progress: Progress = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Diagnosis:
     """Search for what the baseline lacks, and reach a verdict.
 
@@ -76,7 +77,7 @@ def searched(
     rules: Rules | None = None,
     noise: Source = "stated",
     before: Searched | None = None,
-    on_progress: Progress = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Searched:
     """The first part of `diagnose`. before : see `search`."""
     begun = time.monotonic()
@@ -93,7 +94,7 @@ def searched(
     return Searched(model=model, finding=finding, noise=known, rules=rules, begun=begun)
 
 
-def concluded(found: Searched, *, gain: bool = True, on_progress: Progress = lambda _: None) -> Diagnosis:
+def concluded(found: Searched, *, gain: bool = True, on_progress: OnMessage = lambda _: None) -> Diagnosis:
     """The second part of `diagnose`."""
     model, finding, known, rules = found.model, found.finding, found.noise, found.rules
     baseline = finding.baseline
@@ -168,7 +169,7 @@ def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKn
 
 
 def _in_degrees(
-    model: MeasurementModel, finding: Finding, noise: NoiseKnown, rules: Rules, on_progress: Progress
+    model: MeasurementModel, finding: Finding, noise: NoiseKnown, rules: Rules, on_progress: OnMessage
 ) -> tuple[Finding, Assessed | None]:
     """The finding with what explains it in part, where that may be named; and what comes nearest."""
     shares = _shares(model, finding.baseline, rules, noise)
@@ -224,7 +225,7 @@ def _numbers(model: MeasurementModel, found: Fit, p: float) -> Numbers:
     )
 
 
-def _advice(model: MeasurementModel, finding: Finding, on_progress: Progress) -> str:
+def _advice(model: MeasurementModel, finding: Finding, on_progress: OnMessage) -> str:
     chosen = finding.chosen
     assert chosen is not None
     if len(finding.equivalent) == 1:

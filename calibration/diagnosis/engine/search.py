@@ -20,11 +20,12 @@ from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
 from calibration.diagnosis.engine.multi_cause import hiding_each_other, with_second, with_third
 from calibration.diagnosis.engine.null import LackOfFit, Null
 from calibration.diagnosis.engine.positions import at_best_position
-from calibration.diagnosis.engine.rules import Progress, Rules
+from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.screening import Screen, screen
 from calibration.measurements._effect import Candidate, EffectModel
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
+from calibration.progress import OnMessage
 
 Array = NDArray[np.float64]
 HOPELESS = 0.35  # of the best candidate's improvement: one that promises less is not fitted
@@ -84,7 +85,7 @@ def search(
     *,
     rules: Rules | None = None,
     before: Finding | None = None,
-    on_progress: Progress = lambda _: None,
+    on_progress: OnMessage = lambda _: None,
 ) -> Finding:
     """Look for what a model lacks. ValueError where the baseline has no answer anywhere.
 
@@ -197,7 +198,7 @@ def _positioned(
     explanations: Sequence[Explanation],
     some: Sequence[Explanation],
     null: Null,
-    on_progress: Progress,
+    on_progress: OnMessage,
 ) -> tuple[list[Explanation], dict[Candidate, Candidate]]:
     """All explanations, best first, causes of some of them moved to their best positions; and what moved
     where."""
