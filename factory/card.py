@@ -51,7 +51,8 @@ def main(
     with shown_errors("cannot write the card:"):
         import_plugins(plugin)
 
-        from factory._card import AUTHOR, FILES, check_out, gather, write_card
+        from factory._card import AUTHOR, gather
+        from factory._card_files import FILES, check_out, write_card
 
         check_out(dataset, out, overwrite=overwrite)
         facts = gather(dataset, licence=licence, authors=tuple(author or (AUTHOR,)), date=date)

@@ -18,7 +18,7 @@ import yaml
 import zarr
 
 import factory.card
-from factory import _card, _paper, open_dataset
+from factory import _card, _card_files, _paper, open_dataset
 from factory._store import LEDGER, MANIFEST
 from factory.plan import Plan
 from tests.factory.conftest import Builder, digest, run_app
@@ -46,7 +46,7 @@ def _lines(path: Path) -> list[dict[str, str]]:
 
 
 def test_its_files_are_all_there(card: Path, page: str) -> None:
-    assert {path.name for path in card.iterdir()} == set(_card.FILES)
+    assert {path.name for path in card.iterdir()} == set(_card_files.FILES)
     assert not list(card.parent.glob(".*")), "nothing of the making is left beside it"
     for picture in re.findall(r"!\[.*?\]\((.*?)\)", page):
         assert (card / picture).read_bytes().startswith(b"\x89PNG")
@@ -240,6 +240,6 @@ def test_overwriting_leaves_other_files_alone(card: Path, quick_store: Path, tmp
     (out / "card.md").write_text("old")
     result = run_app(factory.card.app, quick_store, "--out", out, "--overwrite", *OPTIONS)
     assert result.exit_code == 0, result.output
-    assert {path.name for path in out.iterdir()} == {*_card.FILES, "mine.txt"}
-    for name in _card.FILES:
+    assert {path.name for path in out.iterdir()} == {*_card_files.FILES, "mine.txt"}
+    for name in _card_files.FILES:
         assert (out / name).read_bytes() == (card / name).read_bytes(), name
