@@ -123,7 +123,7 @@ def fit(
     workers : int, optional
         Processes; all cores that this process may use where left out.
     overwrite : bool
-        Start anew instead of going on.
+        Discard earlier results and start again.
     on_progress : callable, optional
         Called with a `calibration.progress.FitProgress`, about twice a second.
 

@@ -68,7 +68,7 @@ def installed_version() -> str:
 
 Measured = Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")]
 Laws = Annotated[str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")]
-Workers = Annotated[int | None, typer.Option(help="Processes. Default: all cores.", min=1)]
+Workers = Annotated[int | None, typer.Option(help="Number of processes. Default: one per core.", min=1)]
 Seed = Annotated[int, typer.Option(help="Seed of the random numbers, 0 or more.")]
 Version = Annotated[
     bool,

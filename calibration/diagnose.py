@@ -45,11 +45,13 @@ def main(
         typer.Option(
             "--domain",
             "--kind",
-            help="Kind of measurement, where the experiment has several: outlines, indentation, homogeneous,"
+            help="Kind of measurement, if the experiment has several: outlines, indentation, homogeneous,"
             " compression or release.",
         ),
     ] = None,
-    without: Annotated[str, typer.Option(help="Effects to leave out of the catalogue, by commas.")] = "",
+    without: Annotated[
+        str, typer.Option(help="Effects to leave out of the catalogue, separated by commas.")
+    ] = "",
     simulator: Annotated[
         str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
     ] = "ours",
@@ -63,7 +65,7 @@ def main(
     gain: Annotated[bool, typer.Option(help="Measure the improvement on held-out data.")] = True,
     leave_out_rows: Annotated[
         bool,
-        typer.Option(help="Go on without rows of homogeneous tests at which the clock runs backwards."),
+        typer.Option(help="Leave out rows of homogeneous tests at which the time decreases."),
     ] = False,
     noise: Annotated[
         str,
@@ -76,7 +78,7 @@ def main(
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier diagnosis.")] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Find what the simulation of an experiment lacks: name the cause, or say why not."""
+    """Diagnose an experiment: find the effect that its simulation lacks, or state why none is named."""
     console = Console()
     with plain_ends():
         from calibration import api

@@ -200,11 +200,11 @@ Exit codes: 0 done, 2 bad input, no network, or a file that is not what it was.
 
 @app.command(epilog=EXAMPLES)
 def main(
-    name: Annotated[str | None, typer.Argument(help="Source; left out, all are listed.")] = None,
+    name: Annotated[str | None, typer.Argument(help="Name of the source. Default: list all.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the experiment. Default: NAME.")] = None,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Take public measurements from their sources, as an experiment."""
+    """Download public measurements as an experiment."""
     with plain_ends():
         if name is None:
             for source in sources():

@@ -100,7 +100,7 @@ def main(
         bool,
         typer.Option(
             "--free-bulk-ratio",
-            help="Find K/G too, from photographed beams. Default: held at 300, as a diagnosis holds it.",
+            help="Fit K/G too, from photographed beams. Default: fixed at 300, as in a diagnosis.",
         ),
     ] = False,
     rig: Annotated[
@@ -122,14 +122,14 @@ def main(
     cards: Annotated[Path | None, typer.Option(help="Folder of the cards. Default: OUT/cards.")] = None,
     seed: Seed = 1,
     population: Annotated[
-        int | None, typer.Option(help="Candidates a generation. Default: 4 + 3 ln n.", min=4)
+        int | None, typer.Option(help="Candidates per generation. Default: 4 + 3 ln n.", min=4)
     ] = None,
-    generations: Annotated[int, typer.Option(help="At most so many generations.", min=1)] = 60,
+    generations: Annotated[int, typer.Option(help="Largest number of generations.", min=1)] = 60,
     restarts: Annotated[int, typer.Option(help="Restarts with twice the population.", min=0)] = 0,
     polish: Annotated[bool, typer.Option(help="Gauss-Newton polish and error bars.")] = True,
     held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = True,
     workers: Workers = None,
-    overwrite: Annotated[bool, typer.Option(help="Start anew instead of going on.")] = False,
+    overwrite: Annotated[bool, typer.Option(help="Discard earlier results and start again.")] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """Fit constitutive laws to all measurements of an experiment; writes fits, cards and report.html."""

@@ -59,17 +59,20 @@ def main(
         str | None, typer.Option(help="Trials to predict, named alike. Default with cards: all.")
     ] = None,
     baseline: Annotated[
-        Path | None, typer.Option(help="Cards to compare with, in place of the baseline that CARDS state.")
+        Path | None, typer.Option(help="Cards of the baseline, in place of the baseline stated in CARDS.")
     ] = None,
     domain: Annotated[
         str | None,
-        typer.Option("--domain", "--kind", help="Kind of measurement, where the experiment has several."),
+        typer.Option("--domain", "--kind", help="Kind of measurement, if the experiment has several."),
     ] = None,
     law: Annotated[
         str, typer.Option(help="Of the baseline of --calibrate: auto, or a name with terms (ogden:2).")
     ] = "auto",
     extend: Annotated[
-        str, typer.Option(help="Effects of the extension of --calibrate, by commas. Default: searched for.")
+        str,
+        typer.Option(
+            help="Effects that extend the model of --calibrate, by commas. Default: by a diagnosis."
+        ),
     ] = "",
     specimen_scatter: Annotated[
         float | None,
@@ -83,7 +86,7 @@ def main(
     overwrite: Annotated[bool, typer.Option(help="Replace an earlier prediction.")] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Predict trials that were not used, by a baseline and what extends it; writes report.html."""
+    """Predict trials that no fit has used, by the baseline and the extended model; writes report.html."""
     console = Console()
     with plain_ends():
         cards, experiment = _paths(paths, calibrate)

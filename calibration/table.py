@@ -46,7 +46,7 @@ def main(
         Path | None, typer.Option(help="Folder of table.csv and table.md. Default: that of the fits.")
     ] = None,
     run_missing: Annotated[
-        bool, typer.Option("--run/--no-run", help="Make fits that are missing, or leave their rows empty.")
+        bool, typer.Option("--run/--no-run", help="Run missing fits, or leave their rows empty.")
     ] = True,
     workers: Workers = None,
     version: Version = False,  # noqa: ARG001 - shown before anything else

@@ -98,9 +98,10 @@ def main(
         ),
     ] = False,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Worker processes. Default: one a core.", show_default=False)
+        int | None,
+        typer.Option(min=1, help="Number of worker processes. Default: one per core.", show_default=False),
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print the plan.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan and exit.")] = False,
     cluster: Annotated[
         str | None,
         typer.Option(help="Address of a dask scheduler, or 'local' for one on this machine."),
@@ -116,7 +117,7 @@ def main(
     plugin: Plugins = None,
     version: Version = False,
 ) -> None:
-    """Build a dataset of simulated pokes: a Zarr store with a preview picture beside it."""
+    """Build a dataset of simulated pokes: a Zarr store, and a preview picture beside it."""
     del version
     target = out
     try:

@@ -25,12 +25,12 @@ damaged store.
 
 
 def main(
-    dataset: Annotated[Path, typer.Argument(help="The finished store, or its zip.")],
+    dataset: Annotated[Path, typer.Argument(help="Finished dataset, or its zip.")],
     out: Annotated[Path, typer.Option(help="Folder to write.")],
     licence: Annotated[str, typer.Option(help="Licence of the dataset, an SPDX identifier.")] = "Apache-2.0",
     author: Annotated[
         list[str] | None,
-        typer.Option(help="Who is to be cited. Repeatable. Default: the tisim authors.", show_default=False),
+        typer.Option(help="Author to cite; repeatable. Default: the tisim authors.", show_default=False),
     ] = None,
     date: Annotated[
         str | None,
@@ -46,7 +46,7 @@ def main(
     plugin: Plugins = None,
     version: Version = False,
 ) -> None:
-    """Check a finished dataset and write its card: content, making, accuracy, cost, citation."""
+    """Check a finished dataset and write its card: content, method, accuracy, cost, citation."""
     del version
     with shown_errors("cannot write the card:"):
         import_plugins(plugin)

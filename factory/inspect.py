@@ -40,14 +40,14 @@ EXAMPLES = """
 
 
 def main(
-    dataset: Annotated[Path, typer.Argument(help="The store (also while it is being built).")],
+    dataset: Annotated[Path, typer.Argument(help="Dataset (finished, or being built).")],
     poke: Annotated[int | None, typer.Option(help="Show one poke, by index.")] = None,
     picture: Annotated[Path | None, typer.Option(help="With --poke: write its picture, a PNG.")] = None,
-    arrays: Annotated[bool, typer.Option("--arrays", help="List every array with its units.")] = False,
+    arrays: Annotated[bool, typer.Option("--arrays", help="List all arrays with their units.")] = False,
     plugin: Plugins = None,
     version: Version = False,
 ) -> None:
-    """Show the content of a dataset: progress, depths and forces, what ended the pokes, sizes."""
+    """Show the content of a dataset: progress, depths, forces, reasons why pokes ended, sizes."""
     del version
     with shown_errors(f"{dataset}: cannot read"):
         import_plugins(plugin)

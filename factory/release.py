@@ -24,7 +24,7 @@ Exit codes: 0 written and compared with the manifest, 2 bad input or a damaged s
 
 
 def main(
-    dataset: Annotated[Path, typer.Argument(help="The finished store.")],
+    dataset: Annotated[Path, typer.Argument(help="Finished dataset.")],
     out: Annotated[Path, typer.Option(help="The zip to write: FILE.zarr.zip.")],
     plugin: Plugins = None,
     version: Version = False,

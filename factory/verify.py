@@ -31,25 +31,29 @@ Exit codes: 0 no fault, 1 faults found, 2 bad input.
 
 
 def main(
-    dataset: Annotated[Path, typer.Argument(help="The finished store.")],
-    show: Annotated[int, typer.Option(min=1, help="Faults to print for each check.")] = 5,
+    dataset: Annotated[Path, typer.Argument(help="Finished dataset.")],
+    show: Annotated[int, typer.Option(min=1, help="Number of faults to print per check.")] = 5,
     assembly: Annotated[
         bool,
         typer.Option(
             "--assembly",
-            help="Check frames as equilibria, too: forces at the nodes, summed up apart from the solver.",
+            help="Check the equilibrium of every frame too, by an independent assembly of nodal forces.",
         ),
     ] = False,
     pokes: Annotated[
         int | None,
         typer.Option(
-            min=1, help="With --assembly: so many pokes, spread over the dataset.", show_default="all"
+            min=1,
+            help="With --assembly: number of pokes to check, spread over the dataset.",
+            show_default="all",
         ),
     ] = None,
     workers: Annotated[
         int | None,
         typer.Option(
-            min=1, help="With --assembly: worker processes. Default: one a core.", show_default=False
+            min=1,
+            help="With --assembly: number of worker processes. Default: one per core.",
+            show_default=False,
         ),
     ] = None,
     plugin: Plugins = None,

@@ -47,8 +47,8 @@ Plugins = Annotated[
         "--plugin", metavar="FILE", help="Python file that registers a metric or a model; repeatable."
     ),
 ]
-Dataset = Annotated[str | None, typer.Option(help="The store, if it moved since the training.")]
-Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: one a core.")]
+Dataset = Annotated[str | None, typer.Option(help="Path of the dataset, if it has moved since training.")]
+Threads = Annotated[int | None, typer.Option(min=1, help="Number of CPU threads. Default: one per core.")]
 Device = Annotated[str, typer.Option(help="auto, cpu or cuda.")]
 Runs = Annotated[
     list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")

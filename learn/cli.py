@@ -59,25 +59,28 @@ Exit codes: 0 trained, 1 diverged (the last good checkpoint stands), 2 bad input
 
 @app.command(epilog=TRAIN_EXAMPLES)
 def train(
-    dataset: Annotated[str, typer.Argument(help="The store: a folder or an fsspec URL.")],
+    dataset: Annotated[str, typer.Argument(help="Dataset: a folder, a zip or an fsspec URL.")],
     recipe: Annotated[str, typer.Option(help="fast, quick, cegnn, paper, or a YAML file.")] = "fast",
     model: Annotated[
-        str | None, typer.Option(help="Instead of the recipe's: invariant-gnn, invariant-gnn-small, cegnn.")
+        str | None,
+        typer.Option(help="Model, in place of the recipe's: invariant-gnn, invariant-gnn-small, cegnn."),
     ] = None,
-    fold: Annotated[int | None, typer.Option(help="Instead of the recipe's: 0 to 4.")] = None,
-    split: Annotated[str | None, typer.Option(help="Instead of the recipe's: shape or site.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Instead of the recipe's.")] = None,
-    epochs: Annotated[int | None, typer.Option(help="Instead of the recipe's.")] = None,
+    fold: Annotated[int | None, typer.Option(help="Fold, in place of the recipe's: 0 to 4.")] = None,
+    split: Annotated[
+        str | None, typer.Option(help="Split by shape or by site, in place of the recipe's.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed, in place of the recipe's.")] = None,
+    epochs: Annotated[int | None, typer.Option(help="Number of epochs, in place of the recipe's.")] = None,
     out: Annotated[
         Path | None, typer.Option(help="The run's folder. Default: runs/RECIPE-MODEL-LAW-FOLD-SEED.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on where an earlier run stopped.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
     device: Device = "auto",
     threads: Threads = None,
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Train a surrogate and keep the epoch that does best on the validation part."""
+    """Train a surrogate on a dataset; the epoch with the lowest validation error is kept."""
     console = make_console()
     with plain_errors():
         import torch
@@ -151,14 +154,17 @@ def evaluate(
     transfer: Annotated[
         bool,
         typer.Option(
-            "--transfer", help="Allow another dataset than the run was trained on: all its unseen shapes."
+            "--transfer",
+            help="Evaluate on a dataset that the run was not trained on, on its unseen shapes.",
         ),
     ] = False,
-    baselines: Annotated[bool, typer.Option(help="Fit and show the baselines as well.")] = True,
-    clouds: Annotated[bool, typer.Option(help="Show errors on other point clouds as well.")] = True,
+    baselines: Annotated[bool, typer.Option(help="Evaluate the baselines too.")] = True,
+    clouds: Annotated[bool, typer.Option(help="Evaluate on other point clouds too.")] = True,
     ensemble: Annotated[
         bool,
-        typer.Option("--ensemble", help="Join runs that differ in seed alone, and evaluate them as one too."),
+        typer.Option(
+            "--ensemble", help="Average runs that differ only in their seed, and evaluate the average too."
+        ),
     ] = False,
     out: Annotated[Path | None, typer.Option(help="Default: evaluation/ in the first run.")] = None,
     device: Device = "auto",
@@ -166,7 +172,7 @@ def evaluate(
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Tables of the test part with baselines beside, and report.html with pictures."""
+    """Evaluate runs on the test part: tables beside baselines, and report.html."""
     console = make_console()
     with plain_errors():
         from learn.data import open_store
@@ -236,13 +242,13 @@ Exit codes: 0 done, 2 bad input, or outside the training with --strict.
 @app.command(epilog=PREDICT_EXAMPLES)
 def predict(
     runs: Annotated[
-        list[Path], typer.Argument(help="Folder of a run, or of several to be joined.", metavar="RUN...")
+        list[Path], typer.Argument(help="Folder of a run, or of several runs to average.", metavar="RUN...")
     ],
-    scene: Annotated[Path, typer.Argument(help="A YAML file: the poke.")],
+    scene: Annotated[Path, typer.Argument(help="YAML file with the poke.")],
     dataset: Dataset = None,
     strict: Annotated[
         bool,
-        typer.Option("--strict", help="Refuse pokes outside what the model was trained on (exit code 2)."),
+        typer.Option("--strict", help="Refuse pokes outside the domain of validity (exit code 2)."),
     ] = False,
     out: Annotated[
         Path, typer.Option(help="Folder for displacement.csv, prediction.json and the picture.")
@@ -250,7 +256,7 @@ def predict(
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Predict one poke on the dataset's block, and say whether the model was trained on such pokes."""
+    """Predict one poke, and check whether it is within the domain of validity of the model."""
     console = make_console()
     with plain_errors():
         from learn.predictor import load
@@ -299,7 +305,7 @@ def export(
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Write a run as ONNX for the dataset's grid and check it on test pokes."""
+    """Export a run as ONNX on the dataset's grid, and check it on test pokes."""
     console = make_console()
     with plain_errors():
         from learn.onnx_bundle import write_bundle
@@ -335,12 +341,12 @@ Exported with learn.export before, the ONNX files are timed as well.
 def bench(
     runs: Runs,
     dataset: Dataset = None,
-    repeats: Annotated[int, typer.Option(min=3, help="Timed calls each.")] = 200,
-    loader: Annotated[bool, typer.Option(help="Time the loaders as well.")] = True,
+    repeats: Annotated[int, typer.Option(min=3, help="Number of timed calls.")] = 200,
+    loader: Annotated[bool, typer.Option(help="Measure the loaders too.")] = True,
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Latency of one poke on the dataset's grid, and loader throughput; medians, with the best beside."""
+    """Measure the latency of one prediction and the throughput of the loaders (median and best)."""
     console = make_console()
     with plain_errors():
         from learn.benchmark import BATCH, latencies, loader_rates, yardstick

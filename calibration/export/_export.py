@@ -102,7 +102,7 @@ def export_card(
     to : str
         One of `calibration.export.names()`.
     out : path
-        Folder to write: empty, or not there yet.
+        Folder to write: new or empty.
     law : str, optional
         One of the card's laws; the one that it names where left out.
     experiment : path, optional
@@ -110,7 +110,7 @@ def export_card(
     trial : str, optional
         Its id; the first beam of the card's material where left out.
     scene : bool
-        Write the beam too.
+        Write the beam as well.
     refinement : float
         Elements of the scene get smaller by this factor, 0.3 to 4.
     most_loss : float

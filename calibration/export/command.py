@@ -32,8 +32,8 @@ TARGETS = "sofa, febio, abaqus, calculix, mujoco, newton"
 @app.command(epilog=EXAMPLES)
 def main(
     card: Annotated[Path, typer.Argument(help="A material card, MATERIAL.yaml.")],
-    to: Annotated[str, typer.Option(help=f"The program: {TARGETS}.")],
-    out: Annotated[Path, typer.Option(help="Folder to write: empty, or not there yet.")],
+    to: Annotated[str, typer.Option(help=f"Program: {TARGETS}.")],
+    out: Annotated[Path, typer.Option(help="Folder to write: new or empty.")],
     law: Annotated[
         str | None, typer.Option(help="One of the card's laws. Default: the one that the card names.")
     ] = None,
@@ -44,19 +44,21 @@ def main(
     trial: Annotated[
         str | None, typer.Option(help="The beam's trial. Default: the first of the card's material.")
     ] = None,
-    scene: Annotated[bool, typer.Option(help="Write the beam too.")] = True,
-    refinement: Annotated[float, typer.Option(help="Elements of the beam get smaller by this factor.")] = 1.0,
+    scene: Annotated[bool, typer.Option(help="Write the beam as well.")] = True,
+    refinement: Annotated[float, typer.Option(help="Factor by which the beam's elements are smaller.")] = 1.0,
     most_loss: Annotated[
         float,
         typer.Option(
-            help="Largest difference of stress (rms, a fraction) at which another law may stand for it."
+            help="Largest relative rms difference in stress at which another law may replace the card's."
         ),
     ] = 0.5,
-    check: Annotated[bool, typer.Option(help="Run it on the beam: calculix, mujoco, newton.")] = False,
+    check: Annotated[
+        bool, typer.Option(help="Run the program on the beam and compare: calculix, mujoco, newton.")
+    ] = False,
     overwrite: Annotated[bool, typer.Option(help="Write into a folder that is not empty.")] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Write a material card, and its beam, for another program; say what is lost, and how much."""
+    """Export a material card and its beam to another program, with what is lost and how much."""
     console = Console()
     with plain_ends():
         from calibration.export._export import export_card

@@ -40,11 +40,13 @@ def main(
         list[Path] | None,
         typer.Argument(help="Photographs, traced outlines, records of machines (docs/how-to/lab-files.md)."),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder to write: empty, or none yet.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder to write: new or empty.")] = None,
     yes: Annotated[
         Path | None, typer.Option(help="YAML file with the answers; no questions are asked.")
     ] = None,
-    show: Annotated[bool, typer.Option("--show", help="Show what is in the files, write nothing.")] = False,
+    show: Annotated[
+        bool, typer.Option("--show", help="Show how the files are read, and write nothing.")
+    ] = False,
     board: Annotated[Path | None, typer.Option(help="PDF to write with the checkerboard to print.")] = None,
     squares: Annotated[str, typer.Option(help="Squares of the board along its two sides.")] = "9x6",
     square_mm: Annotated[float, typer.Option(help="Side of a square of the board in mm.")] = 10.0,

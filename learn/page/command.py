@@ -47,19 +47,25 @@ def page(
     shape: Annotated[
         list[str] | None,
         typer.Option(
-            "--shape", metavar="NAME", help="An inclusion to choose from; repeatable. Default: all."
+            "--shape",
+            metavar="NAME",
+            help="Name of an inclusion that the page offers; repeatable. Default: all.",
         ),
     ] = None,
-    pokes: Annotated[int, typer.Option(min=0, max=100, help="Simulated pokes of the test part.")] = 4,
+    pokes: Annotated[
+        int, typer.Option(min=0, max=100, help="Number of simulated test pokes to compare with.")
+    ] = 4,
     out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("poke.html"),
     parts: Annotated[
         Path | None,
-        typer.Option(help="Write the zip of the run's own part, in place of the page.", show_default=False),
+        typer.Option(
+            help="Write a zip with the run's part of the page, in place of the page.", show_default=False
+        ),
     ] = None,
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Write a run as one HTML file that opens from disk: poke the block with the mouse."""
+    """Write a run as one interactive HTML page that opens from disk."""
     console = make_console()
     with plain_errors():
         from learn.errors import InputError

@@ -38,31 +38,32 @@ def main(
         list[Path],
         typer.Argument(
             metavar="FILE...",
-            help="What tisim.write wrote: a .vtu, several (one a frame), or a .pvd; or a dataset's store.",
+            help="Result of tisim.write (a .vtu, one .vtu per frame, or a .pvd), or a dataset.",
         ),
     ],
     out: Annotated[
         Path | None, typer.Option(help="The page to write. Default: FILE's name with .html, here.")
     ] = None,
     poke: Annotated[
-        int | None, typer.Option(help="Of a store: which poke, by index. Default: the first simulated.")
+        int | None, typer.Option(help="Index of the poke in a dataset. Default: the first simulated one.")
     ] = None,
-    gif: Annotated[Path | None, typer.Option(help="Write a moving picture (GIF).")] = None,
+    gif: Annotated[Path | None, typer.Option(help="Write an animated GIF.")] = None,
     mp4: Annotated[
-        Path | None, typer.Option(help="Write a film (MP4); needs ffmpeg, or tisim[video].")
+        Path | None, typer.Option(help="Write an MP4 video; needs ffmpeg, or tisim[video].")
     ] = None,
     colour: Annotated[
-        str | None, typer.Option(help="What colours them, as the page names it. Default: displacement.")
+        str | None,
+        typer.Option(help="Quantity that colours GIF and MP4, as named on the page. Default: displacement."),
     ] = None,
-    seconds: Annotated[float, typer.Option(help="How long they take.")] = 4.0,
-    width: Annotated[int, typer.Option(help="Their width in pixels.")] = 800,
+    seconds: Annotated[float, typer.Option(help="Duration of GIF and MP4 [s].")] = 4.0,
+    width: Annotated[int, typer.Option(help="Width of GIF and MP4 in pixels.")] = 800,
     show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     version: Annotated[  # noqa: ARG001 - shown before anything else
         bool,
         typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit."),
     ] = False,
 ) -> None:
-    """Show results in three dimensions: one HTML page that opens from disk, without server or network.
+    """Show results in three dimensions: one HTML page that opens from disk, without a server.
 
     With --gif or --mp4 alone, no page is written.
     """
