@@ -188,7 +188,7 @@ def further_boards() -> dict[float, list[Board]]:
 def test_tilts_and_distortion(
     tilt: float, direction: float, k1: float, further_boards: dict, capsys: pytest.CaptureFixture
 ) -> None:
-    """A lens calibrated on the photograph itself and two more views; for docs/how-to/photograph.md."""
+    """A lens calibrated on the photograph itself and two more views; for studies/photographs."""
     turn = np.radians(direction)
     view = View(yaw=tilt * np.cos(turn), pitch=tilt * np.sin(turn), roll=3.0 * np.sin(2 * turn))
     axis = cases.hanging()
