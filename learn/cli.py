@@ -233,7 +233,7 @@ with poke.yaml, for instance:
   shape: cube-18            # or inclusion: {kind: sphere, radius_mm: 8, centre_mm: \\[0, 0, 6]}
   softness: S0.5            # or shear_modulus_kPa: 12
 
-Every prediction says whether the poke is inside what the model was trained on.
+Every prediction states whether the poke is inside the trained ranges.
 
 Exit codes: 0 done, 2 bad input, or outside the training with --strict.
 """
@@ -289,7 +289,7 @@ EXPORT_EXAMPLES = """
 encoder.onnx: rigid (n, levels) -> code, vectors, clear: once an interior.
 poke.onnx: code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
 For the paper's model, in double precision, poke.onnx alone: profile (n, levels), start, direction, depth.
-model.json: the points, the rod, and the domain of validity: what it was trained on.
+model.json: the points, the indenter, and the domain of validity (trained ranges).
 
 Needs the packages of 'tisim\\[export]'.
 

@@ -86,15 +86,15 @@ class PokePrediction:
     def verdict(self) -> str:
         """One sentence on the domain of validity."""
         if self.inside is None:
-            return "It is not known what the model was trained on: the prediction may be wrong."
+            return "The trained ranges are not known: the prediction may be wrong."
         if self.inside:
-            return "Inside what the model was trained on."
+            return "Inside the trained ranges."
         names = ", ".join(
             f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
         )
         return (
-            f"Outside what the model was trained on: {names}. The force may be wrong by a factor; intervals "
-            "are wider for it, and promise nothing."
+            f"Outside the trained ranges: {names}. The force may be wrong by a factor; the intervals are "
+            "wider, and not calibrated there."
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -133,7 +133,7 @@ class PokePrediction:
 
     def picture(self) -> Any:
         """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
-        title = f"force {self._force_text}, {'inside' if self.inside else 'NOT inside'} what was trained"
+        title = f"force {self._force_text}, {'inside' if self.inside else 'OUTSIDE'} the trained ranges"
         return draw_prediction(self.scene, self.pokes, self.displacement, radius=self.radius, title=title)
 
     @property

@@ -42,19 +42,19 @@ QUANTITIES: dict[str, Quantity] = {
     "cover_mm": Quantity("cover over the inclusion", "mm", "both", 0.3),
     "depth_over_cover": Quantity("depth over cover", "", "high", 0.01),
     "shear_modulus_kPa": Quantity("shear modulus", "kPa", "both", 0.01),
-    "rod_radius_mm": Quantity("rod radius", "mm", "both", 1e-3),
-    "rod_edge_mm": Quantity("radius of the rod's edge", "mm", "both", 1e-3),
+    "rod_radius_mm": Quantity("indenter radius", "mm", "both", 1e-3),
+    "rod_edge_mm": Quantity("radius of the indenter's edge", "mm", "both", 1e-3),
     "block_x_mm": Quantity("block's length in x", "mm", "both", 0.1),
     "block_y_mm": Quantity("block's length in y", "mm", "both", 0.1),
     "block_z_mm": Quantity("block's height", "mm", "both", 0.1),
-    "site_to_side_mm": Quantity("distance of the site from the block's sides", "mm", "low", 0.1),
+    "site_to_side_mm": Quantity("distance of the contact point from the block's sides", "mm", "low", 0.1),
     "inclusion_width_mm": Quantity("inclusion's width", "mm", "both", 1.6),
     "inclusion_height_mm": Quantity("inclusion's height", "mm", "both", 0.3),
 }
 # further quantities in datasets with time, in the order of `Pokes.clock`
 CLOCK_QUANTITIES: dict[str, Quantity] = {
     "time_s": Quantity("time since contact", "s", "both", 1e-3),
-    "rod_speed_mm_per_s": Quantity("rod's speed", "mm/s", "both", 1e-2),
+    "rod_speed_mm_per_s": Quantity("indenter speed", "mm/s", "both", 1e-2),
     "approach_speed_mm_per_s": Quantity("speed of approach", "mm/s", "both", 1e-2),
 }
 _ALL = {**QUANTITIES, **CLOCK_QUANTITIES}
@@ -87,12 +87,12 @@ class Check:
 
     @property
     def text(self) -> str:
-        """One line: "cover over the inclusion 3 mm: outside what was trained (9.8 to 24.3 mm)"."""
+        """One line: "cover over the inclusion 3 mm: outside the trained range (9.8 to 24.3 mm)"."""
         value = self.value if isinstance(self.value, str) else f"{self.value:.4g}"
         units = _ALL[self.key].units if self.key in _ALL else ""
         word = {True: "inside", False: "outside", None: "not known whether inside"}[self.inside]
         trained = f" ({self.trained})" if self.trained else ""
-        return f"{self.name} {value}{f' {units}' if units else ''}: {word} what was trained{trained}"
+        return f"{self.name} {value}{f' {units}' if units else ''}: {word} the trained range{trained}"
 
 
 class Domain(BaseModel):

@@ -61,7 +61,7 @@ def _trained(domain: Domain | None, key: str) -> dict[str, Any] | None:
     if domain is None:
         return None
     if key in domain.proportional:
-        return {"range": None, "text": "at any: the force is in proportion"}
+        return {"range": None, "text": "any value; the force is proportional"}
     if key not in domain.ranges:
         return None
     low, high = domain.ranges[key]

@@ -37,8 +37,8 @@ LARGEST = 10e6  # bytes of the gzipped file
 _MEMBERS = ("page.json", "arrays.bin", "poke.onnx")
 _SLIDERS = {
     "depth": "Depth",
-    "x": "Site x",
-    "y": "Site y",
+    "x": "Contact point x",
+    "y": "Contact point y",
     "angle": "Angle from the vertical",
     "heading": "Heading",
     "modulus": "Shear modulus",
@@ -203,8 +203,8 @@ def _lead(predictor: Predictor) -> str:
     length, width, height = (1e3 * v for v in store.block_size)
     return (
         f"{length:.0f} x {width:.0f} x {height:.0f} mm of soft tissue (law {store.law}) with a rigid "
-        f"inclusion, a rod of {2e3 * store.rod_radius:g} mm: the answer of {run.recipe.model}, worked out in "
-        "this browser."
+        f"inclusion, and an indenter of {2e3 * store.rod_radius:g} mm diameter. The surrogate "
+        f"{run.recipe.model} predicts in this browser."
     )
 
 
@@ -216,24 +216,24 @@ def _notes(predictor: Predictor, content: Content) -> list[str]:
         f"Model {run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}, trained on "
         f"{run.statistics.frames} frames of dataset {store.uuid} ({store.law}, {int(store.done.sum())} "
         "simulated pokes).",
-        f"The network answers at {len(store.points)} points; between them the surface is interpolated, and "
-        "where that would lie in the rod it is drawn on it. Inclusions are drawn as the network knows them, "
-        "in columns.",
+        f"The network predicts {len(store.points)} points. Between them the drawn surface is interpolated; "
+        "points inside the indenter are drawn on its surface. Inclusions are drawn as the network "
+        "represents them, in columns.",
     ]
     if predictor.intervals is not None:
         level = predictor.intervals.level
         lines.append(
             f"Intervals: split-conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; "
-            "calibrated inside what was trained, wider outside, where they promise nothing."
+            "calibrated inside the trained ranges; wider, and not calibrated, outside."
         )
     steps = [step for poke in content.about["simulated"] for step in poke["steps"]]
     if steps:
         lines.append(
-            "FEM pokes are of the test part, which the model was not trained on; displacements in steps of "
-            f"{max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits), so that they are off by half of that."
+            "FEM pokes are of the test part, on which the model was not trained. Their displacements have steps "
+            f"of {max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits)."
         )
     lines.append(
-        f"No network, no server: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and "
+        f"The page needs neither server nor network connection: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and "
         f"three.js {versions['three']} (three.js authors, MIT licence) are inside this file."
     )
     return lines

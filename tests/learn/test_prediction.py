@@ -185,7 +185,7 @@ def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> No
     done = call(learn.predict.app, run, scene, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     flat = " ".join(done.output.split())
-    assert "Outside what the model was trained on: depth (9 mm; trained: 1 to 2 mm)" in flat
+    assert "Outside the trained ranges: depth (9 mm; trained: 1 to 2 mm)" in flat
     answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
     assert answer["inside_training"] is False
     depth = answer["domain"]["depth_mm"]
@@ -228,7 +228,7 @@ def test_runs_from_before_the_domain_was_recorded(run: Path, tmp_path: Path) -> 
     predictor.domain = None
     answer = predictor.predict({"site_mm": [0, 0], "depth_mm": 2, "shape": "shape-1", "softness": "S0"})
     assert answer.inside is None
-    assert "not known what the model was trained on" in answer.verdict
+    assert "trained ranges are not known" in answer.verdict
     with pytest.raises(OutsideDomainError, match="not known"):
         predictor.predict(answer.poke, strict=True)
 

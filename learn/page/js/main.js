@@ -150,7 +150,7 @@ class Page {
     const depth = Math.max(poke.depth, 0);
     const now = Array.from(tip, (v, k) => v * 1e3 + direction[k] * depth);
     const rod = { tip: now, push: direction, radius, edge };
-    const outside = isOutside(answer); // grey, and no halo: the intervals promise nothing there
+    const outside = isOutside(answer); // grey, and no halo: the intervals are not calibrated there
     const halo = answer.radius && byId("halo").checked && depth > 0 && !outside;
     if (halo) this._scaled(answer.radius);
     this.view.show("surrogate", displacement, halo ? this.shade : null, outside, rod);
@@ -189,8 +189,8 @@ class Page {
     const wrong = (100 * (Number(answer.force[0]) - force)) / force;
     const share = answer.radius ? ` ${(100 * held).toFixed(0)} % of the points lie within their intervals.` : "";
     this.panel.compare(
-      `FEM: ${number(force)} N at ${number(poke.depth)} mm. The surrogate is off by ${wrong.toFixed(1)} % of the force, ` +
-      `by ${number(mean * 1e3)} mm on average and ${number(largest * 1e3)} mm at most.${share}`,
+      `FEM: ${number(force)} N at ${number(poke.depth)} mm. Error of the surrogate: ${wrong.toFixed(1)} % of the force, ` +
+      `${number(mean * 1e3)} mm on average and ${number(largest * 1e3)} mm at most.${share}`,
     );
   }
 }

@@ -33,7 +33,7 @@ export class Panel {
       slider.addEventListener("input", () => change({ [key]: from(Number(slider.value)) }));
       const share = (v) => (100 * (to(v) - to(limits.low))) / (to(limits.high) - to(limits.low));
       const trained = limits.trained;
-      byId(`${key}-trained`).textContent = trained ? `trained ${trained.text}` : "";
+      byId(`${key}-trained`).textContent = trained ? `trained: ${trained.text}` : "";
       const [a, b] = trained?.range ? trained.range.map((v) => Math.min(Math.max(share(v), 0), 100)) : [0, 100];
       slider.style.setProperty("--from", `${a}%`);
       slider.style.setProperty("--to", `${b}%`);
@@ -76,16 +76,16 @@ export class Panel {
     const force = Number(answer.force[0]);
     const touching = poke.depth > 0;
     byId("force").textContent = number(force);
-    let interval = "no interval: learn.evaluate makes them for a run";
+    let interval = "no interval (run learn.evaluate first)";
     if (answer.factor) {
       const [low, high] = [force / answer.factor[0], force * answer.factor[0]];
-      interval = touching ? `90 % interval ${number(low)} to ${number(high)} N` : "the rod does not press";
+      interval = touching ? `90 % interval ${number(low)} to ${number(high)} N` : "no contact";
     }
     byId("interval").textContent = interval;
     const verdict = this._verdict(poke, answer);
     const inside = answer.beyond ? !isOutside(answer) : null;
-    byId("inside").textContent = { true: "inside", false: "outside" }[inside] ?? "not known whether inside";
-    byId("inside").textContent += " what it was trained on";
+    const words = { true: "inside the trained ranges", false: "outside the trained ranges" };
+    byId("inside").textContent = words[inside] ?? "trained ranges not known";
     byId("verdict").textContent = verdict;
     document.body.dataset.inside = String(inside);
     about.checks.forEach(({ key, kinds }, k) => {
@@ -103,14 +103,14 @@ export class Panel {
 
   _verdict(poke, answer) {
     const { beyond, values } = answer;
-    if (!beyond) return "It is not known what the model was trained on.";
-    if (!isOutside(answer)) return "Inside what the model was trained on.";
+    if (!beyond) return "The trained ranges are not known.";
+    if (!isOutside(answer)) return "Inside the trained ranges.";
     const names = this.about.checks.flatMap(({ name, units, trained, kinds }, k) => {
       if (!(beyond[k] > 0)) return [];
       const value = kinds ? this.about.interiors[poke.interior].kind : `${number(values[k])} ${units}`.trim();
       return [`${name} ${value} (trained: ${trained})`];
     });
-    return `Outside what the model was trained on: ${names.join("; ")}. The interval promises nothing here.`;
+    return `Outside the trained ranges: ${names.join("; ")}. The interval is not calibrated here.`;
   }
 
   /** What the simulated poke beside it says; null: hide it. */

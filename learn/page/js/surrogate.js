@@ -1,4 +1,4 @@
-// The graph that the command exported, run by onnxruntime-web on one thread. Nothing is worked out here.
+// The graph that the command exported, run by onnxruntime-web on one thread. It computes nothing itself.
 
 import * as ort from "onnxruntime-web/wasm";
 import { part } from "./payload.js";
