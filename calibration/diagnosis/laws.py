@@ -151,7 +151,7 @@ def diagnose_with_law(
     if any(fuller.visible[c] for c in fuller.candidates if fuller.effects[c.effect].further):
         on_progress("asking further causes, since no usual one explains the data alone")
         again = searched(fuller, rules=rules, noise=noise, before=first, on_progress=on_progress)
-    model, found = _said(first, again, "richer" in options, gain=gain, on_progress=on_progress)
+    model, found = _better_round(first, again, "richer" in options, gain=gain, on_progress=on_progress)
     notes = () if choice is None else (choice.sentence(),)
     return _no_more_than_shown(replace(found, notes=(*found.notes, *notes)), model), model
 
@@ -196,7 +196,7 @@ def _causes(found: Finding) -> int:
     return 0 if found.chosen is None else len(found.chosen.candidates)
 
 
-def _said(
+def _better_round(
     first: Searched, again: Searched | None, richer: bool, *, gain: bool, on_progress: OnMessage
 ) -> tuple[MeasurementModel, Diagnosis]:
     """What the rounds come to. Only what is said is concluded, where the search tells which round that is.
@@ -214,13 +214,13 @@ def _said(
         return one.model, conclude(one)
     second = conclude(again)
     # what a cause takes beside a law that predicts worse may be the law's: the better one is asked
-    if richer or _says(second):
+    if richer or _explains(second):
         return again.model, second
     found = conclude(first)
-    return (first.model, found) if _says(found) else (again.model, second)
+    return (first.model, found) if _explains(found) else (again.model, second)
 
 
-def _says(found: Diagnosis) -> int:
+def _explains(found: Diagnosis) -> int:
     """How much a verdict says: nothing that explains, something in part, all."""
     verdict = found.finding.verdict
     return 2 if verdict in EXPLAINED else 0 if verdict == "unexplained" else 1

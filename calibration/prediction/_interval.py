@@ -106,14 +106,16 @@ class Record:
 def predict_records(
     test: MeasurementModel,
     models: Mapping[Any, tuple[MeasurementModel, Calibrated]],
-    rivals: Mapping[Any, Sequence[tuple[MeasurementModel, Calibrated]]] | None = None,
+    alternatives: Mapping[Any, Sequence[tuple[MeasurementModel, Calibrated]]] | None = None,
 ) -> list[Record]:
-    """Each record of `test` that it compares, by each of the models: name -> the model that the coordinates
-    belong to (its noise has the rows of `test`), and what is known; rivals: by name, others that explain as
-    well. ValueError where one has no answer."""
+    """Predict each compared record of `test` by each of the models.
+
+    `models` maps a name to the model of the coordinates (whose noise has the rows of `test`) and its
+    calibration; `alternatives` to equivalent explanations. ValueError if a prediction has no equilibrium.
+    """
     some = [k for k in range(len(test.records)) if test.noise.used[test.row_record == k].any()]
     by_model = {name: _predicted(model, known, some) for name, (model, known) in models.items()}
-    for name, others in (rivals or {}).items():
+    for name, others in (alternatives or {}).items():
         by_model[name] = _with_choice(by_model[name], [_predicted(m, known, some) for m, known in others])
     found = []
     for k in some:

@@ -70,7 +70,7 @@ def write_page(found: Prediction, folder: Path) -> list[Path]:
 
 def render(found: Prediction, shown: Picture) -> str:
     """The page as HTML."""
-    told = file_of(found)
+    content = file_of(found)
     return template(PAGE).render(
         title=found.experiment.name,
         sentence=found.sentence(),
@@ -78,11 +78,11 @@ def render(found: Prediction, shown: Picture) -> str:
         notes=found.notes,
         shown=shown,
         headings=_headings(found),
-        rows=[_row(told, r) for r in told.records] + _totals(told),
+        rows=[_row(content, r) for r in content.records] + _totals(content),
         source_headings=["kind", "model", *SOURCES],
         sources=[
             [_cell(kind), _cell(m), *(_cell(f"{s.sd[n]:.3g} {e.unit}", s.sd[n]) for n in SOURCES)]
-            for kind, e in told.kinds.items()
+            for kind, e in content.kinds.items()
             for m, s in e.models.items()
         ],
         model_headings=["model", "what it has", "material", "shear modulus", "model error"],
@@ -94,7 +94,7 @@ def render(found: Prediction, shown: Picture) -> str:
                 _cell(f"{g / 1e3:.4g} kPa", g),
                 _cell(f"{100 * m.model_error[material]:.2g} %", m.model_error[material]),
             ]
-            for name, m in told.models.items()
+            for name, m in content.models.items()
             for material, g in m.shear_modulus_Pa.items()
         ],
     )
@@ -109,20 +109,20 @@ def _headings(found: Prediction) -> list[str]:
     return ["record", "kind", "material", "specimen", "points", "noise", *each, "skill"]
 
 
-def _row(told: PredictionFile, r: RecordEntry) -> list[Cell]:
-    return [_cell(r.record), _cell(r.kind), _cell(r.material), _cell(r.specimen), *_figures(told, r)]
+def _row(content: PredictionFile, r: RecordEntry) -> list[Cell]:
+    return [_cell(r.record), _cell(r.kind), _cell(r.material), _cell(r.specimen), *_figures(content, r)]
 
 
-def _totals(told: PredictionFile) -> list[list[Cell]]:
+def _totals(content: PredictionFile) -> list[list[Cell]]:
     return [
-        [_cell("all", mark="chosen"), _cell(kind), _cell(""), _cell(""), *_figures(told, e)]
-        for kind, e in told.kinds.items()
+        [_cell("all", mark="chosen"), _cell(kind), _cell(""), _cell(""), *_figures(content, e)]
+        for kind, e in content.kinds.items()
     ]
 
 
-def _figures(told: PredictionFile, e: Entry) -> list[Cell]:
-    rms = [_cell(f"{e.models[m].rms:.3g} {e.unit}", e.models[m].rms) for m in told.models]
-    inside = [_cell(f"{e.models[m].coverage:.0%}", e.models[m].coverage) for m in told.models]
+def _figures(content: PredictionFile, e: Entry) -> list[Cell]:
+    rms = [_cell(f"{e.models[m].rms:.3g} {e.unit}", e.models[m].rms) for m in content.models]
+    inside = [_cell(f"{e.models[m].coverage:.0%}", e.models[m].coverage) for m in content.models]
     skill = e.skill
     return [
         _cell(str(e.points), e.points),

@@ -120,7 +120,7 @@ class _Fitted:
     options: dict[str, Any]
     fits: dict[Name, Fit]
     sentence: str
-    rivals: tuple[Fit, ...] = ()
+    alternatives: tuple[Fit, ...] = ()
 
 
 def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fitted:
@@ -139,13 +139,15 @@ def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fi
         noted, law=law, rules=Rules(seed=seed), gain=False, on_progress=on_progress
     )
     fits: dict[Name, Fit] = {BASELINE: found.finding.baseline}
-    rivals: tuple[Fit, ...] = ()
+    alternatives: tuple[Fit, ...] = ()
     if found.chosen is not None:
         fits[EXTENDED] = found.chosen.fit
         alike = set(found.finding.equivalent) - {found.chosen.names}
         best = {e.names: e.fit for e in sorted(found.finding.explanations, key=lambda e: -e.score)}
-        rivals = tuple(best[names] for names in sorted(alike))
-    return _Fitted(model=model, options=asked[id(model)], fits=fits, sentence=found.sentence(), rivals=rivals)
+        alternatives = tuple(best[names] for names in sorted(alike))
+    return _Fitted(
+        model=model, options=asked[id(model)], fits=fits, sentence=found.sentence(), alternatives=alternatives
+    )
 
 
 def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMessage) -> _Fitted:
@@ -241,12 +243,12 @@ def _within(
         made: dict[Name, tuple[MeasurementModel, Calibrated]] = {
             name: again(old, name) for name, old in found.fits.items()
         }
-        rivals = [again(old, old.label) for old in found.rivals]
-        if rivals:
-            others = ", ".join(known.label for _, known in rivals)
+        alternatives = [again(old, old.label) for old in found.alternatives]
+        if alternatives:
+            others = ", ".join(known.label for _, known in alternatives)
             notes.append(f"the trials that were fitted do not tell {made[EXTENDED][1].label} from {others}")
         records = predict_records(
-            model.subset(fold, others=False), made, {EXTENDED: rivals} if rivals else {}
+            model.subset(fold, others=False), made, {EXTENDED: alternatives} if alternatives else {}
         )
     except ValueError as error:
         raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error

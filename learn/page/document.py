@@ -229,11 +229,12 @@ def _notes(predictor: Predictor, content: Content) -> list[str]:
     steps = [step for poke in content.about["simulated"] for step in poke["steps"]]
     if steps:
         lines.append(
-            "FEM pokes are of the test part, on which the model was not trained. Their displacements have steps "
-            f"of {max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits)."
+            "FEM pokes are of the test part, on which the model was not trained. Their displacements have "
+            f"steps of {max(steps) * 1e6:.2g} \N{MICRO SIGN}m or less (16 bits)."
         )
     lines.append(
-        f"The page needs neither server nor network connection: onnxruntime-web {versions['onnxruntime-web']} (Microsoft, MIT licence) and "
+        "The page needs neither server nor network connection: onnxruntime-web "
+        f"{versions['onnxruntime-web']} (Microsoft, MIT licence) and "
         f"three.js {versions['three']} (three.js authors, MIT licence) are inside this file."
     )
     return lines

@@ -99,21 +99,24 @@ def equivalent_explanations(
     explanations: Sequence[Explanation],
     tolerance: float,
     first: Mapping[Names, float] | None = None,
-    rival: float = 1.0,
+    first_fraction: float = 1.0,
 ) -> tuple[Names, ...]:
-    """Distinct sets of effects whose score is within this of the best, or that are ranked `first` in this
-    part of the replicates (`rival`) or more; best first. A set that only adds to a better one explains
-    nothing of its own.
+    """Distinct sets of effects that explain the data as well as the best one, best first.
 
-    Where several causes are named, the constants of a richer law in the place of some of them cost nothing:
-    they make a set less simple, which is no evidence against it, and several causes are not simple either.
+    These are the sets whose score is within `tolerance` of the best, and those that rank first in at least
+    `first_fraction` of the replicates; `first` has that fraction by set. A set that only adds to a better
+    one is left out.
+
+    If several causes are named, the constants of a richer law in place of some of them do not count in the
+    score: they make a set less simple, which is no evidence against it, and several causes are not simple
+    either.
     """
     ordered = sorted(explanations, key=lambda e: e.score)
     found: list[Names] = []
     for e in ordered:
         as_many = len(e.names) <= len(ordered[0].names) > 1
         score = e.score - (e.constants_cost if as_many else 0.0)
-        near = score <= ordered[0].score + tolerance or (first or {}).get(e.names, 0.0) >= rival
+        near = score <= ordered[0].score + tolerance or (first or {}).get(e.names, 0.0) >= first_fraction
         if not near or e.names in found:
             continue
         if not any(set(better) < set(e.names) for better in found):

@@ -108,7 +108,7 @@ def _beside(
 ) -> list[Explanation]:
     """The best cause with each of the effects that promise most beside it, confirmed."""
     found = []
-    for k in _best_of_each(beside, improvement, rules.pairs):
+    for k in _best_of_each(beside, improvement, rules.max_pairs):
         other = beside.candidates[k]
         if other.effect in best.names:
             continue
@@ -151,7 +151,7 @@ def _pairs(
     """The pairs that promise most for the residuals `target`, confirmed; beside a baseline, those that are
     worth it."""
     found = []
-    pairs = best_pairs(screened, target, count=rules.pairs)
+    pairs = best_pairs(screened, target, count=rules.max_pairs)
     for n, (a, b) in enumerate(pairs):
         both = (screened.candidates[a], screened.candidates[b])
         guess, squares = _linear_fit(screened, columns[:, [a, b]], target)
@@ -195,7 +195,7 @@ def with_third(
     threes = _Triples(model, baseline, null, rules, on_progress)
     beside: list[Names] = []
     for pair in sorted(pairs, key=lambda e: e.score):
-        if pair.names not in beside and len(beside) < rules.triples[0]:
+        if pair.names not in beside and len(beside) < rules.max_triples[0]:
             beside.append(pair.names)
             threes.add_to(pair)
     for _ in range(ROUNDS):
@@ -230,14 +230,14 @@ class _Triples:
         ):
             return
         guesses = beside.amplitudes(linear.z)
-        for k in _best_of_each(beside, promises, self.rules.triples[1]):
+        for k in _best_of_each(beside, promises, self.rules.max_triples[1]):
             if not worth_fitting(self.baseline, pair.fit.chi2, float(promises[k]), self.rules):
                 break
             self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
         # the best pair may be a mixture of three others: these are sought afresh, around where it leads
         alone = screen(linear, self.model.effects)
         target = linear.z - linear.columns[:, : len(pair.candidates)] @ _values(pair)
-        for three in best_triples(alone, target, count=self.rules.triples[1]):
+        for three in best_triples(alone, target, count=self.rules.max_triples[1]):
             guess, squares = _linear_fit(alone, linear.columns[:, three], target)
             if worth_fitting(self.baseline, pair.fit.chi2, pair.fit.chi2 - squares, self.rules):
                 self._confirm(pair, {linear.candidates[k]: g for k, g in zip(three, guess, strict=True)})

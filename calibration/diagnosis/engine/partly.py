@@ -43,7 +43,7 @@ class Assessed:
     ----------
     share : of the explainable misfit.
     at_least : share that it takes in `Rules.sure` of the replicates.
-    rivals : other sets of names that take as much, with their shares.
+    alternatives : other sets of names that take as much, with their shares.
     held_out : None where it was not measured.
     against : why it is not named, a clause each; nothing where it may be.
     confidence : part of the replicates in which no other set of as many causes takes more.
@@ -52,7 +52,7 @@ class Assessed:
     explanation: Explanation
     share: Interval
     at_least: float
-    rivals: tuple[tuple[Names, Interval], ...] = ()
+    alternatives: tuple[tuple[Names, Interval], ...] = ()
     held_out: HeldOut | None = None
     against: tuple[str, ...] = field(default=())
     confidence: float = 0.0
@@ -80,7 +80,7 @@ def assess(
     left = _best_of_each_number(sound or found)
     first: Assessed | None = None
     known: Predictions = {}
-    for _ in range(min(rules.tries, len(left))):
+    for _ in range(min(rules.max_held_out, len(left))):
         explanation, misfit = left.pop(_dominant(left, shares, rules))
         on_progress(f"predicting held-out measurements: {explanation.fit.label}")
         held_out = held_out_improvement(model, baseline, explanation.fit, known=known)
@@ -95,7 +95,7 @@ def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnow
     """True if the baseline's departure is no larger than a smooth error that nobody stated may be. Never
     where the noise is known."""
     part = None if noise.known else relative_rms(model, baseline)
-    return part is not None and part < rules.smooth_error
+    return part is not None and part < rules.smooth_error_fraction
 
 
 def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tuple[Explanation, Misfit]]:
@@ -141,7 +141,7 @@ def _judge(
 ) -> Assessed:
     share = shares.share(misfit)
     drawn = shares.drawn(misfit)
-    at_least = float(np.quantile(drawn, 1.0 - rules.sure)) if shares.groups.count > 1 else -np.inf
+    at_least = float(np.quantile(drawn, 1.0 - rules.replicate_level)) if shares.groups.count > 1 else -np.inf
     at_least = min(at_least, share.value)
     against = []
     if not inside_bounds(model, explanation):
@@ -150,9 +150,10 @@ def _judge(
         against.append(
             f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
         )
-    elif at_least < rules.surely:
+    elif at_least < rules.least_share_low:
         against.append(
-            f"over {shares.groups.over} its share is not sure to be {100.0 * rules.surely:.0f} % or more"
+            f"over {shares.groups.over} its share is not sure to be"
+            f" {100.0 * rules.least_share_low:.0f} % or more"
         )
     if within_smooth_error(model, baseline, noise, rules):
         part = relative_rms(model, baseline) or 0.0
@@ -170,7 +171,7 @@ def _judge(
         share=share,
         at_least=at_least,
         confidence=float(first),
-        rivals=_rivals(explanation, share, drawn, sound, shares, rules),
+        alternatives=_alternatives(explanation, share, drawn, sound, shares, rules),
         held_out=held_out,
         against=tuple(against),
     )
@@ -181,7 +182,7 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
         return [held_out.note]
     found = []
     mostly = held_out.helps_mostly(
-        least_skill=rules.least_skill, sure=rules.sure, draws=rules.draws, seed=rules.seed
+        least_skill=rules.least_skill, sure=rules.replicate_level, draws=rules.replicates, seed=rules.seed
     )
     if not held_out.helps_everywhere and not mostly:
         worse = held_out.worse
@@ -199,18 +200,18 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
         )
     for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
         value, sd = explanation.fit.amplitude(c)
-        allowed = max(rules.same_amplitude * abs(value), rules.same_sds * sd)
+        allowed = max(rules.amplitude_tolerance * abs(value), rules.amplitude_tolerance_sds * sd)
         if np.abs(values - value).max() > allowed:
             found.append(f"the amplitude of {c.effect} changes with the part that is left out")
-    if held_out.within and at_least < rules.least_share_within:
+    if held_out.within and at_least < rules.least_share_within_test:
         found.append(
             f"measurements could be held out from within the tests only, where its share must be sure to be"
-            f" {100.0 * rules.least_share_within:.0f} %"
+            f" {100.0 * rules.least_share_within_test:.0f} %"
         )
     return found
 
 
-def _rivals(
+def _alternatives(
     explanation: Explanation,
     share: Interval,
     drawn: np.ndarray,
@@ -228,8 +229,8 @@ def _rivals(
             continue
         if set(e.names) < set(explanation.names):
             continue
-        as_much = float(np.mean(shares.drawn(m) >= drawn)) > rules.as_good
-        as_much |= shares.share(m).value > share.value - rules.alike
+        as_much = float(np.mean(shares.drawn(m) >= drawn)) > rules.alternative_fraction
+        as_much |= shares.share(m).value > share.value - rules.alternative_margin
         if as_much and (e.names not in found or m.value < found[e.names].value):
             found[e.names] = m
     ordered = sorted(found.items(), key=lambda pair: pair[1].value)

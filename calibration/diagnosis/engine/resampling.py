@@ -163,9 +163,9 @@ class Resampled:
 def _owners(grams: Array) -> NDArray[np.intp]:
     """The only group that tells of each coordinate, shape (n,); -1 where several do, or where the prior (the
     last of the grams) couples it to others."""
-    told = np.einsum("gii->gi", grams[:-1]) > 0.0
+    involved = np.einsum("gii->gi", grams[:-1]) > 0.0
     coupled = np.count_nonzero(grams[-1] - np.diag(np.diag(grams[-1])), axis=0) > 0
-    return np.where((told.sum(axis=0) == 1) & ~coupled, told.argmax(axis=0), -1)
+    return np.where((involved.sum(axis=0) == 1) & ~coupled, involved.argmax(axis=0), -1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

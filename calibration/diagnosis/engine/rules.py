@@ -1,4 +1,4 @@
-"""How sure a search has to be, and how far it looks."""
+"""Significance levels, thresholds and limits of a diagnosis."""
 
 from __future__ import annotations
 
@@ -7,61 +7,67 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Rules:
-    """Levels and limits of a search.
+    """Significance levels, thresholds and limits of a diagnosis (docs/explanation/diagnosis.md).
+
+    The share of an explanation is the fraction of the explainable misfit that it takes. Replicates are
+    those of the bootstrap over specimens, tests or parts of records.
 
     Attributes
     ----------
-    false_alarm_rate : probability of naming a cause where there is none.
+    false_alarm_rate : probability of naming a cause if there is none.
     extra_cause_rate : probability of naming one cause too many.
-    lack_of_fit_level : p-value below which what a fit leaves of the residuals counts as unexplained.
+    lack_of_fit_level : p-value of the residuals of a fit below which they count as unexplained.
     score_tolerance : explanations within this of the best score (chi-square) are equivalent.
-    rival : so are those that would be ranked first in this part of the replicates: a name is given alone
-        where other noise would give it nine times in ten.
-    shortlist : effects that are confirmed in the simulator.
-    pairs : pairs of causes that are confirmed.
-    max_causes : causes that are named together, where the model allows as many.
-    triples : pairs that a third cause is looked for beside, and thirds of each that are confirmed.
-    seed : of the bootstrap.
-    draws : replicates of the bootstrap over specimens, tests or stretches of records.
-    least_share : of the explainable misfit that causes must take to be named where more than noise is left: a
-        cause beside an equally large one that is not in the library takes one half, more or less.
-    surely, sure : share that they must take in this part of the replicates; the same part is asked of the
-        draws of held-out parts.
-    least_skill : of what noise leaves to explain in held-out measurements, that they must predict.
-    least_share_within : of the share, as surely, where measurements can only be held out from within a test:
-        what all of one test shares, a smooth error that nobody stated among it, is then in the training too.
-    further_share : that one cause more must take.
-    as_good, alike : part of the replicates in which another explanation may take more before it is named as
-        well; share by which it must take less.
-    same_amplitude : fraction of an amplitude, or `same_sds` of its standard deviations, by which it may
-        change from fold to fold.
-    tries : explanations whose held-out skill is measured, before none is named.
-    smooth_error : part of full scale that a smooth error which nobody stated may have: a departure of the
-        baseline below it is not named where the noise is not known.
-    negligible : part of full scale below which what is left does not matter in practice.
+    first_fraction : explanations that would rank first in this fraction of the replicates of the noise are
+        equivalent too: a name is given alone if it would come first nine times in ten.
+    max_confirmed : largest number of effects that are confirmed in the simulator.
+    max_pairs : largest number of pairs of causes that are confirmed.
+    max_causes : largest number of causes that are named together, if the model allows as many.
+    max_triples : largest number of pairs to which a third cause is added, and of third causes confirmed for
+        each.
+    seed : seed of the bootstrap.
+    replicates : number of replicates of the bootstrap.
+    least_share : least share of causes that are named although more than noise is left. Of two equally large
+        causes, one of them outside the library, each takes about one half.
+    least_share_low : least share in `replicate_level` of the replicates.
+    replicate_level : fraction of the replicates, and of the draws of held-out parts, in which a condition
+        holds.
+    least_skill : least held-out skill: fraction of the squared error beyond noise that the extension removes.
+    least_share_within_test : least share in `replicate_level` of the replicates, if measurements can only
+        be held out from within a test: errors common to one test, smooth unstated errors among them, are
+        then in the training part too.
+    further_share : least further share that one cause more must take.
+    alternative_fraction, alternative_margin : another explanation is named too if it takes more in this
+        fraction of the replicates, or if its share is within this of the first.
+    amplitude_tolerance, amplitude_tolerance_sds : largest change of an amplitude from fold to fold, as a
+        fraction of it, or in its standard deviations.
+    max_held_out : largest number of explanations whose held-out skill is measured before none is named.
+    smooth_error_fraction : size of a smooth unstated error, as a fraction of full scale: a smaller misfit
+        of the baseline is not named if the noise is not known.
+    negligible_fraction : fraction of full scale below which the remaining misfit is negligible in practice.
     """
 
     false_alarm_rate: float = 0.02
     extra_cause_rate: float = 0.003
     lack_of_fit_level: float = 0.005
     score_tolerance: float = 6.0
-    rival: float = 0.1
-    shortlist: int = 7
-    pairs: int = 5
+    first_fraction: float = 0.1
+    max_confirmed: int = 7
+    max_pairs: int = 5
     max_causes: int = 3
-    triples: tuple[int, int] = (2, 3)
+    max_triples: tuple[int, int] = (2, 3)
     seed: int = 0
-    draws: int = 400
+    replicates: int = 400
     least_share: float = 0.4
-    surely: float = 0.1
-    sure: float = 0.95
+    least_share_low: float = 0.1
+    replicate_level: float = 0.95
     least_skill: float = 0.4
-    least_share_within: float = 0.75
+    least_share_within_test: float = 0.75
     further_share: float = 0.1
-    as_good: float = 0.05
-    alike: float = 0.02
-    same_amplitude: float = 0.5
-    same_sds: float = 3.0
-    tries: int = 5
-    smooth_error: float = 0.01
-    negligible: float = 0.01
+    alternative_fraction: float = 0.05
+    alternative_margin: float = 0.02
+    amplitude_tolerance: float = 0.5
+    amplitude_tolerance_sds: float = 3.0
+    max_held_out: int = 5
+    smooth_error_fraction: float = 0.01
+    negligible_fraction: float = 0.01

@@ -128,7 +128,7 @@ def concluded(found: Searched, *, gain: bool = True, on_progress: OnMessage = la
         if finding.verdict == "unexplained":
             shares = _shares(model, baseline, rules, known)
     fit_now = baseline if refined is None else refined.fit
-    left = remainder_of(model, fit_now, negligible=rules.negligible) if shares is not None else None
+    left = remainder_of(model, fit_now, negligible=rules.negligible_fraction) if shares is not None else None
     named_whole = finding.verdict in ("none", "found", "ambiguous")
     if left is not None and not named_whole:
         next_experiment = "; ".join(x for x in (next_experiment, about_remainder(left)) if x)
@@ -148,7 +148,7 @@ def concluded(found: Searched, *, gain: bool = True, on_progress: OnMessage = la
         shares=causes,
         resampled=shares.groups.over if shares else "",
         nearest=nearest if refined is None else None,
-        rivals=dict(nearest.rivals) if nearest is not None and refined is not None else {},
+        equally_large=dict(nearest.alternatives) if nearest is not None and refined is not None else {},
         remainder=left,
         model_error=model_error_of(model, fit_now, left, shares, reduced(fit_now))
         if shares is not None and left is not None and not named_whole
@@ -161,7 +161,7 @@ def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKn
     return Shares(
         model,
         baseline,
-        draws=rules.draws,
+        draws=rules.replicates,
         seed=rules.seed,
         noise_dof=noise.dof,
         noise_scale=noise.scale,
@@ -188,7 +188,7 @@ def _in_degrees(
         finding,
         verdict="partly explained",
         dominant=nearest.explanation,
-        equivalent=(nearest.explanation.names, *(names for names, _ in nearest.rivals)),
+        equivalent=(nearest.explanation.names, *(names for names, _ in nearest.alternatives)),
         confidence=nearest.confidence,
     )
     return named, nearest

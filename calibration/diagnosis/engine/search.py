@@ -106,7 +106,7 @@ def search(
     improvement = null.max_improvement(screened)
     singles: list[Explanation] = []
     likely = _shortlist(
-        screened, model.effects, linear.z, rules.shortlist, at_least=0.5 * improvement.threshold(0.05)
+        screened, model.effects, linear.z, rules.max_confirmed, at_least=0.5 * improvement.threshold(0.05)
     )
     for n, k in enumerate(likely):
         c = screened.candidates[k]
@@ -163,7 +163,7 @@ def search(
     ].lack_of_fit.p_value < rules.lack_of_fit_level:
         return finding("unexplained", both)
     first = ranked_first(both, null)
-    sets = equivalent_explanations(both, rules.score_tolerance, first, rules.rival)
+    sets = equivalent_explanations(both, rules.score_tolerance, first, rules.first_fraction)
     return finding("found" if len(sets) == 1 else "ambiguous", both, sets, first.get(sets[0], 0.0))
 
 

@@ -131,7 +131,7 @@ class Diagnosis:
     share : of the explainable misfit, that it takes. shares : of each of its causes (they add up to it).
     resampled : over what their intervals are.
     nearest : where the data are unexplained, what comes nearest.
-    rivals : where they are explained in part, other sets of effects that take as much, with their shares.
+    equally_large : if partly explained, other sets of effects that take as much, with their shares.
     remainder : what is left; None where the baseline leaves only noise.
     model_error : the remainder as an error of the model, where more than noise is left.
     noise : what is known of it.
@@ -152,7 +152,7 @@ class Diagnosis:
     shares: Mapping[Candidate, Interval] = field(default_factory=dict)
     resampled: str = ""
     nearest: Assessed | None = None
-    rivals: Mapping[Names, Interval] = field(default_factory=dict)
+    equally_large: Mapping[Names, Interval] = field(default_factory=dict)
     remainder: Remainder | None = None
     model_error: ModelError | None = None
     noise: NoiseKnown = STATED

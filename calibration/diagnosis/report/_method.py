@@ -5,12 +5,12 @@ from __future__ import annotations
 from calibration.diagnosis.engine.null import LackOfFit
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._evidence import ALARM, RARE
-from calibration.diagnosis.report._words import SUSPECT, chance, pattern, tiny
+from calibration.diagnosis.report._words import SUSPECT, p_text, pattern, tiny
 from calibration.measurements._model import MeasurementModel
 from calibration.pages import listed, significant
 
 
-def alarm(diagnosis: Diagnosis) -> str:
+def false_alarms(diagnosis: Diagnosis) -> str:
     """What chance alone has to do with the best cause."""
     finding = diagnosis.finding
     noise = finding.null.max_improvement(finding.screened)
@@ -36,7 +36,7 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
     base = finding.lack_of_fit
     kind = diagnosis.subject.kind
     text = (
-        f"Against the baseline {_failing(base, kind)} (all tests together: p {chance(base.p_value, draws)})."
+        f"Against the baseline {_failing(base, kind)} (all tests together: p {p_text(base.p_value, draws)})."
     )
     if not finding.explanations or finding.p_value > RARE:
         return f"{text} No effect of the library improves χ² by more than noise alone would."
@@ -47,7 +47,7 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
         f"{text} The best that the library offers ({best.fit.label}) improves χ² by"
         f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"
         f" {_failing(best.lack_of_fit, kind)} (all tests together: p"
-        f" {chance(best.lack_of_fit.p_value, draws)}). So it is not"
+        f" {p_text(best.lack_of_fit.p_value, draws)}). So it is not"
         f" {'all of the cause' if finding.verdict == 'partly explained' else 'named as the cause'}."
     )
 

@@ -9,7 +9,7 @@ from calibration.diagnosis.engine.remainder import about_remainder
 from calibration.diagnosis.engine.sentences import percent
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._units import quantity_and_unit
-from calibration.diagnosis.report._words import SUSPECT, chance, meaning, pattern, scope
+from calibration.diagnosis.report._words import SUSPECT, meaning, p_text, pattern, scope
 from calibration.pages import NOTHING, Cell, listed, significant, with_sd
 
 Rows = list[list[Cell]]
@@ -32,18 +32,18 @@ TESTS = ("test of what is left", "baseline", "best explanation")
 INVISIBLE = ("effect", "what it is", "amplitude needed for 5 sd", "what to do instead")
 
 
-def budget_rows(diagnosis: Diagnosis, told: dict[str, Any]) -> Rows:
+def budget_rows(diagnosis: Diagnosis, data: dict[str, Any]) -> Rows:
     """One row a cause (named, or nearest), then what is not modelled; no rows where all is well."""
-    causes = sorted(told["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
-    rows = [_cause_row(diagnosis, c, told, named=True) for c in causes]
-    nearest = told["nearest"]
+    causes = sorted(data["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
+    rows = [_cause_row(diagnosis, c, data, named=True) for c in causes]
+    nearest = data["nearest"]
     if nearest is not None:
         rows += [_cause_row(diagnosis, c, nearest, named=False) for c in nearest["causes"]]
     left = diagnosis.remainder
     if left is None:
         return rows
     unit, per_si = diagnosis.unit
-    share = told["share"]
+    share = data["share"]
     part = (
         _one_less(share) if share is not None else "all" if nearest is None else _one_less(nearest["share"])
     )
@@ -81,7 +81,7 @@ def _one_less(share: dict[str, float | None]) -> str:
 
 
 def _cause_row(
-    diagnosis: Diagnosis, cause: dict[str, Any], told: dict[str, Any], *, named: bool
+    diagnosis: Diagnosis, cause: dict[str, Any], data: dict[str, Any], *, named: bool
 ) -> list[Cell]:
     """Several parameters of one cause stand in one cell each under the other."""
     effect = diagnosis.effects[cause["effect"]]
@@ -89,9 +89,9 @@ def _cause_row(
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
     if effect.switch:  # it is there or not, and has no size
         values = [(cause.get("kind") or "there", values[0][1])]
-    share, alone = cause.get("share") or told["share"], cause.get("share") or len(told["causes"]) == 1
+    share, alone = cause.get("share") or data["share"], cause.get("share") or len(data["causes"]) == 1
     whole = named and len(diagnosis.finding.equivalent) > 1 and told_apart
-    evidence = _evidence(cause, told["gain"], in_all_sets=whole)
+    evidence = _evidence(cause, data["gain"], in_all_sets=whole)
     return [
         Cell(
             text=cause["effect"]
@@ -136,10 +136,10 @@ def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None, *, in_all_sets
     return "; ".join(parts)
 
 
-def fold_rows(told: dict[str, Any], unit: str) -> Rows:
+def fold_rows(data: dict[str, Any], unit: str) -> Rows:
     """What was left out, part by part, predicted from the rest. Parts that the causes do not change are
     counted in a last row."""
-    gain = told["gain"] or (told["nearest"] or {}).get("gain")
+    gain = data["gain"] or (data["nearest"] or {}).get("gain")
     rows: Rows = []
     same = 0
     for part in gain["folds"] if gain is not None else []:
@@ -167,17 +167,17 @@ def _confidence(part: float) -> str:
 
 
 def alternative_rows(diagnosis: Diagnosis) -> Rows:
-    """The sets of effects that cannot be told apart, the chosen one first."""
+    """The sets of effects that cannot be data apart, the chosen one first."""
     finding = diagnosis.finding
     best = finding.explanations[0].score if finding.explanations else 0.0
     rows = []
     for k, names in enumerate(finding.equivalent):
         score = min(e.score for e in finding.explanations if e.names == names)
         parts = [diagnosis.effects[n] for n in names]
-        if names in diagnosis.rivals:
-            share = diagnosis.rivals[names]
+        if names in diagnosis.equally_large:
+            share = diagnosis.equally_large[names]
             worse = Cell(text=f"takes {percent(share)}", value=share.value)
-        elif diagnosis.rivals and diagnosis.share is not None:
+        elif diagnosis.equally_large and diagnosis.share is not None:
             worse = Cell(text=f"takes {percent(diagnosis.share)}", value=diagnosis.share.value)
         else:
             text = "the best" if k == 0 else f"{significant(score - best, 2)} of χ²"
@@ -193,9 +193,9 @@ def alternative_rows(diagnosis: Diagnosis) -> Rows:
     return rows
 
 
-def fit_rows(told: dict[str, Any], draws: int) -> Rows:
+def fit_rows(data: dict[str, Any], draws: int) -> Rows:
     """Baseline beside extended, whatever numbers the two have; below, what was held out."""
-    before, after = told["baseline"], told["extended"]
+    before, after = data["baseline"], data["extended"]
     rows = []
     for key, value in before.items():
         other = None if after is None else after[key]
@@ -204,7 +204,7 @@ def fit_rows(told: dict[str, Any], draws: int) -> Rows:
                 rows.append(_fit_row(key, v, None if other is None else other.get(name), draws, of=name))
         else:
             rows.append(_fit_row(key, value, other, draws))
-    return rows + _held_out_rows(told["gain"], draws)
+    return rows + _held_out_rows(data["gain"], draws)
 
 
 def _held_out_rows(gain: dict[str, Any] | None, draws: int) -> Rows:
@@ -235,7 +235,7 @@ def _fit_row(key: str, before: float, after: float | None, draws: int, *, of: st
     def cell(value: float | None) -> Cell:
         if value is None:
             return Cell(text=NOTHING)
-        text = chance(value, draws) if key == "p_value" else significant(part * value)
+        text = p_text(value, draws) if key == "p_value" else significant(part * value)
         low = key == "p_value" and value < SUSPECT
         return Cell(text=text, value=value, mark="bad" if low else "")
 
@@ -245,9 +245,9 @@ def _fit_row(key: str, before: float, after: float | None, draws: int, *, of: st
     return [Cell(text=head), cell(before), cell(after), change]
 
 
-def gain_sentence(told: dict[str, Any]) -> str:
+def gain_sentence(data: dict[str, Any]) -> str:
     """How the extension was tried on measurements that its fit has not seen."""
-    gain = told["gain"]
+    gain = data["gain"]
     if gain is None:
         return ""
     kept = f"{100 * gain['information_kept']:.0f} %"
@@ -270,7 +270,7 @@ def test_rows(diagnosis: Diagnosis) -> Rows:
     def cell(p: float | None) -> Cell:
         if p is None:
             return Cell(text=NOTHING)
-        return Cell(text=chance(p, draws), value=p, mark="bad" if p < SUSPECT else "")
+        return Cell(text=p_text(p, draws), value=p, mark="bad" if p < SUSPECT else "")
 
     rows = [
         [

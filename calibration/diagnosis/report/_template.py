@@ -71,7 +71,7 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 <section id="evidence">
 <h2>Evidence, cause by cause</h2>
 {{ figure(evidence) }}
-<p class="note">{{ alarm }}</p>
+<p class="note">{{ false_alarms }}</p>
 </section>
 <section id="invisible">
 <h2>What this design cannot see</h2>

@@ -84,7 +84,7 @@ def scope(at: str) -> str:
     return "all measurements" if at == "all" else at
 
 
-def chance(p: float, draws: int) -> str:
+def p_text(p: float, draws: int) -> str:
     """A chance to two digits; what the bootstrap cannot resolve, as a bound."""
     finest = 1.0 / (draws + 1)
     if p <= 1.001 * finest:

@@ -10,7 +10,7 @@ from calibration.diagnosis.drawing import Figure, figures_of
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report import _tables as tables
 from calibration.diagnosis.report._evidence import draw_evidence
-from calibration.diagnosis.report._method import alarm, lack_of_fit, method, troubles
+from calibration.diagnosis.report._method import false_alarms, lack_of_fit, method, troubles
 from calibration.diagnosis.report._template import PAGE
 from calibration.diagnosis.report._words import headline
 from calibration.measurements._model import MeasurementModel
@@ -50,7 +50,7 @@ def render(
     extra: list[str],
 ) -> str:
     """The page as HTML. extra: what went wrong with the pictures."""
-    told = diagnosis.to_json()
+    data = diagnosis.to_json()
     finding = diagnosis.finding
     return template(PAGE).render(
         title=title,
@@ -58,9 +58,9 @@ def render(
         headline=headline(finding),
         sentence=diagnosis.sentence(),
         budget_headings=tables.BUDGET,
-        budget=tables.budget_rows(diagnosis, told),
+        budget=tables.budget_rows(diagnosis, data),
         fold_headings=tables.FOLDS,
-        folds=tables.fold_rows(told, diagnosis.unit[0]),
+        folds=tables.fold_rows(data, diagnosis.unit[0]),
         alternative_headings=tables.ALTERNATIVES,
         alternatives=tables.alternative_rows(diagnosis),
         next_experiment=diagnosis.next_experiment,
@@ -72,13 +72,13 @@ def render(
         test_headings=tables.TESTS,
         tests=tables.test_rows(diagnosis),
         evidence=evidence,
-        alarm=alarm(diagnosis),
+        false_alarms=false_alarms(diagnosis),
         extended=diagnosis.extended is not None,
         fit_headings=tables.FITS if diagnosis.extended else tables.FITS[:2],
         fits=[
-            row[: 4 if diagnosis.extended else 2] for row in tables.fit_rows(told, len(finding.null.noise))
+            row[: 4 if diagnosis.extended else 2] for row in tables.fit_rows(data, len(finding.null.noise))
         ],
-        gain=tables.gain_sentence(told),
+        gain=tables.gain_sentence(data),
         invisible_headings=tables.INVISIBLE,
         invisible=tables.invisible_rows(diagnosis),
         notes=diagnosis.notes,

@@ -80,9 +80,9 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
     for group in _repeats(records, last):
         square, known = _variances(group, last)
         own_scale = len({r.specimen for r in group}) > 1
-        told = np.array([not (own_scale and name == "scale") for name in TERMS])
-        squares.append(np.where(told, square, 0.0))
-        weights.append(np.where(told, known, 0.0))
+        independent = np.array([not (own_scale and name == "scale") for name in TERMS])
+        squares.append(np.where(independent, square, 0.0))
+        weights.append(np.where(independent, known, 0.0))
         names += [r.name for r in group]
         drifts += _drift(group)
     if not squares:

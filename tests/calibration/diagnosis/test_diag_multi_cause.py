@@ -71,7 +71,7 @@ def test_stand_ins_are_tried_in_the_place_of_each() -> None:
         shapes = library()
         shapes["twin"] = shapes[of] + 0.03 * shapes["ripple"]
         model = FakeModel(shapes=shapes, hidden=together(*THREE), drawn=noise(260))
-        found = search(model, rules=Rules(triples=(1, 1)))
+        found = search(model, rules=Rules(max_triples=(1, 1)))
         assert {THREE, tuple(sorted({*THREE, "twin"} - {of}))} <= set(found.equivalent), of
 
 

@@ -148,7 +148,7 @@ def test_rivals_that_take_as_much_are_named_with_it() -> None:
     assert found.finding.verdict == "partly explained"
     assert set(found.finding.equivalent) == {("bend",), ("twin",)}
     assert "cannot tell apart" in found.sentence()
-    assert set(found.rivals) < {("bend",), ("twin",)}
+    assert set(found.equally_large) < {("bend",), ("twin",)}
 
 
 def test_what_takes_little_is_not_named_but_said() -> None:

@@ -26,7 +26,7 @@ from calibration.experiment import Experiment
 from calibration.measurements.compression.model import CompressionModel
 
 
-def told(data: Experiment) -> Diagnosis:
+def diagnosed(data: Experiment) -> Diagnosis:
     return diagnose(press_model(data), gain=False)
 
 
@@ -43,7 +43,7 @@ def check_found(found: Diagnosis, effect: str, parameter: str, truth: float) -> 
 
 @pytest.mark.parametrize("seed", [1, 3, 5])
 def test_nothing_is_named_where_nothing_is_wrong(seed: int) -> None:
-    found = told(both(sliding, seed=seed))
+    found = diagnosed(both(sliding, seed=seed))
     assert found.finding.verdict == "none", found.sentence()
     assert found.causes() == []
     for name, shear in SHEAR.items():
@@ -51,7 +51,7 @@ def test_nothing_is_named_where_nothing_is_wrong(seed: int) -> None:
 
 
 def test_one_loading_shows_what_it_cannot_see() -> None:
-    unseen = {i.effect for i in told(both(sliding, seed=1)).undetectable}
+    unseen = {i.effect for i in diagnosed(both(sliding, seed=1)).undetectable}
     assert unseen >= {"force-gain", "hysteresis", "mullins", "rate-dependence", "anisotropy"}
     # a frame that gives way as little as frames do is not seen beside cylinders as soft as these
     assert "machine-compliance" in unseen
@@ -94,7 +94,7 @@ def test_without_friction_in_the_library_its_name_is_not_used() -> None:
 
 def test_two_causes_at_once() -> None:
     """Bonded, and of Mooney and Rivlin with a share of 0.3: what platens hold depends on the law."""
-    found = told(both(bonded("mooney-rivlin 0.3"), seed=1))
+    found = diagnosed(both(bonded("mooney-rivlin 0.3"), seed=1))
     assert {"platen-bonding", "second-invariant"} in [set(names) for names in found.finding.equivalent]
     causes = {c["effect"]: next(iter(c["parameters"].values())) for c in found.causes()}
     assert set(causes) == {"platen-bonding", "second-invariant"}
@@ -103,7 +103,7 @@ def test_two_causes_at_once() -> None:
 
 
 def test_preload() -> None:
-    found = told(both(lambda strain: sliding(strain + 0.006), seed=1))
+    found = diagnosed(both(lambda strain: sliding(strain + 0.006), seed=1))
     check_found(found, "strain-offset", "offset_percent", -0.6)
 
 
@@ -118,7 +118,7 @@ def test_a_machine_that_gives_way() -> None:
     data = experiment(
         *(pressed(m, shown(shear), material=m, seed=k) for k, (m, shear) in enumerate(SHEAR.items()))
     )
-    check_found(told(data), "machine-compliance", "strain_per_MPa", 0.3)
+    check_found(diagnosed(data), "machine-compliance", "strain_per_MPa", 0.3)
 
 
 def test_a_zero_of_the_force() -> None:
@@ -128,7 +128,7 @@ def test_a_zero_of_the_force() -> None:
             for k, (m, shear) in enumerate(SHEAR.items())
         )
     )
-    check_found(told(data), "stress-offset", "offset_kPa", -0.6)
+    check_found(diagnosed(data), "stress-offset", "offset_kPa", -0.6)
 
 
 def test_a_tilted_face() -> None:
@@ -140,7 +140,7 @@ def test_a_tilted_face() -> None:
     def stress(strain: Array) -> Array:
         return np.array([sliding(np.maximum(s - late, 0.0)).mean() for s in strain])
 
-    found = told(both(stress, strain=ramps(1, points=300), seed=1, noise=0.0005))
+    found = diagnosed(both(stress, strain=ramps(1, points=300), seed=1, noise=0.0005))
     check_found(found, "platen-tilt", "gap_percent", 3.0)
 
 
@@ -152,7 +152,7 @@ def test_hysteresis_and_softening_come_over_from_coupons() -> None:
     energy = s**2 + 2.0 / s - 3.0
     stress = sliding(strain) * np.where(down, 1.0 - 0.2 * (1.0 - energy / energy.max()), 1.0)
     data = experiment(*(pressed(m, stress, strain=strain, material=m, seed=k) for k, m in enumerate(SHEAR)))
-    check_found(told(data), "hysteresis", "unloading_loss", 0.2)
+    check_found(diagnosed(data), "hysteresis", "unloading_loss", 0.2)
 
 
 @pytest.mark.parametrize(("at", "verdict"), [(0.12, "unexplained"), (0.25, "partly explained")])
@@ -160,7 +160,9 @@ def test_a_kink_is_in_no_library(at: float, verdict: str) -> None:
     """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record). In the
     middle of the curve platens that hold stand in for most of it, in both materials alike; what they leave is
     said."""
-    found = told(both(lambda strain: sliding(strain) * (1.0 - 0.03 * (strain > at)), seed=1, noise=0.002))
+    found = diagnosed(
+        both(lambda strain: sliding(strain) * (1.0 - 0.03 * (strain > at)), seed=1, noise=0.002)
+    )
     assert found.finding.verdict == verdict, found.sentence()
     if verdict == "partly explained":
         assert found.share is not None
@@ -186,7 +188,7 @@ def test_repeats_tell_how_much_tests_differ() -> None:
     assert model.repeatability.repeats == ("A0", "A1", "A2", "A3", "A4")
     assert found.finding.verdict == "none", found.sentence()
     odd = max(repeats, key=lambda t: float(np.ptp(t.stress / sliding(strain + 1e-9))))
-    assert told(experiment(odd)).finding.verdict != "none"
+    assert diagnosed(experiment(odd)).finding.verdict != "none"
 
 
 def test_naming_the_specimen_costs_no_repeats() -> None:
@@ -207,7 +209,7 @@ def test_naming_the_specimen_costs_no_repeats() -> None:
 def test_three_causes_at_once() -> None:
     """Bonded, a second invariant, and a zero of the strain that is off, as it may be in the Ecoflex of the
     real data."""
-    found = told(both(lambda x: bonded("mooney-rivlin 0.3")(x + 0.005), seed=2, noise=0.001))
+    found = diagnosed(both(lambda x: bonded("mooney-rivlin 0.3")(x + 0.005), seed=2, noise=0.001))
     assert found.finding.equivalent[0] == ("platen-bonding", "second-invariant", "strain-offset")
     (offset,) = [c for c in found.causes() if c["effect"] == "strain-offset"]
     estimate = offset["parameters"]["offset_percent"]

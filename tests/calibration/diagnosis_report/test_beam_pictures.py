@@ -11,7 +11,7 @@ from diagnosis_cases import Page
 
 from calibration.diagnosis import Diagnosis, Rules, diagnose
 from calibration.diagnosis.drawing import figures_of
-from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial, drawn, rms_of, told
+from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial, drawn, explained_photographs, rms_of
 from calibration.diagnosis.drawing.outlines._grid import grid_of
 from calibration.diagnosis.drawing.outlines._look import magnification
 from calibration.diagnosis.drawing.outlines._residuals import middles
@@ -35,7 +35,7 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, OutlineMo
 
 @pytest.fixture(scope="module")
 def beams(bent: tuple[Diagnosis, OutlineModel]) -> list[DrawnTrial]:
-    return drawn(bent[1], bent[0], told(bent[1], bent[0]))
+    return drawn(bent[1], bent[0], explained_photographs(bent[1], bent[0]))
 
 
 def test_the_case_is_what_it_should_be(bent: tuple[Diagnosis, OutlineModel]) -> None:
@@ -99,7 +99,7 @@ def test_panels_are_a_grid_of_materials_and_kinds(beams: list[DrawnTrial]) -> No
 def test_the_beams_can_be_turned_around(bent: tuple[Diagnosis, OutlineModel]) -> None:
     """The outline as a tube about its registered points, on the surface of the body of the extension."""
     found, model = bent
-    seen = told(model, found)
+    seen = explained_photographs(model, found)
     view = turned(seen, title="bent")
     assert len(view.labels) == len(seen) == 4
     bodies, tubes = view.surfaces[0::2], view.surfaces[1::2]

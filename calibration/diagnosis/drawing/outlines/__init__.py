@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from calibration.diagnosis.drawing._domain import Figure, figures_of
-from calibration.diagnosis.drawing.outlines._drawn import drawn, in_time, told
+from calibration.diagnosis.drawing.outlines._drawn import drawn, explained_photographs, in_time
 from calibration.diagnosis.drawing.outlines._residuals import draw_residuals, draw_rms
 from calibration.diagnosis.drawing.outlines._shapes import draw_shapes
 from calibration.diagnosis.engine.verdict import Diagnosis
@@ -17,7 +17,7 @@ def outline_figures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
 
     ValueError where a beam has no equilibrium.
     """
-    seen = told(model, diagnosis)
+    seen = explained_photographs(model, diagnosis)
     beams = drawn(model, diagnosis, seen)
     apart = in_time(model, diagnosis)
     return [

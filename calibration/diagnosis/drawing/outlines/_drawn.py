@@ -96,7 +96,7 @@ def rms_of(photographs: Sequence[DrawnPhotograph], when: Literal["before", "afte
     return float(np.sqrt(np.average(squares[:, 0], weights=squares[:, 1])))
 
 
-def told(model: OutlineModel, diagnosis: Diagnosis) -> list[SeenPhotograph]:
+def explained_photographs(model: OutlineModel, diagnosis: Diagnosis) -> list[SeenPhotograph]:
     """The photographs against the beams that explain them best: the extended ones, where a cause was found.
     ValueError where one has no equilibrium."""
     chosen = diagnosis.chosen
@@ -104,7 +104,10 @@ def told(model: OutlineModel, diagnosis: Diagnosis) -> list[SeenPhotograph]:
 
 
 def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotograph]) -> list[DrawnTrial]:
-    """All trials that have photographs; seen: as `told`. ValueError where a beam has no equilibrium."""
+    """All trials that have photographs, `seen` by `explained_photographs`.
+
+    ValueError if a beam has no equilibrium.
+    """
     finding = diagnosis.finding
     base = finding.baseline.state
     results = model.results(base)
