@@ -1,4 +1,4 @@
-"""The experiment that would separate explanations that the data cannot: by how far their predictions part."""
+"""Choose an experiment that separates equivalent explanations, by the distance of their predictions."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """An experiment, and how far it would separate the chosen explanation from each of the others.
+    """An experiment, with its separation of the chosen explanation from each of the others.
 
     Attributes
     ----------
-    separations : of chi-square, from each other explanation; inf where that has no answer there, and would be
-        seen at once.
-    enough : separation from which on two are told apart.
+    separations : increase of chi-square for each other explanation; inf if it has no equilibrium in this
+        experiment, which would be visible at once.
+    enough : separation from which on two explanations count as separated.
     """
 
     name: str
@@ -33,21 +33,21 @@ class Advice:
 
     @property
     def separation(self) -> float:
-        """From the nearest explanation that has an answer; 0 where none has."""
+        """Separation from the closest explanation with an equilibrium; 0 if there is none."""
         return min((s for s in self.separations if np.isfinite(s)), default=0.0)
 
     @property
     def separated(self) -> float:
-        """How many explanations it separates from the chosen one; one in part counts as that fraction."""
+        """Number of explanations separated from the chosen one; partial separations count as fractions."""
         return sum(min(s / self.enough, 1.0) for s in self.separations)
 
 
 def advise(model: MeasurementModel, explanations: Sequence[Explanation]) -> list[Advice]:
-    """All experiments of a model, the advised one first.
+    """All experiments of a model, in order of their value.
 
-    Where `model.separates` is "all", experiments that separate all explanations are alike and others come by
-    the nearest one; where it is "most", by how many are separated, since no experiment may separate all. Of
-    equals the cheapest comes first (the order of `model.experiments`).
+    If `model.separates` is "all", experiments are ordered by the separation from the closest explanation, up
+    to `enough`; if it is "most", by the number of separated explanations, since no experiment may separate
+    all. Of equal experiments the cheapest comes first (the order of `model.experiments`).
     """
     first, others = explanations[0], explanations[1:]
     found = []
@@ -65,7 +65,7 @@ def advise(model: MeasurementModel, explanations: Sequence[Explanation]) -> list
 
 
 def advice(model: MeasurementModel, explanations: Sequence[Explanation]) -> str:
-    """The advised experiment for people; "" where the model knows none."""
+    """Sentence on the best experiment; "" if the model has none."""
     if not model.experiments:
         return ""
     best = advise(model, explanations)[0]
@@ -73,8 +73,11 @@ def advice(model: MeasurementModel, explanations: Sequence[Explanation]) -> str:
 
 
 def gauged(sds: Mapping[str, float], first: Explanation, others: Sequence[Explanation]) -> list[float]:
-    """By how much a direct measurement parts the first explanation from each other: squared distance of their
-    amplitudes, in the gauge's sd and theirs. sds [SI] of the gauge, by effect."""
+    """Separations of the first explanation from the others by a direct measurement of amplitudes.
+
+    A separation is the squared difference of the amplitudes over the sum of their variances and that of the
+    gauge; `sds` has the gauge's standard deviations [SI] by effect.
+    """
     return [_gauged(sds, first, other) for other in others]
 
 
@@ -91,11 +94,11 @@ def _gauged(sds: Mapping[str, float], one: Explanation, other: Explanation) -> f
 
 
 def measured(new: MeasurementModel | None, first: Explanation, others: Sequence[Explanation]) -> list[float]:
-    """What new measurements add to the least squared distance between the first explanation's predictions and
-    each other's, whose free coordinates may adapt to old and new data alike.
+    """Separations of the first explanation from the others by new measurements.
 
-    new: the model of these measurements, as the first explanation predicts them; None where they cannot be
-    made.
+    A separation is the increase of the least squared distance between the predictions of the two, over the
+    free coordinates of the other, which are fitted to old and new data together. `new` is the model of the
+    new measurements as the first explanation predicts them; None if they cannot be made.
     """
     if new is None:
         return [0.0] * len(others)
@@ -121,7 +124,7 @@ def _left(values: Array, jacobian: Array) -> float:
 
 
 def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
-    """The advised experiment for people, where all explanations are to be separated."""
+    """Sentence on the best experiment, if all explanations are to be separated."""
     names = ", ".join(_told_apart(explanations))
     if best.separation < 1.0:
         return f"no experiment of the catalogue parts {names}"
@@ -131,7 +134,7 @@ def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
 
 
 def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
-    """The advised experiment for people, which may separate the chosen cause from some others only."""
+    """Sentence on the best experiment, if it may separate the chosen cause from some others only."""
     first, *others = _told_apart(explanations)
     parted = [n for n, s in zip(others, best.separations, strict=True) if s >= 1.0]
     if not parted:
@@ -146,7 +149,7 @@ def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
 
 
 def _told_apart(explanations: Sequence[Explanation]) -> list[str]:
-    """The names of each without those that all have, and that nothing needs to part."""
+    """Names of each explanation, without the causes common to all."""
     common = set.intersection(*(set(e.names) for e in explanations))
     return [" + ".join([n for n in e.names if n not in common] or e.names) for e in explanations]
 

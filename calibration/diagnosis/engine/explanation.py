@@ -1,4 +1,4 @@
-"""A set of causes, fitted in the simulator and judged: how well it explains, and what is left."""
+"""Explanations: sets of causes fitted in the simulator, with their score and remaining lack of fit."""
 
 from __future__ import annotations
 
@@ -26,10 +26,11 @@ class Explanation:
 
     Attributes
     ----------
-    cost : chi-square that the number of amplitudes and the choice among alternatives cost (Bayes' information
-        criterion, and twice the logarithm of the number of alternatives).
-    constants_cost : the part of it that is of constants which causes bring beside their amplitudes (a law's).
-    lack_of_fit : test of what the fit leaves.
+    cost : penalty added to chi-square for the number of amplitudes (Bayes' information criterion) and for the
+        choice among alternatives (twice the logarithm of their number).
+    constants_cost : the part of `cost` for constants that causes have beside their amplitudes (those of a
+        law).
+    lack_of_fit : test of the residuals of the fit.
     """
 
     fit: Fit
@@ -47,7 +48,7 @@ class Explanation:
 
     @property
     def multiplicity_penalty(self) -> float:
-        """Chi-square that the choice among alternatives costs."""
+        """Penalty for the choice among alternatives, in chi-square."""
         return sum(multiplicity_penalty(c) for c in self.candidates)
 
     @property
@@ -62,8 +63,10 @@ def explain(
     amplitudes: Sequence[float],
     null: Null,
 ) -> Explanation | None:
-    """Fit a set of causes, from another fit and first guesses of the amplitudes [SI]; None where the
-    simulator has no answer with them. A fit that has converged once is taken as it was (`Null.explained`)."""
+    """Fit a set of causes, from another fit and initial amplitudes [SI].
+
+    None if the simulator has no equilibrium with them. Converged fits are cached in `Null.explained`.
+    """
     causes = frozenset(candidates)
     if causes in null.explained:
         return null.explained[causes]
@@ -76,14 +79,14 @@ def explain(
             high if effect.switch else np.clip(a, effect.start_fraction * low, effect.start_fraction * high)
         )
         known.setdefault(c, float(there))
-    for fraction in (1.0, 0.3, 0.0):  # nearer to the baseline where there is no equilibrium so far out
+    for fraction in (1.0, 0.3, 0.0):  # closer to the baseline if there is no equilibrium
         inside = {c: known[c] if model.effects[c.effect].switch else fraction * known[c] for c in candidates}
         try:
             found = fit(model, replace(begun, amplitudes=inside), candidates)
         except ValueError:
             continue
         if fraction > 0.0 and not found.converged and found.chi2 > start.chi2:
-            continue  # lost, so far out
+            continue  # diverged from a distant start
         each = float(np.log(len(found.z)))
         constants = each * sum(map(model.brings, found.candidates))
         cost = each * len(found.candidates) + sum(map(multiplicity_penalty, found.candidates))
@@ -125,9 +128,9 @@ def equivalent_explanations(
 
 
 def ranked_first(explanations: Sequence[Explanation], null: Null) -> dict[Names, float]:
-    """Probability that each set of effects would be ranked first with other noise, were the best one true.
+    """Probability that each set of effects would rank first with other noise, if the best one were true.
 
-    Each explanation is refitted to first order to what the best one predicts plus drawn noise.
+    Each explanation is refitted, to first order, to the prediction of the best one plus random noise.
     """
     ordered = sorted(explanations, key=lambda e: e.score)
     draws = null.noise[:1000]

@@ -1,4 +1,4 @@
-"""Gauss-Newton over the baseline's coordinates and some effects' amplitudes, in the simulator itself."""
+"""Gauss-Newton fit of the baseline's coordinates and the amplitudes of effects, in the simulator."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from calibration.measurements._state import Linearisation, State
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 0.05  # of chi-square: a twentieth of what one standard deviation of one parameter makes
-AS_FITTED = 0.002  # as a calibration's polish, for moduli that are reported: 0.04 of a standard deviation
-LONGEST = 0.7  # of a coordinate u in one step; coordinates are logarithms of moduli
-# Levenberg's damping where a plain step fails, over the squared length of a column: where coordinates nearly
-# hide each other (terms of a series law) the plain step leaves what the derivatives are good for
+TOLERANCE = 0.05  # of chi-square: a twentieth of its change by one standard deviation of one parameter
+AS_FITTED = 0.002  # tolerance of a calibration, for reported moduli: 0.04 of a standard deviation
+LONGEST = 0.7  # largest step of a coordinate u; coordinates are logarithms of moduli
+# Levenberg's damping if a plain step fails, relative to the squared length of a column: with nearly dependent
+# coordinates (terms of a series law) the plain step leaves the range in which the derivatives are valid
 DAMPINGS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-FALLING = 0.1  # of chi-square: a step that takes more is no step towards an end, and is not counted
-MOST = 5  # times the steps that count, that a fit may take
+FALLING = 0.1  # a step that lowers chi-square by a larger fraction does not count towards `max_steps`
+MOST = 5  # largest number of steps, relative to `max_steps`
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fit:
-    """A state that minimises the squared sum of z, with its derivatives there; converged: or not, and why."""
+    """Result of a fit: the state that minimises |z|^2, derivatives, convergence status and its message."""
 
     linear: Linearisation
     converged: bool
@@ -50,11 +50,11 @@ class Fit:
 
     @property
     def jacobian(self) -> Array:
-        """(m, n + c): by u, then by the amplitudes."""
+        """Jacobian of z (m, n + c): columns of u, then of the amplitudes."""
         return np.column_stack([self.linear.by_u, self.linear.columns])
 
     def covariance(self) -> Array:
-        """Of u and the amplitudes, (n + c, n + c)."""
+        """Covariance of u and the amplitudes, (n + c, n + c)."""
         size = np.linalg.norm(self.jacobian, axis=0)
         size[size == 0.0] = 1.0  # columns differ by orders of magnitude: one scale before the rank is judged
         scaled = self.jacobian / size
@@ -78,11 +78,11 @@ def fit(
     max_steps: int = 10,
     tolerance: float = TOLERANCE,
 ) -> Fit:
-    """Minimise the squared sum of residuals over u and the amplitudes of `candidates`, from `start`.
+    """Minimise the sum of squared residuals over u and the amplitudes of `candidates`, from `start`.
 
-    A step that does not lower it is shortened, up to 6 times, then damped. `max_steps` counts those that take
-    less than a tenth of it. The fit ends where a step promises less than `tolerance` of chi-square.
-    ValueError where the start has no answer.
+    A step that does not lower chi-square is halved up to five times, then damped. `max_steps` limits the
+    steps that lower it by less than a tenth. The fit has converged if the predicted decrease is below
+    `tolerance`. ValueError if the start has no equilibrium.
     """
     wanted = tuple(candidates)
     state = _inside(model, np.r_[start.u, [start.amplitudes.get(c, 0.0) for c in wanted]], wanted)
@@ -119,7 +119,7 @@ def _step(
     wanted: tuple[Candidate, ...],
     damping: float = 0.0,
 ) -> tuple[Array, float]:
-    """Gauss-Newton step and what it promises; amplitudes at a bound that are pushed beyond it stay."""
+    """Gauss-Newton step and its predicted decrease of chi-square; coordinates at a bound stay inside."""
     n = len(linear.state.u)
     low, high = _bounds(model, wanted)
     here, gradient = _point(linear.state, wanted), jacobian.T @ linear.z
@@ -142,7 +142,7 @@ def _step(
 
 
 def _least_squares(columns: Array, z: Array, damping: float) -> Array:
-    """Of columns (m, n) of unit length, to z (m,)."""
+    """Damped least-squares solution for columns (m, n) of unit length and z (m,)."""
     if damping == 0.0:
         return np.asarray(np.linalg.lstsq(columns, z, rcond=1e-6)[0])
     rows = np.sqrt(damping) * np.eye(columns.shape[1])
@@ -152,13 +152,15 @@ def _least_squares(columns: Array, z: Array, damping: float) -> Array:
 
 
 def _point(state: State, wanted: tuple[Candidate, ...]) -> Array:
-    """Coordinates u, then amplitudes."""
+    """Coordinates u, followed by the amplitudes."""
     return np.concatenate([state.u, [state.amplitudes[c] for c in wanted]])
 
 
 def _bounds(model: MeasurementModel, wanted: tuple[Candidate, ...]) -> tuple[Array, Array]:
-    """Of u, then of the amplitudes, shape (n + c,) each. A coordinate stays a step inside of its upper end,
-    where a difference still sees which way it goes."""
+    """Bounds of u and the amplitudes, shape (n + c,) each.
+
+    The upper bound of a coordinate is reduced by one step, so that a finite difference stays within bounds.
+    """
     own = [model.effects[c.effect].bounds for c in wanted]
     low, high = np.vstack([model.baseline.bounds, np.reshape(own, (-1, 2))]).T
     high[: len(model.baseline.bounds)] -= model.coordinate_step
@@ -168,7 +170,7 @@ def _bounds(model: MeasurementModel, wanted: tuple[Candidate, ...]) -> tuple[Arr
 def _damped(
     model: MeasurementModel, linear: Linearisation, jacobian: Array, wanted: tuple[Candidate, ...]
 ) -> State | None:
-    """After the first of the damped steps that lowers chi-square by a part of what it promises."""
+    """State after the first damped step that lowers chi-square; None if none does."""
     now = float(linear.z @ linear.z)
     for damping in DAMPINGS:
         move, promise = _step(model, linear, jacobian, wanted, damping)
@@ -190,7 +192,7 @@ def _moved(
 def _shortened(
     model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], below: float
 ) -> State | None:
-    """After the longest part of the move that brings chi-square below `below`."""
+    """State after the longest fraction of the move with chi-square below `below`; None if there is none."""
     for part in 0.5 ** np.arange(6):
         trial = _moved(model, state, move, wanted, part)
         z = model.residuals([trial])[0]
@@ -201,7 +203,7 @@ def _shortened(
 
 
 def _inside(model: MeasurementModel, point: Array, wanted: tuple[Candidate, ...]) -> State:
-    """Of coordinates u and amplitudes, clipped to their bounds."""
+    """State of coordinates u and amplitudes, clipped to their bounds."""
     found = np.clip(point, *_bounds(model, wanted))
     n = len(found) - len(wanted)
     return State(u=found[:n], amplitudes=dict(zip(wanted, found[n:].tolist(), strict=True)))
