@@ -1,4 +1,4 @@
-"""Cross-validation: how much an extension improves predictions of measurements that its fit has not seen."""
+"""Cross-validation: improvement of predictions by an extension, on measurements that its fit has not used."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from calibration.measurements._state import State
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-KEPT = 0.5  # fraction of an amplitude's information that every training set must keep
-FALLBACK = 0.2  # below this, folds of a set are used only where
-VISIBLE = 5.0  # standard deviations by which an effect shows in a fold
-SEEN = 10.0  # standard deviations of every amplitude are left in every training set
-ROUNDING = 1e-7  # fraction of an amplitude's column that is rounding where coordinates hide the rest of it
-UNSEEN_STEPS = 10  # of Gauss-Newton, over the coordinates that only a fold tells of
+KEPT = 0.5  # least fraction of an amplitude's information in every training set
+FALLBACK = 0.2  # least such fraction, if no set of folds keeps KEPT
+VISIBLE = 5.0  # standard deviations from which an effect is visible in a fold
+SEEN = 10.0  # least amplitude in standard deviations from every training set, if neither holds
+ROUNDING = 1e-7  # relative length of an amplitude's column, without the coordinates, that is rounding error
+UNSEEN_STEPS = 10  # Gauss-Newton steps over the coordinates that only a fold determines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,18 +33,20 @@ class HeldOut:
 
     Attributes
     ----------
-    held_out : name of the set of folds; "" where none keeps the effects identifiable.
-    kept : least fraction of the information on an amplitude in a training set; of a cause that is there or
-        not, of what the baseline misses in a fold, least part that its training would predict for certain.
-    rms_before, rms_after, rms_noise : of the held-out residuals, by the baseline, by the extension, and of
-        noise alone [SI].
-    log_likelihood : improvement on the held-out measurements.
-    folds : how many.
-    note : why nothing was held out.
-    parts : the prediction of each fold.
-    amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
-    acts : whether an effect, as large as it was fitted, shows in each fold at all.
-    within : whether folds part single records: what all of a record shares is then in the training too.
+    held_out : name of the set of folds; "" if none keeps the effects identifiable.
+    kept : least fraction of the information on an amplitude in a training set; for a cause without an
+        amplitude, least fraction of the baseline's squared error in a fold that the training set can
+        predict.
+    rms_before, rms_after, rms_noise : rms of the held-out residuals by the baseline and by the extension, and
+        that of the noise [SI].
+    log_likelihood : improvement of the log-likelihood of the held-out measurements.
+    folds : number of folds.
+    note : reason why nothing was held out.
+    parts : prediction of each fold.
+    amplitudes : amplitudes of the extension, fitted without each fold, shape (folds, c) [SI].
+    acts : True for each fold in which an effect is visible.
+    within : True if single records are divided between folds: errors common to a record are then in the
+        training part too.
     """
 
     held_out: str
@@ -62,7 +64,7 @@ class HeldOut:
 
     @property
     def skill(self) -> float:
-        """Of all folds together; NaN where nothing was held out, or the baseline has nothing to gain."""
+        """Skill over all folds; NaN if nothing was held out, or if the baseline leaves only noise."""
         return skill(self.rms_before, self.rms_after, self.rms_noise) if self.held_out else math.nan
 
     @property
@@ -72,13 +74,18 @@ class HeldOut:
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Folds in which it acts, and that it predicts no better. An effect that shows in no fold alone (a
-        law that brings constants of its own) acts in all."""
+        """Folds in which the extension acts without a better prediction.
+
+        An effect that is visible in no single fold (a law with constants of its own) acts in all.
+        """
         return tuple(p.name for p, own in zip(self.parts, self._acting, strict=True) if own and not p.helps)
 
     def helps_mostly(self, *, least_skill: float, sure: float, draws: int, seed: int) -> bool:
-        """True if the parts that it predicts better are more than chance would make them (sign test), and
-        together, with the parts drawn anew, its skill stays above `least_skill`; both as surely as `sure`."""
+        """True if two conditions hold at the level `sure`.
+
+        The number of better predicted parts exceeds chance (sign test), and the skill over all parts is at
+        least `least_skill` when the parts are resampled.
+        """
         acting = sum(self._acting)
         better = acting - len(self.worse)
         if not acting or binom.sf(better - 1, acting, 0.5) > 1.0 - sure:
@@ -100,8 +107,10 @@ class HeldOut:
 def held_out_improvement(
     model: MeasurementModel, baseline: Fit, chosen: Fit, *, known: Predictions | None = None
 ) -> HeldOut:
-    """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold of the
-    set that `_choice` takes. known : the baseline's predictions of folds that were made before; it grows."""
+    """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold.
+
+    `_choice` selects the set of folds. `known` caches the baseline's predictions of folds; it is extended.
+    """
     known = {} if known is None else known
     choice = _choice(model, baseline, chosen)
     if not choice.folds:
@@ -169,8 +178,7 @@ def _nothing(kept: float, note: str) -> HeldOut:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Choice:
-    """Folds of a set that are predicted, and the least information on an amplitude that their training keeps;
-    no folds where none may be."""
+    """Folds to predict, and the least information on an amplitude in their training sets; empty if none."""
 
     name: str = ""
     folds: Sequence[tuple[str, Rows]] = ()
@@ -179,10 +187,14 @@ class _Choice:
 
 
 def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
-    """The first set of folds of which each leaves at least KEPT of the information in training; else the set
-    that leaves most. Else the first of which two or more folds that show the effect leave enough: the others
-    are not predicted, since that would be extrapolated. Else the first in which the amplitudes are still seen
-    well."""
+    """Select a set of folds, by the first of these rules that applies.
+
+    1. The first set whose training sets all keep at least KEPT of the information.
+    2. The set that keeps most, if that is at least FALLBACK.
+    3. The first set with two or more folds in which the effect is visible and whose training sets keep KEPT.
+       The other folds are not predicted, since that would be an extrapolation.
+    4. The first set whose training sets all determine the amplitudes to SEEN standard deviations.
+    """
     sets = []
     for name, folds in model.folds().items():
         if len(folds) < 2:
@@ -215,9 +227,10 @@ def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
 
 
 def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], baseline: Fit, chosen: Fit) -> Array:
-    """What is left without each fold, shape (folds,): the least fraction of any amplitude's information. The
-    amplitude of a cause that is there or not (`switch`) is not estimated; there it is the part of what the
-    baseline misses in the fold that the coordinates, as the others tell them, leave no doubt about."""
+    """Least fraction of any amplitude's information that remains without each fold, shape (folds,).
+
+    A cause without an amplitude (`switch`) has the fraction of `_certain` instead.
+    """
     switches = np.array([model.effects[c.effect].switch for c in chosen.candidates])
     n = len(chosen.state.u)
     everything = _information(chosen, np.ones(len(chosen.z), dtype=bool))
@@ -233,8 +246,11 @@ def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], baseline: 
 
 
 def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
-    """One less the variance of a fold's prediction from the other rows over the baseline's squares there. A
-    fit that misses by more than noise is less sure than noise alone would make it (Birge's ratio)."""
+    """Fraction of the baseline's squared error in the rows `left` that the other rows can predict.
+
+    It is 1 - (variance of the prediction) / (squared error of the baseline). The variance is multiplied by
+    the reduced chi-square if that is above 1 (Birge's ratio).
+    """
     jacobian = chosen.jacobian[:, estimated]
     size = np.linalg.norm(jacobian, axis=0)
     scaled = jacobian / np.where(size > 0.0, size, 1.0)
@@ -246,13 +262,13 @@ def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
 
 
 def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
-    """True if each amplitude, as it was fitted, would show in a fold alone, shape (c,)."""
+    """True for each amplitude (c,) that is visible in a fold alone, with its fitted value."""
     values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
     return np.asarray(values**2 * _information(chosen, model.rows(fold)) >= VISIBLE**2)
 
 
 def _information(chosen: Fit, rows: Rows) -> Array:
-    """One over the variance of each amplitude, from some of the rows."""
+    """Inverse variance of each amplitude, from some of the rows."""
     n = len(chosen.state.u)
     jacobian = chosen.jacobian[rows]
     others, own = jacobian[:, :n], jacobian[:, n:]
@@ -273,8 +289,8 @@ def _information(chosen: Fit, rows: Rows) -> Array:
 class _Fold:
     """A fold predicted from all other measurements.
 
-    state: as trained on the others, with what they do not tell fitted to the fold. chi2, rms [SI], points: of
-    the fold's measurements alone, without the prior.
+    `state` is fitted to the others, except for coordinates that only the fold determines. `chi2`, `rms` [SI]
+    and number of `points` refer to the measurements of the fold, without the prior.
     """
 
     state: State
@@ -296,8 +312,10 @@ def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple
 
 
 def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full: Fit) -> State:
-    """Where a fit to the others ends, to first order around the fit to all, which costs no linearisation;
-    the state of that fit where this step does not help."""
+    """Start of a fit to the others: one Gauss-Newton step from the fit to all, with its Jacobian.
+
+    If the step does not lower chi-square, the start is the state of the fit to all.
+    """
     there = full.state
     jacobian, z = full.jacobian[~model.rows(fold)], full.z[~model.rows(fold)]
     switches = [model.effects[c.effect].switch for c in full.candidates]
@@ -314,9 +332,12 @@ def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full:
 
 
 def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:
-    """The coordinates that only the fold tells of (the modulus of a material that was left out, a release
-    time) fitted to it. What the training tells of, and the amplitudes, stay as they were trained: were the
-    seen ones to move beside the unseen, these would take up what belongs to those."""
+    """Fit the coordinates that only the fold determines (modulus of a material that was left out, release
+    time).
+
+    The other coordinates and the amplitudes stay as trained. If they moved too, they would absorb part of the
+    fold's misfit.
+    """
     if not unseen.any():
         return trained
     state, now = trained, _squares(test, trained)

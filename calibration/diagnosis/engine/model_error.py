@@ -1,8 +1,8 @@
-"""What the misfit that remains says of a card's error bars.
+"""Model error of a card: error bars that include the remaining misfit.
 
-Standard deviations of a fit hold for the noise alone. Where a law misfits, its modulus depends on what was
-measured: the spread over specimens, tests or stretches of records shows by how much, and is never taken less
-than the formal one times the root of the reduced chi-square (Birge, Phys. Rev. 40, 1932).
+Standard deviations of a fit hold for noise alone. If a law misfits, its modulus depends on the choice of the
+measurements. The spread over specimens, tests or parts of records shows this dependence; it is at least the
+formal standard deviation times the root of the reduced chi-square (Birge, Phys. Rev. 40, 1932).
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from calibration.measurements._model import MeasurementModel
 
 @dataclass(frozen=True, kw_only=True)
 class ModelError:
-    """The remainder of a fit as an error of its model.
+    """The remaining misfit of a fit as an error of its model.
 
     Attributes
     ----------
-    rms : of what the model leaves beside noise [SI].
-    of_full_scale : the same as a part of each record's largest value; None where records have none.
-    shear_modulus_relative_sd : by material, with the model's error.
+    rms : rms of the misfit beyond noise [SI].
+    of_full_scale : the same, relative to the largest value of each record; None if records have none.
+    shear_modulus_relative_sd : relative standard deviation by material, including the model error.
     """
 
     rms: float
@@ -35,7 +35,7 @@ class ModelError:
     shear_modulus_relative_sd: Mapping[str, float]
 
     def to_json(self, unit: tuple[str, float]) -> dict[str, Any]:
-        """unit : of rms residuals in files, and how many of them one SI unit is."""
+        """Entry of a JSON file; `unit` is the name of the rms unit in files, and its number per SI unit."""
         return {
             f"rms_{unit[0]}": unit[1] * self.rms,
             "of_full_scale": self.of_full_scale,
@@ -46,7 +46,7 @@ class ModelError:
 def model_error_of(
     model: MeasurementModel, fit: Fit, left: Remainder, shares: Shares, reduced_chi2: float
 ) -> ModelError:
-    """Of a fit that leaves `left`, with its chi-square over the degrees of freedom."""
+    """Model error of a fit with the remaining misfit `left` and its reduced chi-square."""
     n = len(fit.state.u)
     covariance = fit.covariance()[:n, :n]
     moves = shares.moves(fit)[:, :n]

@@ -1,8 +1,8 @@
-"""Several causes at once: looked for only while what is left is more than noise would leave.
+"""Multi-cause search: two or three causes, while the remaining misfit exceeds noise.
 
-To first order all pairs, and all triples, of candidates are compared; the best of them are confirmed in
-the simulator. A triple is named only where all three causes are needed, and where other effects in the place
-of one of them do as well, these are named too.
+All pairs and triples of candidates are compared to first order, and the best are confirmed in the simulator.
+A triple is named only if all three causes are needed. Sets in which another effect replaces one of the three
+and fits as well are named too.
 """
 
 from __future__ import annotations
@@ -26,23 +26,27 @@ from calibration.progress import OnMessage
 
 Array = NDArray[np.float64]
 
-ALIKE = 0.98  # cosine from which two candidates are one
-KEPT = 200  # triples with each candidate that are kept before those of a forbidden sign, or of one name, go
-POSSIBLE = 0.1  # p-value of a second cause by the baseline's columns, below which it is looked for properly
+ALIKE = 0.98  # cosine above which two candidates count as one
+KEPT = 200  # triples kept per candidate, before those with forbidden signs or equal names are removed
+POSSIBLE = (
+    0.1  # p-value of a second cause, by the baseline's columns, below which candidates are relinearised
+)
 HOPELESS, FAR = (
     0.35,
     40.0,
-)  # a stand-in that promises less than this fraction, and so much less, is not fitted
-STAND_INS = 2  # of other effects that are fitted in the place of each of three
-ROUNDS = 3  # of stand-ins, each beside the best triple so far
-ONCE_MORE = 2.0  # times what is promised to first order: a simulator may keep more than that
-NOISE = 6.0  # standard deviations of chi-square that noise may leave
+)  # a replacement with less than this fraction of the improvement, and less by this much, is not fitted
+STAND_INS = 2  # number of replacements that are fitted for each of three causes
+ROUNDS = 3  # rounds of replacements in the best triple
+ONCE_MORE = 2.0  # largest ratio of the improvement in the simulator to that of first order
+NOISE = 6.0  # standard deviations of chi-square within which only noise may be left
 
 
 def worth_fitting(baseline: Fit, now: float, promised: float, rules: Rules) -> bool:
-    """True if causes that promise, to first order, to take this much off a chi-square may leave noise alone,
-    or take as much more of the misfit as one cause more has to (`Rules.further_share`). Others would not be
-    named, however well they fit."""
+    """True if causes with this predicted improvement of chi-square could be named.
+
+    They may leave only noise, or take a further share of at least `Rules.further_share`. Others would not be
+    named, however well they fit.
+    """
     freedom = len(baseline.z) - len(baseline.state.u)
     reach = ONCE_MORE * promised
     noise = freedom + NOISE * np.sqrt(2.0 * freedom)
@@ -59,9 +63,10 @@ def with_second(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Pairs of causes, where one more beside the best improves chi-square by more than noise would.
+    """Pairs of causes, if a second one beside the best improves chi-square by more than noise would.
 
-    columns: the candidates' at the baseline; where even these promise nothing, none is linearised anew.
+    `columns` are those of the candidates at the baseline. If they show no improvement, nothing is
+    relinearised.
     """
     # another position of an effect that has one cannot be added to it: the scene holds one
     placed = {c.effect for c in best.candidates if c.position is not None}
@@ -82,16 +87,16 @@ def with_second(
     improvement = beside.penalised(linear.z)
     if null.max_improvement(beside).p_value(float(improvement.max(initial=0.0))) > rules.extra_cause_rate:
         return []
-    # the best single cause may be a mixture of two others: pairs are sought afresh, around where it leads
+    # the best single cause may stand for two others: all pairs are compared at its state
     target = linear.z - held.columns @ np.array(list(best.fit.state.amplitudes.values()))
     afresh = screen(linear, model.effects)
-    # what ended at a bound is not named: a pair in its place need not be better
+    # a cause at a bound is not named: a pair that replaces it need not be better
     against = baseline if inside_bounds(model, best) else None
     found = _pairs(
         model, best.fit, afresh, linear.columns, target, null, rules, on_progress, baseline=against
     )
     if any(afresh.sizes[candidates.index(c)] == 0.0 for c in best.candidates if c in candidates):
-        # it brings coordinates that, to first order, hide it where it is: no pair sought afresh has it
+        # its own coordinates hide it to first order at this state: no such pair contains it
         found += _beside(model, best, beside, improvement, linear.z, null, rules, on_progress)
     return found
 
@@ -106,7 +111,7 @@ def _beside(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """The best cause with each of the effects that promise most beside it, confirmed."""
+    """The best cause with each of the most promising further effects, confirmed in the simulator."""
     found = []
     for k in _best_of_each(beside, improvement, rules.max_pairs):
         other = beside.candidates[k]
@@ -130,7 +135,7 @@ def hiding_each_other(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Pairs of causes of which neither alone improves chi-square by more than noise would, but both do."""
+    """Pairs that improve chi-square by more than noise would, although neither cause does so alone."""
     found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, on_progress)
     tries = 0.5 * np.count_nonzero(screened.sizes) ** 2
     return [e for e in found if tries * chi2.sf(baseline.chi2 - e.fit.chi2, 2) < rules.false_alarm_rate]
@@ -148,8 +153,10 @@ def _pairs(
     *,
     baseline: Fit | None = None,
 ) -> list[Explanation]:
-    """The pairs that promise most for the residuals `target`, confirmed; beside a baseline, those that are
-    worth it."""
+    """The most promising pairs for the residuals `target`, confirmed in the simulator.
+
+    With a `baseline`, only pairs that are worth fitting.
+    """
     found = []
     pairs = best_pairs(screened, target, count=rules.max_pairs)
     for n, (a, b) in enumerate(pairs):
@@ -165,7 +172,7 @@ def _pairs(
 
 
 def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[float], float]:
-    """Amplitudes of columns (m, k) for residuals (m,), and the squares that are left, to first order."""
+    """Amplitudes of columns (m, k) for residuals (m,), and the remaining sum of squares, to first order."""
     left = columns - screened.free @ (screened.free.T @ columns)
     there = target - screened.free @ (screened.free.T @ target)
     guess = -np.linalg.lstsq(left, target, rcond=None)[0]
@@ -173,8 +180,10 @@ def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[f
 
 
 def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
-    """True if no amplitude ended at a bound: at zero it is no cause, elsewhere none that makes sense, except
-    at a physical limit."""
+    """True if no amplitude is at a bound, except at a physical limit.
+
+    An amplitude of zero is no cause; one at another bound is not plausible.
+    """
     return not any(
         x in effect.bounds and x not in effect.physical_limits
         for effect, x in ((model.effects[c.effect], x) for c, x in found.fit.state.amplitudes.items())
@@ -189,9 +198,12 @@ def with_third(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Sets of three of which all are needed: one more beside the best pairs, where it improves chi-square
-    by more than noise would, or three others that promise more. Then others are tried in the place of each,
-    so that an equivalent explanation is not left out."""
+    """Sets of three causes, all of which are needed.
+
+    A third cause is added to the best pairs if it improves chi-square by more than noise would, and the most
+    promising other triples are tried. Then each of the three is replaced by others, so that no equivalent
+    explanation is missed.
+    """
     threes = _Triples(model, baseline, null, rules, on_progress)
     beside: list[Names] = []
     for pair in sorted(pairs, key=lambda e: e.score):
@@ -206,7 +218,7 @@ def with_third(
 
 
 class _Triples:
-    """What has been tried of three causes, and what was found. found: sets of which all three are needed."""
+    """Search of triples; `found` holds the sets of which all three causes are needed."""
 
     def __init__(
         self, model: MeasurementModel, baseline: Fit, null: Null, rules: Rules, on_progress: OnMessage
@@ -217,11 +229,11 @@ class _Triples:
         self._tried: set[frozenset[Candidate]] = set()
 
     def add_to(self, pair: Explanation) -> None:
-        """A third cause beside two, where one improves chi-square by more than noise would."""
+        """Add a third cause to a pair, if one improves chi-square by more than noise would."""
         self.on_progress(f"looking for a third cause beside {pair.fit.label}")
         linear = self._linear(pair)
         beside = screen(linear, self.model.effects, held=pair.fit)
-        # an effect that is there already has its position, or its scope: the scene holds one
+        # an effect that the pair has already has a position, or scope: the scene has only one
         free = np.array([c.effect not in pair.names for c in linear.candidates]) & (beside.sizes > 0.0)
         promises = np.where(free, beside.penalised(linear.z), 0.0)
         if (
@@ -234,7 +246,7 @@ class _Triples:
             if not worth_fitting(self.baseline, pair.fit.chi2, float(promises[k]), self.rules):
                 break
             self._confirm(pair, {**pair.fit.state.amplitudes, beside.candidates[k]: float(guesses[k])})
-        # the best pair may be a mixture of three others: these are sought afresh, around where it leads
+        # the best pair may stand for three others: all triples are compared at its state
         alone = screen(linear, self.model.effects)
         target = linear.z - linear.columns[:, : len(pair.candidates)] @ _values(pair)
         for three in best_triples(alone, target, count=self.rules.max_triples[1]):
@@ -243,8 +255,7 @@ class _Triples:
                 self._confirm(pair, {linear.candidates[k]: g for k, g in zip(three, guess, strict=True)})
 
     def replace_in(self, three: Explanation) -> bool:
-        """Others in the place of each of three causes, and the same elsewhere; whether one that had not been
-        tried is better."""
+        """Replace each of three causes by others, or itself in another scope; True if the score improves."""
         self.on_progress(f"looking for equivalents of {three.fit.label}")
         count, best = len(three.candidates), three.score
         linear = self._linear(three)
@@ -272,7 +283,7 @@ class _Triples:
         return min(e.score for e in self.found) < best
 
     def _linear(self, held: Explanation) -> Linearisation:
-        """Columns of its causes, then of all others."""
+        """Linearisation with the columns of its causes, followed by all others."""
         others = tuple(c for c in self.model.candidates if c not in held.candidates)
         return self.model.linearise(held.fit.state, (*held.candidates, *others))
 
@@ -286,19 +297,19 @@ class _Triples:
             self.found.append(three)
 
     def _all_needed(self, three: Explanation) -> bool:
-        """True if without any one of the causes the fit would be worse by more than noise does."""
+        """True if the fit would be worse by more than noise without any one of the causes."""
         least = chi2.isf(self.rules.extra_cause_rate, 1)
         parts = [three.fit.amplitude(c) for c in three.candidates]
         return all(value**2 >= least * sd**2 for value, sd in parts)
 
 
 def _values(found: Explanation) -> Array:
-    """Amplitudes of its causes, in their order."""
+    """Amplitudes of the causes, in their order."""
     return np.array([found.fit.state.amplitudes[c] for c in found.candidates])
 
 
 def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
-    """Candidates with the largest promise, of each effect one."""
+    """Indices of the candidates with the largest predicted improvement, one per effect."""
     found: dict[str, int] = {}
     for k in np.argsort(-promises):
         if promises[k] > 0.0 and len(found) < count:
@@ -307,8 +318,10 @@ def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
 
 
 def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int]]:
-    """Pairs of candidates (by index) of different effects with the largest improvement of chi-square, the
-    best one of each pair of names, best first."""
+    """Pairs of candidates, by index, with the largest predicted improvement of chi-square.
+
+    The effects of a pair differ; each pair of names occurs once, with its best candidates; best first.
+    """
     score = screened.directions.T @ z
     cosine = screened.directions.T @ screened.directions
     a, b = np.triu_indices(len(score), 1)
@@ -336,8 +349,10 @@ def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int
 
 
 def best_triples(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int, int]]:
-    """The same for three causes: all are compared, by what the other two leave once the first is projected
-    out."""
+    """Triples of candidates, by index, as in `best_pairs`.
+
+    All are compared: the first is projected out, and the other two are treated as a pair.
+    """
     used = np.flatnonzero(screened.sizes > 0.0)
     directions = screened.directions[:, used]
     score, cosine = directions.T @ z, directions.T @ directions

@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 
 DRAWS = 4000
 EVERYTHING = "everything"
-BEYOND = 0.1  # of the least p-value that draws can show: below it no draw of all is expected to reach
-ROUNDING = 1e-7  # fraction of a column that is rounding where the rest of it is fitted
+BEYOND = 0.1  # relative to the least p-value of the draws: below, no draw is expected to reach the value
+ROUNDING = 1e-7  # relative length of a column, without the fitted part, that is rounding error
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,8 +31,8 @@ class LackOfFit:
 
     Attributes
     ----------
-    p_value : over all tests together.
-    each : p-value of each test by its name.
+    p_value : p-value of all tests together.
+    each : p-value of each test, by name.
     worst : name of the test with the smallest p-value.
     """
 
@@ -46,14 +46,13 @@ class Null:
 
     Parameters
     ----------
-    size : m, number of residuals.
-    basis : what a lack of fit might look like, sets of columns (m, k) by name
-        (`MeasurementModel.discrepancy_basis`).
+    size : number m of residuals.
+    basis : discrepancy basis, sets of columns (m, k) by name (`MeasurementModel.discrepancy_basis`).
 
     Attributes
     ----------
-    explained : what fits to these residuals have given already, by their sets of causes (`explain`): a second
-        round, and the shares of single causes, ask for many of them again.
+    explained : cache of fits to these residuals, by set of causes (`explain`). A second round, and the
+        shares of single causes, need many of them again.
     """
 
     def __init__(self, size: int, basis: Mapping[str, Array], *, seed: int = 0) -> None:
@@ -65,11 +64,11 @@ class Null:
     def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).
 
-        The tests are the whole squared sum, and the squared sum in each set of the basis. Their smallest
-        p-value is judged by its own distribution, which accounts for their number and for what they share;
-        where it is beyond what the draws reach, by the number of tests alone, which costs no draw (each
-        square has a chi-square distribution). Differences between the moduli of specimens are a set of their
-        own, and part of no other.
+        The tests are the sum of squares of all residuals, and that in each set of the basis. Their smallest
+        p-value is compared with its own distribution, which accounts for the number of tests and their
+        correlation. If it is below the range of the draws, it is multiplied by the number of tests (each sum
+        of squares has a chi-square distribution). Differences between the moduli of specimens are a set of
+        their own, and projected out of the others.
         """
         free = basis_of(jacobian)
         scatter = self.basis.get(SPECIMENS)
@@ -79,7 +78,7 @@ class Null:
             off = free if name == SPECIMENS else known
             left = columns - off @ (off.T @ columns)
             own = np.linalg.norm(left, axis=0) > ROUNDING * np.linalg.norm(columns, axis=0)
-            # orthogonal to what is fitted: it sees nothing of that in the noise either
+            # orthogonal to the fitted columns, in residuals and noise alike
             spans[name] = basis_of(left[:, own])
         here = {n: float(((z @ s) ** 2).sum()) * ALLOWED.get(n, 1.0) for n, s in spans.items()}
         here = {EVERYTHING: float(z @ z), **here}
@@ -104,10 +103,9 @@ class Null:
         return LackOfFit(p_value=float(min(1.0, p)), each=each, worst=worst)
 
     def max_improvement(self, screened: Screen) -> MaxImprovement:
-        """Null distribution of the best candidate's improvement of chi-square, less its multiplicity penalty
-        (`Screen.penalised`)."""
+        """Null distribution of the best penalised improvement of chi-square (`Screen.penalised`)."""
         best = np.zeros(DRAWS)
-        for part in np.array_split(np.arange(DRAWS), 8):  # in parts: it is draws times candidates
+        for part in np.array_split(np.arange(DRAWS), 8):  # in parts, to limit memory
             best[part] = screened.penalised(self.noise[part]).max(axis=1, initial=0.0)
         return MaxImprovement(drawn=np.sort(best))
 
@@ -121,8 +119,8 @@ class MaxImprovement:
     def p_value(self, improvement: float) -> float:
         """Probability that noise alone gives the best of all candidates this improvement.
 
-        Beyond what the draws reach, the tail is that of as many independent squared normals as agree with the
-        1 % quantile of the draws.
+        Beyond the range of the draws, the tail is that of the maximum of independent squared normals, whose
+        number matches the 1 % quantile of the draws.
         """
         counted = (len(self.drawn) - np.searchsorted(self.drawn, improvement) + 1) / (len(self.drawn) + 1)
         if counted > 20.0 / len(self.drawn):
@@ -136,6 +134,6 @@ class MaxImprovement:
 
 
 def _exceeding(values: Array, order: Array) -> Array:
-    """Fraction of the sorted draws that reaches each value, never zero."""
+    """Fraction of the sorted draws that reach each value, at least 1 / (number + 1)."""
     above = len(order) - np.searchsorted(order, values, side="left")
     return np.asarray((above + 1) / (len(order) + 1))

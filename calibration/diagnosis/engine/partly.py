@@ -1,17 +1,16 @@
-"""A verdict in degrees: what may be named where every explanation leaves more than noise.
+"""Verdicts if every explanation leaves more than noise: partly explained, or unexplained.
 
-No real bench passes a test for "nothing but noise is left". What is named then is the smallest set of causes
-that takes most of the explainable misfit, if
+Real experiments rarely pass a test for "only noise is left". The smallest set of causes that takes most of
+the explainable misfit is then named, if
 
-1. it takes two fifths of it or more, and in 95 % of the replicates over specimens, tests or stretches of
-   records a tenth;
-2. it predicts every part of the measurements that its fit has not seen better than the baseline does, or of
-   many parts so many that chance would not, whichever of them were measured; and all of them together by at
-   least two fifths of what noise leaves to explain;
-3. its amplitudes are the same, whatever part is left out, and inside the bounds of what makes sense;
-4. no other set of as many causes takes as much in the replicates: otherwise all of these are named.
+1. its share is at least two fifths, and at least a tenth in 95 % of the replicates over specimens, tests or
+   parts of records;
+2. it predicts every part of the measurements that its fit has not used better than the baseline does (of
+   many parts more than chance would), and all of them together with a skill of at least two fifths;
+3. its amplitudes do not depend on the part that is left out, and are inside their bounds;
+4. no other set of as many causes takes as much in the replicates; otherwise all of these sets are named.
 
-Levels are in `rules.py`.
+`rules.py` has the levels.
 """
 
 from __future__ import annotations
@@ -32,21 +31,21 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import NoiseKnown
 from calibration.progress import OnMessage
 
-EACH = 2  # sets of as many causes that are tried
+EACH = 2  # sets of each number of causes that are tried
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Assessed:
-    """An explanation, and what it buys.
+    """An explanation with its share, held-out improvement, and the reasons against naming it.
 
     Attributes
     ----------
-    share : of the explainable misfit.
-    at_least : share that it takes in `Rules.sure` of the replicates.
+    share : fraction of the explainable misfit.
+    at_least : lower bound of the share, at `Rules.replicate_level`.
     alternatives : other sets of names that take as much, with their shares.
-    held_out : None where it was not measured.
-    against : why it is not named, a clause each; nothing where it may be.
-    confidence : part of the replicates in which no other set of as many causes takes more.
+    held_out : held-out improvement; None if it was not measured.
+    against : reasons why it is not named, as clauses; empty if it may be named.
+    confidence : fraction of the replicates in which no other set of as many causes takes more.
     """
 
     explanation: Explanation
@@ -68,10 +67,11 @@ def assess(
     *,
     on_progress: OnMessage = lambda _: None,
 ) -> Assessed | None:
-    """The explanation that may be named, or the one that comes nearest (`against` says why it is not named);
-    None where there is none at all.
+    """Find the explanation that may be named, or else the one that comes nearest, with the reasons `against`
+    it.
 
-    explanations : those that were confirmed in the simulator, of a search that calls them unexplained.
+    `explanations` are those confirmed in the simulator by a search whose verdict is "unexplained". None if
+    there are none.
     """
     if not explanations or not shares.baseline.value > 0.0:
         return None
@@ -92,14 +92,13 @@ def assess(
 
 
 def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnown, rules: Rules) -> bool:
-    """True if the baseline's departure is no larger than a smooth error that nobody stated may be. Never
-    where the noise is known."""
+    """True if the baseline's misfit may be a smooth unstated error; False if the noise is known."""
     part = None if noise.known else relative_rms(model, baseline)
     return part is not None and part < rules.smooth_error_fraction
 
 
 def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tuple[Explanation, Misfit]]:
-    """Of each number of causes the `EACH` sets of names that take most; by what they leave."""
+    """The best `EACH` sets of names for each number of causes, by remaining misfit."""
     best: dict[int, list[Names]] = {}
     kept = []
     for e, m in sorted(found, key=lambda pair: pair[1].value):
@@ -111,10 +110,10 @@ def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tu
 
 
 def _dominant(left: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules) -> int:
-    """Which is tried next: the best of the smallest number of causes that one cause more adds little to.
+    """Index of the next set to try: the best of the smallest number of causes to which one more adds little.
 
-    It is asked again without those that may not be named: what a rejected set of few causes took is no reason
-    against a set of more.
+    It is called again without rejected sets, since the share of a rejected set of few causes is no reason
+    against a larger set.
     """
     best: dict[int, int] = {}
     for k, (e, _) in enumerate(left):
@@ -219,8 +218,7 @@ def _alternatives(
     shares: Shares,
     rules: Rules,
 ) -> tuple[tuple[Names, Interval], ...]:
-    """Other sets of as many names, or fewer, that take as much, altogether or in some of the replicates; best
-    first."""
+    """Other sets of at most as many names that take as much, in total or in some replicates; best first."""
     found: dict[Names, Misfit] = {}
     for e, m in sound:
         if e.names == explanation.names or len(e.names) > len(explanation.names):

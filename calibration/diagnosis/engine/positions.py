@@ -1,8 +1,8 @@
-"""The position of a cause along the specimen, between those that the search screens.
+"""Position of a cause along the specimen, refined between the screened positions.
 
-An effect with a position (a void) is screened at a few. Its signature depends on the position: a large one
-fitted 3 mm beside it leaves a hundred of chi-square, which nothing else explains. So the position of a cause
-that explains much is moved to where the fit is best, by parabolas through three fits.
+An effect with a position (a void) is screened at a few positions, on which its signature depends: a large
+effect fitted at a distance of 3 mm leaves a hundred of chi-square, which no other effect explains. The
+position of a cause that explains much is therefore optimised, by parabolas through three fits.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from calibration.measurements._model import MeasurementModel
 STEPS = (
     0.05,
     0.0125,
-)  # of the specimen's length: half the distance between screened positions, then a quarter of that
-FARTHEST = 1.5  # steps
+)  # relative to the specimen's length: half of the screened spacing, then a quarter of that
+FARTHEST = 1.5  # largest move, in steps
 ENDS = (0.02, 0.98)
 
 
 def at_best_position(model: MeasurementModel, explanation: Explanation, null: Null) -> Explanation:
-    """The explanation with its causes where chi-square is least; itself where none has a position."""
+    """The explanation with its causes at the positions of least chi-square, if they have a position."""
     found = explanation
     for number, cause in enumerate(explanation.candidates):
         if cause.position is None:
@@ -36,7 +36,7 @@ def at_best_position(model: MeasurementModel, explanation: Explanation, null: Nu
 def _improved(
     model: MeasurementModel, found: Explanation, number: int, step: float, null: Null
 ) -> Explanation:
-    """The best of the position, one step to either side, and the vertex of the parabola through these."""
+    """Best of the position, one step to either side, and the vertex of the parabola through these."""
     here = found.candidates[number].position
     assert here is not None
     tried = {here: found}

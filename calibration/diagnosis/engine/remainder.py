@@ -1,7 +1,8 @@
-"""What an explanation leaves: how large it is, where it lives, and whether it repeats.
+"""Remaining misfit of an explanation: its size, its location, and whether it repeats.
 
-What repeats only within a specimen is a fault of that specimen; what repeats in all of them belongs to the
-form of the model or to the rig; what repeats nowhere is noise (the reasoning of gauge repeatability studies).
+A remainder that repeats only within a specimen is a fault of that specimen. One that repeats in all
+specimens belongs to the form of the model or to the rig. One that does not repeat is noise (as in gauge
+repeatability studies).
 """
 
 from __future__ import annotations
@@ -20,25 +21,25 @@ from calibration.measurements._model import MeasurementModel
 Array = NDArray[np.float64]
 Repeats = Literal["everywhere", "within a material", "within a specimen", "nowhere", "not known"]
 
-BINS = 12  # along a record, in which the remainder of two records is compared
-ALIKE = 0.5  # mean cosine from which on it repeats
-ZERO = 1e-3  # of a range: nearer to zero than that is zero
-MOST = 0.5  # of the squares: where a third of the records' range, or some of the records, hold so much
+BINS = 12  # parts of a record, in which the remainders of two records are compared
+ALIKE = 0.5  # mean cosine from which on a remainder repeats
+ZERO = 1e-3  # relative to a range: smaller values are printed as zero
+MOST = 0.5  # fraction of the sum of squares in a third of the range, or in few records, that is reported
 
 
 @dataclass(frozen=True, kw_only=True)
 class Remainder:
-    """What is left beside noise.
+    """Remaining misfit beyond noise.
 
     Attributes
     ----------
-    rms : beyond the noise [SI]; 0 where nothing is.
-    of_full_scale : the same over each record's largest value; None where records have no scale.
-    repeats : at which level it is alike.
+    rms : rms beyond the noise [SI]; 0 if there is none.
+    of_full_scale : the same, relative to each record's largest value; None if records have no scale.
+    repeats : level at which it repeats.
     cosines : mean cosine between records, by level; levels without two records are left out.
-    records : names of the records that hold most of it, where these are few.
-    place : where along the records it lives ("" where that is not known): the quantity, and between what.
-    negligible : whether it is below what matters in practice (`Rules.negligible`).
+    records : names of the records with most of it, if these are few.
+    place : quantity and range in which most of it lies; "" if that is not known.
+    negligible : True if it is below `Rules.negligible_fraction`.
     """
 
     rms: float
@@ -51,8 +52,10 @@ class Remainder:
 
 
 def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Remainder:
-    """What a fit leaves; negligible : part of full scale that does not matter in practice. ValueError where
-    its state has no answer."""
+    """Remaining misfit of a fit; `negligible` is a fraction of full scale.
+
+    ValueError if the state of the fit has no equilibrium.
+    """
     left = [np.asarray(x) for x in model.registered(fit.state)]
     rms = beyond(model.distance_rms(fit.state), model.noise_rms())
     scale = model.full_scale()
@@ -73,7 +76,7 @@ def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Rem
 
 
 def about_remainder(left: Remainder) -> str:
-    """What to measure next of what is left, "" where nothing is that matters."""
+    """Sentence on what to measure next; "" if the remainder is negligible."""
     if left.rms == 0.0 or left.negligible:
         return ""
     return {
@@ -89,12 +92,12 @@ def about_remainder(left: Remainder) -> str:
 
 
 def beyond(rms: float, noise: float) -> float:
-    """What noise does not explain of a root mean square."""
+    """Part of an rms beyond the noise, (rms^2 - noise^2)^(1/2); 0 if noise is larger."""
     return float(np.sqrt(max(rms**2 - noise**2, 0.0)))
 
 
 def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
-    """Root mean square beyond the noise, each record over its largest value; None where there is none."""
+    """Rms beyond the noise, relative to each record's largest value; None if records have no scale."""
     scale = model.full_scale()
     if scale is None:
         return None
@@ -110,7 +113,7 @@ def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
 
 
 def _binned(values: Array) -> Array | None:
-    """Means of what is compared, in equal parts of a record."""
+    """Means in `BINS` equal parts of a record; None if it has too few points."""
     own = values[np.isfinite(values)]
     if own.size < BINS:
         return None
@@ -118,7 +121,7 @@ def _binned(values: Array) -> Array | None:
 
 
 def _cosines(records: Sequence[Any], left: Sequence[Array]) -> dict[str, float]:
-    """Mean cosine of what is left of two records of one kind of test, by what the two share."""
+    """Mean cosine between the remainders of two records of one kind of test, by level."""
     found: dict[str, list[float]] = {}
     curves = [_binned(x) for x in left]
     for a, b in combinations(range(len(records)), 2):
@@ -154,7 +157,7 @@ def _repeats(cosines: dict[str, float], model: MeasurementModel) -> Repeats:
 
 
 def _holders(records: Sequence[Any], squares: Array) -> tuple[str, ...]:
-    """The fewest records that hold MOST of the squares, where these are less than half of all."""
+    """Smallest set of records with MOST of the sum of squares, if it is less than half of all."""
     total = float(squares.sum())
     if not total > 0.0 or len(records) < 2:
         return ()
@@ -164,7 +167,7 @@ def _holders(records: Sequence[Any], squares: Array) -> tuple[str, ...]:
 
 
 def _place(model: MeasurementModel, left: Sequence[Array]) -> str:
-    """The part of a driven quantity, of three, in which more than MOST of it lies."""
+    """The third of the range of a driven quantity with at least MOST of the sum of squares, as text."""
     along = [model.along(k) for k in range(len(model.records))]
     pairs = [(a, x) for a, x in zip(along, left, strict=True) if a is not None]
     if not pairs:
