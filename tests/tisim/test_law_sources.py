@@ -100,8 +100,7 @@ def test_eight_chains_are_their_series_far_from_the_ends_and_lock_at_them():
     F = np.eye(3) + 0.4 * np.random.default_rng(6).uniform(-1, 1, (20, 3, 3))
     ours, theirs = (evaluate(n, p, F)[1] for n, p in (("eight-chain", chains), ("arruda-boyce", series)))
     assert ours == pytest.approx(theirs, rel=1e-5, abs=1e-3)
-    # at 98 % of the locking length the force is 1 / (1 - 0.98) over 3 x, relative to rest; linear beyond the
-    # limit
+    # at 98 % of the locking length the force is 1 / (1 - 0.98) over 3 x, relative to rest; linear beyond it
     x = np.array([0.98, 0.999, 1.0, 1.001])
     pulled = [np.max(np.roots([1.0, 0.0, -3.0 * (6.0 * y) ** 2, 2.0]).real) for y in x]
     F = np.array([np.diag([s, s**-0.5, s**-0.5]) for s in pulled])

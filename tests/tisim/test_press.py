@@ -41,8 +41,7 @@ def solve(**changes: Any) -> tisim.Result:
     ],
 )
 def test_between_sliding_platens_it_is_the_homogeneous_coupon(law: str, ratio: float, element: Any) -> None:
-    # below 0.44 the free surface of a Neo-Hookean body is unstable (Biot 1963): the mesh wrinkles, as it
-    # should
+    # below 0.44 the free surface of a Neo-Hookean body is unstable (Biot 1963): the mesh rightly wrinkles
     stretches, solver = (0.9, 0.5), tisim.Solver(tolerance=1e-9)
     found = solve(
         material=material(law, ratio=ratio),

@@ -132,7 +132,7 @@ def test_transverse_gradient_bends_a_pulled_beam_and_softens_it():
             imperfections=Imperfections(transverse_gradient=gradient),
         )
     )
-    # E (1 + g z): no moment about the neutral axis if the curvature is g times the strain; the stiff side is
+    # E (1 + g z): no moment about the centre line if the curvature is g times the strain; the stiff side is
     # up
     strain = pull / (YOUNG * np.pi * RADIUS**2)
     assert deflection(result)[2] == pytest.approx(gradient * strain * LENGTH**2 / 2, rel=0.05)

@@ -170,8 +170,7 @@ def test_polish_ends_where_linear_algebra_says() -> None:
     c10, c01 = np.linalg.lstsq(columns, y, rcond=None)[0]
     found = p.parameters(end.u)
     assert end.converged
-    # the polish ends if the predicted gain in chi-square is below 0.1, i.e. within a third of a standard
-    # deviation
+    # the polish ends at a predicted gain in chi-square below 0.1, within a third of a standard deviation
     sd = np.sqrt(np.diag(np.linalg.inv(columns.T @ columns)))
     assert abs(found["c10"] - c10) < 0.33 * sd[0]  # type: ignore[operator]
     assert abs(found["c01"] - c01) < 0.33 * sd[1]  # type: ignore[operator]

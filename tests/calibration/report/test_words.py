@@ -42,8 +42,8 @@ def test_some_laws_are_alike() -> None:
 
 
 def test_misfit_shrinks_differences() -> None:
-    # a difference of 30 in chi-square is decisive at the noise level, not if all laws miss by ten times as
-    # much
+    # a difference of 30 in chi-square is decisive at the noise level, but not if all laws miss by ten times
+    # it
     laws = [
         calibration(chi2=980.0, reduced_chi2=10.0),
         calibration("ogden", chi2=970.0, reduced_chi2=10.0),

@@ -28,8 +28,7 @@ from factory.materials import load_card
 TRUTH = tisim.material_from_moduli("neo-hookean", shear_modulus=12e3, bulk_modulus=6e6, density=1000.0)
 
 
-# finer than the mesh of the search and coarser than the one for its correction: error of 4 micrometres at a
-# tip
+# finer than the search's mesh and coarser than the one that corrects it: error of 4 micrometres at a tip
 MESH = {"layer": 0.0025, "rings": 4}
 
 
