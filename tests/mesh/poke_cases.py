@@ -103,7 +103,7 @@ def assert_good(mesh: Mesh, block: Block) -> None:
     lost = np.prod(block.size) - determinants.sum()
     ratio = lost / true_volume(inclusion)
     corners = np.unique(mesh.elements[:, :8] if mesh.kind in HEXAHEDRA else mesh.elements)
-    held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], corners)]  # middle nodes lie on chords
+    held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], corners)]  # mid-side nodes lie on chords
     off = np.minimum(np.abs(held[:, 2]), gap_to_rigid(inclusion, held))
     if isinstance(inclusion, BoxInclusion):
         assert abs(ratio - 1) < 1e-9

@@ -91,5 +91,5 @@ def test_bent_rods_sections_keep_their_volume(supports, length, monkeypatch):
         return np.abs(body.pressures(guess)[free]).max() / body.moduli.bulk_modulus
 
     bent = largest_change()
-    monkeypatch.setattr(equilibrium, "HELD", 1e3)  # clamps hold all sections flat
+    monkeypatch.setattr(equilibrium, "HELD", 1e3)  # all sections stay plane
     assert bent < 0.25 * largest_change()

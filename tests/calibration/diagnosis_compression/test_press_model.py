@@ -182,7 +182,7 @@ def test_pictures_and_words() -> None:
     model = press_model(both(sliding, seed=1))
     found = diagnose(model, gain=False)
     names = [p.name for p in model.pictures(found)]
-    assert names == ["residuals", "curves", "rms"]  # the curves lie on each other
+    assert names == ["residuals", "curves", "rms"]  # the curves coincide
     for p in model.pictures(found):
         p.figure.savefig(io.BytesIO(), format="png")
     assert "too few repeats" in model.noise_sentence()

@@ -134,7 +134,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "instron.csv:",
         "expected decimals with a point, as the answers say",
     ),
-    # what the formats promise
+    # violations of the formats
     "zwick without units": (
         "squeeze",
         lambda text: text.replace('"s"\t"mm"\t"N"\n', ""),
@@ -193,7 +193,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "column Time: expected more than 6 s before it, got 6; leave_out_rows: true",
     ),
     "a clock before 0": ("strip", lines(2, 2, "-1,0,0"), {}, "plain.csv: line 2:", "expected 0 s or more"),
-    # what is missing
+    # missing values
     "no unit": (
         "strip",
         swap("strain %", "strain"),
