@@ -126,7 +126,7 @@ def test_markers_make_it_a_bar(tmp_path: Path) -> None:
 
 
 def test_names_of_earlier_versions_are_understood(tmp_path: Path) -> None:
-    """`radius` had another meaning in other measurements; `relaxation-branch` is now `relaxation`."""
+    """`radius`, ambiguous among models, is now `section-scale`; `relaxation-branch` is `relaxation`."""
     experiment = read(write_bars(tmp_path / "e", Truth()))
     model = model_of(experiment, kind="bars", without=["radius", "relaxation-branch"])
     assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation"}

@@ -14,7 +14,7 @@ LOWER_LEFT = (12.0, 26.0)  # outer corner of the squares in the camera's frame [
 
 
 def board(view: View, seed: int, noise: float = 0.03) -> Board:
-    """The board's corners in the image of a camera, with `noise` px."""
+    """The board's corners in the image of a camera, with noise of `noise` px."""
     i, j = np.meshgrid(np.arange(1, COLUMNS + 1), np.arange(1, ROWS + 1))
     points = SQUARE * np.stack([i, j], axis=-1)
     flat = 1e3 * points.reshape(-1, 2) + LOWER_LEFT
