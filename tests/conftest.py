@@ -1,4 +1,4 @@
-"""For all tests: long files first, and the core-seconds of files, and of packages beside their budget."""
+"""Configuration of all tests: run the longest files first; report core-seconds per file and per package."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ import psutil
 import pytest
 
 HERE = Path(__file__).parent
-# what says nothing of processes starts none: pytest-xdist fills the cores, and a process that is started
-# imports everything and compiles kernels for itself, at several times the cost of what most tests compute
+# Functions called without a number of processes start none: pytest-xdist occupies the cores, and each process
+# imports everything and compiles its own kernels, at several times the cost of most tests.
 os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
-# and threads of BLAS and OpenMP wait for each other: with two a process on two busy cores some tests took a
-# hundred times as long
+# Threads of BLAS and OpenMP wait for each other: with two threads per process on two busy cores some tests
+# took a hundred times as long.
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
-# the same random examples in every run: what fails is the commit, not the draw. New ones:
+# The same random examples in every run, so that a failure is due to the commit. To draw new examples:
 # HYPOTHESIS_PROFILE=explore python -m pytest ...
 hypothesis.settings.register_profile("fixed", derandomize=True, deadline=None)
 hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
-# pytest-xdist hands out whole files: a long one that comes late would leave the other processes idle. The end
-# of a run shows which they are
+# pytest-xdist distributes whole files: a long file that starts late would leave the other processes idle. The
+# summary at the end of a run lists the long files.
 LONG = (
     "packaging/test_pages.py",
     "calibration/study/test_fit_and_diagnosis.py",
@@ -83,10 +83,13 @@ LONG = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """What is started in the background ignores Ctrl-C, and so would the programs whose Ctrl-C is tested."""
+    """Restore the default handling of SIGINT, set the order of files, and register the core-second count.
+
+    A process started in the background ignores Ctrl-C, and so would the programs whose Ctrl-C is tested.
+    """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    config.option.loadscopereorder = False  # by the number of tests: `LONG` stands for their time
+    config.option.loadscopereorder = False  # that order is by the number of tests; `LONG` is by time
     config.pluginmanager.register(_CoreSeconds(config))
 
 
@@ -96,7 +99,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class _CoreSeconds:
-    """Counts what each file's tests use, in this process and those that it starts."""
+    """Core-seconds of each file's tests, in this process and its descendants."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
@@ -148,7 +151,7 @@ class _CoreSeconds:
 
 
 def _core_seconds() -> float:
-    """This process's, its ended children's, and those of its living descendants."""
+    """Core-seconds of this process, its ended children and its living descendants."""
     ended = sum(
         used.ru_utime + used.ru_stime
         for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))

@@ -1,4 +1,4 @@
-"""The scorers of gain, scope, advice and controls, on verdicts that are made up."""
+"""Scores of held-out improvement, scope, advice and controls, on invented verdicts."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def truth(*effects: str, sigma: float = 12.0, category: str = "single", scope: s
 def made_diagnosis(
     verdict: str, *names: tuple[str, ...], scope: str = "all", **others: Any
 ) -> dict[str, Any]:
-    """names: the sets that are named, the chosen one first."""
+    """A diagnosis with these sets of names, the chosen one first."""
     causes = [{"effect": e, "scope": scope, "parameters": {}} for e in (names[0] if names else ())]
     return {"verdict": verdict, "causes": causes, "alternatives": [list(n) for n in names]} | others
 
@@ -103,7 +103,7 @@ def test_scope_is_compared_as_the_beams_that_an_effect_acts_on() -> None:
     whole = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("creep",), scope="all"))
     other = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("creep",), scope="S0"))
     wrong = Scored(truth("creep", scope="S1"), made_diagnosis("found", ("skin",), scope="S1"))
-    # a bridge does not slip out: all beams of a material are its cantilevers
+    # a bridge does not slip out: for this effect all beams of a material are its cantilevers
     slipped = Scored(truth("free-length", scope="S0"), made_diagnosis("found", ("free-length",), scope="S0"))
     assert [t == s for _, t, s in scopes(slipped)] == [True]
     rows = scope_goals([right, whole, other, wrong, slipped])
@@ -135,7 +135,7 @@ def test_advice_settles_where_the_truth_is_found_alone() -> None:
     assert not settled(case, after(made_diagnosis("ambiguous", ("taper",), ("skin",))))
     assert not settled(case, after(made_diagnosis("none")))
     assert not settled(case, after(None))
-    # its value is in the experiment: nothing is left to be found
+    # its value is in the experiment, so that nothing remains to be found
     assert settled(case, after(made_diagnosis("none"), ["taper"]))
     assert not settled(case, after(made_diagnosis("found", ("skin",)), ["taper"]))
     string = Scored(truth("string", category="outside"), both)
@@ -158,7 +158,7 @@ def test_readings_refute_the_sets_that_they_disagree_with() -> None:
     assert refuted(nothing, sets) == ("clamp-tilt", "gravity-tilt", "skin")
     tilted = {"clamp-tilt": True, "gravity-tilt": False}
     assert refuted(tilted, sets) == ("gravity-tilt", "residual-curvature", "skin")
-    # what is seen to be there stays, though no set has it
+    # a cause that a reading confirms stays, although no set has it
     assert refuted({"clamp-gap": True}, sets) == ("clamp-tilt", "gravity-tilt", "residual-curvature", "skin")
 
 

@@ -1,7 +1,7 @@
-"""Hidden effects in made beam experiments: each must be found, and nothing found where nothing is hidden.
+"""Effects hidden in synthetic beam experiments are found, and no others.
 
-The cases are those of `benchmarks.blind.beams.make --survey` (each effect once, 6 to 15 sigma); the whole set
-is diagnosed by `benchmarks.blind.beams.run`. Each experiment lies in a temporary folder, without the truth.
+The cases are those of `benchmarks.blind.beams.make --survey` (each effect once, 6 to 15 sigma); the complete
+set is diagnosed by `benchmarks.blind.beams.run`. Each experiment is in a temporary folder, without the truth.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ INDEX = {
     (case["hidden"][0]["effect"] if case["hidden"] else case["category"]): int(key)
     for key, case in load_truth(SURVEY)["cases"].items()
 }
-# in every run the three beams of one material, some 10 core-s a diagnosis; the nine of a case are slow
+# every run has the three beams of one material, some 10 core-s per diagnosis; the nine of a case are slow
 FEW, ALL = 3, 9
 NOTHING = [
     ("clean", FEW),
@@ -56,7 +56,7 @@ HIDDEN = [
 
 
 def diagnosed(name: str, beams: int, folder: Path, *, magnified: float = 1.0) -> Scored:
-    """The verdict on the case's first beams; magnified: what hides in the photographs, not in the beams."""
+    """Diagnosis of the case's first beams; `magnified` scales hidden effects of the photographs."""
     index = INDEX[name]
     case, edges = load_case(SURVEY, index)
     hidden = tuple(replace(h, amplitude=magnified * h.amplitude) for h in case.hidden)
@@ -75,8 +75,10 @@ def test_nothing_is_named_where_nothing_can_be_seen(name: str, beams: int, tmp_p
 
 @pytest.mark.parametrize(("name", "beams"), HIDDEN)
 def test_a_hidden_effect_is_named(name: str, beams: int, tmp_path: Path) -> None:
-    """In the named set, first of it, and by its size within 3 of its standard deviations; an equivalent
-    explanation may stand beside it."""
+    """The effect is in the named set, as its first one, with its amplitude within 3 standard deviations.
+
+    Equivalent explanations may be named, too.
+    """
     case = diagnosed(name, beams, tmp_path)
     assert case.in_the_set, (case.diagnosis["verdict"], case.diagnosis["alternatives"])
     assert case.named == (name,)
@@ -86,13 +88,13 @@ def test_a_hidden_effect_is_named(name: str, beams: int, tmp_path: Path) -> None
 
 @pytest.mark.parametrize("beams", [FEW, pytest.param(ALL, marks=pytest.mark.slow)])
 def test_what_no_library_holds_gets_no_confident_name(beams: int, tmp_path: Path) -> None:
-    """As many standard deviations in a few beams as in all."""
+    """The effect has as many standard deviations in a few beams as in all."""
     case = diagnosed("shadow", beams, tmp_path, magnified=(ALL / beams) ** 0.5)
     assert case.verdict in ("unexplained", "ambiguous")
 
 
 def _edges_of_nothing() -> np.ndarray:
-    """Straight beams: nine trials, three photographs."""
+    """Straight edges of nine trials with three photographs."""
     s = np.linspace(0, 1, POINTS)
     edges = np.zeros((9, 3, 2, POINTS, 2))
     for trial in range(9):
@@ -108,13 +110,13 @@ def test_lab_writes_the_format_and_nothing_of_the_truth(tmp_path: Path) -> None:
     written = yaml.safe_load((tmp_path / "experiment" / "experiment.yaml").read_text())
     named = [c["outline"] for t in written["trials"] for c in t["captures"]]
     assert kept == sorted(["experiment.yaml", *named])
-    # as whole words, of which the format itself has "radius" (in radius_mm)
+    # as whole words, since the format itself has "radius" in radius_mm
     words = set(re.findall(r"[a-z-]+", (tmp_path / "experiment" / "experiment.yaml").read_text()))
     assert words & {*EFFECTS, *OUTSIDE, "truth", "seed", "sigma"} == {"radius"}
 
 
 def test_lab_draws_the_noise_that_it_states(tmp_path: Path) -> None:
-    """0.1 mm along the normal with a registration of 0.1 mm, 0.15 degrees, 0.3 %: of straight edges, z."""
+    """Straight edges: 0.1 mm along the normal (z), with a registration of 0.1 mm, 0.15 degrees and 0.3 %."""
     heights, slopes = [], []
     for index in range(6):
         case = draw(index, 1, "clean", (), (3.0, 20.0))
@@ -148,7 +150,7 @@ def test_score_separates_right_from_wrong() -> None:
     right = Scored(truth, verdict)
     assert right.named == right.effects == ("creep",)
     assert right.in_the_set
-    assert Scored(truth, verdict | {"alternatives": []}).in_the_set  # what is named belongs to the set
+    assert Scored(truth, verdict | {"alternatives": []}).in_the_set  # the named cause belongs to the set
     (true, found, sd), *_ = right.amplitudes()
     assert (found - true) / sd == pytest.approx(2.0)
     other = Scored(

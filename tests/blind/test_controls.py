@@ -1,4 +1,4 @@
-"""Controls of verdicts: true shares, cases with one cause inside and one outside, scores."""
+"""Controls of verdicts: true fractions, cases with one cause inside and one outside the library, scores."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from benchmarks.blind.compression import laboratory as compression
 from benchmarks.blind.controls import LABORATORIES, covered, scores
 from benchmarks.blind.laboratory import WAVES, left, shapley
 
-RECORDS = {"coupons": 1, "compression": 1, "indentation": 2}  # column of what is measured
+RECORDS = {"coupons": 1, "compression": 1, "indentation": 2}  # column of the measured quantity
 STATED = ("stress_sd_kPa", "force_sd_N")
 RNG = np.random.default_rng(1)
 COLUMNS = {n: RNG.standard_normal(40) for n in "abc"}
@@ -46,7 +46,7 @@ def test_orthogonal_causes_have_the_shares_of_their_squares() -> None:
 
 @pytest.mark.parametrize(("kind", "seed"), [("coupons", 7), ("compression", 8), ("indentation", 9)])
 def test_half_and_half(kind: str, seed: int) -> None:
-    """One inside, one outside, of one size."""
+    """One cause inside and one outside the library, of the same size."""
     lab = LABORATORIES[kind]
     case = next(c for k in range(20) if (c := lab.half(1000 * seed + k, 25.0)) is not None)
     inside, outside = lab.hidden(case)
@@ -79,7 +79,7 @@ def test_a_smooth_error_is_small_and_not_stated(kind: str, tmp_path: Path) -> No
         )
         error = (smooth - plain)[:, RECORDS[kind]] / np.abs(plain[:, RECORDS[kind]]).max()
         assert 0.002 < np.sqrt(np.mean(error**2)) < 0.011
-        assert np.abs(np.diff(error)).max() < 0.2 * np.ptp(error)  # no jumps: it is smooth
+        assert np.abs(np.diff(error)).max() < 0.2 * np.ptp(error)  # smooth, without jumps
         others = np.arange(plain.shape[1]) != RECORDS[kind]
         assert smooth[:, others] == pytest.approx(plain[:, others])
 
@@ -91,7 +91,7 @@ def stored(index: int) -> Made:
 
 
 def test_a_smooth_error_of_edges(tmp_path: Path) -> None:
-    """Normal to each edge, a fraction of a millimetre, without jumps."""
+    """It is normal to each edge, a fraction of a millimetre, and without jumps."""
     lab, made = LABORATORIES["beams"], stored(1)
     for name in ("plain", "smooth"):
         lab.write(made, tmp_path / name)
@@ -101,7 +101,7 @@ def test_a_smooth_error_of_edges(tmp_path: Path) -> None:
             np.loadtxt(p, delimiter=",", skiprows=1, usecols=(1, 2))
             for p in (path, tmp_path / "smooth" / "beams" / path.name)
         )
-        half = len(plain) // 2  # the upper edge, then the lower
+        half = len(plain) // 2  # upper edge, then lower edge
         for edge, off in ((plain[:half], smooth[:half]), (plain[half:], smooth[half:])):
             move = off - edge
             size = np.sqrt(np.mean((move**2).sum(axis=1)))
@@ -111,11 +111,11 @@ def test_a_smooth_error_of_edges(tmp_path: Path) -> None:
             assert np.abs(along).max() < 0.05 * size  # tables have four decimals
             normal = np.einsum("kc,kc->k", move, np.stack([-tangent[:, 1], tangent[:, 0]], axis=1))
             turns = np.diff(np.sign(np.diff(normal / np.hypot(*tangent.T)))) != 0
-            assert turns.sum() <= WAVES + 1  # smooth, whatever the number of points
+            assert turns.sum() <= WAVES + 1  # smooth for any number of points
 
 
 def test_a_smooth_error_of_markers(tmp_path: Path) -> None:
-    """Of each marker's height its own, beside a stated one that stays."""
+    """Each marker's height has its own error; times and lateral positions are unchanged."""
     lab = LABORATORIES["release"]
     for name in ("plain", "smooth"):
         lab.write(lab.clean(5), tmp_path / name)
@@ -134,7 +134,7 @@ def test_a_smooth_error_of_markers(tmp_path: Path) -> None:
 
 
 def test_slopes_of_beams_have_the_sizes_of_their_causes() -> None:
-    """A stored case of one cause: its size by the slopes is the size that fits found."""
+    """For a stored case with one cause, the size by derivatives equals the size by fits."""
     lab = LABORATORIES["beams"]
     truth = load_truth(CASES)["cases"]
     index = next(int(k) for k, c in truth.items() if [h["effect"] for h in c["hidden"]] == ["added-mass"])
@@ -142,7 +142,7 @@ def test_slopes_of_beams_have_the_sizes_of_their_causes() -> None:
     (hidden,) = lab.hidden(made)
     columns = lab.whitened(made, made.hidden)
     assert np.sqrt(left(lab.free(made), columns)) == pytest.approx(hidden.sigma, rel=0.1)
-    # a slope: twice the step moves twice as far
+    # linearity: twice the step gives twice the displacement
     smaller = resized(made.case, (made.case.hidden[0].amplitude * (1.0 - 2.0 * STEP),))
     twice = columns_at(
         made.case, made.edges, ideal(), [(smaller, solve_case(smaller, ideal(), Resolution()))]
@@ -152,7 +152,7 @@ def test_slopes_of_beams_have_the_sizes_of_their_causes() -> None:
 
 
 def test_one_machine_presses_both_cylinders() -> None:
-    """Its part of the recorded strain, over the stress in Pa, is one number."""
+    """The machine's part of the recorded strain, divided by the stress [Pa], is the same for both."""
     case = replace(compression.clean(3), count=1)
     soft = compression.Hidden(name="machine-compliance", amplitude=0.01)
     parts = []

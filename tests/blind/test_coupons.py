@@ -1,4 +1,4 @@
-"""Made coupons with a hidden cause, found or not named: a few in each run, forty in the slow one."""
+"""Synthetic homogeneous tests with a hidden cause, found or not named: a few in every run, forty if slow."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_the_hidden_cause_is_found(tmp_path: Path, seed: int, kind: str, name: s
 
 
 def test_clean_coupons_seldom_have_a_cause(tmp_path: Path) -> None:
-    """Noise alone is named once in 50 cases, and looks like nothing known once in 200."""
+    """Noise alone gives a cause in one of 50 cases, and a lack of fit in one of 200."""
     verdicts = [diagnosed(tmp_path / str(seed), seed, "clean")[1]["verdict"] for seed in range(21, 27)]
     rules = Rules()
     by_chance = rules.false_alarm_rate + rules.lack_of_fit_level
@@ -56,7 +56,7 @@ def test_what_is_outside_the_library_has_no_name(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("seeds", [(43,), pytest.param(range(41, 47), marks=pytest.mark.slow)])
 def test_three_causes_at_once(tmp_path: Path, seeds: Sequence[int]) -> None:
-    """Of those drawn at 25 sigmas; some that are hidden look like two others by themselves, as 41 does."""
+    """Three causes of 25 sigmas each; two other causes imitate some sets, for example that of seed 41."""
     pairs = []
     for seed in seeds:
         case = make_coupon(seed, "three", target=25.0)
@@ -107,15 +107,17 @@ def test_made_stresses_are_those_of_the_textbook() -> None:
 
 
 def test_made_chains_are_langevin_chains() -> None:
-    """The series of Arruda and Boyce, J. Mech. Phys. Solids 41 (1993), where the chains are short of their
-    ends: 2 k C_k."""
+    """The series of Arruda and Boyce, J. Mech. Phys. Solids 41 (1993), holds far from the locking stretch.
+
+    Its coefficients are 2 k C_k.
+    """
     s, locking = np.linspace(1.1, 3.0, 9), 0.02
     i1 = s**2 + 2.0 / s
     terms = [1.0, 2 / 10, 3 * 22 / 1050, 4 * 38 / 7000, 5 * 1038 / 673750]
     slope = np.polynomial.polynomial.polyval(locking * i1, terms)
     wanted = 3.0 * slope / np.polynomial.polynomial.polyval(3.0 * locking, terms) * (s - s**-2)
     assert Solid(G=3.0, locking=locking).stress("uniaxial", s) == pytest.approx(wanted, rel=1e-5)
-    # at 98 % of their length L^-1 is 1 / (1 - 0.98) but for an exponentially small part
+    # at 98 % of the locking stretch L^-1 is 1 / (1 - 0.98) up to an exponentially small term
     end = np.array([np.max(np.roots([1.0, 0.0, -3.0 * 0.98**2 / 0.1, 2.0]).real)])
     at_rest = np.polynomial.polynomial.polyval(0.3, terms)
     assert Solid(G=1.0, locking=0.1).stress("uniaxial", end) / (end - end**-2) == pytest.approx(
@@ -151,7 +153,7 @@ def test_how_often_any_finder_ranks_the_truth_first() -> None:
 
 @pytest.mark.slow
 def test_forty_coupons() -> None:
-    """The floor under the figures that `python -m benchmarks.blind.coupons.run` prints."""
+    """Lower bounds of the figures printed by `python -m benchmarks.blind.coupons.run`."""
     pairs = run(40, 1, show_each=False)
     single = [p for p in pairs if p[0]["kind"] == "one" and sigma(p[0]) >= 5.0]
     held = [true_names(t) in named_set(v) for t, v in single]

@@ -1,4 +1,4 @@
-"""The lab's further experiments: the same specimen in another pose, and what a gauge enters."""
+"""The laboratory's further experiments: the same specimen in another pose, and values that gauges add."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FAULTY = Beam(
 
 
 def written(name: str, place: Path) -> tuple[Case, Path]:
-    """A case of the survey, of its first material only, and the folder of its experiment."""
+    """A case of the survey with its first material only, and the folder of its experiment."""
     case, edges = load_case(SURVEY, INDEX[name])
     case = replace(case, trials=case.trials[:3], stated={"S0": case.stated["S0"]})
     write_experiment(case, edges, place / "experiment")
@@ -48,7 +48,7 @@ def beams(folder: Path) -> list[BeamTrial]:
 
 
 def height(capture: Capture) -> float:
-    """Of the lower edge's end."""
+    """Height of the lower edge's end."""
     assert capture.outline is not None
     return float(capture.outline.lower[-1, 1])
 
@@ -77,11 +77,11 @@ def test_what_sits_in_a_beam_moves_with_it() -> None:
     assert deeper(Beam(length=0.05, bridge=False, mu=2e4), OTHER) is None
     held = deeper(Beam(length=0.1, bridge=False, mu=2e4, void=0.3, void_at=0.012), OTHER)
     assert held is not None
-    assert held.void == 0.0  # in the grip, where nothing bends
+    assert held.void == 0.0  # in the grip, where the beam does not bend
 
 
-def test_a_turned_bridge_bends_the_other_way() -> None:
-    """Without weight, turning a bent beam over mirrors its picture."""
+def test_a_turned_beam_bends_the_other_way() -> None:
+    """Without weight, turning a curved beam over mirrors its image."""
     bent = Beam(length=0.05, bridge=False, mu=1e6, density=1e-3, curvature=2.0, transverse_gradient=10.0)
     s = np.linspace(0.1, 1.0, 5)
     over, under = solve(turned(bent, bent.length)).edges(s)
@@ -91,7 +91,7 @@ def test_a_turned_bridge_bends_the_other_way() -> None:
 
 
 def test_a_pose_is_added_in_the_form_that_a_lab_writes(tmp_path: Path) -> None:
-    """Tip masses: one new trial a cantilever, lower than it was, and the old measurements untouched."""
+    """Tip masses: one new trial per cantilever, lower than before, with the old measurements unchanged."""
     case, folder = written("clean", tmp_path)
     before = {p.name: p.read_bytes() for p in (folder / "beams").iterdir()}
     assert photograph_again(case, "tip-mass", folder) == [
@@ -131,4 +131,4 @@ def test_gauges_enter_what_the_format_has_keys_for(tmp_path: Path) -> None:
     for k, (own, entry) in enumerate(zip(case.trials, trials, strict=True)):
         true = own.length + (hidden.amplitude if own.kind < 2 and k in hidden.trials else 0.0)
         assert entry["free_length_sd_mm"] == pytest.approx(0.05)
-        assert 0 < abs(entry["free_length_mm"] - 1e3 * true) < 0.25  # read, with an error
+        assert 0 < abs(entry["free_length_mm"] - 1e3 * true) < 0.25  # the reading has an error

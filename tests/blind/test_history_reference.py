@@ -1,4 +1,4 @@
-"""The stored block of tetrahedra (FElupe) is in equilibrium by laws written here from their formulas."""
+"""The stored block of tetrahedra (FElupe) is in equilibrium by laws implemented here from their formulas."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def stored() -> dict:
 
 
 def gradients(stored: dict, displacement: Array) -> tuple[Array, Array, Array]:
-    """Volumes (t,), shape functions' slopes (t, 4, 3) and F (t, 3, 3)."""
+    """Volumes (t,), gradients of the shape functions (t, 4, 3) and F (t, 3, 3)."""
     nodes, tets = np.array(stored["nodes"]), np.array(stored["tetrahedra"])
     edges = np.swapaxes(nodes[tets[:, 1:]] - nodes[tets[:, :1]], 1, 2)
     inner = np.linalg.inv(edges)
@@ -51,7 +51,7 @@ def test_the_softening_block_is_in_equilibrium_frame_after_frame(stored: dict) -
         nodal = np.zeros((len(stored["nodes"]), 3))
         np.add.at(nodal, tets, np.einsum("t,tij,taj->tai", volume, P, slopes))
         assert nodal[stored["driven"]].sum(axis=0) == pytest.approx(force, abs=1e-8)
-        assert np.abs(np.delete(nodal, held, axis=0)).max() < 1e-8  # of 1 N
+        assert np.abs(np.delete(nodal, held, axis=0)).max() < 1e-8  # relative to 1 N
     assert softest < 0.7
 
 

@@ -1,4 +1,4 @@
-"""Hidden causes in made indentations are found, and nothing where nothing is hidden."""
+"""Causes hidden in synthetic indentations are found, and no others."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def diagnosed(case: Case, tmp_path: Path, *, without: tuple[str, ...] = ()) -> d
 
 
 def test_the_table_goes_up_and_comes_down() -> None:
-    """What the makers take for granted: forces grow with the depth, and none is larger on the way back."""
+    """Assumptions of the data: forces increase with depth, and retraction has no larger ones (to 1 %)."""
     for name, entry in table().items():
         there = np.array(entry["in"])
         assert (np.diff(there) > 0).all(), name
@@ -40,8 +40,10 @@ def test_no_truth_is_written(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_hidden_cause_is_in_the_named_set(tmp_path: Path) -> None:
-    """The cheapest geometry; the whole search, in simulated pokes. It is the example of datasets/measured,
-    which tests/packaging diagnoses in every run, as the tutorial does."""
+    """The cheapest geometry, with the complete search in simulated indentations.
+
+    It is the example of datasets/measured, which tests/packaging diagnoses in every run, as in the tutorial.
+    """
     case = make_poke(12, "one", "depth-offset", target=9.0)
     assert true_names(case.truth()) in named_set(diagnosed(case, tmp_path))
 
@@ -62,7 +64,7 @@ def test_without_its_name_in_the_library_a_cause_is_not_found(tmp_path: Path) ->
 
 @pytest.mark.slow
 def test_the_set() -> None:
-    """Forty cases; `benchmarks.blind.indentation.run` prints what is reached, which is above this floor."""
+    """Forty cases: lower bounds of the figures printed by `benchmarks.blind.indentation.run`."""
     pairs = run(40, 2, show_each=False)
     single = [p for p in pairs if p[0]["kind"] == "one"]
     wrong = [v["verdict"] == "found" and named(v) != true_names(t) for t, v in single]

@@ -1,4 +1,4 @@
-"""The laboratory shares no code with the packages under test, beyond the module that calls the diagnosis."""
+"""The laboratory shares no code with the packages under test, except to run the diagnosis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scorer of coupons and pokes, on verdicts that are made up."""
+"""Scores of homogeneous tests and indentations, on invented verdicts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GAIN = {
 
 
 def pair(kind: str, true: str, verdict: str, *names: str, sigma: float = 12.0, **others: Any) -> Pair:
-    """names: single causes, the chosen one first."""
+    """Truth and verdict with these single causes, the chosen one first."""
     effects = [{"effect": true, "amplitude": 1e-3, "scope": "all", "sigma": sigma}] if true else []
     estimate = {"offset_percent": {"value": 0.14, "sd": 0.01}}
     diagnosis = {

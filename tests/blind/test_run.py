@@ -1,4 +1,4 @@
-"""The runner of beams with a diagnosis that is made up: what it asks of which cases, and that it goes on."""
+"""The runner of beams with an invented diagnosis: its calls per case, and continuation after failures."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ ALL = ["--given-cause", "--advice", "--control", "without-truth", "--control", "
 
 
 class MadeUp:
-    """Names the truth of LARGE, and an alternative that scales refute."""
+    """Diagnosis that names the truth of LARGE, and an alternative that weighing refutes."""
 
-    asked: list[tuple[tuple[str, ...], bool, bool]]  # without, gain, whether the beams were weighed
+    asked: list[tuple[tuple[str, ...], bool, bool]]  # without, gain, True if the beams were weighed
     broken = False
 
     def __init__(self, **_: Any) -> None:
@@ -66,7 +66,7 @@ def test_each_question_is_asked_once(tmp_path: Path, capsys: pytest.CaptureFixtu
     verdict, true_cause, advised, without, shuffled = MadeUp.asked
     assert verdict == ((), True, False)
     assert true_cause == (others, True, False)
-    assert advised == (("added-mass", "density"), False, True)  # refuted, and entered
+    assert advised == (("added-mass", "density"), False, True)  # refuted, and added to the experiment
     assert without == ((EFFECT,), False, False)
     assert shuffled == ((), False, False)
     assert run(tmp_path, *ALL) == 0
@@ -84,7 +84,7 @@ def test_gain_can_be_left_away(tmp_path: Path) -> None:
 def test_several_cases_at_once_fail_by_themselves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In processes of their own; here each with a command that ends at once and says nothing."""
+    """Each case runs in its own process, here with a command that fails at once without a message."""
     monkeypatch.setattr(run_beams, "Diagnoser", partial(Diagnoser, command=(sys.executable, "-c", "exit(1)")))
     assert run(tmp_path, "--jobs", "2", "--only", "0,1") == 1
     assert "2 not diagnosed: 000 (verdicts), 001 (verdicts)" in capsys.readouterr().out

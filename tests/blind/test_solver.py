@@ -1,4 +1,4 @@
-"""The solver that makes the blind data, against beam theory, symmetries and itself on a finer mesh."""
+"""The solver of the blind data, against beam theory, symmetries and a finer mesh."""
 
 from __future__ import annotations
 
@@ -9,20 +9,23 @@ from benchmarks.blind.beams.ideal_beams import edge_points, interpolate
 from benchmarks.blind.beams.model import GRAVITY, Beam, Resolution
 from benchmarks.blind.beams.solver import axis_of, solve
 
-STIFF = 4e6  # Pa: deflections of about a hundredth of a millimetre
-FINER = Resolution(split=2, first=0.0009, growth=1.26, longest=0.003)  # two for one, each way
+STIFF = 4e6  # Pa: deflections of about 0.01 mm
+FINER = Resolution(split=2, first=0.0009, growth=1.26, longest=0.003)  # twice as fine in each direction
 
 
 def tip(beam: Beam) -> float:
-    """Rise of the axis at the end [m]."""
+    """Vertical displacement of the axis at the end [m], positive upwards."""
     return float(solve(beam).edges(np.array([1.0]))[:, 0, 1].mean())
 
 
 @pytest.mark.parametrize(("bridge", "short"), [(False, 0.2), (True, 0.15)])
 def test_stiff_beams_sag_as_beams_with_shear(bridge: bool, short: float) -> None:
-    """w L^4 / (8 E I) + w L^2 / (2 k G A), or w L^4 / (384 E I) + w L^2 / (8 k G A); k = 27 / 28 (Cowper:
-    circle, nu = 1/2). A clamp forbids the section's change: it holds a little further out than its face, by
-    the same length for each beam, so that the departure falls with R / L and is extrapolated away."""
+    """w L^4 / (8 E I) + w L^2 / (2 k G A), or w L^4 / (384 E I) + w L^2 / (8 k G A).
+
+    k = 27 / 28 (Cowper: circle, nu = 1/2). A clamp constrains the section, and so acts slightly in front of
+    its face, at the same distance for each beam. The error is proportional to R / L and is extrapolated to
+    zero.
+    """
     departure = []
     for length in (short, 2 * short):
         beam = Beam(length=length, bridge=bridge, mu=10 * STIFF)
@@ -55,13 +58,13 @@ def test_moulded_arc_without_weight_lies_on_its_arc() -> None:
 def test_clamp_yields_by_the_moment_that_it_carries() -> None:
     beam = Beam(length=0.05, bridge=False, mu=30e3, compliance=3.0)
     shape = solve(beam)
-    weight = shape.model.load[..., 2] * beam.mu * 2  # of both halves [N]
+    weight = shape.model.load[..., 2] * beam.mu * 2  # weight of both halves [N]
     moment = (weight * shape.x[..., 0]).sum()
     assert shape.turn[0] == pytest.approx(beam.compliance * moment, rel=1e-3)
 
 
 def test_pinned_end_carries_no_moment() -> None:
-    """A propped bridge of small deflections: the pinned face turns by w L^3 / (48 E I)."""
+    """Propped cantilever with small deflections: the pinned face rotates by w L^3 / (48 E I)."""
     beam = Beam(length=0.15, bridge=True, mu=STIFF, far_pinned=True)
     load = beam.density * GRAVITY * np.pi * beam.radius**2
     inertia = np.pi * beam.radius**4 / 4
@@ -69,8 +72,10 @@ def test_pinned_end_carries_no_moment() -> None:
 
 
 def test_missing_stiffness_bends_as_the_integral_says() -> None:
-    """Small deflections: a void of a part f over 15 mm at x adds f / (1 - f) M (L - x) dx / (E I) at the tip,
-    less what the missing weight does."""
+    """At small deflections a void of fraction f over 15 mm adds f / (1 - f) M (L - x) dx / (E I) at the tip.
+
+    The effect of the missing weight is subtracted.
+    """
     plain = Beam(length=0.2, bridge=False, mu=STIFF)
     hollow = Beam(length=0.2, bridge=False, mu=STIFF, void=0.3, void_at=0.06)
     load = plain.density * GRAVITY * np.pi * plain.radius**2
@@ -83,7 +88,7 @@ def test_missing_stiffness_bends_as_the_integral_says() -> None:
 
 
 def test_skin_stiffens_by_its_share_of_the_inertia() -> None:
-    """EI grows by skin (1 - 0.9^4): a stiffer skin of 1 mm on a radius of 10 mm."""
+    """EI grows by the fraction skin (1 - 0.9^4): a stiffer skin of 1 mm on a radius of 10 mm."""
     plain, skinned = (tip(Beam(length=0.2, bridge=False, mu=STIFF, skin=k)) for k in (0.0, 0.2))
     assert plain / skinned == pytest.approx(1 + 0.2 * (1 - 0.9**4), rel=2e-3)
 
@@ -104,7 +109,7 @@ def test_mass_on_the_face_pulls_at_the_end() -> None:
 
 
 def test_fifty_mm_beam_is_converged() -> None:
-    """Within 0.02 mm (normal to the edge, from 2.5 mm off the clamp) of a mesh twice finer."""
+    """Within 0.02 mm (normal to the edge, from 2.5 mm off the clamp) of a mesh that is twice as fine."""
     assert _finer(Beam(length=0.05, bridge=False, mu=15e3)) < 0.02e-3
 
 
@@ -126,7 +131,7 @@ def _finer(beam: Beam) -> float:
 
 
 def test_kept_edges_hold_the_shape() -> None:
-    """33 points an edge lose less than 0.025 mm from 2.5 mm off the clamp, 0.01 mm from 5 mm on."""
+    """33 points per edge have errors below 0.025 mm from 2.5 mm off the clamp, and 0.01 mm from 5 mm on."""
     shape = solve(Beam(length=0.1, bridge=False, mu=15e3))
     s = np.linspace(0.025, 1.0, 200)
     error = np.abs(interpolate(1, shape.edges(edge_points(1)), s) - shape.edges(s)).max(axis=(0, 2))

@@ -1,4 +1,4 @@
-"""Creeping beams of the laboratory against correspondence at small strain, statics, and their own tangent."""
+"""The laboratory's creeping beams against the correspondence principle, statics, and finite differences."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from benchmarks.blind.timed.material import Prony
 Array = NDArray[np.float64]
 PRONY = Prony(fractions=(0.3, 0.2), times=(0.5, 20.0))
 TIMES = (0.0, 0.2, 1.0, 10.0, 100.0, 1000.0)
-STIFF = Beam(length=0.03, bridge=False, mu=300e3)  # its tip sinks by 55 micrometres
+STIFF = Beam(length=0.03, bridge=False, mu=300e3)  # its tip deflection is 55 micrometres
 SOFT = Beam(length=0.05, bridge=False, mu=20e3)
 COARSE = Resolution(first=0.004, longest=0.01)
 
 
 def sinking(shapes: list[Shape]) -> Array:
-    """Of the tip [m]."""
+    """Vertical displacement of the tip [m], positive upwards."""
     return np.array([s.edges(np.array([1.0]))[:, 0, 1].mean() for s in shapes])
 
 
@@ -49,7 +49,7 @@ def test_the_time_steps_of_a_creeping_beam_are_fine_enough() -> None:
 
 
 def test_convolution_is_of_second_order_in_the_time_step() -> None:
-    """S = sin t against its memory integral, by even steps."""
+    """For S = sin t, against the closed-form memory integral, with equal steps."""
 
     def error(steps: int) -> float:
         memory, total = Memory(PRONY, (1,)), 0.0
@@ -100,7 +100,7 @@ def test_convolution_is_exact_for_a_ramp_and_a_jump() -> None:
     memory = Memory(PRONY, (1,))
     total = []
     now, stress = 0.0, 2.0
-    for time in (0.0, 0.3, 1.7, 9.0):  # a jump to 2, then a slope of 5
+    for time in (0.0, 0.3, 1.7, 9.0):  # a jump to 2, then a rate of 5
         scale, history = memory.begin(time - now)
         now, stress = time, 2.0 + 5.0 * time
         total.append(float((scale * stress + history)[0]))

@@ -1,4 +1,4 @@
-"""Coupons of time-dependent materials against closed forms and quadrature of their own."""
+"""Homogeneous tests of time-dependent materials against closed forms and independent quadrature."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from benchmarks.blind.timed.material import Fibres, Prony, Softening, Solid
 NEO = Solid(mu=(20e3,), alpha=(2.0,))
 OGDEN = Solid(mu=(15e3, -4e3), alpha=(3.0, -2.0))
 PRONY = Prony(fractions=(0.4, 0.25), times=(0.8, 15.0))
-SUDDEN = 1e-6  # of the shortest relaxation time: a step, as far as its answer goes [s]
+SUDDEN = 1e-6  # [s], much shorter than all relaxation times: practically a step
 
 
 def nominal(solid: Solid, mode: str, s: float) -> float:
-    """dW/ds of the mode's path over the number of driven axes, by a central difference; no fibres."""
+    """dW/ds along the mode's path over the number of driven axes, by a central difference; no fibres."""
 
     def energy(x: float) -> float:
         path = {"uniaxial": (x, x**-0.5, x**-0.5), "planar": (x, 1.0, 1 / x), "equibiaxial": (x, x, x**-2)}
@@ -44,7 +44,7 @@ def test_a_step_relaxes_by_the_relaxation_function_at_any_stretch(solid: Solid, 
 
 @pytest.mark.parametrize("solid", [NEO, OGDEN], ids=["neo-hookean", "ogden"])
 def test_a_ramp_and_hold_is_the_hereditary_integral(solid: Solid) -> None:
-    """Q_i = g_i int exp(-(t - s)/tau_i) dS/ds ds, component by component, by adaptive quadrature."""
+    """Q_i = g_i int exp(-(t - s)/tau_i) dS/ds ds, for each component, by adaptive quadrature."""
     rate, top, end = 0.1, 1.6, 6.0
 
     def second(stretch: float, axis: int) -> float:
@@ -72,7 +72,7 @@ def test_a_ramp_and_hold_is_the_hereditary_integral(solid: Solid) -> None:
 
 
 def test_a_ramp_of_a_neo_hookean_sheet_by_exponential_integrals() -> None:
-    """S_1 = mu/3 (1 - s^-6), S_3 = -2 mu/3 (s^6 - 1): powers of s, whose memory is known."""
+    """S_1 = mu/3 (1 - s^-6), S_3 = -2 mu/3 (s^6 - 1): powers of s with closed-form memory integrals."""
     mu, rate, tau, g, time = 20e3, 0.05, 2.0, 0.5, 8.0
     course = Course(start=1.0).ramp(1.4, rate)
     solid = replace(NEO, prony=Prony(fractions=(g,), times=(tau,)))
@@ -112,7 +112,7 @@ def test_the_exponential_integral_of_the_test_above() -> None:
 
 
 def test_small_oscillation_has_storage_and_loss_modulus() -> None:
-    """First harmonics of the answer to a triangular wave, over that of the wave: 3 (G' + i G'')."""
+    """First harmonic of the response to a triangular wave over that of the wave: 3 (G' + i G'')."""
     period, size, rounds = 4.0, 1e-4, 30
     speed = 4.0 * size / period
     course = Course(start=1.0).ramp(1.0 + size, speed)
@@ -147,7 +147,7 @@ def test_mullins_loops_by_hand() -> None:
 
 
 def test_a_viscous_material_relaxes_what_softening_leaves() -> None:
-    """A sudden stretch, a long hold and a sudden return half-way: eta jumps, and its jump relaxes too."""
+    """After a step in stretch, a hold and a step half-way back, eta jumps, and the jump in stress relaxes."""
     soft = Softening(r=2.0, m=4e3)
     solid = replace(NEO, prony=PRONY, softening=soft)
     sudden = Course(start=1.0).ramp(1.8, 0.8 / SUDDEN).hold(300.0).ramp(1.4, 0.4 / SUDDEN).hold(300.0)
@@ -160,7 +160,7 @@ def test_a_viscous_material_relaxes_what_softening_leaves() -> None:
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 60.0, 90.0])
 def test_fibres_at_four_angles_make_the_energy_least(angle: float) -> None:
-    """Lateral stretch and shear minimise W, and the stress is its slope along that minimum."""
+    """Lateral stretch and shear minimise W, and the stress is the derivative of the minimum."""
     mu, k1, k2, a = 20e3, 15e3, 0.8, np.radians(angle)
 
     def energy(s: float, sides: NDArray[np.float64]) -> float:
@@ -189,7 +189,7 @@ def test_fibres_at_four_angles_make_the_energy_least(angle: float) -> None:
 
 
 def test_viscous_oblique_fibres_begin_with_the_instantaneous_answer() -> None:
-    """A relaxation time far beyond the test: 1 + g times the elastic stress, and its shear."""
+    """A relaxation time far beyond the test gives 1 + g times the elastic stress, and the same shear."""
     solid = replace(NEO, fibres=Fibres(k1=15e3, k2=0.8, angle=0.6))
     course = Course(start=1.0).ramp(1.4, 0.2)
     elastic = respond(solid, "uniaxial", course)

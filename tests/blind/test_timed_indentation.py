@@ -19,7 +19,7 @@ SPEED = float(HALF_SPACE.course.last / HALF_SPACE.course.corners()[0][-1])
 
 
 def stored(name: str) -> tuple[Array, Array]:
-    """Times [s] and forces over the long-time modulus [m2]."""
+    """Times [s], and forces over the long-time modulus [m2]."""
     entry = load()[name]
     return np.array(entry["time"]), np.array(entry["force"])
 
@@ -31,7 +31,7 @@ def hereditary(time: float, force: Callable[[Array], Array]) -> float:
 
 
 def test_an_elastic_half_space_meets_a_sphere_as_hertz_says() -> None:
-    """F = 16/3 G sqrt(R) depth^(3/2); within what depth over radius and the mesh leave."""
+    """F = 16/3 G sqrt(R) depth^(3/2) within 1.5 %, the error by finite depth over radius and the mesh."""
     time, force = stored("half-space, elastic")
     deep = time > 0.15 * time[-1]
     hertz = 16.0 / 3.0 * np.sqrt(RADIUS) * (SPEED * time[deep]) ** 1.5
@@ -45,7 +45,7 @@ def test_a_viscous_half_space_in_loading_is_lee_and_radoks() -> None:
     deep = np.flatnonzero(time > 0.15 * time[-1])
     expected = [hereditary(t, lambda s: factor * s**1.5) for t in time[deep]]
     assert force[deep] == pytest.approx(expected, rel=0.015)
-    # and the elements' own elastic answer, convolved: without what Hertz leaves out
+    # and convolved with the same elements' elastic force, which removes the error of Hertz's theory
     elastic_time, elastic = stored("half-space, elastic")
     curve = PchipInterpolator(elastic_time ** (1 / 3), elastic ** (2 / 9))  # nearly a straight line
     own = [hereditary(t, lambda s: curve(s ** (1 / 3)) ** 4.5) for t in time[deep]]
@@ -64,7 +64,7 @@ def test_the_time_steps_of_an_indentation_are_fine_enough() -> None:
 
 @pytest.mark.parametrize("base", ["ball", "thick"])
 def test_the_force_of_a_hold_relaxes_by_the_relaxation_function(base: str) -> None:
-    """At finite depth and with friction: all isochoric stresses of a field that stays relax alike."""
+    """At finite depth and with friction: all isochoric stresses of a constant field relax alike."""
     time, force = stored(f"{base}, hold")
     begin = CHECKS[f"{base}, hold"].course.corners()[0][1]
     held = time >= begin
@@ -74,7 +74,7 @@ def test_the_force_of_a_hold_relaxes_by_the_relaxation_function(base: str) -> No
 
 
 def test_what_is_stored_is_what_the_seeds_ask_for() -> None:
-    """Stored seeds have the courses and spectra that are drawn; forces fall in holds and in retraction."""
+    """Stored seeds have the drawn courses and spectra; forces decrease in holds and in retraction."""
     seeds = sorted({int(name.split(",")[0].split()[1]) for name in load() if name.startswith("seed")})
     assert seeds
     for seed in seeds:
@@ -86,4 +86,4 @@ def test_what_is_stored_is_what_the_seeds_ask_for() -> None:
             assert [p["to"] for p in asked["course"]["pieces"]] == [p.to for p in course.pieces]
             corners, _ = course.corners()
             force = stored_force(name, course, corners)
-            assert force[1] > 1.1 * force[2] > 2.0 * force[3] >= 0.0  # the rod may have left the layer
+            assert force[1] > 1.1 * force[2] > 2.0 * force[3] >= 0.0  # the indenter may have lost contact

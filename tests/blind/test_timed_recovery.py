@@ -1,4 +1,4 @@
-"""Made experiments of time-dependent materials, and the driver that scores fits of them."""
+"""Synthetic experiments of time-dependent materials, and the driver that scores fits to them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PARAMETERS = [
 
 
 def read(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """experiment.yaml and truth.yaml."""
+    """Content of experiment.yaml and truth.yaml."""
     both = [
         yaml.safe_load((folder / f"{name}.yaml").read_text(encoding="utf-8"))
         for name in ("experiment", "truth")
@@ -131,7 +131,7 @@ def test_two_terms_are_more_than_a_decade_apart() -> None:
 
 
 def fake(out: Path, truth: dict[str, float], off: dict[str, float]) -> None:
-    """A fit whose intervals are 10 % wide, about the truth times `off`."""
+    """Write a fit whose estimates are the truth times `off`, with intervals of +-10 %."""
     estimates = [
         {
             "name": recover.NAMES[p][0],

@@ -1,6 +1,6 @@
 """Experiment folders for tests: written here in the file format, or the shared measured ones.
 
-Written from the format's description alone; it shares no code with calibration, which reads them.
+The writers follow the description of the format and share no code with calibration, which reads the folders.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ Entry = dict[str, Any]
 
 
 def measured() -> Path:
-    """The shared measured experiments: $TISIM_MEASURED, else shared/measured beside the repository or above.
+    """Folder of measured experiments: $TISIM_MEASURED, else shared/measured in a parent of the repository.
 
-    Skips the test, and says why, where there are none.
+    Skips the test if there is none.
     """
     named = os.environ.get("TISIM_MEASURED")
     if named:
@@ -35,7 +35,7 @@ def measured() -> Path:
 
 
 def write_csv(path: Path, columns: Mapping[str, Sequence[Any] | np.ndarray]) -> Path:
-    """Columns of equal length under a header line; floats at full precision."""
+    """Write columns of equal length under a header line, floats at full precision."""
     path.parent.mkdir(parents=True, exist_ok=True)
     rows = zip(*(list(values) for values in columns.values()), strict=True)
     lines = [",".join(columns), *(",".join(_cell(value) for value in row) for row in rows)]
@@ -56,9 +56,9 @@ def write_experiment(
     name: str = "made",
     **more: Any,
 ) -> Path:
-    """Writes experiment.yaml and the tables (file name -> columns) that it names; returns the folder.
+    """Write experiment.yaml and the tables (file name -> columns) that it names; return the folder.
 
-    materials: each one that a trial names, with density 1000 +- 5 kg/m3, where left out.
+    By default `materials` are those that the trials name, with density 1000 +- 5 kg/m3.
     """
     folder.mkdir(parents=True, exist_ok=True)
     if materials is None:
@@ -73,7 +73,7 @@ def write_experiment(
 
 
 def outline_columns(upper_mm: np.ndarray, lower_mm: np.ndarray) -> dict[str, Any]:
-    """The table of an outline; each side (k, 2) of x, z [mm]."""
+    """Table of an outline; each side is (k, 2) of x, z [mm]."""
     both = np.vstack([upper_mm, lower_mm])
     return {
         "side": ["upper"] * len(upper_mm) + ["lower"] * len(lower_mm),
@@ -83,7 +83,7 @@ def outline_columns(upper_mm: np.ndarray, lower_mm: np.ndarray) -> dict[str, Any
 
 
 def marker_columns(time: np.ndarray, displacements_mm: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    """The table of markers; each displacement (t, 3) [mm] at the times [s]."""
+    """Table of markers; each displacement is (t, 3) [mm] at the times (t,) [s]."""
     stacked = np.vstack(list(displacements_mm.values()))
     return {
         "marker": [name for name in displacements_mm for _ in time],
@@ -93,7 +93,7 @@ def marker_columns(time: np.ndarray, displacements_mm: Mapping[str, np.ndarray])
 
 
 def capture_entry(time_s: float, outline: str, **more: Any) -> Entry:
-    """A traced photograph."""
+    """Entry of a traced photograph."""
     return {
         "time_s": time_s,
         "outline": outline,
@@ -105,7 +105,7 @@ def capture_entry(time_s: float, outline: str, **more: Any) -> Entry:
 
 
 def beam_entry(identifier: str, *, material: str = "S0", **more: Any) -> Entry:
-    """A round cantilever, 100 mm free; it still needs captures or markers."""
+    """Entry of a round cantilever, 100 mm free, without captures and markers."""
     return {
         "id": identifier,
         "kind": "beam",
@@ -121,7 +121,7 @@ def beam_entry(identifier: str, *, material: str = "S0", **more: Any) -> Entry:
 
 
 def poke_entry(identifier: str, record: str, *, material: str = "S0", **more: Any) -> Entry:
-    """A straight poke on the middle of a block."""
+    """Entry of a vertical indentation at the centre of a block."""
     return {
         "id": identifier,
         "kind": "poke",
@@ -140,7 +140,7 @@ def poke_entry(identifier: str, record: str, *, material: str = "S0", **more: An
 def coupon_entry(
     identifier: str, record: str, *, material: str = "S0", mode: str = "uniaxial", **more: Any
 ) -> Entry:
-    """A homogeneous test."""
+    """Entry of a homogeneous material test."""
     return {
         "id": identifier,
         "kind": "coupon",

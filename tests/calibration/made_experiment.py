@@ -1,4 +1,4 @@
-"""An experiment of made trials, in memory; what tests of one kind of measurement share stands beside them."""
+"""An experiment of synthetic trials in memory; the folders of the measurements add their own trials."""
 
 from __future__ import annotations
 

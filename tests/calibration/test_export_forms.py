@@ -1,4 +1,4 @@
-"""Strain energies of other programs: conversions, fits, and CalculiX's own answer to a pulled cube."""
+"""Strain energies of other programs: conversions, fits, and CalculiX's solution for a cube in tension."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def material(law: str, bulk: float = 6e5) -> Material:
     "law", ["ogden", "arruda-boyce", "yeoh", "st-venant-kirchhoff", "stable-neo-hookean"]
 )
 def test_a_form_is_the_law_that_it_stands_for(law: str) -> None:
-    """By two codes: NumPy in principal stretches here, the solvers' kernels there."""
+    """Compares NumPy code in principal stretches with the kernels of the solvers."""
     m = material(law)
     form = exact(law, m.parameters)
     assert form is not None
@@ -68,7 +68,7 @@ def test_twins_differ_from_their_law_in_volume_alone() -> None:
 
 
 def test_the_sides_of_a_test_are_free_of_stress() -> None:
-    form = Form(kind="polynomial", bulk=2e9, terms=(((1, 0), 1e4),))  # hardly compressible: the closed form
+    form = Form(kind="polynomial", bulk=2e9, terms=(((1, 0), 1e4),))  # nearly incompressible: closed form
     at = np.array([0.7, 1.0, 1.6])
     for mode, wanted in (
         ("uniaxial", 2e4 * (at - at**-2)),
@@ -122,10 +122,10 @@ def test_a_smaller_poissons_ratio_keeps_youngs_modulus() -> None:
 def test_losses_of_parts_have_the_size_of_the_parts() -> None:
     plain = material("neo-hookean", bulk=6e6)
     stiffer = replace(plain, fibres=tisim.HolzapfelGasserOgden(direction=(0, 0, 1), k1=5e3))
-    # at small strain fibres add 4 k1 to a Young's modulus of 3 G
+    # at small strain fibres add 4 k1 to Young's modulus, 3 G
     assert fibre_loss(stiffer, 1.001) == pytest.approx(4 * 5e3 / 6e4, rel=0.05)
     softer = replace(plain, softening=tisim.OgdenRoxburgh(r=2.0, m=1.0))
-    assert softening_loss(softer, 1.3) == pytest.approx(0.5, abs=0.01)  # 1/r where m is small
+    assert softening_loss(softer, 1.3) == pytest.approx(0.5, abs=0.01)  # 1/r for small m
     slow = replace(plain, viscosity=tisim.Prony(fractions=(0.4,), times=(1.0,), modulus="instantaneous"))
     moduli = laws.get("neo-hookean").moduli(elastic(slow).parameters)
     assert moduli.shear_modulus == pytest.approx(0.6 * 2e4)
@@ -150,7 +150,7 @@ def test_a_tip_force_is_spread_over_the_end_face() -> None:
         beam = tisim.Beam(material=material("neo-hookean"), length=0.03, tip_force=(0.1, 0.0, -0.3))
         forces = _tip_forces(mesh, beam)
         np.testing.assert_allclose(forces.sum(axis=0), beam.tip_force, atol=1e-15)
-        np.testing.assert_allclose(mesh.nodes[:, 1:].T @ forces, 0.0, atol=1e-12)  # about the axis
+        np.testing.assert_allclose(mesh.nodes[:, 1:].T @ forces, 0.0, atol=1e-12)  # no moment about the axis
         assert not forces[mesh.nodes[:, 0] < 0.03].any()
 
 
@@ -174,7 +174,7 @@ CUBE = """*NODE, NSET=NALL
 
 
 def pulled_by_calculix(lines: list[str], stretch: float, folder: Path) -> float:
-    """Force on a cube of 1 m that is pulled along x, its sides free [N]."""
+    """Force [N] on a cube of 1 m in uniaxial tension along x."""
     name = next(x.partition("NAME=")[2] for x in lines if x.startswith("*MATERIAL"))
     deck = [CUBE.rstrip(), *lines, f"*SOLID SECTION, ELSET=ONE, MATERIAL={name}", "*STEP, NLGEOM", "*STATIC"]
     deck += ["0.2, 1.", "*BOUNDARY"]
@@ -199,7 +199,7 @@ def job(m: Material) -> Job:
 @pytest.mark.skipif(CCX is None, reason="needs ccx (apt-get install calculix-ccx)")
 @pytest.mark.parametrize("law", ["ogden", "mooney-rivlin", "arruda-boyce", "yeoh", "neo-hookean"])
 def test_calculix_pulls_a_cube_as_the_form_says(law: str, tmp_path: Path) -> None:
-    """Law by law, in tension and compression: what is written means what it should."""
+    """The written material has the intended stress, for each law in tension and compression."""
     made = job(material(law))
     for stretch in (1.4, 0.75):
         force = pulled_by_calculix(calculix.material_lines(made), stretch, tmp_path)
@@ -215,7 +215,7 @@ def test_calculix_has_the_cards_fibres(tmp_path: Path) -> None:
     assert made.keeps == {"fibres"}
     force = pulled_by_calculix(calculix.material_lines(made), 1.3, tmp_path)
     wanted = nominal(stress_of(m), "uniaxial", np.array([1.3]))[0]
-    assert force == pytest.approx(wanted, rel=0.02)  # volumes differ: K/2 (J - 1)^2 there
+    assert force == pytest.approx(wanted, rel=0.02)  # the volumetric energy differs: K/2 (J - 1)^2 there
     assert force > 1.15 * nominal(stress_of(replace(m, fibres=None)), "uniaxial", np.array([1.3]))[0]
 
 

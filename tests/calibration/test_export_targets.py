@@ -1,4 +1,4 @@
-"""What is written for each program, what it says that is lost, and input that cannot be used."""
+"""Files written for each program, statements of the losses, and unusable input."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def text(path: Path) -> str:
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_every_law_of_a_card_is_written_or_refused(program: str, tmp_path: Path) -> None:
-    """Without a scene: the material, and a README that says what is lost."""
+    """Without a scene: the material, and a README with the losses."""
     for law in ("neo-hookean", "ogden"):
         done = export.export_card(
             CARDS / "S0.yaml", to=program, out=tmp_path / law, law=law, scene=False, most_loss=1.0
@@ -62,7 +62,7 @@ def test_every_law_of_a_card_is_written_or_refused(program: str, tmp_path: Path)
 
 
 def test_a_beam_in_calculix_form_runs_and_is_read_again(tmp_path: Path) -> None:
-    """It gives the stated beam, where ccx is; mesh and sets by tisim.read; the screen says what is lost."""
+    """CalculiX, if installed, gives the stated beam; tisim.read reads mesh and sets; losses are printed."""
     words = [str(CARDS / "S0.yaml"), "--to", "calculix", "--out", str(tmp_path / "out")]
     words += ["--refinement", "0.75", "--experiment", str(CLEAN), "--trial", SHORT]
     done = CliRunner().invoke(app, [*words, *(["--check"] if CCX else [])])
@@ -89,7 +89,7 @@ def test_a_beam_in_calculix_form_runs_and_is_read_again(tmp_path: Path) -> None:
 
 
 def test_linear_tetrahedra_are_told_with_their_error(tmp_path: Path) -> None:
-    """Newton and SOFA: the beam by tisim with their law, elements and mesh."""
+    """Newton and SOFA: the expected beam is tisim's with their law, elements and mesh."""
     done = export.export_card(
         CARDS / "S0.yaml", to="newton", out=tmp_path / "n", experiment=CLEAN, trial=SHORT, refinement=0.4
     )
@@ -129,7 +129,7 @@ def test_time_goes_to_those_who_have_it(tmp_path: Path) -> None:
     assert outer.get("type") == "uncoupled viscoelastic"
     inner = outer.find("elastic")
     assert inner is not None
-    assert inner.get("type") == "Mooney-Rivlin"  # what relaxes is uncoupled there
+    assert inner.get("type") == "Mooney-Rivlin"  # FEBio's viscoelastic part is uncoupled
     total = sum(float(outer.findtext(f"g{k}", "nan")) for k in range(1, 7))
     assert total == pytest.approx(fractions.sum(), rel=0.02)
     none = export.export_card(viscous, to="calculix", out=tmp_path / "c", scene=False)
@@ -148,7 +148,7 @@ def test_softening_and_fibres_go_to_those_who_have_them(tmp_path: Path) -> None:
     deck = text(tmp_path / "a" / "material.inp")
     assert "*MULLINS EFFECT\n2, 500, 0" in deck
     assert "*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL DIRECTIONS=1\n15170.5," in deck
-    assert "LOCAL DIRECTIONS=1\n0, 0.6, 0.8," in deck  # of the section's orientation
+    assert "LOCAL DIRECTIONS=1\n0, 0.6, 0.8," in deck  # orientation of the section
     export.export_card(path, to="calculix", out=tmp_path / "c", scene=False)
     assert "ELASTIC_FIBER" in text(tmp_path / "c" / "material.inp")
     done = export.export_card(path, to="febio", out=tmp_path / "f", scene=False)
@@ -162,7 +162,7 @@ def test_softening_and_fibres_go_to_those_who_have_them(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("program", ["febio", "abaqus", "sofa", "mujoco"])
 def test_scenes_hold_the_beam(program: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Files are whole, weigh what the beam weighs, and clamp its end; what tisim makes of it is not asked."""
+    """The files are complete, have the beam's weight, and clamp its end; tisim's solution is not computed."""
     still = Reference(moved=np.array([0.0, 0.0, -1e-3]), low=0.95, high=1.05)
     told = Prediction(reference=still.moved, expected=None, error=np.nan, low=0.95, high=1.05)
     monkeypatch.setattr(_export, "solve", lambda _: still)
@@ -182,7 +182,7 @@ def test_scenes_hold_the_beam(program: str, tmp_path: Path, monkeypatch: pytest.
     if program == "febio":
         root = ET.parse(tmp_path / "beam.feb").getroot()
         assert len(root.findall("Mesh/Nodes/node")) == scene.mesh.n_nodes
-        assert root.findtext("Loads/body_load/force") == "0,0,9.81"  # against its vector
+        assert root.findtext("Loads/body_load/force") == "0,0,9.81"  # opposite to its vector
         held = root.findtext("Mesh/NodeSet[@name='clamp']", "")
         assert [int(n) - 1 for n in held.split(",")] == scene.held.tolist()
     elif program == "abaqus":
@@ -224,7 +224,7 @@ def test_mujoco_gives_the_stated_beam(tmp_path: Path) -> None:
     assert done.within
 
 
-# -- a program of one's own --
+# -- a user's own program --
 
 
 @pytest.fixture

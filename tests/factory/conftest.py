@@ -1,4 +1,4 @@
-"""A tiny recipe, builds with a stand-in simulator, and digests of what they wrote."""
+"""A tiny recipe, builds with a stand-in simulator, and digests of the written files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from factory.recipe import Recipe, load_recipe
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 
-# run as a process of its own, as a user would, but with the stand-in for tisim
+# run in its own process, as a user would, but with the stand-in for tisim
 COMMAND = """
 import functools, sys
 import factory._build, factory.build
@@ -57,7 +57,7 @@ def _plain_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in list(os.environ):
         if name.startswith("STANDIN_"):
             monkeypatch.delenv(name)
-    # a slow disk would make these tests slow; what a power cut needs cannot be tested here
+    # a slow disk would slow these tests down; the effect of a power cut cannot be tested here
     monkeypatch.setattr(os, "fsync", lambda _handle: None)
 
 
@@ -86,7 +86,7 @@ def quick() -> Plan:
 
 
 def _run_here(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> Generator[Outcome]:
-    """Pokes are simulated in this process, one after the other: no process has to start."""
+    """Simulate the pokes one after the other in this process: no process has to start."""
     del workers
     for poke in pokes:
         yield run_poke(poke, simulator)
@@ -102,7 +102,7 @@ Builder = Callable[..., _build.Built]
 
 @pytest.fixture
 def standin_build(serial: None) -> Builder:
-    """`build` in this process with the stand-in."""
+    """Build in this process with the stand-in."""
     del serial
 
     def run(plan: Plan, target: Path, **options: object) -> _build.Built:
@@ -117,7 +117,7 @@ def _four_pokes(folder: Path) -> Plan:
 
 
 def build_here(plan: Plan, target: Path, **options: Any) -> None:
-    """A build with the stand-in in this process, for fixtures that last longer than a test."""
+    """Build with the stand-in in this process, for fixtures of a wider scope than a test."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(_build, "run_local", _run_here)
         build_dataset(plan, target, simulator="tests.factory.standin:simulate", **options)
@@ -125,7 +125,7 @@ def build_here(plan: Plan, target: Path, **options: Any) -> None:
 
 @pytest.fixture(scope="session")
 def finished_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The store of `plan`, built once: whoever changes it takes a copy."""
+    """The store of `plan`, built once; tests that change it use a copy."""
     folder = tmp_path_factory.mktemp("finished")
     build_here(_four_pokes(folder), folder / "store.zarr")
     return folder / "store.zarr"
@@ -133,7 +133,7 @@ def finished_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def quick_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The store of `quick`, built once; nobody changes it."""
+    """The store of `quick`, built once; no test changes it."""
     folder = tmp_path_factory.mktemp("quick")
     build_here(make_plan(load_recipe("quick"), "ogden"), folder / "store.zarr")
     return folder / "store.zarr"
@@ -168,7 +168,7 @@ def stopped(_stopped_build: Path, tmp_path: Path) -> Path:
 
 
 def run_app(app: Any, *arguments: object) -> Result:
-    """A command in this process, which must not end in a traceback."""
+    """Run a command in this process and reraise any exception other than SystemExit."""
     result = CliRunner().invoke(app, [str(a) for a in arguments], env={"COLUMNS": "300"})
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
@@ -176,7 +176,7 @@ def run_app(app: Any, *arguments: object) -> Result:
 
 
 def digest(store: Path) -> dict[str, str]:
-    """sha256 of each file but the ledger."""
+    """sha256 of each file except the ledger."""
     assert store.is_dir(), store
     return {
         path.relative_to(store).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
@@ -186,13 +186,13 @@ def digest(store: Path) -> dict[str, str]:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """For a process that must find the repository and the stand-in."""
+    """Environment of a process that must find the repository and the stand-in."""
     return {**os.environ, "PYTHONPATH": str(ROOT), **more}
 
 
 @pytest.fixture
 def command(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
-    """Starts `python -m factory.build` with the stand-in, in a process group of its own."""
+    """Start `python -m factory.build` with the stand-in, in its own process group."""
     script = tmp_path / "command.py"
     script.write_text(COMMAND)
 

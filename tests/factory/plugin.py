@@ -1,7 +1,7 @@
-"""An inclusion shape and a law of a user's own: one class and one registration each (docs of `tisim`)."""
+"""A user's own inclusion shape and law: one class and one registration each (docs of `tisim`)."""
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy`; its annotations are meaningful to Taichi only)
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from tisim.laws import Law, Moduli, by_invariants, first_isochoric, ti
 
 @dataclass(frozen=True, kw_only=True)
 class SpheroidInclusion(inclusions.Inclusion):
-    """Rigid spheroid: equatorial radius, half its height, centre [m]."""
+    """Rigid spheroid: equatorial radius, half of its height, centre [m]."""
 
     kind: ClassVar[str] = "spheroid"
     radius: float

@@ -1,10 +1,10 @@
-"""Simulators that stand in for tisim: fast, deterministic, and able to fail on command.
+"""Simulators that replace tisim in tests: fast, deterministic, and able to fail on command.
 
-What they should do is told by the environment, which the worker processes inherit:
-STANDIN_SECONDS: sleep that long in each poke.
+They are controlled by environment variables, which the worker processes inherit:
+STANDIN_SECONDS: time to sleep in each poke.
 STANDIN_FAIL: comma-separated site codes (see `site_code`): these pokes raise.
 STANDIN_DIE: a site code: this poke kills its worker, every time.
-STANDIN_LOG: a line is appended to this file for each poke simulated.
+STANDIN_LOG: file to which one line is appended for each simulated poke.
 STANDIN_KILL: path of a file; the first worker that can remove it kills itself.
 """
 
@@ -23,7 +23,7 @@ from tisim.scene import Poke
 
 
 def block_mesh(size: tuple[float, float, float], cells: tuple[int, int, int]) -> Mesh:
-    """A regular hexahedral block, base at z = 0, centred in x and y."""
+    """Regular hexahedral block with its base at z = 0, centred in x and y."""
     nx, ny, nz = cells
     axes = [
         np.linspace(-size[0] / 2, size[0] / 2, nx + 1),
@@ -41,7 +41,7 @@ def block_mesh(size: tuple[float, float, float], cells: tuple[int, int, int]) ->
 
 
 def simulate(scenes: list[Poke], *, workers: int | None = None) -> list[Result]:
-    """Same signature as tisim.simulate."""
+    """Simulate with the signature of `tisim.simulate`."""
     assert workers == 1
     return [_poke(scene) for scene in scenes]
 
@@ -62,7 +62,7 @@ def _poke(scene: Poke) -> Result:
     time.sleep(float(os.environ.get("STANDIN_SECONDS", "0")))
     if str(site_code(scene)) in os.environ.get("STANDIN_FAIL", "").split(","):
         raise RuntimeError("the stand-in was told\nto fail")
-    # meshes of different sizes, as the real ones
+    # meshes of different sizes, like the real ones
     mesh = block_mesh(scene.block.size, (6 + abs(site_code(scene)) % 3, 6, 2))
     frames = 3 + abs(site_code(scene)) % 4
     depth = scene.frame_spacing * np.arange(1, frames + 1)
@@ -98,5 +98,5 @@ def _poke(scene: Poke) -> Result:
 
 
 def site_code(scene: Poke) -> int:
-    """The site's x in micrometres: names a poke in these tests."""
+    """x of the contact point [micrometres]: identifies a poke in these tests."""
     return round(scene.site[0] * 1e6)

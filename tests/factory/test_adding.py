@@ -1,4 +1,4 @@
-"""A user's own inclusion shape and law in a module: planned, simulated, stored, read back, verified."""
+"""A user's inclusion shape and law from a module: planned, simulated, stored, read back, verified."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def command(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Built by the real simulator in a worker process, which must come to know shape and law."""
+    """Built by tisim in a worker process, which must load the shape and the law."""
     folder = tmp_path_factory.mktemp("own")
     (folder / "own.yaml").write_text(RECIPE)
     arguments = ("--model", "my-law", "--recipe", folder / "own.yaml", "--out", folder / "own.zarr")

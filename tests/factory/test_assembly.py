@@ -1,4 +1,4 @@
-"""Stored frames as equilibria, by an assembly that shares no code with the solver's."""
+"""Stored frames are equilibria, checked by an assembly that shares no code with the solver."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COARSE = (
 
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One poke to 2 mm by the solver itself."""
+    """One poke to 2 mm, simulated by tisim."""
     folder = tmp_path_factory.mktemp("assembly")
     (folder / "coarse.yaml").write_text(COARSE)
     plan = make_plan(load_recipe(folder / "coarse.yaml"), "ogden")
@@ -70,13 +70,13 @@ def test_nodal_forces_are_the_solvers(law: str) -> None:
 def test_a_simulated_poke_is_an_equilibrium(simulated: Path) -> None:
     found = check_poke(open_dataset(simulated), 0)
     assert len(found) == 2
-    tolerance = 5e-4  # the solver's
+    tolerance = 5e-4  # tolerance of the solver
     assert [frame.faults(tolerance) for frame in found] == [[], []]
     assert max(frame.free for frame in found) < tolerance
 
 
 def _lifted(poke: PokeData) -> PokeData:
-    """A corner of the top a hundredth of a millimetre higher in the second frame."""
+    """Raise a corner of the top by 0.01 mm in the second frame."""
     surface = poke.surface.copy()
     surface[1, np.argmax(poke.surface_rest @ [1.0, 1.0, 10.0])] += [0.0, 0.0, 1e-5]
     return dataclasses.replace(poke, surface=surface)
@@ -130,7 +130,7 @@ def test_the_command_counts_what_it_checked(simulated: Path) -> None:
 
 
 def test_pokes_that_cannot_be_checked_are_listed(finished_store: Path) -> None:
-    """The stand-in's meshes are not tisim's."""
+    """The meshes of the stand-in are not tisim's."""
     found = check_assembly(open_dataset(finished_store), pokes=2, workers=1)
     assert (found.pokes, found.frames, found.faults, found.largest) == (0, 0, [], None)
     assert len(found.not_checked) == 2

@@ -1,4 +1,4 @@
-"""The card of a dataset: what it says is what the store's arrays say."""
+"""The card of a dataset: its statements agree with the arrays of the store."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OPTIONS = ("--author", "Ada & Co", "--licence", "CC-BY-4.0")
 
 @pytest.fixture(scope="module")
 def card(quick_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The card of the store of twelve pokes."""
+    """Folder of the card of the store of twelve pokes."""
     out = tmp_path_factory.mktemp("card") / "card"
     result = run_app(factory.card.app, quick_store, "--out", out, *OPTIONS)
     assert result.exit_code == 0, result.output
@@ -62,7 +62,7 @@ def test_the_front_matter_is_that_of_hugging_face(page: str) -> None:
 
 
 def test_the_features_are_those_of_the_arrays(card: Path, quick_store: Path) -> None:
-    """Recomputed poke by poke from the arrays, without what the card is made with."""
+    """The features are recomputed per poke from the arrays, without the code that makes the card."""
     store = zarr.open_group(quick_store, mode="r")
     names = (store.attrs["shapes"], store.attrs["softness"])
     force = np.linalg.norm(store["rod_force"][:], axis=1)
@@ -157,7 +157,7 @@ def test_the_sums_are_those_of_every_file(card: Path, quick_store: Path) -> None
 
 
 def test_the_date_is_the_stores(store: Path) -> None:
-    """Of its manifest; of what a zip's fixed dates have lost nothing is said, unless it is stated."""
+    """The date is that of the manifest; the fixed dates of a zip's files count as unknown, unless stated."""
     data = open_dataset(store)
     for seconds, date in ((0, None), (1.7e9, datetime.date(2023, 11, 14))):
         os.utime(store / MANIFEST, (seconds, seconds))
@@ -233,7 +233,7 @@ def test_places_that_it_does_not_write_to(store: Path, tmp_path: Path) -> None:
 
 
 def test_overwriting_leaves_other_files_alone(card: Path, quick_store: Path, tmp_path: Path) -> None:
-    """And the same store gives the same card."""
+    """The same store gives the same card, too."""
     out = tmp_path / "card"
     out.mkdir()
     (out / "mine.txt").write_text("mine")

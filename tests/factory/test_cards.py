@@ -1,4 +1,4 @@
-"""Material cards: moduli, what is refused, and cards of other names as levels of a plan."""
+"""Material cards: moduli, rejected values, and cards of other names as material levels of a plan."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
 
 
 def _own_cards(folder: Path, *names: str) -> Path:
-    """Cards of materials of one's own, and a file of a rig beside them."""
+    """Write cards of user-defined materials, and a rig file beside them."""
     folder.mkdir(parents=True)
     text = (ROOT / "datasets" / "materials" / "S0.yaml").read_text()
     for name in names:

@@ -1,4 +1,4 @@
-"""A dask cluster that does not answer, has no workers, or dies: said, waited for, given up, nothing lost."""
+"""A dask cluster that does not respond, has no workers, or dies: reported, waited for, given up, no loss."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def port() -> int:
 
 
 class Processes:
-    """A scheduler and workers, each a process of its own."""
+    """A scheduler and workers, each in its own process."""
 
     def __init__(self, port: int) -> None:
         self.address, self._port = f"tcp://127.0.0.1:{port}", port
@@ -66,7 +66,7 @@ class Processes:
                 time.sleep(0.1)
 
     def worker(self, **variables: str) -> subprocess.Popen[bytes]:
-        """A worker that the scheduler knows: on a busy machine it takes seconds to come up."""
+        """Start a worker and wait until the scheduler knows it; on a busy machine this takes seconds."""
         options = ("--no-nanny", "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1")
         process = self.start("distributed.cli.dask_worker", self.address, *options, **variables)
         deadline = time.monotonic() + 120
@@ -114,7 +114,7 @@ def test_a_port_where_nobody_listens(
 
 
 def test_a_port_that_never_answers(plan: Plan, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    """It takes the connection and says nothing."""
+    """The server accepts the connection and never replies."""
     caplog.set_level(logging.CRITICAL, logger="distributed")
     with socket.socket() as mute:
         mute.bind(("127.0.0.1", 0))

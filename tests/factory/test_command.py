@@ -1,4 +1,4 @@
-"""The build command as its users meet it."""
+"""The build command from a user's point of view."""
 
 from __future__ import annotations
 

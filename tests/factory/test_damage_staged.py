@@ -1,4 +1,4 @@
-"""A damaged build under way: one sentence in place of a traceback, damaged results simulated again."""
+"""A damaged build in progress: one sentence instead of a traceback, damaged results are simulated again."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _rewritten(change: Callable[[dict[str, Any]], None]) -> Callable[[Path], Non
 
 
 def _unnamed_other(path: Path) -> None:
-    """Another poke's result as an earlier version staged it: without the number of its poke."""
+    """Another poke's result as an earlier version staged it, without the index of its poke."""
     _other_poke(path)
     _rewritten(lambda arrays: arrays.pop("poke"))(path)
 
@@ -92,7 +92,7 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
 }
 
 
-# "of another poke" and "of another scene" put poke 0's result in the place of another: it stays sound there
+# "of another poke" and "of another scene" replace a result by that of poke 0, which itself stays valid
 _TOGETHER = [list(DAMAGE)[i : i + 2] for i in range(0, len(DAMAGE), 2)]
 
 
@@ -199,11 +199,11 @@ def test_a_damaged_plan_file_is_named(
     file.write_bytes(content)
     with pytest.raises(InputError, match=re.escape(f"{file}: is damaged: give --overwrite")):
         standin_build(plan, stopped)
-    assert Staging(stopped).finished() == {0, 1, 2}  # nothing is lost by asking
+    assert Staging(stopped).finished() == {0, 1, 2}  # the refusal loses nothing
     shown = run_app(inspect_app, stopped)
     assert shown.exit_code == 2
     assert shown.stderr.startswith(f"error: {file}: ")
-    if content in (b"{", b"null"):  # no JSON, or another thing than a plan: what it is matters no more
+    if content in (b"{", b"null"):  # no JSON, or no plan at all
         assert standin_build(plan, stopped, overwrite=True).simulated == 4
 
 

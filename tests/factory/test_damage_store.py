@@ -1,4 +1,4 @@
-"""A damaged store, manifest or place: one sentence that names it, in place of a traceback."""
+"""A damaged store or manifest, or an unusual location: one sentence that names it instead of a traceback."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_broken_attributes_are_named(name: str, plan: Plan, store: Path, standin
 def test_a_broken_store_is_built_anew_where_that_is_asked(
     name: str, plan: Plan, finished_store: Path, store: Path, standin_build: Builder
 ) -> None:
-    """Whatever its attributes are, once they are broken: none of them is read."""
+    """Overwriting reads no attribute of the damaged store."""
     BROKEN[name][0](store)
     assert standin_build(plan, store, overwrite=True).simulated == 4
     assert digest(store) == digest(finished_store)
@@ -199,7 +199,7 @@ def test_an_array_that_is_cut_is_named(store: Path) -> None:
 def test_a_failed_poke_is_shown(
     plan: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It has no frame and no surface: there is nothing to reshape."""
+    """A failed poke has no frame and no surface, so there is nothing to reshape."""
     monkeypatch.setenv("STANDIN_FAIL", f"{round(plan.pokes[1].scene.site[0] * 1e6)}")
     standin_build(plan, tmp_path / "b.zarr")
     assert open_dataset(tmp_path / "b.zarr").poke(1).surface.shape == (0, 0, 3)
@@ -208,7 +208,7 @@ def test_a_failed_poke_is_shown(
     assert "failed: RuntimeError: the stand-in was told to fail" in shown.output
 
 
-# --- the manifest and what lies beside the arrays
+# --- the manifest and files beside the arrays
 
 
 @pytest.mark.parametrize(
@@ -258,7 +258,7 @@ def test_a_pipe_is_refused_and_not_waited_for(store: Path) -> None:
 
 
 def test_a_linked_shard_is_refused(store: Path) -> None:
-    """Its content is right, so that its checksum would be."""
+    """The link's content, and so its checksum, is right."""
     shard = _shard(store, "depth")
     elsewhere = store.parent / "elsewhere"
     shard.rename(elsewhere)
@@ -276,7 +276,7 @@ def test_a_profile_that_is_not_the_inclusion_is_found(store: Path) -> None:
     assert "inclusions: geometry 0: the profile's rigid part is not the box described" in verified.output
 
 
-# --- names, places, a full disk
+# --- names, locations, a full disk
 
 
 @pytest.mark.parametrize(
@@ -286,7 +286,7 @@ def test_a_profile_that_is_not_the_inclusion_is_found(store: Path) -> None:
 def test_names_are_printed_as_they_are(
     folder: str, name: str, tmp_path: Path, serial: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """rich takes [words] in brackets for markup, "[/b]" of the path x[/b] for its end."""
+    """rich takes [words] in brackets as markup, and "[/b]" of the path x[/b] as its end."""
     del serial
     _standin(monkeypatch)
     place = tmp_path / folder

@@ -1,4 +1,4 @@
-"""Shapes whose lengths a recipe draws between two."""
+"""Shapes with lengths that a recipe draws between two bounds."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_as_many_as_asked_for_between_the_two_lengths(tmp_path: Path) -> None:
     assert 6 <= sides.min() < 8
     assert 18 < sides.max() <= 20
     assert len(set(sides)) == 20
-    # from here on they are shapes like any others: the plan has them, and a store writes them down
+    # afterwards they are ordinary shapes: part of the plan and of the store
     assert Recipe.model_validate(recipe.model_dump(by_alias=True)) == recipe
 
 

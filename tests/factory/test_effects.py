@@ -1,4 +1,4 @@
-"""Extended cards: what a diagnosis found in a specimen enters a dataset, faults of rig and camera do not."""
+"""Extended cards: effects of the material enter a dataset, faults of the rig and the camera do not."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ CURVED = effect("residual-curvature", "curvature_per_m", 0.7, applies_to="shape"
 
 
 def write_card(folder: Path, name: str, *effects: dict[str, Any]) -> Path:
-    """The shipped card of a mixture at G, K and 1075 kg/m3, with effects."""
+    """Card of a mixture with G, K, a density of 1075 kg/m3, and effects."""
     content = yaml.safe_load((ROOT / "datasets" / "materials" / f"{name}.yaml").read_text())
     content["laws"]["neo-hookean"] = {"mu": G, "lam": K - 2 * G / 3}
     content["density"] = 1075.0
@@ -158,12 +158,12 @@ def test_two_laws_at_once_are_refused(tmp_path: Path, tiny_file: Path) -> None:
 
 
 def test_a_dataset_takes_the_effects_over(tmp_path: Path, tiny_file: Path, standin_build: Builder) -> None:
-    """Simulated by the stand-in: what is stored of the material, and that a changed card is noticed."""
+    """The store's material has the effects, and a changed card is detected; simulated by the stand-in."""
     cards, target = tmp_path / "cards", tmp_path / "a.zarr"
     write_card(cards, "S0")
     write_card(cards, "S1", STIFFENING, CURVED)
     plan = plan_of(tiny_file, cards)
-    assert [p.scene.material.law for p in plan.pokes] == ["yeoh"] * 4  # one set of parameters a dataset
+    assert [p.scene.material.law for p in plan.pokes] == ["yeoh"] * 4  # one set of parameters per dataset
     standin_build(plan, target)
     data = open_dataset(target)
     assert data.attributes["model"] == "yeoh"

@@ -1,4 +1,4 @@
-"""The section through the rod: a surface cut by an upright plane."""
+"""The section through the indenter: a surface cut by a vertical plane."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from factory._figures import _cut
 
-# a box of 2 x 4 x 3, two triangles a face
+# a box of 2 x 4 x 3, two triangles per face
 _CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-2.0, 2.0) for z in (0.0, 3.0)])
 _FACES = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
 _TRIANGLES = np.array([t for a, b, c, d in _FACES for t in ((a, b, c), (a, c, d))])

@@ -1,4 +1,4 @@
-"""Grid, profiles, surfaces and first touch against what can be said in closed form."""
+"""Grid, profiles, surfaces and first touch against closed forms."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LINEAR = np.array([[0.3, -0.2, 0.1], [0.05, 0.4, -0.7], [0.2, 0.1, 0.9]])
 
 
 def _skewed_top(seed: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A 9 x 9 net of skewed convex quads over the top, some of them cut into degenerate quads."""
+    """A 9 x 9 net of skewed convex quads over the top, some of them split into degenerate quads."""
     random = np.random.default_rng(seed)
     n, line = 9, np.linspace(-0.05, 0.05, 10)
     x, y = np.meshgrid(line, line, indexing="ij")
@@ -43,7 +43,7 @@ def _skewed_top(seed: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         kind = random.integers(6)
         if kind >= 4:
             facets.append((a, b, c, d))
-        else:  # a triangle may repeat any of its nodes, wherever it begins
+        else:  # a triangle may repeat any node and start at any node
             for p, q, r in ((a, b, c), (a, c, d)):
                 facets.append(((p, p, q, r), (p, q, q, r), (p, q, r, r), (p, q, r, p))[kind])
     return nodes.reshape(-1, 3), np.array(facets, dtype=np.int32)
@@ -83,7 +83,7 @@ def test_interpolation_of_six_node_triangles_is_quadratic() -> None:
 def _with_middles(
     nodes: NDArray[np.float64], facets: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Quads of eight nodes; the middle of a collapsed edge is its corner."""
+    """Quads of eight nodes; the mid-side node of a collapsed edge is its corner."""
     ends = np.sort(np.stack([facets, np.roll(facets, -1, axis=1)], axis=-1), axis=-1)
     edges, place = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
     middles = np.where(ends[..., 0] == ends[..., 1], ends[..., 0], len(nodes) + place.reshape(-1, 4))
@@ -146,7 +146,7 @@ INCLUSIONS = [
 
 @pytest.mark.parametrize("inclusion", INCLUSIONS, ids=["box", "sphere", "cylinder"])
 def test_profiles_reach_the_analytic_top(inclusion: BoxInclusion) -> None:
-    """Below each grid point the rigid part begins where the inclusion's closed form says."""
+    """Below each grid point the rigid part begins at the depth given by the inclusion's closed form."""
     grid = grid_points(BLOCK)
     levels = profiles(grid, BLOCK[2], inclusion, 0.4)
     assert levels.shape == (SIZE, SIZE, LEVELS)
@@ -164,7 +164,7 @@ def test_profiles_reach_the_analytic_top(inclusion: BoxInclusion) -> None:
         local = (d[..., 0] + 1j * d[..., 1]) * turn
         half = np.full((SIZE, SIZE), inclusion.size[2] / 2)
         under = (np.abs(local.real) < inclusion.size[0] / 2) & (np.abs(local.imag) < inclusion.size[1] / 2)
-    top = BLOCK[2] - (inclusion.centre[2] + half)  # depth at which it begins
+    top = BLOCK[2] - (inclusion.centre[2] + half)  # depth of its top
     bottom = BLOCK[2] - (inclusion.centre[2] - half)
     expected = under[..., None] & (depths > top[..., None]) & (depths < bottom[..., None])
     np.testing.assert_array_equal(levels == 255, expected)
@@ -217,7 +217,7 @@ def test_first_touch_puts_the_rods_lowest_point_on_the_top(angle: float, heading
     rod = Rod(radius=0.0025, edge_radius=0.001, tip="hemisphere" if tip == "hemisphere" else "flat")
     poke = Poke(material=material, site=(0.01, -0.02), direction=tuple(direction), rod=rod)
     centre = first_touch(poke)
-    # points of the rod's end: a disc and the round around it, or a half ball
+    # points of the tip: a disc with its rounded edge, or a hemisphere
     t = np.linspace(0, math.pi / 2, 2001)
     if tip == "flat":
         radial, back = 0.0015 + 0.001 * np.sin(t), 0.001 * (1 - np.cos(t))
@@ -225,6 +225,6 @@ def test_first_touch_puts_the_rods_lowest_point_on_the_top(angle: float, heading
         radial, back = 0.0025 * np.sin(t), 0.0025 * (1 - np.cos(t))
     lowest = (centre[2] - back * direction[2] - radial * sine).min()
     assert lowest == pytest.approx(0.032, abs=1e-8)
-    # and the axis meets the rest surface at the site
+    # and the axis meets the undeformed surface at the contact point
     reach = (0.032 - centre[2]) / direction[2]
     np.testing.assert_allclose(centre + reach * direction, [0.01, -0.02, 0.032], atol=1e-12)

@@ -1,4 +1,4 @@
-"""The wheel and the sdist hold recipes and cards, and the factory finds them from another folder."""
+"""Wheel and sdist contain recipes and cards, and the factory finds them from another folder."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHIPPED = sorted(
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A wheel and an sdist of a copy of the sources (setuptools writes beside what it builds)."""
+    """Wheel and sdist of a copy of the sources (setuptools writes into the source folder)."""
     source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("built")
     skip = shutil.ignore_patterns("__pycache__", "*.zarr", "*.building", "measured", "build", "*.egg-info")
     for path in ROOT.iterdir():

@@ -1,4 +1,4 @@
-"""Killed at any moment and started again: nothing lost, nothing twice, the same bytes."""
+"""A build that is killed at any moment and restarted: no loss, no duplicate, the same bytes."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from tests.factory.conftest import Builder, digest, environment
 
 
 class Killed(BaseException):
-    """Stands for kill -9 at one file operation; after it nothing changes a file any more."""
+    """Simulated kill -9 at one file operation; no file operation succeeds after it."""
 
 
 class Reaper:
-    """Lets `alive` file operations through; the next one dies, and all after it."""
+    """Allow `alive` file operations; the next one, and all after it, raise `Killed`."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, alive: int) -> None:
         self.alive, self.dead = alive, False
@@ -51,7 +51,7 @@ class Reaper:
 
     def mortal(self, action: Callable[..., Any], first: Callable[..., None] | None = None) -> Any:
         def call(*args: Any, **kwargs: Any) -> Any:
-            # Zarr moves files in threads of its own: only our own steps count
+            # Zarr moves files in its own threads: only operations of this package count
             if threading.current_thread() is not threading.main_thread():
                 return action(*args, **kwargs)
             if self.dead or self.alive == 0:
@@ -66,7 +66,7 @@ class Reaper:
 
 
 def _half_gone(folder: Path, *_: object) -> None:
-    """What rmtree leaves when it is killed on the way."""
+    """Leave the folder as a killed rmtree would, with half of its files."""
     for path in sorted(Path(folder).rglob("*.npz"))[::2]:
         os.unlink(path)  # noqa: PTH108 - Path.unlink is the patched one
 
@@ -74,10 +74,10 @@ def _half_gone(folder: Path, *_: object) -> None:
 def _lives_through_every_kill(
     plan: Plan, run: Builder, folder: Path, prepare: Callable[[Path], None], overwrite: bool
 ) -> int:
-    """Kills at the first, second, ... file operation, builds again; returns how many moments there were."""
+    """Kill a build at its first, second, ... file operation and build again; return their number."""
     reference = folder / "reference.zarr"
     run(plan, reference)
-    left: set[str] = set()  # what earlier kills left behind: a build of the same files does the same again
+    left: set[str] = set()  # digests of the files after earlier kills: each state is rebuilt once
     for moment in range(200):
         target = folder / f"{moment}.zarr"
         prepare(target)
@@ -101,14 +101,14 @@ def _lives_through_every_kill(
 
 
 def _files(target: Path) -> str:
-    """Digest of the target and its building folder: names and contents, of the ledger how many lines."""
+    """Digest of names and contents of the target and its building folder; for the ledger its line count."""
     total = hashlib.sha256()
     for root in (target, building_folder(target)):
         for path in sorted(root.rglob("*")):
             content = path.read_bytes() if path.is_file() else b"/"
             if path.name == "ledger.jsonl":  # times differ
                 content = b"%d" % content.count(b"\n")
-            elif path.name == "lock":  # the number of a process
+            elif path.name == "lock":  # holds a process id
                 content = b""
             name = path.relative_to(target.parent).as_posix().replace(target.name, "target")
             total.update(f"{name} {hashlib.sha256(content).hexdigest()}\n".encode())
@@ -117,14 +117,14 @@ def _files(target: Path) -> str:
 
 @pytest.fixture
 def short(tiny: Recipe) -> Plan:
-    """Two pokes: there is a rebuild for each moment to be killed at."""
+    """A plan of two pokes: there is a rebuild for each possible kill."""
     protocol = tiny.protocol.model_copy(update={"own_sites": 1})
     return make_plan(tiny.model_copy(update={"protocol": protocol}), "ogden")
 
 
 @pytest.fixture
 def _few_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the store's fifty arrays five, of each sort: a kill does not ask which there are."""
+    """Write five of the store's fifty arrays, one of each kind: kills do not depend on the array."""
     kept = ("done", "message", "depth", "rod_force", "surface_displacement")
     specs = _assemble._specs
     monkeypatch.setattr(_assemble, "_specs", lambda plan: {n: s for n, s in specs(plan).items() if n in kept})
@@ -133,7 +133,7 @@ def _few_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_few_arrays")
 def test_every_kill_of_a_first_build(short: Plan, standin_build: Builder, tmp_path: Path) -> None:
     moments = _lives_through_every_kill(short, standin_build, tmp_path, lambda _: None, overwrite=False)
-    assert moments > 2 * len(short.pokes)  # a rename and an unlink for each poke, and then some
+    assert moments > 2 * len(short.pokes)  # a rename and an unlink for each poke, and others
 
 
 @pytest.mark.usefixtures("_few_arrays")
@@ -165,7 +165,7 @@ def test_real_kills_with_two_workers(
             time.sleep(0.005)
         time.sleep(moments.uniform(0, 0.25))
         if process.poll() is None:
-            os.kill(process.pid, signal.SIGKILL)  # only the main process: its workers must notice
+            os.kill(process.pid, signal.SIGKILL)  # only the main process: its workers must end by themselves
             kills += 1
         process.communicate()
     assert kills == 2
@@ -177,7 +177,7 @@ def test_real_kills_with_two_workers(
     data = open_dataset(target)
     assert data.table["done"].all()
     np.testing.assert_array_equal(np.unique(data.table["frame_poke"]), np.arange(12))
-    # a poke that was kept is not simulated again: only those in flight at a kill are
+    # staged pokes are not simulated again: only those in progress at a kill are
     simulated = len(log.read_text().splitlines())
     assert 12 <= simulated <= 12 + kills * 2 * 2
 
@@ -263,7 +263,7 @@ def test_disk_full_while_a_poke_is_written(
 def test_disk_full_while_the_store_is_written(
     quick_store: Path, quick: Plan, standin_build: Builder, tmp_path: Path
 ) -> None:
-    """A real limit on the size of files, which the parts stay below and the store's shards do not."""
+    """A real limit on file size, larger than the staged results and smaller than the store's shards."""
     target = tmp_path / "a.zarr"
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, before[1]))
@@ -291,14 +291,14 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
     while not Staging(target).finished():
         assert process.poll() is None
         time.sleep(0.01)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the whole group gets it
+    os.killpg(process.pid, signal.SIGINT)  # to the whole group, as a terminal does
     _, errors = process.communicate(timeout=600)
     assert process.returncode == 130
     kept = len(Staging(target).finished())
     assert f"Stopped. {kept} finished pokes are kept; the same command" in errors
     assert "Traceback" not in errors
     deadline = time.monotonic() + 120
-    while left := _alive_in_group(process.pid):  # no worker is left behind
+    while left := _alive_in_group(process.pid):  # all workers end
         assert time.monotonic() < deadline, left
         time.sleep(0.05)
     assert standin_build(quick, target).simulated == 12 - kept
@@ -320,7 +320,7 @@ if __name__ == "__main__":
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads the signals of Linux")
 def test_no_worker_sees_ctrl_c_not_even_the_first(tmp_path: Path) -> None:
-    script = tmp_path / "first_worker.py"  # in a process of its own: only a first start is in danger
+    script = tmp_path / "first_worker.py"  # in a new process: only the first start is at risk
     script.write_text(_FIRST_WORKER)
     run = subprocess.run(
         [sys.executable, str(script)], capture_output=True, text=True, timeout=600, env=environment()
@@ -350,7 +350,7 @@ def _alive_in_group(group: int) -> list[str]:
 def test_cluster_with_a_worker_killed(
     quick_store: Path, command: Callable[..., subprocess.Popen[str]], tmp_path: Path
 ) -> None:
-    """A real LocalCluster in two processes."""
+    """A real LocalCluster with two worker processes."""
     target = tmp_path / "a.zarr"
     trigger = tmp_path / "kill"
     trigger.touch()

@@ -1,4 +1,4 @@
-"""Pokes that differ by a modulus alone: one solve, forces in proportion, marked in the store."""
+"""Pokes that differ only by a modulus share one solve, with proportional forces, marked in the store."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def test_a_material_and_its_multiple(name: str) -> None:
     assert modulus_ratio(hard, soft) == pytest.approx(2.5)
     assert modulus_ratio(soft, hard) == pytest.approx(0.4)
     stiffer = Material(law=name, parameters=law.from_moduli(2.5e4, 21.0 * 2.5e4))
-    assert modulus_ratio(stiffer, soft) is None  # another bulk modulus over the shear modulus
+    assert modulus_ratio(stiffer, soft) is None  # another ratio of bulk to shear modulus
     assert modulus_ratio(hard, replace(soft, viscosity=Prony(fractions=(0.1,), times=(1.0,)))) is None
 
 
 def test_another_shape_of_the_law_is_no_multiple() -> None:
-    """All moduli are twice as large, and a constant without unit is another one."""
+    """All moduli are twice as large, but a dimensionless parameter differs."""
     law = laws.get("stiffening-neo-hookean")
     soft = {"mu": 1e4, "stiffening": 0.2, "lam": 2e5}
     for stiffening, factor in ((0.2, 2.0), (0.3, None)):
@@ -63,7 +63,7 @@ def test_only_the_modulus_may_differ(quick: Plan) -> None:
 
 
 def test_the_same_solve_by_the_solver_itself(quick: Plan) -> None:
-    """A shallow poke of two materials, each simulated."""
+    """One shallow poke in two materials, both simulated."""
     first, other, _ = (p for p in quick.pokes if p.shape == 0 and p.shared)
     shallow = [replace(p.scene, depth=1e-3, frame_spacing=5e-4, refinement=0.7) for p in (first, other)]
     a, b = simulate(shallow, workers=1)

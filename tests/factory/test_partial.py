@@ -1,4 +1,4 @@
-"""A store of the pokes that a stopped build has finished: a smaller dataset of the same kind."""
+"""A store of the finished pokes of a stopped build: a smaller dataset of the same form."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_the_first_pokes_are_of_all_shapes_and_levels() -> None:
 def test_a_partial_store_has_what_there_is_and_the_build_goes_on(
     plan: Plan, standin_build: Builder, finished_store: Path, stopped: Path
 ) -> None:
-    # nothing is simulated: there is no such simulator
+    # nothing is simulated: this simulator does not exist
     built = build_dataset(plan, stopped, partial=True, simulator="tests.factory.nowhere:simulate")
     assert (built.simulated, built.missing, built.errors) == (0, 1, {})
     some, whole = open_dataset(stopped), open_dataset(finished_store)

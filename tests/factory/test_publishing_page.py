@@ -16,7 +16,7 @@ BLOCKS = [block for block in blocks(PAGE) if not block.slow]
 
 @pytest.fixture(scope="module")
 def folder(quick_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the commands run: it has the dataset."""
+    """Working folder of the commands, with the dataset."""
     found = tmp_path_factory.mktemp("publishing")
     shutil.copytree(quick_store, found / "datasets" / "quick-ogden.zarr")
     return found

@@ -1,4 +1,4 @@
-"""Recipes, cards and plans: the paper's counts, the draws, and bad input in one sentence."""
+"""Recipes, cards and plans: the paper's numbers, random draws, and invalid input in one sentence."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_quick_is_of_the_same_kind() -> None:
     assert len(quick.shapes) >= 2
     assert quick.levels == paper.levels
     assert len(make_plan(quick, "ogden").pokes) >= 12
-    assert quick.protocol.depth_mm >= 10  # a third of the paper's: what fits into minutes
+    assert quick.protocol.depth_mm >= 10  # a third of the paper's: it builds in minutes
     for key in ("frame_spacing_mm", "margin_mm", "max_angle_deg"):
         assert getattr(quick.protocol, key) == getattr(paper.protocol, key)
     assert (quick.block_mm, quick.rod, quick.friction) == (paper.block_mm, paper.rod, paper.friction)
@@ -85,7 +85,7 @@ def test_draws_stay_in_their_bounds_and_fill_them() -> None:
 
 
 def test_an_indenter_that_leaves_through_a_side_is_refused() -> None:
-    """The contact points lie inside; it is the heading that leads out."""
+    """The contact points lie inside; the inclined path leaves the block."""
     paper = load_recipe("paper")
     near = paper.model_copy(update={"protocol": paper.protocol.model_copy(update={"margin_mm": 4.0})})
     with pytest.raises(InputError, match=r"protocol\.margin_mm: expected .* got 4: that of poke"):
@@ -143,7 +143,7 @@ BAD: list[tuple[str, str, str]] = [
     (TINY.replace("[S0, S1]", "[]"), "key softness: ", "at least 1 item"),
     (TINY.replace("[S0, S1]", "[../S0]"), "key softness.0: ", "pattern"),
     (TINY.replace("own_sites: 2", "own_sites: 0"), "at least one poke", ""),
-    # missing and unknown keys, all of them
+    # all missing and unknown keys
     (
         TINY.replace("depth_mm: 30, ", "depth: 30, "),
         "key protocol.depth_mm: this key is missing",
@@ -158,7 +158,7 @@ BAD: list[tuple[str, str, str]] = [
     (TINY.replace("side_mm: 18", "side_mm: -1"), "key shapes.0.side_mm: ", "greater than 0"),
     (TINY.replace("kind: cube, ", ""), "key shapes.0.kind: this key is missing", ""),
     (TINY.replace("kind: cube", "kind: [cube]"), "key shapes.0: ", "'cube', 'sphere', 'cylinder'"),
-    # what no block can hold
+    # shapes that do not fit into a block
     (TINY.replace("depth_mm: 30", "depth_mm: 32"), "depth_mm: expected less than the block's height", "32"),
     (TINY.replace("depth_mm: 30", "depth_mm: 50"), "depth_mm: expected less than the block's height", "50"),
     (
@@ -241,7 +241,7 @@ def test_bad_recipes(text: str, first: str, second: str, tmp_path: Path) -> None
 
 
 def test_what_is_no_file_is_not_read(tmp_path: Path) -> None:
-    """A pipe would be waited for, a device read without end."""
+    """Reading would wait for a pipe, and would not end for a device."""
     os.mkfifo(tmp_path / "pipe.yaml")
     for path in (tmp_path / "pipe.yaml", Path("/dev/zero")):
         with pytest.raises(InputError, match="expected a file"):

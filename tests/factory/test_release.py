@@ -1,4 +1,4 @@
-"""One zip of a store: the same bytes for the same store, as the manifest says, whole or not there."""
+"""One zip of a store: the same bytes for the same store, as in the manifest, complete or absent."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.factory.conftest import digest, run_app
 
 @pytest.fixture(scope="module")
 def released(finished_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The zip of the finished store; nobody changes it."""
+    """The zip of the finished store; no test changes it."""
     target = tmp_path_factory.mktemp("released") / "store.zarr.zip"
     result = run_app(factory.release.app, finished_store, "--out", target)
     assert result.exit_code == 0, result.output
@@ -43,7 +43,7 @@ def test_the_zip_holds_the_store_and_its_sum(released: Path, finished_store: Pat
 
 
 def test_the_same_store_gives_the_same_bytes(released: Path, store: Path, tmp_path: Path) -> None:
-    """Other dates, other rights, another order of the files on disk."""
+    """Dates, permissions and order of the files on disk differ."""
     other = tmp_path / "other.zarr"
     for path in sorted(store.rglob("*"), reverse=True):
         if path.is_file():
@@ -77,7 +77,7 @@ def test_other_commands_take_the_zip(released: Path, tmp_path: Path) -> None:
 
 
 def test_a_damaged_zip_is_found(released: Path, tmp_path: Path) -> None:
-    """A byte of an array, of which zip's own sums know as well; then an entry too many; then half a file."""
+    """A changed byte of an array, an additional entry, half of a file."""
     with zipfile.ZipFile(released) as archive:
         name = next(n for n in archive.namelist() if n.startswith("depth/c"))
         content = archive.read(name)
@@ -109,7 +109,7 @@ def test_a_damaged_store_gives_no_zip(store: Path, tmp_path: Path) -> None:
 def test_a_store_that_changes_on_the_way_gives_no_zip(
     store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was written is compared with the manifest, not what was read."""
+    """The written content, not the content as read, is compared with the manifest."""
     sound = _archive.check_sound
 
     def change(path: Path) -> None:
@@ -146,7 +146,7 @@ def test_targets_that_are_refused(out: str, sentence: str, store: Path, tmp_path
 def test_an_interrupted_release_begins_anew(
     released: Path, finished_store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Ctrl-C while it is compared; then what a kill leaves: half a file, and a sum without a zip."""
+    """Ctrl-C during the comparison; then the remains of a kill: half of a file, and a sum without a zip."""
     target = tmp_path / "store.zarr.zip"
 
     def interrupt(_path: Path) -> list[str]:

@@ -1,4 +1,4 @@
-"""What is in the store: readable with nothing of ours, true to the simulation, and verified."""
+"""The store: readable without tisim, equal to the simulation, and verified."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def store(finished_store: Path, tmp_path: Path) -> Path:
 
 
 def test_xarray_opens_it_with_nothing_of_ours(store: Path, tmp_path: Path) -> None:
-    """In a process of its own, with warnings as errors."""
+    """In a separate process, with warnings as errors."""
     code = f"""
 import sys, xarray
 for consolidated in (None, False):
@@ -80,7 +80,7 @@ def test_a_poke_comes_back_as_it_was_simulated(plan: Plan, store: Path) -> None:
         np.testing.assert_allclose(poke.surface, result.positions[:, on_surface], atol=1e-8)
         np.testing.assert_array_equal(poke.surface_rest, result.mesh.nodes[on_surface])
         assert poke.triangles.max() == len(on_surface) - 1
-        # the grid moves as the top does: exact where the field is sampled at a node of the top
+        # the grid moves with the top: exactly at grid points that coincide with nodes of the top
         assert poke.grid.shape == (len(result.load), 32, 32, 3)
         sunk = data.table["grid_rest"][..., 2] - poke.grid[-1, ..., 2]
         assert 0 < sunk.max() <= (result.mesh.nodes - result.positions[-1])[:, 2].max() + 1e-9
@@ -105,7 +105,7 @@ def test_a_poke_comes_back_as_it_was_simulated(plan: Plan, store: Path) -> None:
 def test_several_shards_hold_the_same_as_one(
     plan: Plan, store: Path, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rows that cross the ends of chunks and shards stay in their places."""
+    """Rows keep their positions across the boundaries of chunks and shards."""
     from dataclasses import replace
 
     small = {
@@ -199,7 +199,7 @@ def _edit(name: str, row: int, change: Callable[[Any], Any]) -> Callable[[Datase
     ],
 )
 def test_verify_finds(edit: Callable[..., None], words: str, store: Path) -> None:
-    """Faults of the data themselves: the checksums are made to fit again."""
+    """Faults of the data themselves: the checksums are updated to match."""
     edit(None, zarr.open_group(store=store, mode="r+"))
     write_manifest(store)
     result = run(verify_app, [str(store)])

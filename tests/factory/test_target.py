@@ -1,4 +1,4 @@
-"""Targets and plans that must be refused, in one sentence and with nothing lost."""
+"""Targets and plans that are refused in one sentence, without loss of data."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_changed_recipe_is_refused_on_the_way(
 ) -> None:
     target = tmp_path / "a.zarr"
     monkeypatch.setenv("STANDIN_FAIL", f"{round(plan.pokes[1].scene.site[0] * 1e6)}")
-    standin_build(plan, target)  # one poke fails, so the parts stay
+    standin_build(plan, target)  # one poke fails, so the staged results stay
     before = digest(target), digest(building_folder(target))
     with pytest.raises(InputError, match=r"another plan \(changed: recipe\.protocol\.depth_mm\)"):
         standin_build(other, target)
@@ -82,7 +82,7 @@ def test_overwrite_keeps_the_old_store_until_the_new_one_is_whole(
     with pytest.raises(KeyboardInterrupt):
         standin_build(other, target, overwrite=True, on_progress=stop)
     assert digest(target) == before
-    assert standin_build(other, target).simulated == 2  # goes on without --overwrite
+    assert standin_build(other, target).simulated == 2  # resumes without --overwrite
     assert digest(target) == digest(reference)
 
 
@@ -96,7 +96,7 @@ def test_two_builders(plan: Plan, standin_build: Builder, tmp_path: Path) -> Non
 def test_a_builder_that_waits_for_the_lock_of_a_finished_one_starts_afresh(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The file may be removed between open and flock: a lock on a removed file is no lock."""
+    """The file may be removed between open and flock, and a lock on a removed file excludes nobody."""
     target = tmp_path / "a.zarr"
     real, once = os.open, [True]
 

@@ -1,4 +1,4 @@
-"""Stores with a clock: what they say of their frames, and the commands with the real simulator."""
+"""Stores with time: arrays of the frames, and the commands with the real simulator."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def timed(tmp_path_factory: pytest.TempPathFactory) -> Plan:
 
 @pytest.fixture(scope="module")
 def timed_store(timed: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Built once: whoever changes it takes a copy."""
+    """The store, built once; tests that change it use a copy."""
     folder = tmp_path_factory.mktemp("timed-store")
     build_here(timed, folder / "a.zarr")
     return folder / "a.zarr"
@@ -47,7 +47,7 @@ def test_frames_carry_the_course(timed: Plan, timed_store: Path) -> None:
         assert found.time is not None
         assert found.rod_speed is not None
         np.testing.assert_array_equal(found.time, course.frames)
-        # load 10 20 30, hold, down 20 10, up 20, down 10 0, rest
+        # load to 10, 20, 30 mm; hold; retract to 20, 10; reload to 20; retract to 10, 0; rest
         words = ["load"] * 3 + ["hold"] * 3 + ["retract"] * 2 + ["reload"] + ["retract"] * 2 + ["rest"] * 2
         assert list(found.phase or ()) == words
         np.testing.assert_allclose(
@@ -125,7 +125,7 @@ def run(folder: Path, *words: object, **variables: str) -> subprocess.CompletedP
 
 @pytest.fixture(scope="module")
 def real(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One viscous indentation, built from another folder by the command."""
+    """A store of one viscous indentation, built by the command in another working folder."""
     folder = tmp_path_factory.mktemp("elsewhere")
     (folder / "small.yaml").write_text(SMALL)
     words = ("--model", "neo-hookean", "--recipe", "small.yaml", "--workers", "1")
@@ -158,11 +158,11 @@ def test_force_relaxes_and_energy_is_lost(real: Path) -> None:
     assert np.diff(poke.dissipated_energy, prepend=0.0).min() > 0
     force, phase = np.linalg.norm(poke.rod_force, axis=1), np.array(poke.phase)
     assert phase.tolist() == ["load"] * 2 + ["hold"] * 4 + ["retract"] * 2 + ["rest"] * 2
-    held = force[1:6]  # the end of the load, and the hold
+    held = force[1:6]  # end of loading, then the hold
     assert (np.diff(held) < 0).all()
-    # 5 % of the long-time modulus a decade, from 0.15 s or so to 10 s
+    # 5 % of the long-time modulus per decade, from about 0.15 s to 10 s
     assert 0.05 < 1.0 - held[-1] / held[0] < 0.12
-    assert force[phase == "rest"].max() < 1e-6  # the surface does not pull at the rod
+    assert force[phase == "rest"].max() < 1e-6  # no adhesion to the indenter
     assert data.attributes["parts"][0]["viscosity"]["kind"] == "prony"
 
 
@@ -204,7 +204,7 @@ parts.register(LogTime)
 def test_a_part_from_outside_is_read_and_built_by_its_name(
     command: Callable[..., subprocess.Popen[str]], tmp_path: Path
 ) -> None:
-    """With the stand-in, whose workers must come to know the part; `tests/tisim` solves with such a part."""
+    """The stand-in's workers must load the part; `tests/tisim` solves scenes with such a part."""
     (tmp_path / "log_time.py").write_text(LOG_TIME)
     (tmp_path / "small.yaml").write_text(SMALL.replace("S1-viscous", "S1").replace("hold_s: 10", "hold_s: 2"))
     cards = card(tmp_path, "viscosity: {kind: log-time, part: 0.05, first_s: 0.1}")

@@ -1,4 +1,4 @@
-"""What has a clock before anything is built: recipes with a course, cards with parts beside the law."""
+"""Time before any build: recipes with a loading course, cards with parts beside the law."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ def test_a_viscous_card_needs_a_course(tmp_path: Path) -> None:
 
 
 def test_without_time_the_identity_is_what_it_was() -> None:
-    """Names and sums of datasets from before depend on these keys alone."""
+    """Names and checksums of earlier datasets depend on these keys alone."""
     plan = factory.make_plan(factory.load_recipe("quick"), "ogden")
     assert set(plan.identity["recipe"]["protocol"]) == {
         "shared_sites",

@@ -1,4 +1,4 @@
-"""A poke of a store in three dimensions, by the format alone."""
+"""A three-dimensional view of a poke of a store, read by the format alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recipes with a course over time, and cards with parts beside the law."""
+"""Recipes with a loading course over time, and cards with parts beside the law."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COURSE = """
     - {to_mm: 0, speed_mm_per_s: 2}
     - {hold_s: 5, frames: 2}
 """
-# what a real simulator solves in seconds
+# simulated in seconds by tisim itself
 SMALL = f"""
 name: small
 description: one indentation of a small viscous block
@@ -63,7 +63,7 @@ def recipe(folder: Path, text: str = TIMED) -> factory.Recipe:
 
 
 def card(folder: Path, text: str, name: str = "S1") -> Path:
-    """The folder of a card that has these keys besides those of S1."""
+    """Write a card with the keys of S1 and these; return its folder."""
     cards = folder / "cards"
     cards.mkdir(exist_ok=True)
     plain = (ROOT / "datasets" / "materials" / "S1.yaml").read_text()

@@ -1,4 +1,4 @@
-"""What the tests of the commands share."""
+"""Helpers shared by the tests of the commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def call(app: object, *arguments: object) -> Result:
 
 
 def train_small(store: Path, folder: Path, *flags: object, recipe: str = RECIPE) -> Path:
-    """A run of a few seconds."""
+    """Train a small run, in a few seconds; return its folder."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     file = folder.parent / "r.yaml"
     file.write_text(recipe)
@@ -30,7 +30,7 @@ def train_small(store: Path, folder: Path, *flags: object, recipe: str = RECIPE)
 
 
 def refused(result: Result, *words: str) -> str:
-    """Exit code 2 and one sentence on stderr that has these words."""
+    """Assert exit code 2 and one line on stderr that contains these words; return stderr."""
     assert result.exit_code == 2, (result.output, result.exception)
     assert result.stderr.count("\n") == 1, result.stderr
     assert "Traceback" not in result.stderr

@@ -1,4 +1,4 @@
-"""A metric and a model from outside the package, as the documentation says to add them.
+"""A metric and a model from outside the package, added as the documentation describes.
 
 `--plugin tests/learn/plugin.py` imports it.
 """
@@ -16,13 +16,13 @@ from learn.models import Model, Pokes, Response, Scene, register_model
 
 @register_metric("median", units="mm", text="median over all points of |predicted - true|", digits=4)
 def median_distance(predictions: Predictions) -> Floats:
-    """One value a frame [mm]."""
+    """Median distance of each frame [mm]."""
     return np.median(predictions.distance_mm, axis=1)
 
 
 @register_model("decay", version=1)
 class Decay(Model):
-    """The push, falling off with the distance from first contact; two trained numbers."""
+    """Rod displacement times an exponential of the distance from first contact; two trained parameters."""
 
     def __init__(self, statistics: Statistics) -> None:
         super().__init__()

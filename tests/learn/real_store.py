@@ -1,4 +1,4 @@
-"""Twelve simulated pokes as a store, from data/pokes.npz (data/make_pokes.py says what they are)."""
+"""Write twelve simulated pokes as a store, from data/pokes.npz (made by data/make_pokes.py)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PACKED = Path(__file__).parent / "data" / "pokes.npz"
 
 
 def write_real_store(folder: Path) -> Path:
-    """12 pokes, 60 frames: 2 shapes, 3 softness levels, 8 sites, 10 mm deep."""
+    """Write 12 pokes, 60 frames: 2 shapes, 3 softness levels, 8 contact points, 10 mm deep."""
     with np.load(PACKED) as file:
         data = {name: file[name] for name in file.files}
     steps, largest = data.pop("displacement"), data.pop("largest")

@@ -1,7 +1,7 @@
-"""Small stores in the dataset's file format, written from nothing but that format, with a made-up field.
+"""Small stores in the dataset's file format, written without the factory, with an analytical field.
 
-The field is smooth, turns with the scene, and depends on the interior: half as large over an inclusion. The
-force is proportional to the modulus.
+The field is smooth, equivariant under rotations of the scene, and depends on the interior: it is scaled by
+sqrt(0.5) over an inclusion. The force is proportional to the modulus.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def field(
     depth: float,
     soft: np.ndarray[Any, Any],
 ) -> np.ndarray[Any, Any]:
-    """Displacement of points (n, 3); soft (n,): 1, or less over an inclusion."""
+    """Displacement (n, 3) at points (n, 3); `soft` (n,) is 1, and smaller over an inclusion."""
     r = points - start
     rho = np.sqrt((r**2).sum(axis=1) + RADIUS**2)
     fall = (RADIUS / rho) * np.exp(-rho / 0.02) * np.sqrt(soft)
@@ -52,7 +52,7 @@ def write_store(
     blosc: bool = True,
     seed: int = 0,
 ) -> Path:
-    """A whole store: `sites` pokes a shape and softness, at sites common to the softness levels."""
+    """Write a complete store: `sites` pokes per shape and softness, at contact points shared by levels."""
     random = np.random.default_rng(seed)
     xyz = grid()
     depth_of_level = (np.arange(128) + 0.5) * HEIGHT / 128
@@ -158,7 +158,7 @@ def write_arrays(
     shard: int,
     blosc: bool = True,
 ) -> None:
-    """All arrays of the format; the surface's nodes are the grid's points, poke after poke."""
+    """Write all arrays of the format; the surface nodes of each poke are the grid points."""
     corners = _triangles()
     pokes, frames = len(data["poke_shape"]), data["frame_count"]
     nodes = len(surface) // pokes
@@ -201,7 +201,7 @@ def write_arrays(
 
 
 def write_manifest(folder: Path) -> None:
-    """Sums of all files as they are now."""
+    """Write the manifest of the present files' sha256 sums."""
     files = [p for p in sorted(folder.rglob("*")) if p.is_file() and p.name != "manifest.json"]
     sums = {p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
     (folder / "provenance").mkdir(exist_ok=True)

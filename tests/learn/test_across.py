@@ -1,4 +1,4 @@
-"""Intervals by the other folds: from shapes that nobody had seen, never from the run's own test part."""
+"""Intervals of a run from the other folds: from shapes unseen in training, never from its own test part."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from learn.training import Recipe, Run
 def _answers(
     fold: int, factor: float, *, seed: int = 0, name: str = "invariant-gnn", **recipe: object
 ) -> Predicted:
-    """A run whose errors on its unseen shapes are `factor` times as large as another's."""
+    """Predictions of a run whose errors are `factor` times those of a run with factor 1."""
     random = np.random.default_rng([fold, seed])
     pokes, n = 12, 200
     frames = 3 * pokes
@@ -44,7 +44,7 @@ def _answers(
 
 
 def test_shapes_that_differ_are_covered_on_average_over_folds() -> None:
-    """One fold's neighbour says little of it; the others together cover 90 % on average."""
+    """Intervals from one other fold vary; those from all others cover 90 % on average."""
     shares, beside = [], []
     for seed in range(12):
         factors = np.exp(0.5 * np.random.default_rng(seed).normal(size=5))
@@ -59,7 +59,7 @@ def test_shapes_that_differ_are_covered_on_average_over_folds() -> None:
 
 
 def test_a_run_takes_no_part_in_its_own_intervals() -> None:
-    """Errors of one fold ten times the others': that fold is not covered, its own errors being known."""
+    """A fold with ten times the others' errors is not covered, since its own errors are not used."""
     found = across_folds([_answers(k, 10.0 if k == 2 else 1.0) for k in range(4)])
     shares = {one.run.recipe.fold: coverage(i, one.predictions).points for one, i in found}
     assert shares[2] < 0.3
@@ -67,7 +67,7 @@ def test_a_run_takes_no_part_in_its_own_intervals() -> None:
 
 
 def test_frames_outside_what_was_trained_calibrate_nothing() -> None:
-    """Half of each fold lies outside, its errors ten times as large: intervals are those of the inside."""
+    """Half of each fold is outside, with ten times the errors: only the other half calibrates."""
     alone = [_answers(fold, 1.0) for fold in range(4)]
     whole = []
     for fold, near in enumerate(alone):
@@ -112,7 +112,7 @@ def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> N
 
 
 def test_intervals_of_before_the_cover_are_read(tmp_path: Path) -> None:
-    """Files of 2026-11-25 have the size of the inclusion alone, under another name."""
+    """Files of 2026-11-25 have one coefficient, of the inclusion's size, under another key."""
     run = SimpleNamespace(folder=tmp_path, members=())
     own = replace(fit_intervals(_answers(0, 1.0).predictions), interior=(0.1, 0.2), force_interior=(0.3, 0.4))
     path = save_intervals(run, own)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Baselines do what their names say."""
+"""The baselines behave as their names state."""
 
 from __future__ import annotations
 

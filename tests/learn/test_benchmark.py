@@ -1,4 +1,4 @@
-"""The loaders' benchmark runs: every layout has its row."""
+"""The loaders' benchmark runs and has a row for every layout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Points between those of the grid: their displacement, and training on them."""
+"""Points between those of the grid: their displacements, and training on them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_points_move_within_their_cells_and_the_grid(store: Store) -> None:
         np.testing.assert_array_equal(points[nearest_columns(store, points)].shape, points.shape)
         nearest.append(np.linalg.norm(points - store.path_start[0], axis=1).min())
     grid = np.linalg.norm(store.points - store.path_start[0], axis=1).min()
-    # some of the draws come nearer to the contact's middle than any grid point
+    # some draws are nearer to the centre of contact than any grid point
     assert min(nearest) < 0.5e-3 < grid
 
 
@@ -44,7 +44,7 @@ def test_nearest_columns_are_the_nearest(store: Store) -> None:
 
 
 def test_the_surface_mesh_gives_the_field_between_its_nodes(store: Store) -> None:
-    """At the nodes to rounding, between them as far as linear interpolation goes."""
+    """Displacements are exact at the nodes, and accurate to linear interpolation between them."""
     rows = np.array([1, 6, 7])
     surfaces = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     exact = MemoryDataset(store, rows).__getitems__(np.arange(3)).displacement.numpy()
@@ -75,7 +75,7 @@ def test_a_jittered_batch_has_the_displacement_of_its_own_points(store: Store, t
     columns = nearest_columns(store, points)
     np.testing.assert_array_equal(scene.rigid.numpy(), trainer.scene.rigid[:, columns].numpy())
     again, _, _ = trainer._augmented(batch)
-    np.testing.assert_array_equal(again.points.numpy(), points)  # a function of seed and step
+    np.testing.assert_array_equal(again.points.numpy(), points)  # depends on seed and step only
     plain = Trainer(store, recipe.model_copy(update={"point_jitter": 0.0}), tmp_path / "plain")
     assert plain._augmented(batch)[0] is plain.scene
 

@@ -1,4 +1,4 @@
-"""The commands as programs: help without torch and at once, versions, tables that fit a terminal, plugins."""
+"""The commands as programs: fast help without torch, versions, tables that fit a terminal, plugins."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_the_package_lists_its_commands() -> None:
 
 
 def test_help_names_what_there_is() -> None:
-    """Written out in the help, since the registries need torch."""
+    """The help lists the names literally, since the registries need torch."""
     shown = " ".join(call(learn.train.app, "--help").output.replace("│", " ").split())
     assert [name for name in (*RECIPES, *MODELS) if name not in shown and name != "decay"] == []
 
@@ -94,7 +94,7 @@ def test_help_names_what_there_is() -> None:
 @pytest.mark.parametrize("width", [60, 80, 110, 170])
 @pytest.mark.parametrize("models", [1, 5, 9])
 def test_tables_fit_the_terminal(width: int, models: int, capsys: pytest.CaptureFixture[str]) -> None:
-    """No cell is cut: every number and every word of a heading stands whole."""
+    """No cell is truncated: every number and every word of a heading is complete."""
     heads = ["model", *(metric.heading for metric in METRICS.values())]
     rows = [[f"model-number-{k}", *(f"{k}.{j:04d}" for j in range(1, len(heads)))] for k in range(models)]
     print_table(Console(width=width, file=sys.stdout), "Title", heads, rows)
@@ -106,7 +106,7 @@ def test_tables_fit_the_terminal(width: int, models: int, capsys: pytest.Capture
 
 
 def test_a_plugin_brings_a_metric_and_a_model(store: Path, tmp_path: Path) -> None:
-    """Both recipes for adding, from a file outside the package: train, evaluate, predict."""
+    """Train, evaluate and predict with a metric and a model from a file outside the package."""
     flags = ("--plugin", PLUGIN)
     run = train_small(store, tmp_path / "run", "--model", "decay", *flags)
     assert load_run(run).recipe.model == "decay"
@@ -138,7 +138,7 @@ def test_without_its_plugin_a_run_is_refused(
 
 
 def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
-    """One validation poke: the terminal and the report say why there is no table."""
+    """With one validation poke the terminal and the report state why there is no table."""
     store = write_store(tmp_path / "s.zarr", shapes=3, softness=("S0",), sites=1, frames=2)
     run = train_small(store, tmp_path / "run", "--epochs", 1)
     done = call(learn.evaluate.app, run, "--no-clouds", "--no-baselines", "--threads", 1)

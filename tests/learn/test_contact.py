@@ -1,4 +1,4 @@
-"""The rod's surface is where it is, and what is said to touch it lies on it."""
+"""Distance from the indenter's surface, and points in contact that lie on it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RADIUS, EDGE = 2.5e-3, 1e-3
 
 
 def _outline(edge: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Points of the rod's surface in the plane (ahead of the tip, aside), rod radii, finely."""
+    """Densely sampled points (ahead of the tip, aside) of the rod's surface, in rod radii."""
     turn = np.linspace(0, np.pi / 2, 4000)
     rounded = np.column_stack([edge * (np.cos(turn) - 1), 1 - edge + edge * np.sin(turn)])
     flat = np.column_stack([np.zeros(4000), np.linspace(0, 1 - edge, 4000)])
@@ -23,7 +23,7 @@ def _outline(edge: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     return np.concatenate([flat, rounded, side])
 
 
-@pytest.mark.parametrize("edge", [0.4, 1.0])  # flat, and a hemisphere
+@pytest.mark.parametrize("edge", [0.4, 1.0])  # flat tip and hemisphere
 def test_distance_from_the_rod_is_that_of_its_nearest_surface_point(edge: float) -> None:
     random = np.random.default_rng(0)
     ahead, aside = random.uniform(-2, 2, 300), random.uniform(0, 3, 300)
@@ -31,7 +31,7 @@ def test_distance_from_the_rod_is_that_of_its_nearest_surface_point(edge: float)
     found, of_a, of_s = indenter.distance(torch.from_numpy(ahead), torch.from_numpy(aside), edge)
     rounded = (ahead + edge > 0) & (aside > 1 - edge)
     inside = np.where(rounded, np.hypot(ahead + edge, aside - 1 + edge) < edge, (ahead < 0) & (aside < 1))
-    # within the rod the distance is to the nearer of two faces, unless the nearest place is on the edge
+    # inside the rod the distance is to the nearer of two faces, unless the nearest point is on the edge
     plain = ~inside | rounded | (np.minimum(-ahead, 1 - aside) < edge / 4)
     np.testing.assert_allclose(found.numpy()[plain], np.where(inside, -expected, expected)[plain], atol=2e-3)
     step = 1e-6
@@ -42,7 +42,7 @@ def test_distance_from_the_rod_is_that_of_its_nearest_surface_point(edge: float)
 
 
 def _contact(points: torch.Tensor, depth: float = 4e-3) -> Contact:
-    """One inclined poke; points (n, 3) from first touch in the rod's frame, rod radii: x, y, ahead."""
+    """Contact of one inclined poke; points (n, 3) [rod radii] from first touch, along x, y and ahead."""
     push = torch.tensor([0.6, 0.0, -0.8], dtype=torch.float64)
     x, y = torch.tensor([0.8, 0.0, 0.6], dtype=torch.float64), torch.tensor([0.0, 1, 0], dtype=torch.float64)
     place = RADIUS * (points[:, :1] * x + points[:, 1:2] * y + points[:, 2:] * push)

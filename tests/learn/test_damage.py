@@ -1,4 +1,4 @@
-"""Damaged runs and stores, and a full disk: one sentence that names the file, exit code 2, nothing lost."""
+"""Damaged runs and stores, and a full disk: one sentence that names the file, exit code 2, no loss."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def run(whole: Path, tmp_path: Path) -> Path:
 
 
 def _content(**changes: Any) -> Callable[[Path], None]:
-    """Spoils best.pt: sets keys, or removes those that are None."""
+    """Change best.pt: set keys, or remove those whose value is None."""
 
     def spoil(run: Path) -> None:
         content = load_checkpoint(run / "best.pt")
@@ -237,7 +237,7 @@ RESUMED = Recipe(name="tiny", epochs=3, batch=8, model="invariant-gnn-small")
 
 @pytest.mark.parametrize("file", ["best.part", "last.part"])
 def test_a_full_disk_keeps_what_was_good(store: Path, tmp_path: Path, file: str) -> None:
-    """/dev/full refuses every byte, as a full disk does; with room again the command works."""
+    """/dev/full refuses every byte, as a full disk does; with free space the command works again."""
     arguments = (store, "--recipe", tmp_path / "r.yaml", "--threads", 1, "--out", tmp_path / "run")
     (tmp_path / "r.yaml").write_text("name: tiny\nepochs: 1\nbatch: 8\nmodel: invariant-gnn-small\n")
     (tmp_path / "run").mkdir()

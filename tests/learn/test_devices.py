@@ -1,4 +1,4 @@
-"""What a GPU would run, without one: each model on torch's meta device, and in bfloat16 on the CPU.
+"""GPU code paths without a GPU: each model on torch's meta device, and in bfloat16 on the CPU.
 
 On the meta device an operation that mixes devices, or needs a value on the CPU, fails as it would on a GPU.
 """
@@ -41,7 +41,7 @@ def batch(store: Store) -> Batch:
 
 
 def prepared_on(model: Model, scene: Scene, device: str) -> Any:
-    """Neighbourhoods are looked up on the CPU, then moved. By gathering: meta has no sparse products."""
+    """Neighbourhoods from the CPU on another device, as gathers, since meta has no sparse products."""
     found = model.prepare(scene)
     return found and tuple(gathered(part).to(device) for part in found)
 
@@ -63,7 +63,7 @@ def sizes_of(store: Store) -> Statistics:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_a_step_of_training_on_the_meta_device(name: str, store: Store, batch: Batch) -> None:
-    """Forward, loss, backward and the optimiser's step touch no other device and ask for no value."""
+    """Forward pass, loss, backward pass and optimiser step use one device and no values."""
     model = make_model(name, sizes_of(store))
     scene = scene_of(store)
     prepared = prepared_on(model, scene, "meta")
@@ -79,7 +79,7 @@ def test_a_step_of_training_on_the_meta_device(name: str, store: Store, batch: B
 
 @pytest.mark.parametrize("name", MODELS)
 def test_bfloat16_is_as_near_as_its_digits(name: str, store: Store, batch: Batch) -> None:
-    """The branch of mixed precision, by the CPU's autocast: no operation mixes types."""
+    """The mixed-precision branch under the CPU's autocast: losses agree to 5 %, gradients are finite."""
     torch.manual_seed(3)
     model, scene = make_model(name, sizes_of(store)), scene_of(store)
     prepared = model.prepare(scene)
@@ -94,7 +94,7 @@ def test_bfloat16_is_as_near_as_its_digits(name: str, store: Store, batch: Batch
 
 
 def test_answers_on_a_device_are_those_of_the_model(store: Store, batch: Batch) -> None:
-    """What `learn.bench` times on a GPU, on the CPU."""
+    """The function that `learn.bench` times on a GPU, here on the CPU."""
     model, scene = make_model("invariant-gnn", sizes_of(store)), scene_of(store)
     waits: list[int] = []
     with torch.inference_mode():
@@ -106,7 +106,7 @@ def test_answers_on_a_device_are_those_of_the_model(store: Store, batch: Batch) 
 
 
 def test_each_process_takes_a_gpu_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What torchrun starts where there are GPUs: the local rank's device, and NCCL between them."""
+    """With GPUs, a process of torchrun uses the device of its local rank, and NCCL."""
     done: list[Any] = []
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
     monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
@@ -160,7 +160,7 @@ def trained_on(device: str, store: Store, folder: Path, **changes: Any) -> Run:
 @GPU
 @pytest.mark.parametrize("name", MODELS)
 def test_training_on_a_gpu_goes_as_on_the_cpu(name: str, store: Store, tmp_path: Path) -> None:
-    """In float32 the losses are those of the CPU to a percent; in bfloat16 they fall alike."""
+    """In float32 the losses agree with the CPU's to 1 %, in bfloat16 to 10 %."""
     runs = {
         "cpu": trained_on("cpu", store, tmp_path / "cpu", model=name),
         "cuda": trained_on("cuda", store, tmp_path / "cuda", model=name, mixed_precision=False),

@@ -1,4 +1,4 @@
-"""From a trained run to a report, a prediction and ONNX files, by the commands that people type."""
+"""From a trained run to a report, a prediction and ONNX files, by the commands of a user."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     recipe = folder.parent / "r.yaml"
     recipe.write_text(
         "name: small\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
-        "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"  # minds the mean, which is asked for below
+        "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"  # weighs absolute errors, as the mean does
     )
     done = _call(learn.train.app, store, "--recipe", recipe, "--out", folder, "--threads", 1)
     assert done.exit_code == 0, done.output
@@ -74,7 +74,7 @@ def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def second(store: Path, run: Path) -> Path:
-    """A run that differs from the first in seed alone."""
+    """A run that differs from the first only by its seed."""
     folder = run.parent / "second"
     done = _call(
         learn.train.app,
@@ -116,7 +116,7 @@ def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
 
 
 def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
-    """A row of their mean, better than the worse of them; intervals and predictions of both together."""
+    """Two runs as an ensemble: its own row of the tables, intervals, symmetry and mean predictions."""
     flags = ("--ensemble", "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "both")
     done = _call(learn.evaluate.app, run, second, *flags)
     assert done.exit_code == 0, done.output
@@ -189,7 +189,7 @@ def test_prediction_of_one_poke(run: Path, tmp_path: Path) -> None:
     table = np.loadtxt(tmp_path / "out" / "displacement.csv", delimiter=",", skiprows=1)
     assert len(table) == 1024
     deepest = table[np.linalg.norm(table[:, 3:6], axis=1).argmax()]
-    assert np.linalg.norm(deepest[:2] - [5, -10]) < 5  # mm from the site
+    assert np.linalg.norm(deepest[:2] - [5, -10]) < 5  # mm from the contact point
     scene.write_text(POKE.replace("softness: S1", "shear_modulus_kPa: 18"))
     double = _call(learn.predict.app, run, scene, "--out", tmp_path / "double")
     assert double.exit_code == 0, double.output
@@ -223,7 +223,7 @@ def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
     body = "inclusion: {kind: sphere, radius_mm: 8, centre_mm: [0, 0, 8]}"
     scene.write_text(POKE.replace("shape: shape-1", body))
     about, pokes = scene_and_poke(load_poke(scene), open_store(store))
-    column = about.rigid[0, 16 * 32 + 16].numpy()  # nearest to the middle
+    column = about.rigid[0, 16 * 32 + 16].numpy()  # nearest to the centre
     height = 32 - (np.arange(128) + 0.5) / 4  # mm above the base
     assert np.abs(height[column > 0].max() - 16) < 0.5
     assert column[height < 0.3].all() == (np.hypot(1.5625, 1.5625) < np.sqrt(64 - 7.8**2))
@@ -231,7 +231,7 @@ def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
 
 
 class _Truth(Model):
-    """Answers with a smooth field known everywhere, times a number."""
+    """Model that returns the stores' analytic field over homogeneous tissue, times a factor."""
 
     def __init__(self, more: float = 1.0) -> None:
         super().__init__()
@@ -250,7 +250,7 @@ class _Truth(Model):
 
 
 def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
-    """The exact field, asked at scattered points, is found right but for the interpolation of the mesh."""
+    """The exact field at scattered points differs from the target only by the mesh's interpolation error."""
     store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
     rows = np.arange(store.frames)
     points = scattered(store, 300)
@@ -266,7 +266,7 @@ def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
 
 
 def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
-    """All pokes of shapes that the run has not seen, no others; its kept intervals are not changed."""
+    """Transfer tests all pokes of shapes unseen by the run, no others, and keeps the run's intervals."""
     other = write_store(tmp_path / "o.zarr", seed=4, shapes=5, sites=1, frames=2)
     flags = ("--transfer", "--no-clouds", "--threads", 1)
     own = _call(
@@ -282,7 +282,7 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     tables = json.loads((tmp_path / "out" / "tables.json").read_text())
     assert list(tables["tables"]) == ["invariant-gnn"]
     assert list(tables["intervals"]) == ["invariant-gnn, fold 0"]
-    # its training part has one interior
+    # the training part has one interior
     assert list(tables["outside"]) == ["invariant-gnn, fold 0, 0.3 to 1", "invariant-gnn, fold 0, beyond 1"]
     frames = sum(one["frames"] for one in tables["outside"].values())
     assert frames == tables["test_frames"]

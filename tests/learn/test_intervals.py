@@ -1,4 +1,4 @@
-"""Intervals cover what they promise: noise that differs from point to point, and from poke to poke."""
+"""Intervals have the promised coverage for noise that varies between points and between pokes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def _noisy(
     shapes: int = 1,
     thin: float = 0.0,
 ) -> Predictions:
-    """Predictions with errors that fall with the distance from the tip and grow with the depth.
+    """Predictions with errors that decrease with the distance from the tip and increase with the depth.
 
-    apart: standard deviation of the logarithm of a factor that all errors of a poke share. The logarithm of
-    errors grows by growth with each mm of an inclusion, of which there are so many shapes, of 1 mm and more,
-    and by thin with each mm of the cover, of which each poke has its own, from 2 to 6 mm.
+    `apart` is the standard deviation of the logarithm of a factor common to all errors of a poke. The
+    logarithm of the errors grows by `growth` per mm of the inclusion's size, with `shapes` sizes of 1 mm and
+    more, and by `thin` per mm of cover; each poke has its own cover of 2 to 6 mm.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
@@ -62,12 +62,12 @@ def test_ninety_per_cent_are_covered_near_and_far() -> None:
     assert intervals.promised == 0.9
     assert 0.88 <= found.points <= 0.92
     assert 0.86 <= found.force <= 0.94
-    assert all(0.86 <= ring <= 0.94 for ring in found.rings[:-1])  # none beyond 50 mm: few in the last
+    assert all(0.86 <= ring <= 0.94 for ring in found.rings[:-1])  # few points in the last ring
     assert rank_correlation(intervals, _noisy(100, 1)) > 0.6
 
 
 def test_pokes_that_differ_are_covered_on_average_over_calibrations() -> None:
-    """With few pokes the coverage varies, but it is 90 % or more on average, as promised."""
+    """With few pokes the coverage varies, but its mean over calibrations is 90 % or more, as promised."""
     shares = []
     for seed in range(30):
         intervals = fit_intervals(_noisy(24, seed, apart=0.8))
@@ -76,8 +76,10 @@ def test_pokes_that_differ_are_covered_on_average_over_calibrations() -> None:
 
 
 def test_pooled_quantile_counts_pokes_not_points() -> None:
-    """By hand: nine pokes of one score each; 0.9 of ten equal shares is the ninth. A poke of a thousand
-    points weighs as much as one of a single point."""
+    """By hand: of nine pokes with one score each, the 0.9 quantile with ten equal weights is the ninth.
+
+    A poke of a thousand points has the same weight as one of a single point.
+    """
     nine, of_nine = np.arange(1.0, 10.0), np.arange(9)
     assert pooled_quantile(nine, of_nine, 0.9) == 9
     assert pooled_quantile(nine, of_nine, 0.75) == 8
@@ -93,7 +95,7 @@ def test_few_pokes_promise_less() -> None:
 
 
 def test_spread_makes_the_intervals_wide_where_the_members_differ() -> None:
-    """A spread that knows which pokes are bad: covered as promised, tighter than without it."""
+    """With a spread that identifies bad pokes the coverage is as promised, and the intervals are narrower."""
     pokes, apart = 80, 1.0
 
     def known(seed: int) -> Predictions:
@@ -115,7 +117,7 @@ def test_spread_makes_the_intervals_wide_where_the_members_differ() -> None:
 
 
 def test_a_worse_model_is_not_covered() -> None:
-    """The count can fail: errors three times as large fall outside."""
+    """Errors three times as large are outside: the coverage can fail."""
     found = coverage(fit_intervals(_noisy(60, 0)), _noisy(100, 1, more=3.0))
     assert found.points < 0.5
     assert found.pokes == 0
@@ -141,7 +143,7 @@ def test_each_frame_is_widened_by_its_own_distance() -> None:
 
 
 def test_frames_are_told_apart_by_how_far_outside_they_are() -> None:
-    """Errors that grow outside are covered by intervals that widen, not by those of the inside."""
+    """Errors that grow outside the trained ranges are covered by widened intervals only."""
     intervals = fit_intervals(_noisy(40, seed=1))
     within, beyond = _noisy(20, seed=2), _noisy(20, seed=5, more=12.0)
     predictions = join_predictions([within, beyond])
@@ -153,21 +155,21 @@ def test_frames_are_told_apart_by_how_far_outside_they_are() -> None:
     assert outside.calibrated is not None
     assert outside.widened is not None
     assert inside.calibrated.points > 0.85
-    # near the tip; far away these errors are larger than the displacement
+    # near the tip; far from it these errors exceed the displacement
     assert outside.calibrated.rings[0] < 0.5 < 0.9 < outside.widened.rings[0]
     assert outside.mean_mm > 8 * inside.mean_mm
     assert [one.frames for one in found.values()] == [len(within.depth), len(beyond.depth)]
 
 
 def test_errors_that_grow_with_the_inclusion_are_covered_beside_a_larger_one() -> None:
-    """Five shapes say how; the sixth, twice as hard as the mean of these, was not among them."""
+    """The growth is fitted to five shapes; the tested sixth is twice their mean size."""
     five, six = _noisy(200, 0, growth=0.3, shapes=5), _noisy(300, 1, growth=0.3, shapes=6)
     largest = six.where(six.shape == "5")
     intervals = fit_intervals(five)
     assert intervals.interior == pytest.approx((0.3, 0.0), abs=0.03)
     assert intervals.force_interior == pytest.approx((0.3, 0.0), abs=0.1)
     found = coverage(intervals, largest)
-    assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther off errors are below 1e-4 mm
+    assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther away errors are below 1e-4 mm
     assert 0.82 <= found.force <= 0.96
     unaware = fit_intervals(dataclasses.replace(five, interior=np.zeros(0)))
     assert max(coverage(unaware, largest).rings[:3]) < 0.75
@@ -179,7 +181,7 @@ def test_few_shapes_do_not_say_how_errors_grow() -> None:
 
 
 def test_errors_that_grow_where_the_cover_is_thin_are_covered_there() -> None:
-    """Each poke has a cover of its own."""
+    """Each poke has its own cover."""
     many, other = _noisy(200, 0, thin=-0.4, shapes=5), _noisy(400, 1, thin=-0.4, shapes=5)
     thinnest = other.where(other.interior[:, 1] < 3.0)
     intervals = fit_intervals(many)

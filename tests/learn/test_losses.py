@@ -1,4 +1,4 @@
-"""The loss by hand: two frames, two points."""
+"""The loss computed by hand: two frames, two points."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ AWAY_MM = np.array([0.0, 6.0])
 
 
 def _loss(**recipe: Any) -> tuple[float, float]:
-    """Of the displacement [mm] and of the force: predicted twice and half the true one."""
+    """Loss of the displacement [mm] and of the force; predicted forces are twice and half the true ones."""
     points = torch.tensor([[0.0, 0.0, 0.0], [AWAY_MM[1] * 1e-3, 0.0, 0.0]], dtype=torch.float64)
     displacement = torch.zeros(2, 2, 3)
     displacement[..., 1] = torch.tensor(WRONG_MM * 1e-3, dtype=torch.float32)

@@ -1,4 +1,4 @@
-"""Metrics against numbers worked out by hand."""
+"""Metrics against values computed by hand."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from learn.metrics import METRICS, Predictions
 
 
 def _cases() -> Predictions:
-    """Two frames of two pokes, three points 1, 7 and 50 mm from the tip; errors of 0, 3 and 5 mm and none."""
+    """Two frames of two pokes, three points 1, 7 and 50 mm from the tip; errors of 0, 3, 5 mm, and none."""
     truth = np.zeros((2, 3, 3), dtype=np.float32)
     truth[:, 0, 2] = -4e-3
     truth[:, 1, 0] = 2e-3

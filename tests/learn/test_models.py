@@ -1,4 +1,4 @@
-"""Models: exact symmetries of ours, any cloud, and what the published scheme lacks."""
+"""Models: exact symmetries of the invariant ones, any point cloud, and their lack in the published scheme."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _model(name: str, sizes: Statistics) -> Model:
     model = make_model(name, sizes).eval()
     with torch.no_grad():
         for parameter in model.parameters():
-            parameter.mul_(1.7)  # answers as large as a trained model's, all paths awake
+            parameter.mul_(1.7)  # outputs of a trained model's size, all paths active
     return model
 
 
@@ -67,7 +67,7 @@ def _turned(scene: Scene, pokes: Pokes, turn: Tensor, shift: Tensor) -> tuple[Sc
 
 
 def _error_mm(model: Model, scene: Scene, pokes: Pokes, turn: Tensor, shift: Tensor) -> tuple[float, float]:
-    """Largest disagreement between turning before and after [mm], and of the force [relative]."""
+    """Largest violation of equivariance, of the displacement [mm] and of the force [relative]."""
     with torch.no_grad():
         still, moved = model(scene, pokes), model(*_turned(scene, pokes, turn, shift))
     apart = moved.displacement.double() - still.displacement.double() @ turn.T
@@ -80,15 +80,15 @@ def _error_mm(model: Model, scene: Scene, pokes: Pokes, turn: Tensor, shift: Ten
 def test_ours_turns_mirrors_and_moves_with_the_scene(
     store: Store, sizes: Statistics, pokes: Pokes, name: str, seed: int
 ) -> None:
-    """Rotations about any axis, mirrorings, translations by metres; float32."""
+    """Rotations about any axis, reflections, and translations by metres, in float32."""
     random = np.random.default_rng(seed)
-    turn = torch.from_numpy(ortho_group.rvs(3, random_state=random))  # half of them mirror
+    turn = torch.from_numpy(ortho_group.rvs(3, random_state=random))  # half of them reflections
     shift = torch.from_numpy(random.uniform(-3, 3, 3))
     model, scene = _model(name, sizes), scene_of(store)
     model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
     with torch.no_grad():
         size = float(model(scene, pokes).displacement.norm(dim=2).max()) * 1e3
-    assert size > 1  # mm: the bound below means something
+    assert size > 1  # mm, so that the bound below is meaningful
     apart, force = _error_mm(model, scene, pokes, turn, shift)
     assert apart < 1e-5
     assert force < 1e-5
@@ -154,7 +154,7 @@ def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
 
 @pytest.mark.parametrize("name", ["invariant-gnn", "invariant-gnn-small"])
 def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, pokes: Pokes, name: str) -> None:
-    """The fast path: displacement to rounding, near the rod and far from it."""
+    """`SinglePoke` gives the displacement to rounding, near the indenter and far from it."""
     model, scene = _model(name, sizes), scene_of(store)
     assert isinstance(model, InvariantGnn)
     model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
@@ -172,7 +172,7 @@ def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, poke
 
 
 def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
-    """A quarter of the points move much as they do among all: messages are means, not sums."""
+    """A quarter of the points move nearly as among all points: messages are means, not sums."""
     model, scene = _model("invariant-gnn", sizes), scene_of(store)
     some = np.arange(1024).reshape(32, 32)[::2, ::2].reshape(-1)
     sparse = make_scene(
@@ -212,7 +212,7 @@ def test_force_is_proportional_to_the_modulus_but_for_what_is_learned_of_it(
 def test_where_levels_scale_with_the_modulus_the_displacement_does_not_depend_on_it(
     store: Store, pokes: Pokes
 ) -> None:
-    """Of a law without gravity the answer is known: nothing is left to learn."""
+    """For a law without gravity the dependence is known and is not learned."""
     alike = dataclasses.replace(store, attributes={**store.attributes, "scales_with_modulus": True})
     sizes = statistics(MemoryDataset(alike, np.arange(alike.frames)).batches(64), alike)
     model, scene = _model("invariant-gnn", sizes), scene_of(alike)
@@ -226,7 +226,7 @@ def test_where_levels_scale_with_the_modulus_the_displacement_does_not_depend_on
 def test_force_and_displacement_go_to_zero_in_proportion_at_first_contact(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
-    """A contact has a stiffness, and a rod that is not in touch does nothing."""
+    """Force and displacement are linear in small depths, and 0 without contact."""
     model, scene = _model("invariant-gnn", sizes), scene_of(store)
     assert isinstance(model, InvariantGnn)
     with torch.no_grad():
@@ -253,7 +253,7 @@ def test_force_and_displacement_go_to_zero_in_proportion_at_first_contact(
 def test_more_points_near_the_rod_do_not_change_the_answer(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
-    """Points weigh as the area that they stand for, as a surface mesh that is finer somewhere wants it."""
+    """Points are weighted by their area, as a locally refined surface mesh requires."""
     model, scene = _model("invariant-gnn", sizes), scene_of(store)
     some = np.random.default_rng(0).uniform(-8e-3, 8e-3, (600, 2)) + pokes.start[0, :2].numpy()
     points = np.concatenate([store.points, np.column_stack([some, np.full(600, store.points[0, 2])])])
@@ -271,8 +271,10 @@ def test_more_points_near_the_rod_do_not_change_the_answer(
 
 
 def test_stencil_is_a_mean_and_a_slope() -> None:
-    """The mean of a constant is the constant, the slope of it zero where the cloud is symmetric; of a linear
-    function the slope points uphill."""
+    """The mean of a constant is the constant; its slope is 0 at a point with a symmetric neighbourhood.
+
+    The slope of a linear function has the direction of its gradient.
+    """
     x = np.arange(9.0)
     points = np.stack([*(g.reshape(-1) for g in np.meshgrid(x, x)), np.zeros(81)], axis=1)
     s = stencil(points, 2.1, np.ones(81))

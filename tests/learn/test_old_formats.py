@@ -1,4 +1,4 @@
-"""Recipes and checkpoints from before names changed are still read; weights of an earlier network are not.
+"""Recipes and checkpoints with old names are still read; weights of an earlier network are refused.
 
 data/old-run was written by the code of commit 2968e7c: model "ours-small" of version 2.
 """
@@ -49,7 +49,7 @@ def test_old_model_names_make_the_models(tmp_path: Path) -> None:
 
 
 def test_an_old_run_is_resumed(tmp_path: Path) -> None:
-    """last.pt with the old keys: training goes on to the same weights."""
+    """Training from a last.pt with the old keys leads to the same weights."""
     opened = open_store(write_store(tmp_path / "s.zarr", sites=2, frames=2))
     recipe = Recipe(name="tiny", model="invariant-gnn-small", epochs=2, batch=8, ema_decay=0.9)
     Trainer(opened, recipe, tmp_path / "whole").train()

@@ -1,4 +1,4 @@
-"""Muon steps hidden matrices along orthogonal ones, and Adam steps the rest."""
+"""Muon takes orthogonalised steps of hidden matrices, and Adam steps all other parameters."""
 
 from __future__ import annotations
 
@@ -22,8 +22,10 @@ def sizes(tmp_path_factory: pytest.TempPathFactory) -> Statistics:
 
 
 def _one_step(sizes: Statistics, optimiser: str) -> tuple[Model, dict[str, torch.Tensor]]:
-    """A model, and how a step moved its parameters: along gradients that are twenty times as large in one
-    direction as in another."""
+    """A model and the change of its parameters in one step.
+
+    The singular values of each matrix's gradient span a factor of twenty.
+    """
     torch.manual_seed(3)
     model = make_model("invariant-gnn-small", sizes)
     before = {name: p.detach().clone() for name, p in model.named_parameters()}
@@ -43,7 +45,7 @@ def test_muon_moves_a_hidden_matrix_as_far_in_all_directions(sizes: Statistics, 
     step = moved[name]
     size = RATE * 0.2 * max(step.shape) ** 0.5  # Liu et al. 2025, eq. 4
     found = torch.linalg.svdvals(step) / size
-    assert found.min() > 0.5  # as near to 1 as five iterations of Newton and Schulz come
+    assert found.min() > 0.5  # accuracy of five Newton-Schulz iterations
     assert found.max() < 1.3
 
 

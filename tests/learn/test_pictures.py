@@ -1,4 +1,4 @@
-"""Pictures are drawn outside pyplot: a notebook that draws one keeps its backend and shows it once."""
+"""Figures are drawn without pyplot: a notebook keeps its backend and shows a figure once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""On real pokes, in half a minute: what trains here beats what needs no training, on a site it never saw."""
+"""Training on real pokes in half a minute beats the baselines on a contact point unseen in training."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from learn.training import RECIPES, Trainer, load_run, read_log
 from tests.learn.real_store import write_real_store
 
 RECIPE = RECIPES["quick"].model_copy(update={"epochs": 12, "batch": 6})
-# how many times smaller our error is at least; measured: 3.4, 13, 35; 4.3, 13, 35; 1.5
+# least ratio of a baseline's error to the model's; measured: 3.4, 13, 35; 4.3, 13, 35; 1.5
 FACTORS = {
     "zero displacement": {"mean": 2.5, "max": 8, "tip": 15},
     "nearest training poke": {"mean": 2.5, "max": 8, "tip": 15},

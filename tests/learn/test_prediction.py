@@ -1,4 +1,4 @@
-"""learn.predict and learn.load: nonsense is refused by name; every answer says whether it was trained for."""
+"""learn.predict and learn.load: invalid input is refused by name; answers state if they extrapolate."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def test_the_domain_is_that_of_the_training_part(run: Path, store: Path) -> None
 
 
 def _outside(predictor: Predictor, **changes: object) -> set[str]:
-    """Keys of what is outside, of a poke in the middle of the trained ranges but for the changes."""
+    """Keys of the checks that are outside, for a poke amid the trained ranges with these changes."""
     ranges = predictor.domain.ranges if predictor.domain else {}
     middle = {key: sum(ranges[key]) / 2 for key in ("depth_mm", "angle_deg", "shear_modulus_kPa")}
     scene: dict[str, object] = {"site_mm": [0, 0], "shape": "shape-2", **middle, **changes}
@@ -176,7 +176,7 @@ def test_thin_cover_and_other_inclusions_are_outside(predictor: Predictor) -> No
     )
     assert "inclusion_width_mm" in {check.key for check in none.outside}
     kind = next(check for check in none.checks if check.key == "inclusion")
-    assert kind.inside is None  # this dataset does not say what its shapes are
+    assert kind.inside is None  # this dataset does not state the kinds of its shapes
 
 
 def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> No
 
 
 def test_a_trained_poke_is_inside(run: Path, store: Path) -> None:
-    """Every training poke, asked for as a scene, is inside, and strict answers it."""
+    """The scene of every training poke is inside, and strict mode predicts it."""
     opened, predictor = open_store(store), learn.load(run)
     rows = split_of(opened, predictor.run.recipe).train
     for poke in np.unique(opened.frame_poke[rows]):
@@ -215,7 +215,7 @@ def test_a_trained_poke_is_inside(run: Path, store: Path) -> None:
 
 
 def test_runs_from_before_the_domain_was_recorded(run: Path, tmp_path: Path) -> None:
-    """Derived from the dataset where it is at hand, else said to be unknown."""
+    """The domain is derived from the dataset if it is available, else reported as unknown."""
     old = tmp_path / "old"
     old.mkdir()
     content = load_checkpoint(run / "best.pt")

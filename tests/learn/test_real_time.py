@@ -1,4 +1,4 @@
-"""One interior poke by poke: the predictor's answers, what is outside, and intervals that widen there."""
+"""One interior, poke by poke: the predictor's answers, the domain, and intervals that widen outside it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
 INTERIOR = {"shape": "shape-1", "softness": "S1"}
-# as `learn.evaluate` makes them; in mm, by rings of distance
+# as `learn.evaluate` fits them, with factors per ring of distance [mm]
 WIDTHS = Intervals(
     level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
     factors=[1.5] * 5, force_scale=0.02, force=1.7,
@@ -65,7 +65,7 @@ def test_it_answers_as_the_predictor_does(
 
 
 def test_intervals_widen_with_the_distance_from_what_was_trained(touch: RealTime) -> None:
-    """Far outside the radius is the displacement itself, and the force is known to a factor of four."""
+    """Far outside the radius equals the displacement, and the force has the factor exp(FORCE_UNKNOWN)."""
     widths, radii = [], []
     for depth in (2e-3, 2.5e-3, 4e-3, 12e-3):
         answer = touch(site=(5e-3, -10e-3), direction=(0.0, 0.0, -1.0), depth=depth)
@@ -102,7 +102,7 @@ def test_distance_is_in_units_of_the_trained_ranges() -> None:
 
 
 def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
-    """What the model answers is the same: it knows one law."""
+    """The model's prediction is the same, since it knows one law."""
     assert predictor.domain is not None
     angle = sum(predictor.domain.ranges["angle_deg"]) / 2
     interior = {**INTERIOR, "shape": predictor.run.groups["train"][0]}

@@ -1,4 +1,4 @@
-"""Stores are read as written, and what is not a whole store in SI units is refused in one sentence."""
+"""Stores are read as written; incomplete stores and stores in other units are refused in one sentence."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _nan(array: zarr.Array) -> None:
 
 
 def test_pokes_that_were_not_simulated_are_no_fault(copy: Path) -> None:
-    """They have no frames, and zeros where a simulation would have put numbers."""
+    """Such pokes have no frames, and zeros in the place of values."""
     group = zarr.open_group(copy, mode="r+")
     extra = {"done": False, "direction": 0.0, "path_start": 0.0, "parameter": 0.0, "frame_count": 0}
     for name, value in extra.items():
@@ -146,7 +146,7 @@ def test_nan_in_a_frame_is_named(copy: Path) -> None:
 
 
 def test_shards_are_read_as_zarr_reads_them(tmp_path: Path) -> None:
-    """Whole and part chunks and shards, the store's ragged end; other layouts are left to zarr."""
+    """Full and partial chunks and shards, and the ragged end; other layouts are read by zarr."""
     for blosc in (True, False):
         store = open_store(write_store(tmp_path / f"{blosc}.zarr", frames=5, chunk=3, shard=9, blosc=blosc))
         assert (displacement_reader(store.location) is not None) == blosc
@@ -225,7 +225,7 @@ def test_pokes_that_are_one_solve_are_trained_on_once(whole: Path) -> None:
     solved_as = np.arange(store.pokes)
     solved_as[[trained[-1], tested[-1]]] = trained[0], tested[0]
     apart = replace(store, solved_as=solved_as)
-    assert not apart.copies.any()  # their levels may move otherwise
+    assert not apart.copies.any()  # the displacements of their levels may differ
     alike = replace(apart, attributes={**store.attributes, "scales_with_modulus": True})
     split = split_pokes(alike, fold=1)
     assert set(store.frame_poke[split.train]) == set(trained[:-1])
@@ -262,7 +262,7 @@ def test_small_strain_moduli() -> None:
 
 
 def test_inclusions_are_numbered_as_sorted_rows() -> None:
-    """Each distinct mask once, in the order of `np.unique` over rows."""
+    """Each distinct mask appears once, in the order of `np.unique` over rows."""
     random = np.random.default_rng(0)
     masks = np.where(random.random((5, 13, 17)) < 0.5, 255, 7).astype(np.uint8)
     profile = masks[random.integers(0, 5, 20)]

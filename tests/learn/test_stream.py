@@ -1,4 +1,4 @@
-"""Streaming: every frame once, in an order that a seed fixes, in bounded memory, from a folder or by HTTP."""
+"""Streaming: every frame once, in an order fixed by a seed, in bounded memory, from a folder or by HTTP."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ def test_order_depends_on_seed_and_epoch_alone(store: Store) -> None:
 
 
 def test_blocks_are_mixed(store: Store) -> None:
-    """A batch holds frames of several blocks, not a run of one."""
+    """A batch contains frames of several blocks, not a sequence of one."""
     data = StreamDataset(store, np.arange(store.frames), batch=8, shuffle_buffer=4, seed=0)
     batches = [batch.frame.numpy() // store.block for batch in data]
     assert np.mean([len(np.unique(blocks)) for blocks in batches]) > 2
 
 
 def test_memory_is_bounded_by_the_pool(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frames read but not yet given out never exceed the pool and the two blocks on their way."""
+    """Frames read but not yet returned never exceed the shuffle buffer and two blocks in transit."""
     read = given = most = 0
     plain = Store.displacement
 
@@ -103,7 +103,7 @@ def test_memory_dataset_in_a_plain_loader(store: Store) -> None:
 
 
 class _Ranges(SimpleHTTPRequestHandler):
-    """Files with byte ranges, as object stores serve them; the standard handler has none."""
+    """File server with byte ranges, like an object store; the standard handler has none."""
 
     def do_GET(self) -> None:
         path, asked = Path(self.translate_path(self.path)), self.headers.get("Range")

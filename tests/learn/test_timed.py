@@ -1,4 +1,4 @@
-"""Datasets with time: read, split, trained on with time as input, predicted from; others as they were."""
+"""Datasets with time: read, split, used for training with time as input, and for prediction."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CLOCK = {"time_s": 1.0, "rod_speed_mm_per_s": 0.0, "approach_speed_mm_per_s": 2.
 
 
 def write_timed_store(folder: Path) -> Path:
-    """The small store, its four frames as 1 and 2 mm of a load, a hold, and the rod back at 0 mm."""
+    """The small store with its four frames as a load to 1 and 2 mm, a hold, and a retraction to 0 mm."""
     write_store(folder, sites=2, frames=4)
     group = zarr.open_group(folder, mode="r+")
     pokes = len(np.asarray(group["done"][...]))  # type: ignore[index]

@@ -1,4 +1,4 @@
-"""Training: repeats itself, resumes to the same result, stops at nonsense, keeps what was good."""
+"""Training is reproducible, resumes to the same result, stops on invalid values, and keeps good results."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_stopped_and_resumed_is_the_same_as_at_one_go(
     recipe = TINY.model_copy(update=changes)
     _train(folder, recipe, tmp_path / "whole")
     with pytest.raises(KeyboardInterrupt):
-        _train(folder, recipe, tmp_path / "parts", stop_after=1)  # in the middle of the second epoch
+        _train(folder, recipe, tmp_path / "parts", stop_after=1)  # within the second epoch
     assert load_checkpoint(tmp_path / "parts" / "last.pt")["epoch"] == 1
     _train(folder, recipe, tmp_path / "parts", resume=True)
     assert _same(_weights(tmp_path / "whole"), _weights(tmp_path / "parts"))
@@ -237,7 +237,7 @@ def test_ctrl_c_says_how_to_go_on(folder: Path, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("data", ["memory", "stream"])
 def test_two_processes_of_torchrun_train_one_model(tmp_path: Path, data: str) -> None:
-    folder = write_store(tmp_path / "s.zarr", sites=4, frames=3)  # three shards to train on
+    folder = write_store(tmp_path / "s.zarr", sites=4, frames=3)  # three training shards
     recipe = tmp_path / "two.yaml"
     recipe.write_text(f"name: two\nepochs: 2\nbatch: 4\ndata: {data}\n")
     command = [
@@ -254,7 +254,7 @@ def test_two_processes_of_torchrun_train_one_model(tmp_path: Path, data: str) ->
 
 
 def test_a_stream_of_fewer_shards_than_processes_is_refused(folder: Path, tmp_path: Path) -> None:
-    """It would train nothing: each process waits for the others' batches."""
+    """It would train nothing: each process would wait for the others' batches."""
     recipe = TINY.model_copy(update={"data": "stream"})
     group = ProcessGroup(0, 2, torch.device("cpu"))
     with pytest.raises(InputError, match="1 shards to train on cannot be split among 2 processes"):

@@ -1,4 +1,4 @@
-"""A store in one zip, as it is published, is read as the folder is."""
+"""A store in one zip, as published, is read like its folder."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_what_was_not_compressed_is_read_without_zarr(folder: Path, tmp_path: Pa
 
 
 def test_it_can_be_trained_on(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By a relative path, too, and from another folder afterwards."""
+    """Training works with a relative path, and later from another folder."""
     path = zipped(folder, tmp_path / "small.zarr.zip")
     monkeypatch.chdir(tmp_path)
     run = train_small(Path(path.name), tmp_path / "run")

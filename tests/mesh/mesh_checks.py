@@ -1,4 +1,4 @@
-"""What any mesh must satisfy, whoever built it."""
+"""Assertions that every mesh must satisfy."""
 
 import numpy as np
 
@@ -8,15 +8,18 @@ from tisim.mesh.quality import nodal_determinants, volumes
 
 
 def assert_conforming(mesh: Mesh) -> None:
-    """Every facet belongs to one or two elements with the very same nodes, turned against each other;
-    every edge of 10-node tetrahedra has one middle node; every node is used."""
+    """Assert that the mesh is conforming.
+
+    Every facet belongs to one element, or to two with the same nodes in opposite orientation. Every edge of
+    10-node tetrahedra has one mid-side node. Every node is used.
+    """
     assert np.array_equal(np.unique(mesh.elements), np.arange(mesh.n_nodes))
     local = np.array(ELEMENT_FACETS[mesh.kind])
     facets = mesh.elements[:, local].reshape(-1, local.shape[1])
     _, count = np.unique(np.sort(facets, axis=1), axis=0, return_counts=True)
     assert set(count.tolist()) <= {1, 2}
-    # the same nodes seen from the two sides: each directed edge of a facet occurs as often as its reverse
-    # inside the body, so what is left over is a closed, oriented boundary
+    # seen from two sides, a facet has opposite orientations: each directed edge occurs as often as its
+    # reverse in the interior, and the remainder is a closed, oriented boundary
     assert_closed(boundary_facets(mesh.kind, mesh.elements), mesh)
     assert (count == 1).sum() == len(boundary_facets(mesh.kind, mesh.elements))
     if mesh.kind == "tet10":
@@ -26,7 +29,7 @@ def assert_conforming(mesh: Mesh) -> None:
 
 
 def assert_closed(facets: np.ndarray, mesh: Mesh, euler: int = 2) -> None:
-    """A closed surface turned outwards, of the Euler number of a ball's surface unless stated."""
+    """Assert that a surface is closed, oriented outwards and of Euler characteristic `euler` (sphere: 2)."""
     corners = facets[:, :4] if mesh.kind == "hex8" else facets[:, :3]
     directed = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     assert len(np.unique(directed, axis=0)) == len(directed)
@@ -39,11 +42,11 @@ def assert_closed(facets: np.ndarray, mesh: Mesh, euler: int = 2) -> None:
 
 
 def assert_positive(mesh: Mesh) -> None:
-    """No element is turned over, at any of its nodes, and none is nearly so."""
+    """Assert that det J at every node exceeds 5 % of the element's largest, and that volumes are positive."""
     assert (nodal_determinants(mesh) > 0.05 * np.abs(nodal_determinants(mesh)).max(axis=1)[:, None]).all()
     assert volumes(mesh).min() > 0
 
 
 def facet_set(facets: np.ndarray) -> set[tuple[int, ...]]:
-    """Facets as a set, whatever the order of their nodes."""
+    """Set of facets, independent of the order of their nodes."""
     return {tuple(f) for f in np.sort(facets, axis=1).tolist()}

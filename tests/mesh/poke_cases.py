@@ -1,4 +1,4 @@
-"""Random pokes into blocks with inclusions, and what their meshes must satisfy."""
+"""Random indentations of blocks with inclusions, and assertions on their meshes."""
 
 import numpy as np
 
@@ -8,13 +8,13 @@ from tisim.mesh._mesh import ELEMENT_FACETS, HEXAHEDRA, Mesh, boundary_facets
 
 
 def gauss_jacobians(mesh: Mesh) -> np.ndarray:
-    """det J times weight at the quadrature points: a row sums to the element's volume."""
+    """Weighted determinants det J w at the quadrature points (elements, points); a row sums to the volume."""
     places, weights = quadrature(mesh.kind)
     return det_jacobian(mesh.kind, mesh.nodes, mesh.elements, places) * weights
 
 
 def random_poke(rng: np.random.Generator) -> dict:
-    """Arguments of poke_mesh but the rod; inclusions stand on the base, or a little above or below."""
+    """Random arguments of `poke_mesh` except the indenter; inclusions lie on, above or below the base."""
     x, y = rng.uniform(-0.030, 0.030, 2)
     kind = rng.integers(3)
     if kind == 0:
@@ -38,7 +38,7 @@ def random_poke(rng: np.random.Generator) -> dict:
 
 
 def gap_to_rigid(inclusion: object, points: np.ndarray) -> np.ndarray:
-    """How far points (n, 3) [m] lie off the inclusion's surface, along the nearest face; unsigned."""
+    """Unsigned distance (n,) [m] of points (n, 3) from the inclusion's surface, along the nearest face."""
     p = points - np.array(inclusion.centre)
     if isinstance(inclusion, SphereInclusion):
         return np.abs(np.linalg.norm(p, axis=1) - inclusion.radius)
@@ -66,9 +66,9 @@ def true_volume(inclusion: object) -> float:
 
 
 def assert_matching_facets(mesh: Mesh) -> None:
-    """Each facet, as the set of its nodes, lies in one or two elements; the single ones close the body.
+    """Assert that each facet, as a set of nodes, lies in one or two elements, and single ones close the body.
 
-    Unlike a list of four nodes, a set also tells a triangle of a wedge from half of a quadrilateral.
+    A set of nodes, unlike a list of four, distinguishes a triangle of a wedge from half of a quadrilateral.
     """
     n = 4 if mesh.kind in HEXAHEDRA else 3
     local = np.array([f[:n] for f in ELEMENT_FACETS[mesh.kind]])
@@ -84,7 +84,7 @@ def assert_matching_facets(mesh: Mesh) -> None:
     assert {tuple(sorted(set(f))) for f in corners.tolist()} == {s for s, n in count.items() if n == 1}
     directed = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     directed = directed[directed[:, 0] != directed[:, 1]]
-    # closed and turned the same way everywhere: each edge is run through as often one way as the other
+    # closed and consistently oriented: each edge is traversed equally often in both directions
     directed = directed.astype(np.int64)
     key = directed.min(axis=1) * mesh.n_nodes + directed.max(axis=1)
     _, edge = np.unique(key, return_inverse=True)
@@ -93,30 +93,30 @@ def assert_matching_facets(mesh: Mesh) -> None:
 
 
 def assert_good(mesh: Mesh, block: Block) -> None:
-    """Positive elements, the volume of block less inclusion, held nodes on rigid surfaces."""
+    """Assert positive determinants, the volume of block minus inclusion, fixed nodes on rigid surfaces."""
     determinants = gauss_jacobians(mesh)
     assert determinants.min() > 0
-    # at a wedge's collapsed edge the 27 points of a hex20 are nearer
+    # near a wedge's collapsed edge the 27 points of a hex20 have smaller determinants
     least = 0.01 if mesh.kind == "hex20" else 0.03
     assert (determinants.min(axis=1) > least * determinants.max(axis=1)).all()
     inclusion = block.inclusion
     lost = np.prod(block.size) - determinants.sum()
     ratio = lost / true_volume(inclusion)
     corners = np.unique(mesh.elements[:, :8] if mesh.kind in HEXAHEDRA else mesh.elements)
-    held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], corners)]  # middle nodes lie on chords
+    held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], corners)]  # mid-side nodes lie on chords
     off = np.minimum(np.abs(held[:, 2]), gap_to_rigid(inclusion, held))
     if isinstance(inclusion, BoxInclusion):
         assert abs(ratio - 1) < 1e-9
     elif isinstance(inclusion, CylinderInclusion):
         assert (0.95 if mesh.kind == "hex20" else 0.90 - 1e-9) < ratio < 1 + 1e-3
     else:
-        # facets under the dome, and a rigid fill where the gap to the base is thin
+        # facets under the dome, and a rigid fill if the gap to the base is thin
         assert (0.75 if mesh.kind == "hex20" else 0.65) < ratio < (1.15 if mesh.kind == "hex20" else 1.10)
         p = held - np.array(inclusion.centre)
         in_fill = (p[:, 2] < 0) & (np.hypot(p[:, 0], p[:, 1]) < inclusion.radius * (1 + 1e-9))
         off[in_fill] = 0.0
     assert off.max() < 1e-9
-    # everything on the rigid surface is held: what is left of the boundary is the top and the sides
+    # all nodes on the rigid surface are fixed: the rest of the boundary is the top and the sides
     facets = mesh.facet_sets["surface"]
     free = ~np.isin(facets, mesh.node_sets["base"]).all(axis=1)
     at = mesh.nodes[facets[free]]

@@ -1,4 +1,4 @@
-"""Structured beams: node counts, section, conformity, halves, grips, outline."""
+"""Structured beam meshes: node counts, section, conformity, half models, grips, outline."""
 
 import numpy as np
 import pytest
@@ -67,14 +67,14 @@ def test_conforming_with_true_volume_and_complete_sets(kind, mirror, section, su
 
 
 def _area(mesh, name):
-    """Area of a plane face x = const, by the divergence theorem on its rim: sum of y dz."""
+    """Area of a plane face x = const by the divergence theorem on its boundary: integral of y dz."""
     facets = mesh.facet_sets[name]
     corners = 4 if mesh.kind == "hex8" else 3
     total = 0.0
     for k in range(corners):
         a, b = mesh.nodes[facets[:, k]], mesh.nodes[facets[:, (k + 1) % corners]]
         middle = mesh.nodes[facets[:, 3 + k]] if mesh.kind == "tet10" else 0.5 * (a + b)
-        # Simpson's rule is exact for y dz/ds, a cubic at most, along the parabola
+        # Simpson's rule is exact for y dz/ds along a parabola, which is at most cubic
         for weight, y, dz in (
             (1 / 6, a, -3 * a + 4 * middle - b),
             (4 / 6, middle, b - a),
@@ -98,9 +98,9 @@ def test_circular_section_has_the_true_area_and_inertia(kind, rings, tolerance):
 
 
 def test_quadratic_body_is_its_section_drawn_out():
-    """Second moment of the body's elements about y = integral of the section's, not that of a faceted one."""
+    """The quadratic elements fill the circular section, unlike a faceted one."""
     mesh = beam_mesh(length=0.05, section=CIRCLE)
-    # integral of z^2 by the divergence theorem needs the curved elements: sample them instead
+    # sample points in the curved elements
     rng = np.random.default_rng(0)
     L = rng.dirichlet(np.ones(4), size=4000)
     a, b = TET_EDGES.T
@@ -108,7 +108,7 @@ def test_quadratic_body_is_its_section_drawn_out():
     pick = rng.choice(mesh.n_elements, size=4000, p=volumes(mesh) / volumes(mesh).sum())
     point = np.einsum("kn,kni->ki", shape, mesh.nodes[mesh.elements[pick]])
     assert np.linalg.norm(point[:, 1:], axis=1).max() < R * 1.0002
-    # and nothing is missing near the rim: an inscribed 12-gon would leave out 4.5 % of the area
+    # and the region near the rim is filled: an inscribed 12-gon lacks 4.5 % of the area
     assert (np.linalg.norm(point[:, 1:], axis=1) > 0.966 * R).mean() == pytest.approx(1 - 0.966**2, abs=0.012)
 
 
@@ -141,7 +141,7 @@ def test_no_element_is_turned_over(length, radius, layer, rings, kind, mirror, b
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("section", [CIRCLE, BOX])
 def test_whole_beam_is_its_half_and_the_mirror_image(kind, section):
-    """Elements too, diagonals included: else half and whole model would not give the same answer."""
+    """The elements agree, including their diagonals: otherwise half and whole models would differ."""
     one = beam_mesh(length=0.05, section=section, kind=kind, mirror=True)
     whole = beam_mesh(length=0.05, section=section, kind=kind)
 

@@ -1,4 +1,4 @@
-"""Inclusion shapes: what every registered one has to keep, and one added from outside the package."""
+"""Inclusion shapes: requirements on every registered one, and one added from outside the package."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def shape(request: pytest.FixtureRequest, outside):
 
 
 def samples(shape: inclusions.Inclusion, count: int = 200_000) -> tuple[np.ndarray, float]:
-    """Random points of a box somewhat larger than the shape's bounds, and the box's volume."""
+    """Random points in a box slightly larger than the shape's bounds, and the volume of the box."""
     low, high = (np.array(b) for b in shape.bounds)
     room = 0.1 * (high - low)
     size = high - low + 2 * room
@@ -158,7 +158,7 @@ def test_volume_inside_and_bounds_agree(shape) -> None:
 
 @pytest.mark.parametrize("exact", SHAPES, ids=lambda s: s.kind)
 def test_distances_of_the_built_in_shapes_are_distances(exact) -> None:
-    """A step along the gradient of the signed distance changes it by the step."""
+    """The gradient of the signed distance has norm 1."""
     points, _ = samples(exact, 2000)
     step = 1e-7
     slope = np.stack(
@@ -169,7 +169,7 @@ def test_distances_of_the_built_in_shapes_are_distances(exact) -> None:
         axis=-1,
     )
     size = np.linalg.norm(slope, axis=-1)
-    assert np.mean(np.abs(size - 1.0) < 1e-6) > 0.99  # but on the medial axis
+    assert np.mean(np.abs(size - 1.0) < 1e-6) > 0.99  # except on the medial axis
 
 
 def test_plain_form_and_dimensions_give_the_shape_back(shape) -> None:
@@ -195,10 +195,10 @@ def test_a_block_lacks_the_shape(shape) -> None:
     assert low >= 0.0, "all of it counts"
     tolerance = {"box": 1e-9, "hexagon": 1e-9}.get(shape.kind, 0.2)
     assert rigid == pytest.approx(shape.volume, rel=tolerance)
-    # an edge's middle stays on its chord where the curve would turn an element over
+    # a mid-side node stays on its chord if the curve would invert an element
     held = mesh.nodes[np.intersect1d(mesh.node_sets["base"], mesh.elements[:, :8])]
     held = held[held[:, 2] > 1e-9]
-    if shape.kind != "spheroid":  # whose distance is right near the surface only
+    if shape.kind != "spheroid":  # its signed distance is exact on the surface only
         assert np.abs(shape.signed_distance(held)).max() < 1e-9
     else:
         on = np.linalg.norm((held - shape.centre) / shape.extent, axis=1)
@@ -231,7 +231,7 @@ def test_recipes_stand_their_shapes_on_the_base(name: str) -> None:
 
 
 def test_a_poke_meets_a_shape_added_by_another_process_s_file(tmp_path: Path) -> None:
-    """The user's file alone, and two worker processes."""
+    """With the user's file only, and in two worker processes."""
     (tmp_path / "my_shapes.py").write_text(OUTSIDE)
     script = tmp_path / "run.py"
     script.write_text(
@@ -260,7 +260,7 @@ def test_a_poke_meets_a_shape_added_by_another_process_s_file(tmp_path: Path) ->
 
 @dataclass(frozen=True, kw_only=True)
 class Ball(SphereInclusion):
-    """A class that takes the sphere's kind."""
+    """A class with the sphere's kind."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,7 +279,7 @@ def test_what_is_no_shape_is_refused() -> None:
     cube = inclusions.recipe_shapes()["cube"]
     with pytest.raises(ValueError, match="another shape's recipe is called 'cube'"):
         inclusions.register(SphereInclusion, recipe=cube)
-    assert inclusions.register(SphereInclusion) is SphereInclusion  # a module read again
+    assert inclusions.register(SphereInclusion) is SphereInclusion  # a module imported again
     assert inclusions.kinds()[:3] == ("box", "sphere", "cylinder")
 
 

@@ -42,8 +42,10 @@ def test_scaled_jacobian_of_a_sheared_cube_is_the_cosine():
 
 
 def test_volume_of_a_curved_tetrahedron_is_exact():
-    """One edge's middle pushed out by d in a tetrahedron of 6 V = 1: the quadrature is exact for the
-    cubic det J, checked against a rule of many points."""
+    """Two mid-side nodes of a tetrahedron with 6 V = 1 are displaced.
+
+    The quadrature is exact for the cubic det J, checked against a rule with many points.
+    """
     nodes = NODE_PLACES["tet10"].copy()
     nodes[5] += [0.05, 0.07, 0.02]
     nodes[9] += [-0.03, 0.04, 0.06]
@@ -68,7 +70,7 @@ def test_shape_gradients_reproduce_a_linear_field(kind):
 
 
 def test_quadratic_hexahedra_hold_quadratic_fields_on_their_edges():
-    """Shape functions are 1 at their node and 0 at the others, add up to 1, and have the stated slopes."""
+    """Shape functions are 1 at their node and 0 at the others, sum to 1, and have the stated derivatives."""
     places = NODE_PLACES["hex20"]
     values, _ = serendipity(places, places)
     assert values == pytest.approx(np.eye(20), abs=1e-15)
@@ -87,7 +89,7 @@ def test_quadratic_hexahedra_hold_quadratic_fields_on_their_edges():
 
 def test_edge_middle_too_far_out_is_seen():
     nodes = NODE_PLACES["tet10"].copy()
-    nodes[4] = [0.1, 0, 0]  # nearer than a quarter to the corner: det J turns negative there
+    nodes[4] = [0.1, 0, 0]  # nearer to the corner than a quarter: det J is negative there
     assert quality(one("tet10", nodes)).min_det < 0
     nodes[4] = [0.3, 0, 0]
     assert quality(one("tet10", nodes)).min_det > 0

@@ -1,4 +1,4 @@
-"""Blocks meshed for a rod: volumes, conformity, positive elements, what is held, errors."""
+"""Blocks meshed for an indentation: volumes, conformity, positive elements, fixed nodes, errors."""
 
 import numpy as np
 import pytest
@@ -64,10 +64,10 @@ def test_the_fine_zone_covers_the_ellipse_in_which_a_tilted_rod_cuts_the_surface
     radius = np.hypot(centre[:, 0] / np.sqrt(2), centre[:, 1])
     rim = np.abs(radius - ROD.radius) < 0.6e-3
     assert rim.sum() == 40
-    # radial spacing 0.5 mm, stretched along the tilt; around the rim 20 cells
+    # radial spacing 0.5 mm, stretched along the tilt; 20 cells around the rim
     assert length[rim].min(axis=1).max() < 0.75e-3
     assert length[rim].max() < 1.38e-3
-    # a ring of nodes on the ellipse itself
+    # a ring of nodes lies on the ellipse
     x, y = (mesh.nodes[mesh.node_sets["top"], :2] - [0.01, -0.01]).T
     assert (np.abs(np.hypot(x / np.sqrt(2), y) - ROD.radius) < 1e-9).sum() == 20
 
@@ -105,7 +105,7 @@ def test_any_poke_gets_a_good_mesh(seed):
     case = random_poke(np.random.default_rng(seed))
     mesh = linear(**case, rod=ROD)
     assert_good(mesh, case["block"])
-    # layers are fewer where a large sphere leaves little above it; in plane nothing is coarser than without
+    # a large sphere leaves little height above it for layers; in the plane nothing is coarser than without it
     plain = linear(block=BLOCK, site=(0.0, 0.0), rod=ROD)
     assert len(mesh.node_sets["top"]) >= len(plain.node_sets["top"])
     assert mesh.n_nodes < 16_000
@@ -113,9 +113,9 @@ def test_any_poke_gets_a_good_mesh(seed):
 
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-@example(243)  # a cylinder whose chords, all straightened, lose over 5 % of its volume
-@example(647)  # a box that wants more rays
-@example(1027)  # a shallow cap that a first grid halves
+@example(243)  # a cylinder of which straight chords would lose over 5 % of the volume
+@example(647)  # a box that needs more rays
+@example(1027)  # a shallow cap that the first grid cuts in half
 def test_any_poke_gets_a_good_quadratic_mesh(seed):
     case = random_poke(np.random.default_rng(seed))
     mesh = poke_mesh(**case, rod=ROD)
@@ -123,7 +123,7 @@ def test_any_poke_gets_a_good_quadratic_mesh(seed):
     assert_good(mesh, case["block"])
     assert_matching_facets(mesh)
     assert (reference(mesh).weights > 0.0).all()
-    # an edge is straight unless both of its ends are held, on the inclusion
+    # an edge is straight unless both of its ends are fixed on the inclusion
     ends = mesh.elements[:, HEX_EDGES]
     free = ~np.isin(ends, mesh.node_sets["base"]).all(axis=2)
     assert mesh.nodes[mesh.elements[:, 8:]][free] == pytest.approx(
@@ -153,7 +153,8 @@ def test_tetrahedra_fill_the_same_body(seed, kind):
     assert mesh.kind == kind
     assert gauss_jacobians(mesh).sum() == pytest.approx(gauss_jacobians(whole).sum(), rel=0.01)
     if kind == "tet4":
-        # the plane grid may be another: which one is sound where the solver integrates depends on the kind
+        # the plane grid may differ: the grid that is valid at the quadrature points depends on the element
+        # type
         assert_good(mesh, case["block"])
     assert_matching_facets(mesh)
     top = mesh.facet_sets["top"]
@@ -237,8 +238,10 @@ def test_an_inclusion_that_cannot_be_met_is_refused(inclusion, words):
     ],
 )
 def test_tetrahedra_of_hexahedra_above_a_dome_stay_upright(site, direction):
-    """The first grid that meets this sphere raises a hexahedron that is sound at its quadrature points, while
-    one of its tetrahedra, which the solver integrates over too, is inside-out."""
+    """For this sphere the first grid gives a hexahedron that is valid at its own quadrature points only.
+
+    One of its tetrahedra, over which the solver integrates too, is inverted.
+    """
     centre = (-0.005932481361387259, 0.0033707093804314415, 0.009)
     block = Block(inclusion=SphereInclusion(radius=0.011, centre=centre))
     mesh = linear(block=block, site=site, direction=direction, rod=ROD)

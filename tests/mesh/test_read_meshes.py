@@ -1,4 +1,4 @@
-"""Meshes of other programs: .inp, .msh and .vtu with their sets, and what cannot be read."""
+"""Meshes of other programs: .inp, .msh and .vtu with their sets, and unreadable files."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_an_input_file_with_its_sets(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("face", [1, 2, 3, 4])
 def test_faces_of_tetrahedra_have_abaqus_numbers(tmp_path: Path, face: int) -> None:
-    """S1 to S4 are opposite to nodes 4, 3, 1, 2 (its manual, solid elements)."""
+    """S1 to S4 are opposite to nodes 4, 3, 1, 2 (Abaqus manual, solid elements)."""
     nodes = "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 0., 1., 0.\n4, 0., 0., 1.\n"
     text = f"{nodes}*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n"
     mesh = tisim.read(written(tmp_path, f"{text}*SURFACE, NAME=F\n7, S{face}\n"))
@@ -88,7 +88,7 @@ def test_included_files_are_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["tet4", "tet10"])
 def test_a_gmsh_file_with_physical_groups(tmp_path: Path, kind: str) -> None:
-    """Faces are cells of their own, a group each, here numbered so that they look inwards."""
+    """Faces are separate cells with their own group, here oriented inwards."""
     mesh = small(kind)
     solid, face = {"tet4": ("tetra", "triangle"), "tet10": ("tetra10", "triangle6")}[kind]
     tip = mesh.facet_sets["tip"].astype(np.int64)

@@ -1,4 +1,4 @@
-"""Local refinement, smoothing, quadratic elements: shape, sets and conformity kept."""
+"""Local refinement, smoothing and quadratic elements preserve shape, sets and conformity."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ def test_refining_again_and_again_does_not_spoil_the_angles(block):
     for edge in (0.004, 0.002, 0.001):
         fine = refine_around(block, centre=CENTRE, radius=0.002, edge_length=edge, growth=1.0, smoothing=0)
         least.append(quality(fine).min_scaled_jacobian)
-    # 0.24 at every level; 0.15 where the longest edges are not cut along with the others
+    # 0.24 at every level; 0.15 if the longest edges are not bisected too
     assert min(least) > 0.2
 
 
@@ -101,14 +101,14 @@ def test_conforming_on_irregular_meshes_and_any_size(seed, h):
 
 
 def test_edge_through_the_body_does_not_pass_its_set_on(block):
-    """Two faces that meet at an edge are held: the middle of an edge from one to the other is free."""
+    """Two adjacent faces are fixed: the midpoint of an edge from one to the other is free."""
 
     def held(x):
         return (x[:, 0] == 0) | (x[:, 2] < -0.01 + 1e-9)
 
     mesh = with_node_set(block, "held", held)
     for finer in (refine(mesh, size=lambda x: np.full(len(x), 0.006)), to_quadratic(mesh)):
-        # at the sides a facet in the corner has all of its nodes held, and passes the set on
+        # at the sides all nodes of a facet in the corner are fixed, so that its midpoints are fixed too
         inner = np.abs(finer.nodes[:, 1]) < 0.02 - 1e-9
         member = np.isin(np.arange(finer.n_nodes), finer.node_sets["held"])
         assert (member == held(finer.nodes))[inner].all()
@@ -133,7 +133,7 @@ def test_smoothing_betters_the_mesh_and_leaves_the_boundary(block):
 
 
 def test_quadratic_mesh_follows_the_true_surface():
-    """A coarse 12-gon of linear tetrahedra put onto its circle gains the missing volume."""
+    """A coarse 12-gon of linear tetrahedra projected onto its circle gains the missing volume."""
     linear = beam_mesh(length=0.05, section=Circle(radius=0.01), kind="tet4")
     radius = np.linalg.norm(linear.nodes[:, 1:], axis=1).max()
 
@@ -162,7 +162,7 @@ def test_projection_that_would_turn_elements_over_is_taken_back(block):
 
 
 def test_an_edge_keeps_the_part_of_its_curve_that_leaves_its_element_sound(block):
-    def bulge(x):  # the further out the more, so that some edges can follow and some cannot
+    def bulge(x):  # grows outwards, so that some edges can follow and some cannot
         return x * (1.0 + 0.9 * (x[:, :1] / np.abs(block.nodes[:, 0]).max()) ** 2)
 
     straight, wild = to_quadratic(block), to_quadratic(block, project=bulge)

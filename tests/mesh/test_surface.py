@@ -1,4 +1,4 @@
-"""Surfaces that bound no body are refused with one sentence; good ones come out in metres."""
+"""Surfaces that bound no body are refused with one sentence; valid ones are returned in metres."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def one_turned():
 def pinched():
     surface = trimesh.creation.box((0.1, 0.1, 0.03))
     vertices = surface.vertices.copy()
-    vertices[0] = (0.04, 0.04, 0.05)  # a bottom corner pushed out through the top
+    vertices[0] = (0.04, 0.04, 0.05)  # a bottom corner moved out through the top
     return trimesh.Trimesh(vertices, surface.faces, process=False)
 
 
@@ -125,7 +125,7 @@ def test_crossing_faces_are_those_of_the_crossing_and_touching_is_none():
     n = len(ball().faces)
     assert len(pairs) > 10
     assert ((pairs[:, 0] < n) & (pairs[:, 1] >= n)).all()
-    # the two spheres meet in a circle in the plane half-way between the centres
+    # the two spheres intersect in a circle in the plane half-way between their centres
     assert np.abs(two.triangles_center[pairs.ravel()][:, 0] - 0.006).max() < 0.003
     assert len(crossing_faces(ball())) == 0
     assert len(crossing_faces(trimesh.creation.box((1.0, 1.0, 1.0)).subdivide())) == 0

@@ -17,14 +17,14 @@ SIZE = (0.04, 0.04, 0.03)
 
 
 def sunk_ball():
-    """A third of it below the block's base."""
+    """Ball of which a third lies below the block's base."""
     return BALL.copy().apply_translation((0.004, 0.0, 0.003))
 
 
 def test_block_with_a_ball_cut_out(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     mesh = block_around(sunk_ball(), size=SIZE, edge_length=0.006)
-    assert not list(tmp_path.iterdir())  # fTetWild leaves a file where it runs
+    assert not list(tmp_path.iterdir())  # fTetWild writes a file into its working folder
     assert_conforming(mesh)
     assert_positive(mesh)
     box = trimesh.creation.box(SIZE).apply_translation((0, 0, SIZE[2] / 2))
@@ -111,7 +111,7 @@ def test_block_without_a_size_is_refused():
 
 
 def flat_body(height: float) -> Mesh:
-    """A tetrahedron on the base whose fourth node lies at `height` [m]."""
+    """A tetrahedron on the base whose fourth node is at `height` [m]."""
     nodes = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0.002, 0.002, height]])
     return Mesh(kind="tet4", nodes=nodes, elements=np.array([[0, 1, 2, 3]], dtype=np.int32))
 
@@ -130,7 +130,7 @@ def test_a_block_that_is_flat_each_time_is_refused(monkeypatch):
 
 
 def test_slivers_in_a_plane_are_left_out():
-    """Two tetrahedra below the top and one within the tolerance of it, as fTetWild makes them at times."""
+    """Two tetrahedra below the top, and one within the tolerance of it, as fTetWild sometimes makes them."""
     nodes = np.array([[0, 0, 1.0], [1, 0, 1 - 1e-4], [1, 1, 1.0], [0, 1, 1 - 1e-4], [0.4, 0.5, 0.2]])
     sliver, below = [0, 1, 2, 3], [[0, 2, 1, 4], [0, 3, 2, 4]]
     elements = np.array([sliver, *below], dtype=np.int32)

@@ -1,7 +1,7 @@
-"""Command blocks of the documentation's pages: which there are, and how each is run.
+"""Find the command blocks of the documentation's pages, and how each is run.
 
-A fenced block of `sh` or `python` is a command block. It is an installation block if it makes, activates or
-fills an environment: `.ci/run` runs these. It is slow if the paragraph before it says "not run by CI".
+A fenced block of `sh` or `python` is a command block. It is an installation block if it creates, activates or
+fills a virtual environment: `.ci/run` runs these. It is slow if the paragraph before it says "not run by CI".
 
     python tests/packaging/blocks.py README.md install      # prints the installation blocks
 """
@@ -20,7 +20,7 @@ _INSTALLS = re.compile(r"\bpip install\b|-m venv\b|/activate\b")
 
 @dataclass(frozen=True, kw_only=True)
 class Block:
-    """A block of a page; line: where it begins."""
+    """A command block of a page; `line` is the line of its opening fence."""
 
     page: str
     line: int
@@ -37,14 +37,14 @@ class Block:
         return f"{self.page}:{self.line}"
 
     def command(self, python: str) -> list[str]:
-        """Arguments of the process that runs it; a shell block stops at the first command that fails."""
+        """Arguments of the process that runs the block; a shell block stops at the first failing command."""
         if self.language == "python":
             return [python, "-c", self.text]
         return ["sh", "-e", "-c", self.text]
 
 
 def blocks(page: str) -> list[Block]:
-    """All command blocks of a page, in order."""
+    """Return all command blocks of a page, in order."""
     text = (ROOT / page).read_text(encoding="utf-8")
     found = []
     for match in _FENCE.finditer(text):

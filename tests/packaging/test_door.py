@@ -1,4 +1,4 @@
-"""The command `tisim`: all verbs behind one door, and none imported before it is asked for."""
+"""The command `tisim` offers all verbs, and imports none before it is used."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RUN = "import sys; from tisim.commands import main; main()"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder that says what an installed tisim says of itself."""
+    """Folder with the metadata and entry points of an installed tisim."""
     about = tmp_path_factory.mktemp("door") / "tisim-0.1.0.dist-info"
     about.mkdir()
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: tisim\nVersion: 0.1.0\n")

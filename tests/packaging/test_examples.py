@@ -1,4 +1,4 @@
-"""The example experiments are small, readable, and made by their documented command."""
+"""The example experiments are small, valid, and reproduced by their documented command."""
 
 from __future__ import annotations
 
@@ -46,8 +46,11 @@ def test_each_is_a_valid_experiment_with_its_truth_beside_it(folder: Path) -> No
 
 @pytest.mark.parametrize("name", list(make_examples.EXAMPLES))
 def test_the_command_makes_the_files_that_are_shipped(name: str, tmp_path: Path) -> None:
-    """But for the photographs, whose compression belongs to the version of OpenCV, and the last digits of
-    numbers, which belong to the processor's vector instructions."""
+    """Compare all files but photographs, and numbers to a relative 1e-12.
+
+    The compression of photographs depends on the version of OpenCV, and the last digits of numbers on the
+    processor's vector instructions.
+    """
     make_examples.EXAMPLES[name](tmp_path / name)
     made = {p.relative_to(tmp_path): p for p in tmp_path.rglob("*") if p.is_file()}
     kept = {p.relative_to(MEASURED) for p in (MEASURED / name).rglob("*") if p.is_file()}

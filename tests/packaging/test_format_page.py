@@ -1,4 +1,4 @@
-"""The page on the experiment's format names every key that the reader takes, and no other."""
+"""The page on the experiment format names every key that the reader accepts, and no other."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "reference" / "experiment-format.md").read_text(encoding
 
 
 def models() -> set[type[pydantic.BaseModel]]:
-    """All strict models that experiment.yaml is read into."""
+    """All strict models into which experiment.yaml is read."""
     found: set[type[pydantic.BaseModel]] = set()
     waiting: list[type[pydantic.BaseModel]] = [experiment.Strict]
     while waiting:

@@ -1,4 +1,4 @@
-"""Links between pages lead somewhere, and what the pages name exists."""
+"""Links between pages have targets, and the commands and files that pages name exist."""
 
 from __future__ import annotations
 

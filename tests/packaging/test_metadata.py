@@ -1,4 +1,4 @@
-"""Licence, version and extras, as a package index and a reader of citations see them."""
+"""Licence, version and extras, as package indexes and citation readers see them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.packaging.blocks import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-# what is imported only where an extra is asked for
+# modules that are imported only with an extra
 OPTIONAL = {
     "trimesh",
     "rtree",

@@ -1,10 +1,10 @@
-"""Every command block of README and tutorials runs, in order, in a copy of what a clone holds.
+"""Every command block of README and tutorials runs, in order, in a copy of the content of a clone.
 
-Commands run in this process, as `python -m` runs them in one of their own: a start costs seconds. A block
-that two pages state word for word runs once. Installation blocks are run by `.ci/run`, which then passes on
-the dataset of the README's first command, by TISIM_QUICK_STORE; without it a stand-in is made.
-`python -m pytest -m slow tests/packaging` runs whole pages with the slow blocks (an hour), each command in a
-process of its own.
+Lines of `python -m` run in this process, since the start of another one takes seconds. A block that two pages
+contain word for word runs once. Installation blocks are run by `.ci/run`, which then passes the dataset of
+the README's first command in TISIM_QUICK_STORE; without it the stand-in simulator makes one. `python -m
+pytest -m slow tests/packaging` runs whole pages with the slow blocks (an hour), each command in its own
+process.
 """
 
 from __future__ import annotations
@@ -47,8 +47,10 @@ _MODULE = re.compile(r"python -m ([\w.]+) ([^|&;<>$`]+?)( \|\| echo .*)?")
 
 
 def clone(folder: Path, *, simulated: bool = False) -> None:
-    """The folders that commands name, and the dataset that the README's first command builds; simulated: with
-    its real simulations where there is none, which takes minutes."""
+    """Copy the folders that commands name, and add the dataset that the README's first command builds.
+
+    With `simulated`, tisim simulates the dataset if there is none, which takes minutes.
+    """
     for name in ("datasets", "docs", "studies"):
         shutil.copytree(
             ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.zarr", "*.building", "*.png")
@@ -64,17 +66,17 @@ def clone(folder: Path, *, simulated: bool = False) -> None:
 
 
 def run(command: list[str], folder: Path) -> None:
-    """Runs it with `python` as the one of these tests; fails with what it printed."""
+    """Run a command with the `python` of these tests; on failure show its output."""
     environment = dict(os.environ)
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     environment["PYTHONPATH"] = str(ROOT)  # a checkout needs no installation
-    environment.pop("LOKY_MAX_CPU_COUNT", None)  # of the tests: whole pages take the cores that a user has
+    environment.pop("LOKY_MAX_CPU_COUNT", None)  # set by the tests; whole pages use all cores
     ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, f"{' '.join(command)}\n{ended.stdout[-3000:]}\n{ended.stderr[-3000:]}"
 
 
 def run_here(block: Block, folder: Path) -> None:
-    """As `run`, but Python blocks and lines of `python -m` in this process."""
+    """Run a block like `run`, but Python blocks and lines of `python -m` in this process."""
     if block.language == "python":
         code, shown = _in_process(folder, [block.name], partial(exec, block.text, {"__name__": "__main__"}))
         assert code == 0, f"{block.text}\n{shown[-5000:]}"
@@ -91,12 +93,12 @@ def run_here(block: Block, folder: Path) -> None:
 
 
 def _in_process(folder: Path, arguments: list[str], call: Callable[[], object]) -> tuple[int, str]:
-    """Exit code and what was printed."""
+    """Return the exit code and the printed output."""
     shown = io.StringIO()
     handlers = logging.getLogger().handlers[:]
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("default")
-        # the module was imported by its package's interface, as it is for `python -m` too
+        # the package's interface has imported the module already, as for `python -m`
         warnings.filterwarnings("ignore", r"'\w+\.\w+' found in sys.modules", RuntimeWarning)
         patch.chdir(folder)
         patch.setattr(sys, "argv", arguments)
@@ -119,7 +121,7 @@ def scratch(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("block", QUICK, ids=[b.name for b in QUICK])
 def test_block_runs(block: Block, scratch: Path) -> None:
-    """In the order of the pages; a block may use what the ones before it wrote."""
+    """Blocks run in the order of the pages; a block may use files of earlier ones."""
     run_here(block, scratch)
 
 
@@ -128,7 +130,7 @@ def test_block_runs(block: Block, scratch: Path) -> None:
     [("coupons", "first"), ("compression", "second")],
 )
 def test_the_tutorial_finds_what_was_put_in(example: str, diagnosis: str, scratch: Path) -> None:
-    """After its blocks have run: the cause of truth.yaml is named, alone or among equivalent explanations."""
+    """After the tutorial's blocks the diagnosis finds the cause of truth.yaml, alone or as an alternative."""
     found = json.loads((scratch / f"{diagnosis}-diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
     truth = yaml.safe_load((scratch / "datasets" / "measured" / example / "truth.yaml").read_text())
     causes = sorted({effect["effect"] for effect in truth["effects"]})
@@ -137,7 +139,7 @@ def test_the_tutorial_finds_what_was_put_in(example: str, diagnosis: str, scratc
 
 
 def test_the_readme_finds_what_the_bench_was_made_with(scratch: Path) -> None:
-    """After its blocks have run."""
+    """After the README's blocks the diagnosis names the residual curvature of truth.yaml."""
     found = json.loads((scratch / "diagnosed" / "diagnosis.json").read_text(encoding="utf-8"))
     truth = yaml.safe_load((ROOT / "datasets/measured/bench/bent-in-the-mould/truth.yaml").read_text())
     assert list(truth["effects"]) == ["residual_curvature"]
@@ -155,7 +157,7 @@ def test_whole_page_runs(page: str, tmp_path: Path) -> None:
 
 
 def test_pages_have_blocks_of_each_sort() -> None:
-    """The parser finds what it looks for: a page that is written otherwise would run nothing."""
+    """The parser finds blocks: a page in another style would otherwise run nothing."""
     readme, tutorial = (blocks(page) for page in PAGES[:2])
     assert sum(b.installs for b in readme) == 4
     assert sum(b.slow for b in readme) == 3
@@ -167,7 +169,7 @@ def test_pages_have_blocks_of_each_sort() -> None:
 
 
 def test_no_command_is_hidden_from_the_tests() -> None:
-    """Commands of README and tutorial stand in marked blocks; `text` and bare fences are for output."""
+    """Commands of README and tutorial are in marked blocks; `text` and bare fences would be for output."""
     for page in PAGES:
         text = (ROOT / page).read_text(encoding="utf-8")
         fences = [line for line in text.splitlines() if line.startswith("```")]

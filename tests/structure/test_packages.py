@@ -1,4 +1,4 @@
-"""The four packages depend on each other in one direction, and whole packages are installed."""
+"""The four packages depend on each other in one direction, and installations contain all their folders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MAY_IMPORT = {"tisim": set(), "factory": {"tisim"}, "calibration": {"tisim"}, "l
 
 
 def imported(file: Path) -> set[str]:
-    """Top-level names of all modules that a file imports, wherever it does."""
+    """Top-level names of all modules that a file imports, at any level of nesting."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -33,6 +33,6 @@ def test_imports_go_one_way(package: str) -> None:
 
 @pytest.mark.parametrize("package", MAY_IMPORT)
 def test_every_folder_is_a_package(package: str) -> None:
-    """setuptools leaves folders without an __init__.py out of what is installed."""
+    """setuptools does not install folders without an __init__.py."""
     folders = {f.parent for f in (ROOT / package).rglob("*.py")}
     assert not {str(d.relative_to(ROOT)) for d in folders if not (d / "__init__.py").exists()}

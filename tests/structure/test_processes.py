@@ -1,4 +1,4 @@
-"""Tests share the cores by pytest-xdist; what they start takes none by itself."""
+"""Tests share the cores through pytest-xdist; the code under test starts no processes by itself."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from tisim.parallel import pool
 
 
 def test_what_says_nothing_of_processes_starts_none() -> None:
-    """The setting of `tests/conftest.py`, which anybody may set otherwise."""
+    """`tests/conftest.py` sets LOKY_MAX_CPU_COUNT to 1, unless the environment has another value."""
     assert pool.cores() == min(int(os.environ["LOKY_MAX_CPU_COUNT"]), os.cpu_count() or 1)

@@ -28,34 +28,44 @@ def body_of(scene: Beam, *, loaded: bool = True) -> DiscretisedBody:
 
 
 def free_body(scene: Beam) -> DiscretisedBody:
-    """The beam's mesh with nothing held and no load."""
+    """The beam's mesh without fixed nodes and without load."""
     return DiscretisedBody(
         Discretisation.build(beam_discretisation(scene).mesh, np.zeros(0, dtype=np.int32)), scene.material
     )
 
 
 def tip(mesh, x):
-    """Mean displacement of the end face's nodes [m], shape (3,)."""
+    """Mean displacement (3,) [m] of the end face's nodes."""
     nodes = mesh.node_sets["tip"]
     return (x[nodes] - mesh.nodes[nodes]).mean(axis=0)
 
 
 @dataclass(frozen=True)
 class Mode:
-    """First bending mode of the discrete body: shape (n, 3) of largest entry 1; w [rad/s]; mass (n, n)."""
+    """First bending mode of the discrete body.
+
+    Attributes
+    ----------
+    shape : ndarray (n, 3)
+        Mode shape with largest entry 1.
+    w : float
+        Angular frequency [rad/s].
+    mass : csr_matrix (n, n)
+        Mass matrix of one displacement component.
+    """
 
     shape: np.ndarray
     w: float
     mass: sparse.csr_matrix
 
     def amplitude(self, mesh, x) -> float:
-        """Part of the mode in a displacement."""
+        """Mass-weighted projection of a displacement on the mode."""
         weight = self.mass @ self.shape
         return float(np.vdot(weight, x - mesh.nodes) / np.vdot(weight, self.shape))
 
 
 def first_mode(body: DiscretisedBody, *, lumped: bool) -> Mode:
-    """By the tangent at rest; lumped: with the explicit method's mass."""
+    """Compute the first mode from the tangent stiffness at rest; `lumped`: with the lumped mass."""
     discretisation = body.discretisation
     mesh, p = discretisation.mesh, discretisation.pattern
     blocks = body.stiffness(mesh.nodes)[0]
@@ -77,11 +87,11 @@ def first_mode(body: DiscretisedBody, *, lumped: bool) -> Mode:
 
 
 def timoshenko_frequency(length: float, radius: float) -> tuple[float, float]:
-    """First frequency of a round cantilever [rad/s] by Euler-Bernoulli, and with shear and rotary inertia.
+    """First angular frequencies [rad/s] of a round cantilever by Euler-Bernoulli and by Timoshenko.
 
     Dunkerley's sum 1/w^2 = (1 + 4.648 r^2/L^2)/w_b^2 + 1/w_s^2 with w_s = pi/(2 L) sqrt(k G/rho) of the
     shear cantilever; Cowper's k = 6 (1 + nu)/(7 + 6 nu) of the circle; r^2 = R^2/4. 4.648/L^2 is the
-    ratio of integrals of w'^2 and w^2 over the mode.
+    ratio of the integrals of w'^2 and w^2 over the mode.
     """
     bulk = LAM + 2.0 * MU / 3.0
     young = 9.0 * bulk * MU / (3.0 * bulk + MU)
@@ -104,7 +114,7 @@ def swing(
     stiffness=0.0,
     amplitude=1e-4,
 ):
-    """Amplitude left of a mode let go at `amplitude` [m], after a number of its (damped) periods."""
+    """Ratio of the modal amplitude after `periods` damped periods to that at release, `amplitude` [m]."""
     rate = 0.5 * (mass + stiffness * mode.w**2)
     damped = np.sqrt(mode.w**2 - rate**2)
     duration = periods * 2.0 * np.pi / damped

@@ -1,6 +1,6 @@
-"""What the law tests share: parameters and deformations to draw, and the energies written down once more.
+"""Shared by the tests of the laws: random parameters and deformations, and independent energies.
 
-The energies here are NumPy, in principal stretches by SVD, and import nothing from tisim's laws.
+The energies are written in NumPy, in principal stretches from an SVD, and use nothing of tisim's laws.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _ratio = st.floats(5.0, 1000.0)
 
 @st.composite
 def materials(draw: st.DrawFn, law: str) -> Material:
-    """Parameters of soft silicones: G of 1 to 100 kPa, K/G of 5 to 1000, Ogden with 1 to 3 terms."""
+    """Random parameters of soft silicones: G of 1 to 100 kPa, K/G of 5 to 1000, Ogden with 1 to 3 terms."""
     G, ratio = draw(_shear), draw(_ratio)
     if law == "mooney-rivlin":
         part = draw(st.floats(0.0, 1.0))
@@ -58,7 +58,7 @@ def materials(draw: st.DrawFn, law: str) -> Material:
 
 
 def rotation(seed: int) -> np.ndarray:
-    """A random proper rotation."""
+    """Random proper rotation."""
     q = np.random.default_rng(seed).normal(size=4)
     w, x, y, z = q / np.linalg.norm(q)
     K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -70,7 +70,7 @@ rotations = st.integers(0, 2**32 - 1).map(rotation)
 
 @st.composite
 def deformations(draw: st.DrawFn) -> np.ndarray:
-    """F = R diag(stretches) Q: large, near the identity, with two or three stretches equal or nearly so."""
+    """Random F = R diag(stretches) Q: large, near identity, with two or three equal or close stretches."""
     kind = draw(st.sampled_from(("large", "near identity", "two alike", "three alike")))
     stretch = st.floats(0.5, 2.5)
     gap = draw(st.sampled_from((0.0, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 1e-9)))
@@ -89,7 +89,7 @@ def deformations(draw: st.DrawFn) -> np.ndarray:
 
 
 def energy(material: Material, F: np.ndarray, *, printed: bool = False) -> np.ndarray:
-    """Energy at F (..., 3, 3); printed: Ogden and Arruda-Boyce as the paper has them, without the split."""
+    """Energy at F (..., 3, 3); `printed`: Ogden and Arruda-Boyce as in the paper, without isochoric split."""
     p = {k: np.asarray(v) for k, v in material.parameters.items()}
     l = np.linalg.svd(F, compute_uv=False)
     J = np.linalg.det(F)
@@ -144,7 +144,7 @@ def langevin_chains(i1: np.ndarray, locking: float) -> np.ndarray:
 
 
 def slope(function: Callable[[np.ndarray], np.ndarray], F: np.ndarray, h: float = 1e-3) -> np.ndarray:
-    """d function / dF at F (3, 3) by central differences of fourth order: (3, 3, *value's shape)."""
+    """d function / dF at F (3, 3) by central differences of fourth order, shape (3, 3, *value.shape)."""
     step = h * np.eye(9).reshape(9, 3, 3)
     parts = [function(F + k * step) for k in (-2, -1, 1, 2)]
     return ((parts[0] - parts[3] + 8 * (parts[2] - parts[1])) / (12 * h)).reshape(3, 3, *parts[0].shape[1:])

@@ -1,4 +1,4 @@
-"""What the static tests share: awkward small meshes, prescribed boundaries, places on beams, materials."""
+"""Shared by the static tests: small distorted meshes, bodies with fixed nodes, beams of the references."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tisim.result import Result, Status
 from tisim.scene import Beam, Material
 
 REFERENCES = Path(__file__).parents[2] / "benchmarks" / "references"
-# the axis of a hexahedron's long diagonal in each of Kuhn's six tetrahedra
+# the six tetrahedra of a hexahedron about its long diagonal (Kuhn)
 _KUHN = np.array([[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]])
 
 
 def neo_hookean(mu: float, ratio: float) -> Material:
-    """Neo-Hookean of shear modulus mu [Pa] and bulk modulus ratio * mu."""
+    """Neo-Hookean material of shear modulus `mu` [Pa] and bulk modulus ratio * mu."""
     return Material(law="neo-hookean", parameters={"mu": mu, "lam": (ratio - 2 / 3) * mu})
 
 
@@ -55,7 +55,7 @@ def beam_of(entry: dict[str, Any], **changes: Any) -> Beam:
 
 
 def deflection(result: Result) -> np.ndarray:
-    """Displacement (3,) [m] of the end's centre, or of the middle of a beam held at both ends."""
+    """Displacement (3,) [m] of the centre of the end, or of mid-span if both ends are clamped."""
     scene = result.scene
     assert isinstance(scene, Beam)
     assert result.ok, result.message
@@ -66,9 +66,9 @@ def deflection(result: Result) -> np.ndarray:
 
 
 def awkward(kind: str, cells: tuple[int, int, int] = (3, 3, 2), *, bend: float = 0.0, seed: int = 3) -> Mesh:
-    """A box of distorted elements, 10 mm cells; hexahedra with every third column split into wedges.
+    """Box of distorted elements, cells of 10 mm; hexahedra with every third column split into wedges.
 
-    bend: how far the middle nodes of a tet10 leave their edges [m].
+    `bend` [m] is the largest offset of the mid-side nodes of a tet10, per component.
     """
     rng = np.random.default_rng(seed)
     shape = np.array(cells) + 1
@@ -93,14 +93,14 @@ def awkward(kind: str, cells: tuple[int, int, int] = (3, 3, 2), *, bend: float =
 
 
 def boundary(mesh: Mesh) -> np.ndarray:
-    """Nodes of the boundary."""
+    """Numbers of the boundary nodes."""
     return np.unique(boundary_facets(mesh.kind, mesh.elements))
 
 
 def body_of(
     mesh: Mesh, law: str, fixed: Any, *, ratio: float = 50.0, held: Any = None, **kw: Any
 ) -> DiscretisedBody:
-    """A body of G = 10 kPa and K = ratio * G."""
+    """Body with G = 10 kPa and K = ratio * G."""
     material = Material(law=law, parameters=laws.get(law).from_moduli(1e4, ratio * 1e4))
     return DiscretisedBody(
         Discretisation.build(mesh, np.asarray(fixed, dtype=np.int32), held), material, **kw
@@ -108,9 +108,10 @@ def body_of(
 
 
 def settle(body: DiscretisedBody, start: np.ndarray, pressure: np.ndarray | None = None) -> np.ndarray:
-    """Equilibrium without load from `start`, whose fixed nodes stay where they are, down to rounding.
+    """Equilibrium without load from `start`, to rounding; fixed nodes keep their positions in `start`.
 
-    pressure: of the elements, to iterate as unknowns first (quick); then the potential is minimised.
+    If element pressures are given, they are first iterated as unknowns (quick); then the potential is
+    minimised.
     """
     system = BeamSystem(body, tolerance=1e-9)
     for way in (pressure, None):

@@ -1,4 +1,4 @@
-"""Forces and block matrix against finite differences of the energy; held components; both solvers."""
+"""Internal forces and stiffness blocks against finite differences; fixed components; both direct solvers."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ CASES = [
 
 
 def case(kind, law, ratio, *, held=False, cells=(2, 1, 1)):
-    """A body with two fixed nodes, deformed by 5 %; held: some components of some nodes."""
+    """A body with two fixed nodes and a random strain of up to 10 %; `held`: with some fixed components."""
     mesh = awkward(kind, cells)
     rng = np.random.default_rng(7)
     components = (rng.uniform(size=(mesh.n_nodes, 3)) < 0.2) if held else None
@@ -32,7 +32,7 @@ def case(kind, law, ratio, *, held=False, cells=(2, 1, 1)):
 
 
 def dense(body, blocks):
-    """The whole symmetric matrix (3 n_free, 3 n_free)."""
+    """Assemble the full symmetric matrix (3 n_free, 3 n_free) from its upper blocks."""
     p = body.discretisation.pattern
     n = len(p.free)
     K = np.zeros((n, 3, n, 3))
@@ -43,7 +43,7 @@ def dense(body, blocks):
 
 
 def hessian(body, x, h=1e-7):
-    """Central differences of the internal forces over the free nodes."""
+    """Central differences of the internal forces with respect to the free nodes."""
     free = body.discretisation.pattern.free
     columns = []
     for node in free:
@@ -124,7 +124,7 @@ def test_beam_is_the_same_without_pardiso(monkeypatch):
     scene = Beam(material=neo_hookean(2e4, 1000.0), length=0.05)
     fast = solve_beam(scene)
     monkeypatch.setattr(direct, "HAVE_PARDISO", False)
-    # its own mesh object has its own discretisation, and so its own solver
+    # a separate mesh object has its own discretisation, and so its own solver
     slow = solve_beam(Beam(material=scene.material, length=0.05, mesh=fast.mesh))
     assert fast.ok
     assert slow.ok

@@ -1,4 +1,4 @@
-"""Loads, supports, sections, elements and own meshes of static beams; invariance under rotation."""
+"""Loads, supports, sections, elements and user meshes of static beams; invariance under rotation."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def test_support_force_is_the_weight(element, supports, length):
     assert result.ok
     assert result.mesh.kind == ("tet10" if element == "default" else element)
     weight = WEIGHT * length
-    # sideways, the two grips of a bridge pull against each other
+    # laterally, the two grips of a bridge pull in opposite directions
     assert result.support_force[0] == pytest.approx([0, 0, weight], abs=1e-6 * weight)
     assert result.residual[0] <= Solver().tolerance
     assert result.min_jacobian[0] > 0.5
@@ -34,7 +34,7 @@ def test_support_force_is_the_weight(element, supports, length):
 
 
 def test_linear_elements_come_near_as_the_mesh_gets_finer():
-    """tet4 is what the paper used: it works, and locks; hex8 has an element pressure, and does not."""
+    """tet4, the paper's element, converges but locks; hex8 has an element pressure and does not lock."""
     scene = Beam(material=neo_hookean(4e4, 1000.0), length=0.05)
     right = deflection(solve_beam(scene))[2]
     errors = {}
@@ -53,7 +53,7 @@ def test_linear_elements_come_near_as_the_mesh_gets_finer():
 
 
 def test_load_sideways_is_the_load_down_turned():
-    """Half a beam under gravity along z, the whole one along y: the section has the symmetry of a square."""
+    """Half a beam under gravity along z and a whole one along y agree: the mesh has a square's symmetry."""
     down = solve_beam(Beam(material=SOFT, length=0.1))
     aside = solve_beam(Beam(material=SOFT, length=0.1, gravity=(0.0, -9.81, 0.0)))
     assert down.mesh.symmetry == ("y",)
@@ -105,7 +105,7 @@ def test_turned_scene_gives_the_turned_answer(kind):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_beam_along_gravity_stretches_or_shortens_as_a_bar(sign):
-    section, length, mu = Circle(radius=0.003), 0.1, 4e5  # at 1e5 the standing one buckles
+    section, length, mu = Circle(radius=0.003), 0.1, 4e5  # at 1e5 the beam in compression buckles
     result = solve_beam(
         Beam(material=neo_hookean(mu, 20.0), length=length, section=section, gravity=(sign * 9.81, 0, 0))
     )
@@ -132,7 +132,7 @@ def test_rectangle_is_stiffer_on_edge_by_the_square_of_its_sides():
 
 
 def test_own_unstructured_mesh_of_the_same_beam():
-    """A beam of jittered, renumbered tetrahedra."""
+    """A beam mesh of perturbed, renumbered tetrahedra gives the same deflection."""
     section = Rectangle(width=0.016, height=0.016)
     plain = beam_mesh(length=0.05, section=section, kind="tet4", radial_elements=3, axial_element_size=0.004)
     rng = np.random.default_rng(4)

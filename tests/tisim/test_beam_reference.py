@@ -1,4 +1,4 @@
-"""Beams against benchmarks/references: FElupe's mixed hexahedra, CalculiX, and our own finer meshes."""
+"""Beams against benchmarks/references: FElupe's mixed hexahedra, CalculiX, and finer meshes of tisim."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ CASES = references("cases.json")
 
 @pytest.mark.parametrize("name", sorted({e["set"] for e in BEAMS}))
 def test_default_beams_are_within_1_percent_from_cold(name):
-    """50 and 100 mm cantilever and 150 mm bridge; every entry of the table."""
+    """50 and 100 mm cantilever and 150 mm bridge, for every entry of the table."""
     entries = [e for e in BEAMS if e["set"] == name]
     assert len(entries) >= 9
     for entry in entries:
@@ -31,7 +31,7 @@ def test_default_beams_are_within_1_percent_from_cold(name):
 
 
 def test_error_falls_with_the_mesh_at_a_steady_order():
-    """50 mm cantilever in small strain; the singular clamp edge keeps the order below 2."""
+    """50 mm cantilever at small strain; the singular clamp edge keeps the order below 2."""
     values = []
     for n in (1, 2, 4):
         mesh = beam_mesh(
@@ -66,7 +66,7 @@ def test_box_beam_against_calculix_and_felupe(entry):
 
 
 def graded_cube(side, rings):
-    """Half a cube, y > 0, as a beam along x, which is the cube's z; graded towards all faces."""
+    """Half of a cube, y > 0, as a beam along x, the cube's z; elements are graded towards all faces."""
     mesh = beam_mesh(
         length=side, section=Rectangle(width=side, height=side), supports="clamped-clamped",
         radial_elements=rings, axial_element_size=side / 2 / rings, mirror=True, kind="tet4", grading=(1.0,),
@@ -87,7 +87,7 @@ def graded_cube(side, rings):
 
 
 def plate_forces(entry, rings):
-    """Fz pushed, Fx and Fz sheared [N]."""
+    """Fz in compression, Fx and Fz in shear [N]."""
     about = CASES["about"]["cube"]
     side, push, shear = about["side"], about["push"], about["shear"]
     mesh = graded_cube(side, rings)
@@ -96,7 +96,7 @@ def plate_forces(entry, rings):
     x, at, found = mesh.nodes, np.zeros(2), []
     path = [(push * k / 2, 0.0) for k in (1, 2)] + [(push, shear * k / 3) for k in (1, 2, 3)]
     for travel in path:
-        # all nodes move as in a homogeneous state, for a start
+        # initial guess: a homogeneous deformation
         down, along = np.array(travel) - at
         at = np.array(travel)
         guess = x + mesh.nodes[:, :1] / side * [-down, 0.0, along]
@@ -109,8 +109,11 @@ def plate_forces(entry, rings):
 @pytest.mark.parametrize("law", ["neo_hookean", "ogden"])
 @pytest.mark.parametrize("fine", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_cube_pushed_and_sheared_between_plates(law, fine):
-    """Against FElupe; the plates' edges are singular, and the forces converge slowly: 2,601 nodes come
-    within 3 %, and with 8,125 nodes and the reference's order of convergence within 1 %."""
+    """Forces converge slowly to FElupe's because the edges of the plates are singular.
+
+    2,601 nodes agree within 3 %; Richardson extrapolation from 8,125 nodes with the reference's order of
+    convergence agrees within 1 %.
+    """
     entry = next(e for e in CASES["cases"] if e["case"] == "cube" and e["law"] == law)
     wanted = np.array([entry["Fz_pushed"], entry["Fx_sheared"], entry["Fz_sheared"]])
     got = plate_forces(entry, 4)

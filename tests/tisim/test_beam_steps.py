@@ -1,4 +1,4 @@
-"""Where the rod's shape is no start: load steps from rest, and an honest end where there is no answer."""
+"""Beams without the rod's shape as initial guess: load steps from rest, and a status if these fail."""
 
 import numpy as np
 import pytest
@@ -24,14 +24,14 @@ def test_load_steps_from_rest_give_the_same_answer(supports, length, mu, ratio, 
     assert quick.ok
     assert slow.ok
     assert slow.cost.steps > 1
-    # the potential alone takes 227 for the worst of these; element pressures as unknowns take 23
+    # with the potential alone the worst case takes 227 iterations, with element pressures as unknowns 23
     assert slow.cost.newton_iterations < 40
     size = np.abs(quick.positions - quick.mesh.nodes).max()
     assert np.abs(slow.positions - quick.positions).max() < 1e-6 * size
 
 
 def test_load_steps_without_element_pressures(monkeypatch):
-    """Where the mixed iteration fails the potential with its line search takes over."""
+    """If the mixed iteration fails, the line search on the potential replaces it."""
     scene = Beam(material=neo_hookean(4e4, 100.0), length=0.1, solver=Solver(max_iterations=100))
     quick = solve_beam(scene)
     monkeypatch.setattr(equilibrium, "rod_shape", lambda *_: None)
@@ -45,7 +45,7 @@ def test_load_steps_without_element_pressures(monkeypatch):
 
 @pytest.mark.parametrize("ratio", [20.0, 1000.0])
 def test_absurd_load_ends_with_a_status(ratio):
-    """10 Pa: the body's own weight is 50 times its stiffness."""
+    """Shear modulus 10 Pa: the body's own weight is 50 times its stiffness."""
     scene = Beam(material=neo_hookean(10.0, ratio), length=0.05, solver=Solver(max_iterations=15))
     result = solve_beam(scene)
     if result.ok:
@@ -62,7 +62,7 @@ def test_absurd_load_ends_with_a_status(ratio):
 
 
 def test_law_without_answer_under_pressure_ends_with_a_status():
-    """St Venant-Kirchhoff, standing on its grip under fifty times gravity, is crushed."""
+    """A St Venant-Kirchhoff beam that stands on its grip under fifty times gravity collapses."""
     stiff = Material(law="st-venant-kirchhoff", parameters={"mu": 1e4, "lam": 5e4})
     scene = Beam(material=stiff, length=0.05, gravity=(-500.0, 0.0, 0.0), solver=Solver(max_iterations=15))
     result = solve_beam(scene)
@@ -79,7 +79,7 @@ def test_no_load_is_rest():
 
 @pytest.mark.parametrize(("supports", "length"), BEAMS)
 def test_bent_rods_sections_keep_their_volume(supports, length, monkeypatch):
-    """Flat sections change in volume by the bending strain."""
+    """With plane sections, instead, the volume changes by the bending strain."""
     scene = Beam(material=neo_hookean(2e4, 1000.0), length=length, supports=supports)
     discretisation = beam_discretisation(scene)
     body = beam_system(scene, discretisation).body
@@ -91,5 +91,5 @@ def test_bent_rods_sections_keep_their_volume(supports, length, monkeypatch):
         return np.abs(body.pressures(guess)[free]).max() / body.moduli.bulk_modulus
 
     bent = largest_change()
-    monkeypatch.setattr(equilibrium, "HELD", 1e3)  # clamps hold all sections flat
+    monkeypatch.setattr(equilibrium, "HELD", 1e3)  # all sections stay plane
     assert bent < 0.25 * largest_change()

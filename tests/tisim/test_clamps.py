@@ -1,4 +1,4 @@
-"""Imperfect clamps against turned models, statics and beam theory; and how surely they are solved."""
+"""Imperfect clamps against rotated models, statics and beam theory; robustness of their solution."""
 
 from dataclasses import replace
 
@@ -59,7 +59,7 @@ def moments(result):
 
 
 def near_angle(result):
-    """Of the near face, from its nodes [rad]."""
+    """Angle of the near face from its nodes [rad]."""
     clamp = result.mesh.node_sets["clamp"]
     up = result.mesh.nodes[clamp, 2]
     return np.arctan2(-(result.positions[0][clamp, 0] @ up), result.positions[0][clamp, 2] @ up)
@@ -98,7 +98,7 @@ def test_shift_of_the_far_clamp_pulls_with_the_stretching_stiffness():
     body = imperfect_system(scene, discretisation).body
     near = body.internal_forces(result.positions[0])[0][result.mesh.node_sets["clamp"]].sum(axis=0)
     pull = YOUNG * np.pi * RADIUS**2 * 5e-4 / 0.15
-    # ends that cannot contract are stiffer, over a radius or so
+    # ends that cannot contract are stiffer, over a length of about one radius
     assert discretisation.multiplicity * near[0] == pytest.approx(-pull, rel=0.02)
 
 
@@ -107,7 +107,7 @@ def test_shift_across_bends_both_ends():
         **BRIDGE, gravity=(0.0, 0.0, 0.0), clamp_imperfections=ClampImperfections(far_shift=(0.0, 1e-3))
     )
     moment = 6 * BENDING * 1e-3 / 0.15**2
-    # the far end is lifted: the rod would lift the near clamp's side and, as much, turn the far one alike
+    # the far end is lifted: the rod would lift the near clamp's side and rotate the far one as much
     assert moments(solve_beam(scene)) == pytest.approx([moment, moment], rel=0.02)
 
 
@@ -120,7 +120,7 @@ def test_turned_clamp_carries_four_and_two_of_the_bending_stiffness():
 def test_yielding_clamp_of_a_cantilever_turns_by_compliance_times_the_weights_moment():
     result = solve_beam(soft(clamp_imperfections=ClampImperfections(compliance=8.0, tilt=0.05)))
     assert result.ok
-    # statics: the weight of every node at its place; the held ones stand on x = 0 nearly
+    # statics: weight of every node at its deformed position; the fixed nodes lie nearly at x = 0
     discretisation = beam_discretisation(result.scene)
     weight = DENSITY * G * discretisation.nodal_volume() * discretisation.multiplicity
     moment = weight @ result.positions[0][:, 0]
@@ -131,9 +131,9 @@ def test_yielding_clamp_of_a_cantilever_turns_by_compliance_times_the_weights_mo
 
 
 def test_yielding_clamps_of_a_bridge_as_beam_theory_has_them():
-    """Springs at the ends: M = q L^2/12 / (1 + 2 EI c/L), the sag (5 - 4 M/M0) of q L^4/384 EI.
+    """Rotational springs at the ends: M = q L^2/12 / (1 + 2 EI c/L), sag (5 - 4 M/M0) q L^4/384 EI.
 
-    Under a tenth of gravity: no tension, which a sag of the section's size makes.
+    The load is a tenth of gravity: a sag of the order of the section's size would add tension.
     """
     little = BRIDGE | {"gravity": (0.0, 0.0, -G / 10)}
     compliance = 0.15 / (2 * BENDING)
@@ -167,10 +167,10 @@ def test_squeezed_sections_keep_their_area():
         assert found[at, 1] == pytest.approx(rest[at, 1] / 0.9, abs=1e-15)
     middle = np.abs(rest[:, 0] - 0.075) < 0.012
     size = np.ptp(found[middle, 1]) / np.ptp(rest[middle, 1])
-    assert size == pytest.approx(1.0, abs=0.02)  # it does not reach far
+    assert size == pytest.approx(1.0, abs=0.02)  # the effect decays within a short length
     ideal = solve_beam(soft(**BRIDGE))
     assert result.support_force == pytest.approx(ideal.support_force, rel=1e-5, abs=1e-6)
-    assert deflection(result)[2] < deflection(ideal)[2]  # its ends are lower, thus easier to bend
+    assert deflection(result)[2] < deflection(ideal)[2]  # its ends are less high and so bend more easily
 
 
 def test_clamps_hold_the_tapered_section():
@@ -193,7 +193,7 @@ WORST = Imperfections(
 
 
 def corners(n):
-    """Beams with imperfections of the largest size, of either sign, and yields that any specimen may have."""
+    """Beams with imperfections of the largest size and either sign, and with compliant clamps."""
     rng = np.random.default_rng(7)
     for i in range(n):
         length, supports = [(0.05, "clamped-free"), (0.1, "clamped-free"), (0.15, "clamped-clamped")][i % 3]
@@ -234,7 +234,7 @@ def test_strong_imperfections_converge_at_once():
     assert [r.cost.steps for r in alone] == [1] * 24
     assert max(r.cost.newton_iterations for r in alone) <= 15
     assert all(r.residual[0] <= 1e-6 and r.min_jacobian[0] > 0.0 for r in alone)
-    # in a batch they start from one another, among ideal ones; each answer is its own
+    # in a batch they start from each other's solutions, among ideal beams; each result must not depend on it
     ideal = [
         replace(scene, imperfections=Imperfections(), clamp_imperfections=ClampImperfections())
         for scene in scenes[:6]
@@ -243,12 +243,12 @@ def test_strong_imperfections_converge_at_once():
     for one, found in zip([*alone, *map(solve_beam, ideal)], together, strict=True):
         assert found.ok
         assert found.cost.steps == 1
-        # angles of clamps are told from one another down to 1e-4 of themselves
+        # clamp angles are resolved to 1e-4 of their values
         assert np.abs(found.positions - one.positions).max() < 2e-6
 
 
 def test_growing_imperfections_give_the_same_answer(monkeypatch):
-    """Without a rod to start from, from the ideal beam's answer."""
+    """Without the rod as initial guess, imperfections grow in steps from the ideal beam's solution."""
     scenes = list(corners(3))
     quick = [solve_beam(scene) for scene in scenes]
     monkeypatch.setattr(imperfect, "solve_rod", lambda *_: None)
@@ -261,8 +261,8 @@ def test_growing_imperfections_give_the_same_answer(monkeypatch):
 
 
 def test_start_that_fails_does_not_spoil_the_next(monkeypatch):
-    """The angles that a neighbour's start has been brought to are not those of the rod's."""
-    # so little yield that angles which are wrong by the rod's error would pass for right
+    """Clamp angles from a neighbour's failed start are not used for the start from the rod's shape."""
+    # the compliance is so small that angles in error by the rod's error would pass as converged
     first, second = (
         soft(clamp_imperfections=ClampImperfections(compliance=0.2)),
         soft(clamp_imperfections=ClampImperfections(compliance=0.05, tilt=0.02)),
@@ -298,7 +298,7 @@ def test_imperfect_beams_share_the_ideal_ones_mesh():
 
 
 def test_no_answer_is_said():
-    """A bridge a third shorter than its beam, squeezed to half, in few iterations."""
+    """A bridge a third shorter than its beam, squeezed to half, with few iterations."""
     clamps = ClampImperfections(far_shift=(-0.07, 0.0), squeeze=0.5, far_tilt=-0.8, tilt=-0.8)
     result = solve_beam(soft(**BRIDGE, clamp_imperfections=clamps, solver=Solver(max_iterations=3)))
     assert result.status is not Status.CONVERGED
@@ -307,7 +307,7 @@ def test_no_answer_is_said():
 
 
 def test_load_across_the_mirror_plane():
-    """Gravity along y: the tilt turns the ideal beam about the direction of its load."""
+    """With gravity along y the tilt rotates the ideal beam about the direction of its load."""
     scene = soft(gravity=(0.0, -G, 0.0))
     ideal = solve_beam(scene)
     tilted = solve_beam(replace(scene, clamp_imperfections=ClampImperfections(tilt=0.2)))

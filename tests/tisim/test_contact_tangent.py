@@ -17,7 +17,7 @@ AXIS = np.array([0.3, -0.2, -0.9]) / np.linalg.norm([0.3, -0.2, -0.9])
 
 
 def sampled_rod(rod: tisim.Rod, tip: Array) -> Array:
-    """Points on the rod's surface, a few micrometres apart near the edge."""
+    """Points on the indenter's surface, a few micrometres apart near the edge."""
     edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
     across = np.cross(AXIS, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
@@ -44,7 +44,7 @@ def test_distance_is_that_of_the_rod(rod: tisim.Rod) -> None:
     rng = np.random.default_rng(0)
     points = tip - 0.001 * AXIS + rng.uniform(-0.004, 0.004, (150, 3))
     packed = pack_rod(tip, AXIS, rod.radius, edge, np.zeros(3))
-    conn = np.arange(len(points) * 4, dtype=np.int32).reshape(-1, 4) // 4  # facets shrunk to a point
+    conn = np.arange(len(points) * 4, dtype=np.int32).reshape(-1, 4) // 4  # facets degenerated to a point
     distance = np.empty((len(points), 1))
     contact_kernels()[0](points, np.ascontiguousarray(conn), np.full((1, 4), 0.25), packed, distance)
     nearest = np.array([np.linalg.norm(surface - p, axis=1).min() for p in points])
@@ -59,7 +59,7 @@ def test_distance_is_that_of_the_rod(rod: tisim.Rod) -> None:
 
 
 def system(friction: float) -> tuple[PokeSystem, Array]:
-    """A rod 0.2 mm into a block that is pushed out of shape a little, part of the contact slipping."""
+    """An indenter 0.8 mm deep in a block with small random displacements; part of the contact slips."""
     scene = tisim.Poke(
         material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         friction=friction,
@@ -125,7 +125,7 @@ def test_coulomb_bound_and_no_tension() -> None:
     traction = it._law[1] * np.linalg.norm(it._slip, axis=2)
     assert (traction <= 0.05 * it._pressure * (1 + 1e-12)).all()
     assert (traction > 0).any()
-    it.move_to(-0.002)  # lifted off
+    it.move_to(-0.002)  # no contact
     residual(it, x)
     assert it.report[4] == 0.0
     assert np.abs(it.report[:3]).max() == 0.0

@@ -1,4 +1,4 @@
-"""The course of a test: its pieces, its time steps, and what cannot be."""
+"""The loading course: its segments, its time steps, and invalid courses."""
 
 from __future__ import annotations
 

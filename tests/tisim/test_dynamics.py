@@ -1,4 +1,4 @@
-"""Dynamics of beams: agreement at rest, frequencies, order, energy, damping, invariance, honest endings."""
+"""Dynamics of beams: static limit, frequencies, order, energy, damping, invariance, reported failures."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def test_comes_to_rest_where_the_static_method_does(method, tolerance, element):
     result = solve_dynamic(replace(scene, solver=replace(REST, method=method)))
     assert result.ok
     assert result.residual[-1] <= REST.tolerance
-    assert result.load[-1] < 0.5  # it stopped because it rests, not because time was up
+    assert result.load[-1] < 0.5  # it stopped at rest, not at the end of the duration
     expected = tip(static.mesh, static.positions[-1])[2]
     assert expected < -1e-4
     assert tip(result.mesh, result.positions[-1])[2] == pytest.approx(expected, rel=tolerance)
@@ -81,7 +81,7 @@ def test_a_swing_through_equilibrium_is_not_rest():
     period = 2.0 * np.pi / mode.w
     solver = Solver(duration=2.0 * period, time_step=period / 200, until_rest=True, tolerance=0.1)
     run = implicit.march(body, solver, start=equilibrium + 0.5 * sag * mode.shape)
-    assert min(run.frames.residual) < solver.tolerance  # it passes by
+    assert min(run.frames.residual) < solver.tolerance  # it passes through equilibrium
     assert run.status is Status.UNFINISHED
     assert "nothing damps" in run.message
 
@@ -97,7 +97,7 @@ def test_masses_hold_the_bodys_mass_and_move_rigidly(kind):
     assert consistent.sum() == pytest.approx(total, rel=1e-12)
     assert lumped.sum() == pytest.approx(total, rel=1e-12)
     assert lumped.min() > 0.0
-    # linear fields are in the element: their kinetic energy is exact, which asks for the fine quadrature
+    # linear fields are in the element space: their kinetic energy is exact with the fine quadrature only
     x = mesh.nodes[:, 0]
     assert x @ (consistent @ x) == pytest.approx(total * 0.05**2 / 3.0, rel=1e-12)
 
@@ -107,7 +107,7 @@ def test_first_frequency_is_the_slender_cantilevers(lumped):
     bending, corrected = timoshenko_frequency(SLENDER.length, SLENDER.section.radius)
     assert corrected < bending
     found = first_mode(body_of(SLENDER, loaded=False), lumped=lumped).w
-    # the clamp also holds the section's width, which shortens the beam by about 0.1 radius: 1 % here
+    # the clamp also constrains the section's width, which shortens the beam by about 0.1 radius: 1 % here
     assert found == pytest.approx(corrected, rel=0.012)
 
 
@@ -116,7 +116,7 @@ def test_swings_at_its_frequency(method, tolerance):
     body = body_of(SHORT, loaded=False)
     mode = first_mode(body, lumped=method == "explicit")
     assert swing(method, body, mode, periods=1.5, steps=300) == pytest.approx(-1.0, abs=tolerance)
-    # at a passage through zero an error of phase shows in full
+    # at a zero crossing the amplitude shows the full phase error
     assert swing(method, body, mode, periods=1.25, steps=250) == pytest.approx(0.0, abs=tolerance)
 
 
@@ -133,7 +133,7 @@ def test_the_implicit_method_is_of_second_order():
 
 
 def test_the_implicit_method_is_of_second_order_with_viscosity():
-    """A viscous beam struck at rest: halving the steps changes a fourth as much each time."""
+    """Viscous beam with an initial velocity: the change quarters with each halving of the time step."""
     prony = Prony(fractions=(0.4, 0.3), times=(0.004, 0.03))
     beam = replace(SHORT, material=replace(SOFT, viscosity=prony))
     mode = first_mode(body_of(SHORT, loaded=False), lumped=False)
@@ -257,7 +257,7 @@ def test_a_free_body_keeps_its_momentum_and_its_spin():
     spin = (mass * np.cross(mesh.nodes, velocity)).sum(axis=0)
     end, before = frames.positions[-1], frames.positions[-2]
     assert np.ptp(np.linalg.norm(end - end.mean(axis=0), axis=1) / np.linalg.norm(x, axis=1)) > 1e-3
-    # the chord of a frame's interval holds the momentum exactly, the spin to second order in it
+    # the mean velocity over a frame's interval gives the momentum exactly, the spin to second order
     np.testing.assert_allclose((mass * (end - before) / dt).sum(axis=0), momentum, rtol=1e-9)
     middle = 0.5 * (end + before)
     found = (mass * np.cross(middle, (end - before) / dt)).sum(axis=0)
@@ -289,11 +289,11 @@ def test_supports_carry_the_load_and_the_change_of_momentum(method):
     total = 2.0 * body.dead_load[:, 2].sum()
     expected = (change + solver.mass_damping * momentum - total)[50:]
     found = result.support_force[1:-1, 2][50:]
-    assert np.ptp(found) > 0.05  # it does swing
+    assert np.ptp(found) > 0.05  # it oscillates
     np.testing.assert_allclose(found, expected, atol=0.03 * np.ptp(found))
 
 
-# honest endings
+# reported failures
 
 
 def test_an_implicit_run_without_convergence_says_so_after_cutting_its_step():
@@ -330,7 +330,7 @@ def test_cut_steps_grow_again_only_where_they_meet_the_frames(monkeypatch):
     assert result.ok
     assert result.cost.step_cuts == 3
     np.testing.assert_allclose(result.load, 0.01 * np.arange(1, 11), rtol=1e-12)
-    assert result.cost.steps < 30  # it did grow
+    assert result.cost.steps < 30  # the step grew again
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -377,7 +377,7 @@ def test_the_papers_rule_stops_before_equilibrium():
     assert stop.motion < 1e-3
     assert stop.residual > 0.1
     assert stop.largest_distance > 0.2 * abs(tip(static.mesh, static.positions[-1])[2])
-    # overdamped, every mode goes as 1 - exp(-t/c_K) (physics.md, section 2 and 9)
+    # overdamped: every mode decays as exp(-t/c_K) towards equilibrium (physics.md, section 2 and 9)
     left = np.exp(-0.150 / 0.1)
     assert stop.largest_distance == pytest.approx(
         left * np.linalg.norm(static.positions[-1] - static.mesh.nodes, axis=1).max(), rel=0.05
@@ -393,7 +393,7 @@ def test_the_rule_counts_windows_as_the_paper_does():
     made = replace(run, positions=run.mesh.nodes + path[:, None, None] * [1.0, 0.0, 0.0])
     stop = paper_stop(made, run.mesh.nodes)
     assert stop is not None
-    assert stop.time == pytest.approx(0.25, abs=0.011)  # the first moment with three slow windows behind
+    assert stop.time == pytest.approx(0.25, abs=0.011)  # the end of the third slow window
     assert paper_stop(replace(made, positions=run.mesh.nodes + times[:, None, None]), run.mesh.nodes) is None
     with pytest.raises(ValueError, match="window"):
         paper_stop(made, run.mesh.nodes, step=1.1e-3)

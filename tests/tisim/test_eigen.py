@@ -1,7 +1,7 @@
-"""Principal stretches: eigenvalues and eigenvectors of symmetric 3 x 3 matrices, also where they repeat."""
+"""Principal stretches: eigenvalues and eigenvectors of symmetric 3 x 3 matrices, also repeated ones."""
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles the kernel; its annotations mean something to Taichi only)
+# (Taichi compiles the kernel; its annotations are meaningful to Taichi only)
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tisim.kernels.tensors import eigen_symmetric
 
 Array = NDArray[np.float64]
 
-# eigenvalues: apart, two or three alike to within so much, small beside large
+# eigenvalues: distinct, two or three equal to within the given difference, small beside large
 SPECTRA = [
     (0.2, 1.0, 3.0),
     (1.0, 1.0, 4.0),
@@ -27,7 +27,7 @@ SPECTRA = [
 
 
 def decomposed(C: Array) -> tuple[Array, Array]:
-    """Of matrices (n, 3, 3): eigenvalues (n, 3), eigenvectors (n, 3, 3) in columns."""
+    """Eigenvalues (n, 3) and eigenvectors (n, 3, 3), in columns, of matrices (n, 3, 3)."""
     ensure_runtime()
     _f3, _f2 = ti.types.ndarray(dtype=f64, ndim=3), ti.types.ndarray(dtype=f64, ndim=2)
 
@@ -51,7 +51,7 @@ def decomposed(C: Array) -> tuple[Array, Array]:
 
 
 def turned(spectrum: tuple[float, ...], n: int = 400) -> Array:
-    """Matrices (n, 3, 3) of one spectrum: as they are, with axes exchanged, then turned at random."""
+    """Matrices (n, 3, 3) of one spectrum: diagonal, with permuted axes, slightly and randomly rotated."""
     rng = np.random.default_rng(7)
     Q = np.linalg.qr(rng.standard_normal((n, 3, 3)))[0]
     Q[0] = np.eye(3)

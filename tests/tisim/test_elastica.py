@@ -1,4 +1,4 @@
-"""A thin cantilever against the large-deflection elastica, integrated here."""
+"""A slender cantilever against the large-deflection elastica."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ LENGTH, RATIO, DENSITY, G = 0.1, 1000.0, 1000.0, 9.81
 def elastica(bending, line, tip):
     """End displacement (dx, dz) [m] of EI theta'' = -(q (L - s) + F) cos(theta), loads downwards.
 
-    bending EI [N m2], line load q [N/m], tip force F [N]; theta is the angle below the horizontal.
+    Bending stiffness EI [N m2], line load q [N/m], tip force F [N]; theta is the angle below the horizontal.
     """
 
     def slope(s, y):
@@ -55,6 +55,6 @@ def test_thin_cantilever_is_the_elastica(section, mu, tip):
     result = solve_beam(scene)
     found = deflection(result)[[0, 2]]
     assert np.linalg.norm(wanted) > 0.25 * LENGTH
-    # the rod stretches by 1e-3 and its clamp takes a radius' part of the length
+    # the rod extends by 1e-3, and the clamp shortens it by a fraction of a radius
     assert np.abs(found - wanted).max() < 0.005 * np.linalg.norm(wanted)
     assert result.support_force[0, 2] == pytest.approx(DENSITY * area * LENGTH * G + tip, rel=1e-5)

@@ -1,4 +1,4 @@
-"""The far field as a spring: its force is its energy's slope, and its stiffness is in what is factorised."""
+"""The far field as a spring: its force is its energy's derivative, and the factor contains its stiffness."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FREE_ROWS = 9
 
 
 def field(rng: np.random.Generator) -> tuple[FarField, Array, NDArray[np.int32]]:
-    """On the last five nodes of a chain, its stiffness, and the rows of the five."""
+    """Far field on the last five nodes of a chain, its stiffness, and the rows of these nodes."""
     conn = np.array([[k, k + 1] for k in range(NODES - 1)], dtype=np.int32)
     pattern = pattern_of(conn, NODES, np.array([0, 1, 2], dtype=np.int32))
     nodes = np.arange(7, 12, dtype=np.int32)
@@ -46,7 +46,7 @@ def test_force_is_the_slope_of_the_energy() -> None:
 
 
 def _dense(pattern: Pattern, blocks: Array) -> Array:
-    """The matrix of which the upper triangle is given."""
+    """Full symmetric matrix from the blocks of its upper triangle."""
     n = len(pattern.indptr) - 1
     upper = bsr_matrix((blocks, pattern.indices, pattern.indptr), shape=(3 * n, 3 * n)).toarray()
     triangle = np.triu(np.ones((n, n)), 1).repeat(3, axis=0).repeat(3, axis=1)

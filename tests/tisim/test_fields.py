@@ -1,4 +1,4 @@
-"""Stress, strain and energy of results: closed forms, equilibrium, mirror images, files."""
+"""Stress, strain and energy of results: closed forms, equilibrium, mirror images, output files."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_uniaxial_stretch_and_simple_shear_are_the_closed_forms() -> None:
 
 
 def test_stresses_carry_the_supports_force(beam: tisim.Result) -> None:
-    """To rounding by the forces at the nodes; by the smoothed traction as well as a clamp's edge allows."""
+    """Nodal forces agree to rounding; the smoothed traction as well as the singular clamp edge allows."""
     found, mesh = tisim.fields(beam), beam.mesh
     clamp = mesh.node_sets["clamp"]
     force = 2.0 * found.node_forces[clamp].sum(axis=0) * [1.0, 0.0, 1.0]
@@ -87,7 +87,7 @@ def test_stresses_carry_the_supports_force(beam: tisim.Result) -> None:
 
 @pytest.mark.parametrize("element", ["hex20", "hex8"])
 def test_the_base_of_a_poke_carries_what_the_rod_pushes(element: tisim.scene.ElementChoice) -> None:
-    """With stiffness against change of volume at some points, and weights that follow the distortion."""
+    """Holds with additional volumetric stiffness at some points and weights that follow the distortion."""
     scene = tisim.Poke(material=SOFT, depth=1e-3, retract_to=5e-4, frame_spacing=5e-4, refinement=0.5)
     poke = tisim.simulate(replace(scene, element=element))
     assert len(poke.load) == 3
@@ -100,7 +100,7 @@ def test_the_base_of_a_poke_carries_what_the_rod_pushes(element: tisim.scene.Ele
 
 
 def integral_over(mesh: tisim.Mesh, facets: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Of nodal tensors dotted into the facets' area vectors."""
+    """Integral (3,) over facets of nodal tensors applied to the facets' area vectors."""
     n, dn, w = facet_quadrature(facets.shape[1])
     tangents = np.einsum("fai,qad->fqdi", mesh.nodes[facets], dn)
     area = np.cross(tangents[:, :, 0], tangents[:, :, 1]) * w[:, None]
@@ -121,7 +121,7 @@ def test_a_mirrored_half_has_the_fields_of_the_whole(beam: tisim.Result) -> None
 
 
 def test_a_material_that_remembers_has_the_stress_of_its_history() -> None:
-    """Followed from frame to frame, to the coarseness of the frames."""
+    """The history is integrated from frame to frame, so its accuracy depends on the spacing of frames."""
     slow = replace(SOFT, viscosity=tisim.Prony(fractions=(0.5,), times=(2.0,)))
     frames = tuple(np.concatenate([np.linspace(0.1, 1.0, 10), 1.0 + np.geomspace(0.1, 4.0, 12)]))
     course = tisim.Course(start=1.0, frames=frames).ramp(to=1.3, duration=1.0).hold(4.0)

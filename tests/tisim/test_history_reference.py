@@ -1,6 +1,6 @@
-"""The block of tetrahedra that FElupe pulled and sheared over time, on the same mesh and course.
+"""A block of tetrahedra in FElupe's tension and shear over time, on the same mesh and course.
 
-4-node tetrahedra have one point each and no pressure of their own: both codes have the same equations.
+4-node tetrahedra have one quadrature point and no pressure unknown: both codes solve the same equations.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 FILE = Path(__file__).parents[2] / "benchmarks" / "references" / "history.json"
 STORED = json.loads(FILE.read_text(encoding="utf-8"))
-DIGITS = 1e-9  # stored with ten
+DIGITS = 1e-9  # the file has ten digits
 LAW = tisim.Material(
     law="mooney-rivlin",
     parameters={"c10": 0.5 * STORED["about"]["mu"], "c01": 0.0, "bulk": STORED["about"]["bulk"]},
@@ -33,7 +33,7 @@ LAW = tisim.Material(
 
 
 class Block:
-    """The block with a material, its driven face moved step by step."""
+    """The block with a material; its driven face is displaced step by step."""
 
     def __init__(self, **parts: object) -> None:
         self.mesh = Mesh(
@@ -51,7 +51,7 @@ class Block:
         self.at = 0.0
 
     def drive(self, to: float, dt: float) -> tuple[Array, Array]:
-        """Equilibrium with the face moved, so much later; displacements (n, 3) [m] and its force (3,) [N]."""
+        """Displacements (n, 3) [m] and force (3,) [N] at equilibrium with the face at `to` after `dt`."""
         along = self.mesh.nodes[:, :1] / self.mesh.nodes[:, 0].max() * np.array(STORED["about"]["direction"])
         self.body.begin(dt)
         found = newton(self.system, self.x + (to - self.at) * along, tolerance=1e-11, max_iterations=20)
@@ -78,7 +78,7 @@ def test_the_softening_block_is_felupes_in_every_frame() -> None:
 
 
 def ramps(steps: int) -> Iterator[list[tuple[float, float]]]:
-    """Of each ramp, its steps as (length [s], driven [m]); those of a hold grow."""
+    """Steps of each ramp as (length [s], displacement of the face [m]); those of a hold grow in length."""
     times, values = (0.0, *STORED["viscosity"]["time"]), (0.0, *STORED["viscosity"]["driven"])
     for (begin, before), (end, after) in pairwise(zip(times, values, strict=True)):
         part = np.linspace(0.0, 1.0, steps + 1)
@@ -96,7 +96,7 @@ def course(steps: int) -> tuple[Array, Array]:
 
 
 def test_the_viscous_block_is_the_stored_one_with_steps_extrapolated_to_none() -> None:
-    """Errors fall with the square of the step, so that two lengths give the limit."""
+    """The error falls with the square of the step, so that two step lengths give the limit."""
     wanted = [np.array(STORED["viscosity"][name]) for name in ("displacement", "force")]
     coarse, fine = course(8), course(16)
     for rough, better, exact in zip(coarse, fine, wanted, strict=True):

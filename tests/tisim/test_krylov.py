@@ -1,4 +1,4 @@
-"""GMRES on a factor, against dense solutions: factor of another matrix, shift, part without symmetry."""
+"""GMRES preconditioned by a factor, against dense solutions: other matrix, shift, unsymmetric part."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NODES = 6
 
 
 def upper(matrix: Array) -> Array:
-    """Blocks (nb, 3, 3) of the upper triangle of a full symmetric matrix, row by row."""
+    """Blocks (nb, 3, 3) of the upper triangle of a full symmetric matrix, by rows."""
     blocks = matrix.reshape(NODES, 3, NODES, 3).transpose(0, 2, 1, 3)
     return np.ascontiguousarray(np.concatenate([blocks[i, i:] for i in range(NODES)]))
 
@@ -35,7 +35,7 @@ def test_solution_is_that_of_the_dense_matrix(stiffened: bool) -> None:
 
     first = solver.solve(upper(old), rhs, tolerance=1e-6, multiply=lambda v: old @ v)
     assert first.ravel() == pytest.approx(np.linalg.solve(old, rhs.ravel()), rel=1e-4, abs=1e-6)
-    assert solver.iterations <= 2  # the factor is its own, but for single precision
+    assert solver.iterations <= 2  # the factor is that of the matrix, in single precision
 
     def tangent(v: Array) -> Array:
         return np.asarray((now + unsymmetric) @ v)

@@ -1,4 +1,4 @@
-"""Unsound parameters are refused in one sentence that says what was expected."""
+"""Invalid parameters raise an error of one sentence that states the expectation."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Laws added from outside the package: from a file, a script and a prompt, in this and in other processes."""
+"""Laws registered from a file, a script and a prompt, in this and in other processes."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_a_law_from_a_file_is_one_of_the_laws(gent: ModuleType) -> None:
     (found,) = tisim.simulate([tisim.Coupon(material=soft, stretches=(1.5, 3.0))], workers=1)
     s = found.load
     i1 = s**2 + 2.0 / s
-    exact = 2e4 * (s - s**-2) * 30.0 / (30.0 - (i1 - 3.0))  # incompressible
+    exact = 2e4 * (s - s**-2) * 30.0 / (30.0 - (i1 - 3.0))  # incompressible uniaxial stress
     assert found.nominal_stress == pytest.approx(exact, rel=1e-3)
 
 
@@ -113,7 +113,7 @@ def test_a_law_from_a_file_is_one_of_the_laws(gent: ModuleType) -> None:
     ],
 )
 def test_other_processes_know_an_added_law(tmp_path: Path, name: str, load: str) -> None:
-    """Imported from a file, and typed at a prompt or in a notebook, where no file holds the source."""
+    """Holds for a law imported from a file, and for one defined in a notebook cell without a source file."""
     (tmp_path / "my_gent.py").write_text(GENT)
     text = MAIN.format(load=load)
     if name == "script":
@@ -138,7 +138,7 @@ def test_other_processes_know_an_added_law(tmp_path: Path, name: str, load: str)
 
 
 def test_a_law_registered_anew_takes_the_place_of_the_old(gent: ModuleType) -> None:
-    """As it happens in a notebook: no kernel of the old one is used again."""
+    """A second registration, as in a notebook, does not use any kernel of the first one."""
     stress = laws.evaluate("gent", {"mu": 1.0, "limit": 30.0, "bulk": 10.0}, np.diag([2.0, 1.0, 1.0])[None])[
         1
     ]
@@ -165,7 +165,7 @@ def test_what_is_no_law_is_refused(gent: ModuleType) -> None:
 
 
 def test_an_unsound_law_is_found(gent: ModuleType) -> None:
-    """Parameters in the wrong order: the stress at rest is right, the moduli are not."""
+    """With a wrong shear modulus passed to the kernel the stress at rest is right, but the moduli are not."""
     wrong = replace(gent.LAW, pack=lambda p: np.array([1.1 * p["mu"], p["limit"]]))
     report = laws.check_law(wrong)
     assert not report.ok

@@ -1,4 +1,4 @@
-"""How our laws stand to the formulas the paper prints and to what SOFA computes."""
+"""tisim's laws against the formulas printed in the paper and against SOFA's."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tisim.scene import Material
 
 
 def pressure(material, F):
-    """What the docstrings say: at J = 1 the printed stress is ours plus this times F^-T [Pa]."""
+    """Factor [Pa] of the laws' docstrings: at J = 1 the printed stress is tisim's plus this times F^-T."""
     p = material.parameters
     l = np.linalg.svd(F, compute_uv=False)
     if material.law == "ogden":
@@ -47,7 +47,7 @@ def test_printed_formula_is_not_stress_free_and_differs_by_a_pressure(law, data)
 
 
 def sofa(law, values, F):
-    """Energy that SOFA's stress follows for a ParameterSet (physics.md, section 1; SOFA 26.12-dev)."""
+    """Energy whose derivative is SOFA's stress for a ParameterSet (physics.md, section 1; SOFA 26.12-dev)."""
     C = np.swapaxes(F, -1, -2) @ F
     J, I1 = np.linalg.det(F), np.trace(C, axis1=-2, axis2=-1)
     I2 = (I1**2 - np.trace(C @ C, axis1=-2, axis2=-1)) / 2
@@ -72,7 +72,7 @@ def sofa(law, values, F):
     return lam / 2 * trace**2 + mu * np.trace(E @ E, axis1=-2, axis2=-1)
 
 
-# law, SOFA's ParameterSet, the same in our parameters, (G, K) by physics.md
+# law, SOFA's ParameterSet, the same in tisim's parameters, (G, K) by physics.md
 SOFA = [
     ("st-venant-kirchhoff", (7e3, 9e4), {"mu": 7e3, "lam": 9e4}, (7e3, 9e4 + 14e3 / 3)),
     ("neo-hookean", (7e3, 9e4), {"mu": 7e3, "lam": 9e4}, (7e3, 9e4 + 14e3 / 3)),
@@ -100,7 +100,7 @@ def test_eight_chains_are_their_series_far_from_the_ends_and_lock_at_them():
     F = np.eye(3) + 0.4 * np.random.default_rng(6).uniform(-1, 1, (20, 3, 3))
     ours, theirs = (evaluate(n, p, F)[1] for n, p in (("eight-chain", chains), ("arruda-boyce", series)))
     assert ours == pytest.approx(theirs, rel=1e-5, abs=1e-3)
-    # at 98 % of their length the force is 1 / (1 - 0.98) over 3 x, in that at rest; past the end straight
+    # at 98 % of the locking length the force is 1 / (1 - 0.98) over 3 x, relative to rest; linear beyond it
     x = np.array([0.98, 0.999, 1.0, 1.001])
     pulled = [np.max(np.roots([1.0, 0.0, -3.0 * (6.0 * y) ** 2, 2.0]).real) for y in x]
     F = np.array([np.diag([s, s**-0.5, s**-0.5]) for s in pulled])
@@ -114,4 +114,4 @@ def test_eight_chains_are_their_series_far_from_the_ends_and_lock_at_them():
     at_rest = np.polynomial.polynomial.polyval(3.0 / 36.0, [1.0, 0.2, 33 / 525, 152 / 7000, 5190 / 673750])
     assert slopes[0] == pytest.approx(50.0 / (3.0 * 0.98) / at_rest, rel=1e-4)
     steps = np.diff(slopes[1:] * x[1:])
-    assert steps == pytest.approx([0.001 * 200.0**2 / 3.0 / at_rest] * 2, rel=1e-4)  # b is 200 at the end
+    assert steps == pytest.approx([0.001 * 200.0**2 / 3.0 / at_rest] * 2, rel=1e-4)  # b is 200 at the limit

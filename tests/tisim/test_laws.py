@@ -1,4 +1,4 @@
-"""The laws: energy, stress and tangent belong together, and are what the paper's formulas say."""
+"""The laws: stress and tangent are derivatives of the energy, and the energy is the paper's."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def moduli(material):
     return laws.get(material.law).moduli(material.parameters)
 
 
-def test_registry_holds_the_six_laws_of_the_paper_in_its_order_and_two_more():
+def test_registry_holds_the_six_laws_of_the_paper_in_its_order_and_further_ones():
     assert laws.names() == LAWS[:6]
     assert laws.all_names() == LAWS
     assert all(laws.get(name).name == name for name in LAWS)
@@ -36,8 +36,8 @@ def test_stress_is_the_energys_slope_and_tangent_the_stresss(law, data):
     _, P, A = at(material, F)
     by_energy = slope(lambda G: at(material, G)[0], F)
     by_stress = slope(lambda G: at(material, G)[1], F)
-    # near rest the stress is small, and the rounding of energies of the size of the bulk modulus is what
-    # the difference quotient resolves
+    # near rest the stress is small, and rounding of energies of the order of the bulk modulus limits the
+    # difference quotient
     rounding = 1e-10 * moduli(material).bulk_modulus
     assert np.abs(by_energy - P[0]).max() < 1e-6 * np.abs(P).max() + rounding
     assert np.abs(np.einsum("jLiK->iKjL", by_stress) - A[0]).max() < 1e-6 * np.abs(A).max()
@@ -83,13 +83,13 @@ def test_rest_has_no_stress_and_the_tangent_of_the_stated_moduli(material, Q):
 @many
 @given(F=deformations(), c10=st.floats(1e3, 1e4), c01=st.floats(1e3, 1e4))
 def test_ogden_with_exponents_2_and_minus_2_is_mooney_rivlin(F, c10, c01):
-    """Principal stretches and directions are as exact as invariants, also where stretches repeat."""
+    """The form in stretches is as exact as that in invariants, also for repeated stretches."""
     K = 20 * (c10 + c01)
     ours = at(Material(law="ogden", parameters={"mu": (2 * c10, -2 * c01), "alpha": (2, -2), "bulk": K}), F)
     same = at(Material(law="mooney-rivlin", parameters={"c10": c10, "c01": c01, "bulk": K}), F)
     assert np.abs(ours[0] - same[0]).max() < 1e-12 * np.abs(same[0]).max() + 1e-15 * K
     assert np.abs(ours[1] - same[1]).max() < 1e-12 * np.abs(same[1]).max() + 1e-14 * K
-    # a quotient of stresses a gap apart, or its limit: see tisim.kernels.response
+    # divided difference of stresses, or its limit: see tisim.kernels.response
     assert np.abs(ours[2] - same[2]).max() < 1e-9 * np.abs(same[2]).max()
 
 

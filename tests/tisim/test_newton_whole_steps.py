@@ -1,4 +1,4 @@
-"""Newton's method on systems whose steps are taken whole: an element that turns over ends it."""
+"""Newton's method on systems that take full steps: it ends when an element inverts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class Whole:
-    """One node on a cubic spring that is turned over beyond `edge`; steps go straight to `aim`."""
+    """One node on a cubic spring, inverted beyond `edge`; every step leads directly to `aim`."""
 
     def __init__(self, *, aim: float, edge: float) -> None:
         self.aim, self.edge = aim, edge

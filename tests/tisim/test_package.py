@@ -1,4 +1,4 @@
-"""The package as a whole: what its import costs, its version, what `python -m tisim` prints, its examples."""
+"""The package as a whole: cost of its import, version, output of `python -m tisim`, examples."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ HEAVY = {
 
 
 def run(*arguments: str) -> str:
-    """What a Python process in the repository's root prints."""
+    """Standard output of a Python process in the repository's root."""
     done = subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
     return done.stdout
 
 
 def loaded(statements: str) -> set[str]:
-    """Heavy packages that a new process has imported after the statements."""
+    """Heavy packages that a new process has imported after these statements."""
     text = run("-c", f"{statements}\nimport sys, json; print(json.dumps(sorted(sys.modules)))")
     return HEAVY & {name.partition(".")[0] for name in json.loads(text.splitlines()[-1])}
 
@@ -65,7 +65,7 @@ def test_the_module_prints_what_the_package_offers() -> None:
 
 @pytest.mark.parametrize("module", ["tisim.laws", "tisim.inclusions", "tisim.problems"])
 def test_examples_of_adding_run(module: str) -> None:
-    """In a process of their own: they register things."""
+    """In a separate process, since the examples register laws, shapes and scenes."""
     test = f"import doctest, {module}; raise SystemExit(doctest.testmod({module}).failed)"
     run("-c", test)
 

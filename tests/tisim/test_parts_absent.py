@@ -1,4 +1,4 @@
-"""Scenes without viscosity, softening or fibres are solved by kernels that know nothing of these."""
+"""Scenes without viscosity, softening or fibres use kernels without these parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Viscosity, softening and fibres at a point: derivatives, frame, closed forms, energy."""
+"""Viscosity, softening and fibres at a material point: derivatives, objectivity, closed forms, energy."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ import tisim
 from tisim import parts
 
 G, K = 2e4, 4e5
-# one law of each form of the energy (both invariants, stretches, theta of I1): a kernel is compiled for each
-# law with each set of parts, five to ten seconds where none is kept from an earlier run
+# one law of each form of the energy (both invariants, stretches, theta of I1): each law with each set of
+# parts compiles its own kernel, in five to ten seconds unless an earlier run cached it
 BASES = {
     "mooney-rivlin": tisim.material_from_moduli("mooney-rivlin", shear_modulus=G, bulk_modulus=K),
     "ogden": tisim.material_from_moduli("ogden", shear_modulus=G, bulk_modulus=K),
@@ -28,7 +28,7 @@ PRONY = tisim.Prony(fractions=(0.5, 0.3), times=(1.0, 20.0))
 MULLINS = tisim.OgdenRoxburgh(r=1.6, m=2e3, beta=0.2)
 FIBRES = tisim.HolzapfelGasserOgden(direction=(1.0, 2.0, -1.0), k1=8e3, k2=1.5)
 ALL_THREE = {"viscosity": PRONY, "softening": MULLINS, "fibres": FIBRES}
-# the same kernel as of `ALL_THREE`, without an effect
+# the same kernel as `ALL_THREE`, with parameters that have no effect
 NO_EFFECT = {
     "viscosity": replace(PRONY, fractions=(1e-16, 1e-16)),
     "softening": replace(MULLINS, r=1e30),
@@ -39,12 +39,12 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def only(law: str, **part: object) -> tisim.Material:
-    """With one part, the others without an effect."""
+    """Material with these parts; the other parts are present but have no effect."""
     return replace(BASES[law], **(NO_EFFECT | part))  # type: ignore[arg-type]
 
 
 def viscous(law: str) -> tisim.Material:
-    """Without other parts in one of the laws."""
+    """Material with viscosity; without other parts for mooney-rivlin, else with parts without effect."""
     return replace(BASES[law], viscosity=PRONY) if law == "mooney-rivlin" else only(law, viscosity=PRONY)
 
 
@@ -92,8 +92,8 @@ def test_stress_and_tangent_of_a_step_are_slopes_of_its_potential(law: str, seed
 
     by_energy, by_stress = slope(lambda f: at(f, 0), F, 3e-4), slope(lambda f: at(f, 1), F, 3e-4)
     assert np.isfinite(psi)
-    # where fibres slacken and where the largest energy is passed, second derivatives jump: there a difference
-    # across the jump is in error by its step, in the energy as in the stress
+    # where fibres slacken and where the largest energy is passed, the second derivative is discontinuous: a
+    # difference across it has an error of the order of its step, in the energy as in the stress
     stretch = F @ FIBRES.axis()
     assume(abs(stretch @ stretch / np.linalg.det(F) ** (2 / 3) - 1.0) > 5e-3)
     assume(not _near_the_largest_energy(points, F))
@@ -127,7 +127,7 @@ def test_a_turned_body_has_the_turned_stress_whatever_it_remembers(seed: int) ->
 
 @pytest.mark.parametrize("law", BASES)
 def test_relaxation_after_a_step(law: str) -> None:
-    """S_iso (1 + sum g_i exp(-t/tau_i)) at constant deformation, whatever the steps."""
+    """S_iso (1 + sum g_i exp(-t/tau_i)) at constant deformation, for any time steps."""
     F = uniaxial(1.6)
     times = np.array([0.0, 0.3, 2.0, 2.1, 40.0])
     found = parts.respond(viscous(law), times, np.tile(F, (5, 1, 1)))
@@ -169,7 +169,7 @@ def test_storage_and_loss_modulus_of_a_small_oscillation(law: str) -> None:
     material = viscous(law)
     size, steps = 1e-4, 120
     for omega in (0.05, 1.0):
-        cycles = int(np.ceil(100.0 * omega / (2 * np.pi))) + 2  # until the start is forgotten
+        cycles = int(np.ceil(100.0 * omega / (2 * np.pi))) + 2  # until the transient has decayed
         times = 2 * np.pi / omega * np.arange(1, cycles * steps + 1) / steps
         F = np.tile(np.eye(3), (len(times), 1, 1))
         F[:, 0, 1] = size * np.sin(omega * times)
@@ -194,10 +194,10 @@ def test_long_time_and_instantaneous_modulus_state_the_same_material() -> None:
     assert np.abs(a - b).max() < 1e-12 * np.abs(a).max()
 
 
-@settings(max_examples=12, deadline=None)  # of some 500 steps each
+@settings(max_examples=12, deadline=None)  # about 500 steps each
 @given(seed=seeds, law=st.sampled_from(["mooney-rivlin", "ogden"]))
 def test_dissipation_never_falls_and_closes_the_balance_over_random_cycles(seed: int, law: str) -> None:
-    """From rest through random deformations back to rest, and a long rest: what was put in is lost."""
+    """In random cycles from rest and back, with a long hold at rest, all work is dissipated."""
     rng = np.random.default_rng(seed)
     material = viscous(law) if rng.random() < 0.5 else replace(BASES[law], **ALL_THREE)
     corners = [np.zeros(9), *(0.3 * rng.standard_normal((int(rng.integers(1, 4)), 9))), np.zeros(9)]
@@ -212,7 +212,7 @@ def test_dissipation_never_falls_and_closes_the_balance_over_random_cycles(seed:
         now += long
     times += list(now + 10.0 ** np.linspace(-1.0, 4.0, 20))
     F += [np.eye(3)] * 20
-    # beyond, the trapezoidal rule does not resolve the exponential of the fibres
+    # at larger strains the trapezoidal rule does not resolve the exponential of the fibres
     assume(max(np.linalg.norm(f, 2) for f in F) < 1.8)
     found = parts.respond(material, times, np.array(F))
     lost = found.dissipated[:, 0]
@@ -221,13 +221,13 @@ def test_dissipation_never_falls_and_closes_the_balance_over_random_cycles(seed:
     path = np.concatenate([np.eye(3)[None], np.array(F)])
     work = 0.5 * np.einsum("tik,tik->", P[1:] + P[:-1], np.diff(path, axis=0))
     assert work > -1e-3 * G
-    # all that is left in the viscous terms has been lost; the trapezoidal rule is what remains
+    # the viscous terms have relaxed, so all work is dissipated up to the error of the trapezoidal rule
     assert lost[-1] == pytest.approx(work, rel=0.03, abs=2e-3 * G)
     assert found.stored[:, 0].min() > -0.02 * max(lost[-1], 1e-3 * G)
 
 
 def test_mullins_loops() -> None:
-    """First loading is the law's; below the largest energy the stress is eta times it; loops lose energy."""
+    """First loading follows the law; below the largest energy the isochoric stress is eta times the law's."""
     base = BASES["mooney-rivlin"]
     material = only("mooney-rivlin", softening=MULLINS)
     stretch = np.concatenate(
@@ -245,7 +245,7 @@ def test_mullins_loops() -> None:
     down, up = eta[300], eta[420]
     assert 0.4 < down < 0.9 < 1.0 == eta[-1]
     assert up < 1.0
-    # the loop of the first cycle: the axial stress less that of the sides does all the work
+    # dissipation of the first cycle: work of the axial stress minus that of the lateral stress
     nominal = found.stress[:401, 0, 0, 0] - stretch[:401] ** -1.5 * found.stress[:401, 0, 1, 1]
     loop = float(np.trapezoid(nominal, stretch[:401]))
     assert found.dissipated[400, 0] == pytest.approx(loop, rel=2e-3)
@@ -275,7 +275,7 @@ def test_a_refused_step_leaves_nothing_behind() -> None:
     straight, hesitant = (parts.MaterialPoints(material) for _ in range(2))
     for k, f in enumerate(F):
         for points in (straight, hesitant):
-            if points is hesitant:  # tries that are thrown away
+            if points is hesitant:  # attempts that are discarded
                 points.begin(7.0)
                 points.evaluate(F[k - 1])
                 points.begin(0.1)

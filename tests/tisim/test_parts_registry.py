@@ -1,4 +1,4 @@
-"""Parts of a material: added from outside, checked, refused where a scene would ignore them."""
+"""Parts of a material: registered from outside, checked, refused by scenes that would ignore them."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def test_parts_from_a_file_reach_other_processes(mine: ModuleType, tmp_path: Pat
     (tmp_path / "main.py").write_text(MAIN)
     path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
     found = []
-    # one after the other: the kernels that the first compiles lie on the disk when it has ended
+    # one after the other: the first process caches the kernels on disk
     for workers in ("1", "2"):
         out = tmp_path / f"{workers}.npz"
         run = subprocess.run(

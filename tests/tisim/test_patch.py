@@ -1,4 +1,4 @@
-"""Patch test: on distorted meshes an affine motion of the boundary makes the inside follow exactly."""
+"""Patch test: on distorted meshes, an affine motion of the boundary gives the affine motion inside."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,8 @@ from static_cases import awkward, body_of, boundary, settle
 from tisim.laws import evaluate
 
 F = np.array([[1.15, 0.25, -0.1], [0.05, 0.9, 0.2], [-0.12, 0.08, 1.05]])
-# a volume change of 1 %: far more would be a hydrostatic tension of several G, under which a soft body
-# (and this one, whose elements share one pressure) has other equilibria, of holes opening
+# a volume change of 1 %: much more would be a hydrostatic tension of several G, for which a soft body
+# (also this one, whose elements have one pressure) has other equilibria, with cavities
 F *= np.cbrt(1.01 / np.linalg.det(F))
 
 
@@ -17,7 +17,7 @@ def affine(mesh):
 
 
 def start(mesh, rng):
-    """The affine motion, the inside shaken."""
+    """The affine motion with random displacements of the interior nodes."""
     x = affine(mesh)
     inside = np.setdiff1d(np.arange(mesh.n_nodes), boundary(mesh))
     assert len(inside) > 3
@@ -43,12 +43,12 @@ def test_energy_and_boundary_forces_of_an_affine_motion_are_the_laws(kind):
     assert body.energy(affine(mesh))[0] == pytest.approx(psi * volume, rel=1e-12)
     force, least = body.internal_forces(affine(mesh))
     assert least == pytest.approx(np.linalg.det(F), rel=1e-12)
-    # virial: forces times places is stress times volume
+    # virial theorem: sum of forces times positions = stress times volume
     assert force.T @ mesh.nodes == pytest.approx(P * volume, rel=1e-9, abs=1e-9 * np.abs(P).max() * volume)
 
 
 def test_bent_quadratic_tetrahedra_pass_to_the_accuracy_of_their_quadrature():
-    """Four points integrate the gradients of bent elements to second order only."""
+    """Four points integrate the gradients of curved elements to second order only."""
     errors = []
     for bend in (4e-4, 8e-4):
         mesh = awkward("tet10", (3, 3, 3), bend=bend)

@@ -1,4 +1,4 @@
-"""Rods that are drawn back: where the surface slid under them on the way in, the way back is softer."""
+"""Retraction of the indenter: if the surface slid during loading, unloading is softer."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def poke(
 
 
 def missing(result: tisim.Result, depth: np.ndarray) -> np.ndarray:
-    """Part of the force that the way back lacks."""
+    """Relative loss of force on unloading at these depths, 1 - F_unload / F_load."""
     turn = int(np.argmax(result.load))
     force = -result.rod_force[:, 2]
     into = np.interp(depth, result.load[: turn + 1], force[: turn + 1])
@@ -48,9 +48,11 @@ def missing(result: tisim.Result, depth: np.ndarray) -> np.ndarray:
 
 
 def test_what_sliding_takes_agrees_with_axisymmetric_elements() -> None:
-    """FElupe at a friction of 0.1 (`python -m benchmarks.blind.indentation.make_table --only "thin
-    friction 0.1"`): up to
-    3.5 % of the force is missing. The default mesh is off by 1 % of the force, 1.5 times finer by 0.5 %."""
+    """FElupe at a friction coefficient of 0.1 loses up to 3.5 % of the force.
+
+    The table is made by `python -m benchmarks.blind.indentation.make_table --only "thin friction 0.1"`. The
+    loss is in error by 1 % of the force on the default mesh, by 0.5 % on a 1.5 times finer one.
+    """
     result = poke(0.1)
     assert result.status is tisim.Status.CONVERGED
     assert result.load[-1] == pytest.approx(0.5e-3)
@@ -64,7 +66,7 @@ def test_what_sliding_takes_agrees_with_axisymmetric_elements() -> None:
 
 @pytest.mark.slow
 def test_where_nothing_slides_the_way_back_is_the_way_there() -> None:
-    """To 0.1 % of the force at 1.2 times the default refinement."""
+    """Without sliding the forces of loading and unloading agree to 0.1 % at a refinement of 1.2."""
     result = poke(0.6, refinement=1.2)
     assert result.status is tisim.Status.CONVERGED
     assert missing(result, np.linspace(0.6e-3, 2.9e-3, 12)) == pytest.approx(0.0, abs=1e-3)

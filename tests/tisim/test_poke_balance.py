@@ -1,4 +1,4 @@
-"""A poke's equilibrium holds in sum, not only node by node."""
+"""An indentation's equilibrium holds for the sum of forces, not only for each node."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Linear:
 
 
 class Springs:
-    """Nodes on unit springs [N/m] under a rod's force of 1 N; each step takes half of what is left away."""
+    """Nodes on unit springs [N/m] under an indenter force of 1 N; each step halves the displacement."""
 
     def __init__(self) -> None:
         self.linear = Linear()
@@ -59,5 +59,5 @@ def test_residuals_that_all_point_one_way_are_no_frame(alike: bool, kept: bool, 
     assert outcome.status is Status.CONVERGED
     assert outcome.residual <= tolerance
     assert (abs(outcome.x.sum()) <= 0.005) == (not alike or kept)
-    # the residual is small enough once 6.3e-3 has been halved four times
+    # the residual norm is below the tolerance after 6.3e-3 has been halved four times
     assert outcome.iterations == steps

@@ -1,4 +1,4 @@
-"""A block with its far tissue condensed: a step is Newton's on the whole block, and what stays as it was."""
+"""A block with its far tissue condensed: a step equals Newton's step on the whole block."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def scene(depth: float = 0.002) -> tisim.Poke:
 
 
 def pressed(depth: float = 0.0003, *, kind: ElementKind = "hex20") -> tuple[PokeSystem, Array]:
-    """A rod in a block that has not yielded."""
+    """An indenter in contact with an undeformed block."""
     poke = scene()
     mesh = poke_mesh(
         block=poke.block,
@@ -56,7 +56,7 @@ OPTIONS: dict[str, Any] = {"tolerance": 5e-4, "max_iterations": 40, "kept": True
 
 
 def test_a_step_is_newtons_on_the_whole_block() -> None:
-    """Far tissue eliminated and brought along again: the same linear system, solved in two parts."""
+    """Elimination and back-substitution of the far tissue solve the same linear system, in two parts."""
     it, x = pressed(0.0001, kind="hex8")  # in hex20 the tangent at this overlap is indefinite
     rng = np.random.default_rng(3)
     free = it.discretisation.pattern.free
@@ -72,7 +72,7 @@ def test_a_step_is_newtons_on_the_whole_block() -> None:
     it.residual(x)
     left = block._place(split, x)
     part = it.restricted(split.near, split.far)
-    part.linear._limit = 80  # its factor knows neighbours only
+    part.linear._limit = 80  # its factor has the blocks of neighbours only
     near, _ = part.linearise(x)
     moved = part.advance(x, part.step(near, forcing=1e-9))
     found = block._follow(split, x, moved, left)
@@ -147,7 +147,7 @@ def test_forces_of_the_last_two_states_are_not_computed_again() -> None:
     kept = it.residual(trial)[0]
     it.residual(further)
     assert [a is b for a, b in zip(computed, (trial, further), strict=True)] == [True, True]
-    fresh = it.residual(trial.copy())[0]  # told by identity
+    fresh = it.residual(trial.copy())[0]  # states are compared by identity
     assert len(computed) == 3
     assert np.array_equal(kept, fresh)
 
@@ -229,7 +229,7 @@ def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.Mon
     whole, part = block._sound(x, x)
     assert whole is x
     assert part == 1.0
-    # a round that would turn elements over goes on from where they are sound, with a new far tangent
+    # a round that would invert elements continues from the last valid state, with a new far tangent
     monkeypatch.setattr(CondensedBlock, "_sound", lambda _self, x, _moved: (x, 0.5))
     stuck = block.solve(x, tolerance=5e-4, max_iterations=10, kept=True)
     assert stuck.status is Status.NOT_CONVERGED
@@ -239,9 +239,9 @@ def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.Mon
 
 
 def test_nearly_incompressible_far_tissue_does_not_hold_steps_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is factorised has all of the far tissue's stiffness: no iteration more than on the whole block.
+    """The factor contains all of the far tissue's stiffness: at most 1.5 times the whole block's iterations.
 
-    With pairs of neighbours alone, and a diagonal in place of the others, it looked unstable: 113 for 18.
+    With the blocks of neighbours alone, and a diagonal for the others, it took 113 instead of 18.
     """
     poke = replace(
         scene(0.0006),
@@ -255,7 +255,7 @@ def test_nearly_incompressible_far_tissue_does_not_hold_steps_back(monkeypatch: 
 def test_a_poke_that_fails_ends_after_so_many_iterations(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """And says so: no frame is made up."""
+    """The result has the status, and no frame."""
     asked: list[float] = []
 
     def fails(block: CondensedBlock, x: Array, **_: Any) -> Outcome:
@@ -264,6 +264,6 @@ def test_a_poke_that_fails_ends_after_so_many_iterations(
 
     monkeypatch.setattr(CondensedBlock, "solve", fails)
     found = solve_poke(scene())
-    assert len(asked) == 2  # as it is, and as a motion: smaller steps would be tried otherwise
+    assert len(asked) == 2  # static, then damped motion; without the limit smaller steps would follow
     assert found.status is Status.NOT_CONVERGED
     assert len(found.load) == 0

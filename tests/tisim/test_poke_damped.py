@@ -1,4 +1,4 @@
-"""Steps of a poke that are solved as a damped motion: its forces, where it ends, what a failed one leaves."""
+"""Indentation steps solved as a damped motion: drag forces, final state, state after a failed motion."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def system_of(scene: tisim.Poke, kind: ElementKind = "hex20") -> tuple[PokeSyste
 
 
 def at_equilibrium(scene: tisim.Poke, depth: float) -> tuple[PokeSystem, CondensedBlock]:
-    """A system whose last accepted state is that of the first step."""
+    """A system whose last accepted state is the equilibrium of a first step."""
     system, block = system_of(scene)
     system.move_to(depth)
     outcome, refused = solve_step(system, block, system.previous, tolerance=1e-4, kept=True)
@@ -126,7 +126,7 @@ VISCOUS = replace(SOFT, viscosity=tisim.Prony(fractions=(0.5,), times=(0.2,)))
     "options",
     [
         {},
-        # time goes by once, however many steps the motion takes
+        # time advances once, for any number of motion steps
         {"material": VISCOUS, "course": tisim.Course(frames=(0.1, 0.2, 0.3)).ramp(to=0.0012, speed=0.004)},
     ],
     ids=["by depth", "by a course"],
@@ -151,8 +151,8 @@ def test_a_poke_whose_steps_all_fail_at_first_is_the_same_poke(
     assert moved.ok
     assert moved.cost.step_cuts == 0
     assert moved.load == pytest.approx(plain.load)
-    assert len(motions) > 2 * moved.cost.steps  # several steps each, with less and less drag
+    assert len(motions) > 2 * moved.cost.steps  # several steps each, with decreasing drag
     assert min(motions) < 0.1 * max(motions)
-    # friction goes on from each state on the way, so that forces are those of other steps, not other ones
+    # friction continues from each intermediate state, so that forces differ as they do with other load steps
     assert moved.rod_force == pytest.approx(plain.rod_force, abs=0.02 * np.abs(plain.rod_force).max())
     assert (moved.residual <= 5e-4).all()

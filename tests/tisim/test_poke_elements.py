@@ -1,4 +1,4 @@
-"""Linear hexahedra under a rod: what their tetrahedra carry; and the shifted solves of their Newton steps."""
+"""Linear hexahedra under an indenter: energy of their tetrahedra; shifted solves of their Newton steps."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def block_mesh(kind: ElementKind = "hex8") -> Mesh:
 
 
 def part(ref: Reference) -> np.ndarray:
-    """Part of each hexahedron's volume, and so of its energy, at its tetrahedra."""
+    """Fraction of each hexahedron's volume, and so of its energy, that is integrated at its tetrahedra."""
     return np.asarray(ref.weights[:, 1:].sum(axis=1) / ref.weights.sum(axis=1))
 
 
@@ -39,7 +39,7 @@ def test_parts_rise_where_a_hexahedron_is_bent_only_and_stay() -> None:
     parts = TetrahedralParts(mesh, ref)
     assert part(ref) == pytest.approx(TETRAHEDRAL_PART)
     squeezed = mesh.nodes @ np.array([[1.6, 0.5, 0.0], [0.0, 1.2, 0.3], [0.0, 0.0, 0.4]])
-    parts.update(squeezed)  # out of shape, yet all tetrahedra alike
+    parts.update(squeezed)  # deformed, but all tetrahedra equally
     assert part(ref) == pytest.approx(TETRAHEDRAL_PART)
 
     element = int(np.argmax(mesh.nodes[mesh.elements][:, :, 2].mean(axis=1)))
@@ -95,7 +95,7 @@ def test_a_shift_shortens_the_step_and_fades() -> None:
 
 
 def test_a_layout_is_left_as_it_was() -> None:
-    """Pokes that share a discretisation do not see each other's distortions."""
+    """Pokes that share a discretisation are independent of each other's distortions."""
     scene = tisim.Poke(
         material=tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3),
         depth=0.001,
@@ -109,7 +109,7 @@ def test_a_layout_is_left_as_it_was() -> None:
     it.accept(bent)
     assert np.abs(it.discretisation.reference.weights / before - 1.0).max() > 0.1
     assert np.array_equal(discretisation.reference.weights, before)
-    # a rod on its way down does not give them their shape back, one that is drawn back does
+    # the weights keep the largest distortion while the indenter advances, and follow it during retraction
     it.accept(mesh.nodes)
     assert np.abs(it.discretisation.reference.weights / before - 1.0).max() > 0.1
     it.turn(-1.0)
@@ -118,9 +118,9 @@ def test_a_layout_is_left_as_it_was() -> None:
 
 
 def test_overlap_is_looked_for_between_the_points_of_contact_too() -> None:
-    """A facet's middle pushed through the rod's edge, its contact points left where they touch."""
+    """The middle of a facet overlaps the indenter's edge while its contact points stay on the surface."""
     it, x = system()
-    assert it.overlap(x) == pytest.approx(0.3e-3, rel=0.05)  # the depth the rod was moved to
+    assert it.overlap(x) == pytest.approx(0.3e-3, rel=0.05)  # the depth of the indenter
     facet = it.facets[np.argmin(np.linalg.norm(x[it.facets].mean(axis=1) - it.tip, axis=1))]
     bulged = x.copy()
     bulged[facet, 2] += 1e-3 * np.array([-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])

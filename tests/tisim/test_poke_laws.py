@@ -1,4 +1,4 @@
-"""Every law pokes: balance of forces, and the same force where strains are small."""
+"""Indentation with every law: balance of forces, and equal forces at small strain."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SHEAR, BULK = 20e3, 600e3
 
 
 def poked(law: str, *, element: Any = "default") -> tuple[tisim.Result, tisim.Result]:
-    """0.04 and 2 mm deep at 20 degrees on a coarse mesh."""
+    """Results at 0.04 and 2 mm depth, at 20 degrees on a coarse mesh."""
     angle = np.radians(20.0)
     shallow, deep = (
         solve_poke(
@@ -34,7 +34,7 @@ def poked(law: str, *, element: Any = "default") -> tuple[tisim.Result, tisim.Re
 
 
 def size(result: tisim.Result) -> float:
-    """Of the rod's force at the end [N]."""
+    """Magnitude of the final indenter force [N]."""
     return float(np.linalg.norm(result.rod_force[-1]))
 
 
@@ -46,7 +46,7 @@ def neo_hookean() -> tuple[float, float]:
 
 @pytest.mark.parametrize("law", [name for name in laws.names() if name != "neo-hookean"])
 def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
-    # this law, which gives way where it is squeezed, goes beyond 1 mm on linear hexahedra only
+    # this law softens in compression: beyond 1 mm it converges on linear hexahedra only
     element = "hex8" if law == "st-venant-kirchhoff" else "default"
     shallow, deep = poked(law, element=element)
     if element == "hex8":
@@ -56,7 +56,7 @@ def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
         assert found.load[-1] == pytest.approx(depth)
         assert np.linalg.norm(found.rod_force - found.support_force, axis=1).max() < 0.01 * size(found)
         assert (found.min_jacobian > 0).all()
-    assert size(shallow) == pytest.approx(neo_hookean[0], rel=0.03)  # the moduli decide
-    assert size(deep) != pytest.approx(neo_hookean[1], rel=1e-4)  # the law does
+    assert size(shallow) == pytest.approx(neo_hookean[0], rel=0.03)  # depends on the moduli only
+    assert size(deep) != pytest.approx(neo_hookean[1], rel=1e-4)  # depends on the law
     low, high = (0.5, 0.7) if law == "st-venant-kirchhoff" else (0.9, 1.2)
     assert low < size(deep) / neo_hookean[1] < high

@@ -1,4 +1,4 @@
-"""Whole pokes: balance of forces, penetration, frames, friction, an independent reference, endings."""
+"""Complete indentations: balance of forces, penetration, frames, friction, an FElupe reference, failures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PLANE_MODULUS = _YOUNG / (1 - _POISSON**2)
 
 
 def poke(**changes: object) -> tisim.Poke:
-    """2 mm deep on a coarse mesh, unless told otherwise."""
+    """Indentation of 2 mm on a coarse mesh by default."""
     return tisim.Poke(**({"material": SOFT, "depth": 0.002, "refinement": 0.7} | changes))  # type: ignore[arg-type]
 
 
@@ -55,7 +55,7 @@ def test_rod_force_is_base_reaction(results: dict[str, tisim.Result], name: str)
     assert result.ok
     size = np.linalg.norm(result.rod_force, axis=1)
     assert (size > 0.01).all()
-    # the body pushes the rod as the base pushes the body
+    # the reaction on the indenter equals the reaction of the base
     assert np.linalg.norm(result.rod_force - result.support_force, axis=1) == pytest.approx(
         0, abs=0.01 * size[0]
     )
@@ -81,14 +81,14 @@ def test_a_normal_poke_pushes_straight_back(results: dict[str, tisim.Result]) ->
 
 
 def test_friction_holds_the_surface(results: dict[str, tisim.Result]) -> None:
-    """Without friction the tilted rod's edge slides along: less force, and turned towards the normal."""
+    """Without friction the surface slides along the tilted indenter's edge, and the force is smaller."""
     stick, slide = results["tilted"].rod_force[-1], results["tilted slippery"].rod_force[-1]
     assert np.linalg.norm(slide) < 0.98 * np.linalg.norm(stick)
     assert np.linalg.norm(slide - stick) > 0.03 * np.linalg.norm(stick)
 
 
 def test_depth_counts_from_first_touch() -> None:
-    """The lowest point of a sampled rod lies on the surface, for random tilts."""
+    """The lowest point of a sampled indenter lies on the surface, for random tilts."""
     rng = np.random.default_rng(1)
     rod = tisim.Rod()
     for _ in range(20):
@@ -104,13 +104,13 @@ def test_depth_counts_from_first_touch() -> None:
         ring = np.cos(phi)[..., None] * across + np.sin(phi)[..., None] * around
         points = tip + s[..., None] * axis + r[..., None] * ring
         assert points[..., 2].min() == pytest.approx(0.032, abs=1e-7)
-        # the axis meets the surface at the site
+        # the axis meets the surface at the contact point
         meets = tip + axis * (0.032 - tip[2]) / axis[2]
         assert meets[:2] == pytest.approx([0.01, -0.02], abs=1e-12)
 
 
 def test_a_poke_that_cannot_go_on_says_so() -> None:
-    """Through a thin block and its base: it stops, with its status, its frames and a sentence."""
+    """An indentation through a thin block and its base stops with a status, its frames and a message."""
     result = solve_poke(poke(block=tisim.Block(size=(0.06, 0.06, 0.006)), depth=0.0065, frame_spacing=5e-4))
     assert not result.ok
     assert 0.001 <= result.load[-1] < 0.0062
@@ -124,7 +124,7 @@ def test_a_poke_that_cannot_go_on_says_so() -> None:
 
 
 def test_tissue_squeezed_to_a_tenth_bears_the_rod() -> None:
-    """Under the edge pressure outgrows the contact, which is made stiffer before the surface slips past."""
+    """Under the edge the pressure exceeds what the contact can carry, so its stiffness is raised in time."""
     ogden = tisim.material_from_moduli("ogden", shear_modulus=SHEAR, bulk_modulus=BULK)
     thin = tisim.Block(size=(0.06, 0.06, 0.012))
     result = solve_poke(poke(material=ogden, block=thin, depth=0.0108, frame_spacing=5e-4))
@@ -133,7 +133,7 @@ def test_tissue_squeezed_to_a_tenth_bears_the_rod() -> None:
 
 @pytest.mark.slow
 def test_a_poke_leaves_two_of_32_millimetres() -> None:
-    """With a linear penalty, or three contact points a side, it ends at 27 mm (studies/depth)."""
+    """A linear penalty, or three contact points per side, ends at 27 mm (studies/depth)."""
     ogden = tisim.material_from_moduli("ogden", shear_modulus=SHEAR, bulk_modulus=BULK)
     result = solve_poke(poke(material=ogden, depth=0.03, frame_spacing=1e-3, refinement=1.0))
     assert result.ok, result.message
@@ -142,7 +142,7 @@ def test_a_poke_leaves_two_of_32_millimetres() -> None:
 
 
 def test_axisymmetric_reference() -> None:
-    """Force at 1, 2, 5 and 10 mm against axisymmetric quadratic elements (FElupe): within 1.5 %."""
+    """Force at 1, 2, 5 and 10 mm within 1.5 % of axisymmetric quadratic elements (FElupe)."""
     forces = {int(d): v["force"] for d, v in REFERENCE["values"]["0.6"].items()}
     result = solve_poke(poke(depth=0.010, refinement=1.0))
     assert result.ok
@@ -153,15 +153,15 @@ def test_axisymmetric_reference() -> None:
 
 
 def _deep_block(**changes: object) -> tisim.Result:
-    """Frictionless, on a block so large that it is a half space to 2 %."""
+    """Frictionless indentation of a block that is large enough to be a half space to 2 %."""
     return solve_poke(poke(block=tisim.Block(size=(0.3, 0.3, 0.15)), friction=0.0, refinement=1.0, **changes))
 
 
 def _half_space_force(rod: tisim.Rod, depth: float) -> float:
-    """Force [N] on a frictionless half space (Galin, Sneddon), for a flat with a circular edge.
+    """Force [N] on a frictionless half space (Galin, Sneddon) under a flat punch with a circular edge.
 
     F = 2 E* int f' r^2 / sqrt(a^2 - r^2) dr and d = int f' a / sqrt(a^2 - r^2) dr over r < a, with f the
-    edge's profile beyond the flat. It tends to the flat punch's 2 a E* d as the edge gets small.
+    profile of the edge. F tends to that of the flat punch, 2 a E* d, as the edge radius decreases.
     """
     b = rod.radius - rod.edge_radius
 
@@ -179,7 +179,7 @@ def _half_space_force(rod: tisim.Rod, depth: float) -> float:
 
 @pytest.mark.slow
 def test_flat_punch_at_small_depth() -> None:
-    """Too stiff by 14 % on the default mesh: the disc's rings are as wide as the edge is round."""
+    """The default mesh is too stiff by 14 %: the radial elements are as wide as the edge radius."""
     rod = tisim.Rod(edge_radius=2.5e-4)
     result = _deep_block(rod=rod, depth=1e-4, frame_spacing=5e-5)
     exact = np.array([_half_space_force(rod, float(d)) for d in result.load])
@@ -190,7 +190,7 @@ def test_flat_punch_at_small_depth() -> None:
 
 @pytest.mark.slow
 def test_hertz_for_the_hemisphere() -> None:
-    """F = 4/3 E* sqrt(R) d^1.5: within 4 %, where the contact is 0.7 and 1 mm wide, one or two cells."""
+    """F = 4/3 E* sqrt(R) d^1.5 within 4 % at contact radii of 0.7 and 1 mm, one or two cells."""
     result = _deep_block(rod=tisim.Rod(tip="hemisphere"), depth=4e-4, frame_spacing=2e-4)
     hertz = 4 / 3 * PLANE_MODULUS * np.sqrt(0.0025) * result.load**1.5
     assert result.rod_force[:, 2] / hertz == pytest.approx(1.0, abs=0.04)

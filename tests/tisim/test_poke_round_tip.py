@@ -1,4 +1,4 @@
-"""A round tip presses on a contact stiff enough that sinking into it costs no force."""
+"""Contact under a round tip is stiff enough that its penetration does not reduce the force."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ import tisim
 
 
 def test_a_ball_sinks_in_by_little() -> None:
-    """Hertz's greatest pressure at 1 mm under a ball of 4 mm is 1.3 shear moduli: on a contact of 200 shear
-    moduli over 0.4 of the radius it sinks in by 0.0104 mm, over the whole radius by 0.025 mm."""
+    """Hertz's maximum pressure at 1 mm under a ball of 4 mm is 1.3 shear moduli.
+
+    With a contact stiffness of 200 shear moduli over 0.4 radii the penetration is 0.0104 mm; over the whole
+    radius it would be 0.025 mm.
+    """
     soft = tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=2e5)
     ball = tisim.Rod(radius=4e-3, tip="hemisphere")
     poke = tisim.Poke(material=soft, depth=1e-3, rod=ball, refinement=1.5, frame_spacing=5e-4)

@@ -1,4 +1,4 @@
-"""Load steps of a poke: how well each is solved, and what a refused one costs the next."""
+"""Load steps of an indentation: their accuracy, and the effect of a rejected step on the next."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def shallow(depth: float) -> tisim.Poke:
     )
 
 
-Refuse = Callable[[float, bool], bool]  # depth [m], whether the step ends in a frame
+Refuse = Callable[[float, bool], bool]  # of depth [m] and of True if the step ends in a frame
 
 
 def refusing(monkeypatch: pytest.MonkeyPatch, refuse: Refuse) -> list[dict[str, Any]]:
-    """Steps for which `refuse` says so find no equilibrium; returns what is asked of all."""
+    """Let steps fail if `refuse` is true for them; return the list of all requested steps."""
     asked: list[dict[str, Any]] = []
 
     def solve(
@@ -50,7 +50,7 @@ def test_frames_are_solved_to_the_tolerance(monkeypatch: pytest.MonkeyPatch) -> 
     result = solve_poke(shallow(0.0006))
     assert result.ok
     assert result.cost.step_cuts == 2
-    # the third step that was tried, and refused, was a frame
+    # the third attempted step, which was rejected, was a frame
     assert result.load == pytest.approx([0.00033, 0.0006])
     assert (result.residual <= 5e-4).all()
     for one in asked:
@@ -64,7 +64,7 @@ def test_a_frame_without_equilibrium_is_tried_again_further_on(monkeypatch: pyte
     result = solve_poke(shallow(0.0008))
     assert result.ok
     assert result.cost.step_cuts == 1
-    # a tenth of the spacing later, and the next one a spacing after that
+    # a tenth of the spacing further on, and the next one a full spacing after it
     assert result.load == pytest.approx([0.00033, 0.00063, 0.0008])
     tried = [1e3 * one["depth"] for one in asked if one["kept"]]
     assert tried == pytest.approx([0.3, 0.33, 0.63, 0.8])
@@ -81,6 +81,6 @@ def test_the_last_depth_is_not_put_off(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_step_goes_beyond_the_depth_asked_for() -> None:
-    """Nor where the next frame would lie a little beyond it."""
+    """This also holds if the next frame would lie slightly beyond the final depth."""
     result = solve_poke(shallow(0.00059))
     assert result.load == pytest.approx([0.0003, 0.00059])

@@ -1,4 +1,4 @@
-"""Pokes whose rod turns over time, and paths that leave the block."""
+"""Indentations whose rod rotates over time, and paths that leave the block."""
 
 from __future__ import annotations
 
@@ -30,25 +30,25 @@ def test_a_rod_that_turns_aside_is_pushed_back_and_comes_back_to_where_it_was() 
     tilted = tisim.simulate(replace(POKE, direction=TILT, friction=0.0))
     turned = force(found)
     small = 0.02 * np.linalg.norm(turned[0])
-    # without friction and memory only the pose counts
+    # without friction and history only the pose matters
     assert turned[1] == pytest.approx(force(tilted)[-1], rel=0.05, abs=small)
     assert np.linalg.norm(turned[1] - turned[0]) > 5.0 * small
     assert turned[2] == pytest.approx(turned[0], abs=small)
     assert found.rod_tip is not None
     assert tilted.rod_tip is not None
     assert found.rod_tip[1] == pytest.approx(tilted.rod_tip[-1], abs=1e-12)
-    assert found.cost.steps >= tilted.cost.steps + 2  # a turn is steps on a way
+    assert found.cost.steps >= tilted.cost.steps + 2  # a rotation takes several load steps
 
 
 def gap_to_rod(from_tip: np.ndarray) -> np.ndarray:
-    """Distance (n,) [m] from a rod that points down, of points (n, 3) seen from its tip."""
+    """Distance (n,) [m] of points (n, 3), relative to the tip, from an indenter that points down."""
     aside, ahead = np.hypot(from_tip[:, 0], from_tip[:, 1]), -from_tip[:, 2]
     edge, core = POKE.rod.edge_radius, POKE.rod.radius - POKE.rod.edge_radius
     return np.asarray(np.hypot(np.maximum(aside - core, 0.0), np.maximum(ahead + edge, 0.0)) - edge)
 
 
 def test_a_sticking_surface_follows_the_rods_own_turn() -> None:
-    """A point that sticks moves as the rod's point there: no slip is counted for the turn."""
+    """A sticking point follows the indenter's rotation, which is not counted as slip."""
     scene = replace(POKE, turns=((1.0, DOWN), (2.0, TILT)), friction=50.0, refinement=1.0)
     found = tisim.simulate(scene)
     assert found.ok, found.message
@@ -58,7 +58,7 @@ def test_a_sticking_surface_follows_the_rods_own_turn() -> None:
     from_tip = x[0] - tip[0]
     before, after = gap_to_rod(from_tip), gap_to_rod((x[1] - tip[1]) @ R)
     edge, core = POKE.rod.edge_radius, POKE.rod.radius - POKE.rod.edge_radius
-    # at the rounded edge the rod's turn is along its surface; behind it the edge lifts off
+    # at the rounded edge the rotation is tangential to the surface; behind it the edge lifts off
     touching = (before < 0.06 * edge) & (after < 0.06 * edge)
     assert touching.sum() > 0.9 * (before < 0.06 * edge).sum()
     assert (np.hypot(from_tip[touching, 0], from_tip[touching, 1]) > 1.3 * core).sum() >= 4

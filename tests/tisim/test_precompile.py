@@ -1,4 +1,4 @@
-"""Kernels compiled before they are needed: every one of a material, found on disk by the next process."""
+"""Precompilation of all kernels of a material, which the next process finds on disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pressed cylinders: the homogeneous answer, FElupe's axisymmetric one, energy, meshes, the fold."""
+"""Compression of cylinders: homogeneous solution, FElupe's axisymmetric one, energy, meshes, side contact."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def solve(**changes: Any) -> tisim.Result:
     ],
 )
 def test_between_sliding_platens_it_is_the_homogeneous_coupon(law: str, ratio: float, element: Any) -> None:
-    # below 0.44 the free surface of a Neo-Hookean body is unstable (Biot 1963): the mesh wrinkles, rightly
+    # below 0.44 the free surface of a Neo-Hookean body is unstable (Biot 1963): the mesh rightly wrinkles
     stretches, solver = (0.9, 0.5), tisim.Solver(tolerance=1e-9)
     found = solve(
         material=material(law, ratio=ratio),
@@ -78,7 +78,7 @@ TALL = [case for case in REFERENCE["cases"] if case["height"] > 0.02]
 
 @pytest.mark.parametrize("case", TALL, ids=name_of)
 def test_bonded_against_axisymmetric_elements_of_felupe(case: dict[str, Any]) -> None:
-    """Finest mesh of benchmarks/references/press.py; it is within 0.4 % of the next coarser one."""
+    """Finest mesh of benchmarks/references/press.py, which is within 0.4 % of the next coarser one."""
     stretches = tuple(REFERENCE["about"]["stretches"][:2])
     found = solve(material=of_reference(case), height=case["height"], stretches=stretches)
     assert found.ok, found.message
@@ -88,7 +88,7 @@ def test_bonded_against_axisymmetric_elements_of_felupe(case: dict[str, Any]) ->
 @pytest.mark.slow
 @pytest.mark.parametrize("case", REFERENCE["cases"], ids=name_of)
 def test_a_finer_mesh_is_closer_to_felupes(case: dict[str, Any]) -> None:
-    """The default one is up to 1.2 % too stiff at a stretch of 0.85, and 1.1 % too soft for the flat disc."""
+    """The default mesh is up to 1.2 % too stiff at a stretch of 0.85, and 1.1 % too soft for the disc."""
     expected = case["stress"]["2"]
     stretches = tuple(REFERENCE["about"]["stretches"][: len(expected)])
     found = solve(material=of_reference(case), height=case["height"], stretches=stretches, refinement=1.5)
@@ -100,7 +100,7 @@ def test_a_finer_mesh_is_closer_to_felupes(case: dict[str, Any]) -> None:
 def test_small_strain_is_near_gent_and_lindleys_formula(height: float, within: float) -> None:
     """E (1 + 2 S^2) with S = R / 2 H, in series with K (Gent and Lindley, Proc. IMechE 173, 1959).
 
-    An approximation: FElupe and we are together 5.4 % above it at S = 0.42.
+    The formula is an approximation: FElupe and tisim both lie 5.4 % above it at S = 0.42.
     """
     bulk, strain = 300.0 * SHEAR, 1e-4
     young = 9.0 * bulk * SHEAR / (3.0 * bulk + SHEAR)
@@ -112,7 +112,7 @@ def test_small_strain_is_near_gent_and_lindleys_formula(height: float, within: f
 
 @pytest.mark.parametrize("platens", ["bonded", "free"])
 def test_force_is_the_derivative_of_the_energy(platens: Any) -> None:
-    """Before the side folds onto the platen, and while it rolls there."""
+    """Before the side comes into contact with the platen, and while it rolls onto it."""
     d = 5e-4
     stretches = (0.9 + d, 0.9, 0.9 - d, 0.6 + d, 0.6, 0.6 - d)
     found = solve(platens=platens, stretches=stretches, refinement=0.7)
@@ -134,7 +134,7 @@ def test_default_mesh_is_near_a_finer_one_to_two_thirds() -> None:
     assert coarse.ok
     assert fine.ok
     np.testing.assert_allclose(coarse.nominal_stress[:-1], fine.nominal_stress[:-1], rtol=0.01)
-    # at the end the side lies on the platen ring by ring of nodes, which shows
+    # at the end the side comes into contact one ring of nodes at a time, which shows in the force
     np.testing.assert_allclose(coarse.nominal_stress, fine.nominal_stress, rtol=0.02)
 
 
@@ -157,7 +157,7 @@ def test_laws_reach_two_thirds(law: str, ratio: float) -> None:
 
 
 def test_half_as_fine_a_mesh_is_already_near() -> None:
-    """What the quick tests here rely on."""
+    """The other tests here rely on it: refinement 0.5 is within 5 % of the default."""
     stretches = (0.9, 0.7, 0.5)
     coarse, default = (solve(stretches=stretches, refinement=r) for r in (0.5, 1.0))
     np.testing.assert_allclose(coarse.nominal_stress, default.nominal_stress, rtol=0.05)
@@ -183,7 +183,7 @@ def test_the_side_rolls_onto_the_platen_and_stays_within_it() -> None:
     ]
     assert resting[0].sum() == 0
     assert 0 < resting[1].sum() < resting[2].sum()
-    # what has come down does not slide
+    # nodes in contact do not slide
     stuck = side[resting[1]]
     assert np.ptp(found.positions[1:, stuck, :2], axis=0).max() < 1e-12
 
@@ -200,7 +200,7 @@ def test_stopping_at_the_fold_is_a_status_and_leaves_other_scenes_alone() -> Non
 
 
 def test_a_law_that_collapses_ends_with_a_status() -> None:
-    """St Venant-Kirchhoff has no bonded equilibrium past some 20 %: its stress falls on compression."""
+    """St Venant-Kirchhoff has no bonded equilibrium beyond some 20 %: its stress decreases in compression."""
     found = solve(material=material("st-venant-kirchhoff"), stretches=(0.95, 0.5), refinement=0.5)
     assert not found.ok
     assert found.load.tolist() == [0.95]
@@ -249,7 +249,7 @@ def test_mesh_has_the_cylinders_volume_and_whole_sets(kind: Any, refinement: flo
 
 
 def test_no_tetrahedron_lies_on_platen_and_side_at_once() -> None:
-    """Such an element is flattened when the side folds; the rest of the mesh would stop with it."""
+    """Such an element is flattened when the side comes into contact, and would stop the whole mesh."""
     mesh = press_mesh(radius=RADIUS, height=HEIGHT)
     on = {name: {frozenset(f[:3].tolist()) for f in mesh.facet_sets[name]} for name in ("top", "side")}
     local = np.array(tisim.mesh.ELEMENT_FACETS["tet10"])[:, :3]

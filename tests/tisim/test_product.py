@@ -1,4 +1,4 @@
-"""Products with a pattern's whole matrix, against a dense one."""
+"""Products with the whole matrix of a pattern, against a dense one."""
 
 from __future__ import annotations
 

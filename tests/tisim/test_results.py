@@ -1,4 +1,4 @@
-"""What a result says and prints, and how simulate answers to one scene."""
+"""Quantities and representation of results, and the return value of simulate for a single scene."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_steps_of_a_poke_are_logged(caplog: pytest.LogCaptureFixture) -> None:
 
 
 def test_a_solver_below_simulate_holds_blas_to_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two threads that wait for each other take twice the CPU time of one."""
+    """Two BLAS threads that wait for each other take twice the CPU time of one."""
     seen: list[int] = []
 
     def look(_: float) -> None:
@@ -124,7 +124,7 @@ def test_a_folder_that_is_not_there_is_named(save, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("element", ["default", "tet4", "tet10"])
 def test_a_poke_is_meshed_with_the_elements_asked_for(element: tisim.scene.ElementChoice) -> None:
-    """They used to be hexahedra whatever was asked for."""
+    """Regression test: the choice of element was once ignored, and hexahedra were used."""
     result = tisim.simulate(tisim.Poke(material=SOFT, depth=2e-4, refinement=0.5, element=element))
     assert result.ok
     assert result.mesh.kind == ("hex20" if element == "default" else element)

@@ -1,4 +1,4 @@
-"""A kind of scene added from outside the package: checked, solved in any process, described."""
+"""A type of scene registered from outside the package: checked, solved in any process, described."""
 
 from __future__ import annotations
 

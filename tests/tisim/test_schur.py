@@ -1,4 +1,4 @@
-"""Static condensation against dense algebra, by PARDISO and without it."""
+"""Static condensation against dense algebra, with PARDISO and with SuperLU."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ KEPT = np.array([1, 4, 8])
 
 
 def chained(rng: np.random.Generator) -> tuple[Condensation, Array, Array]:
-    """The condensation of a chain of elements, its blocks, and the same as a dense matrix."""
+    """Condensation of a chain of elements, its blocks, and the same matrix as a dense array."""
     conn = np.array([[k, k + 1, k + 2] for k in range(NODES - 2)], dtype=np.int32)
     pattern = pattern_of(conn, NODES, np.zeros(0, dtype=np.int32))
     blocks = rng.standard_normal((pattern.n_blocks, 3, 3))
@@ -34,7 +34,7 @@ def chained(rng: np.random.Generator) -> tuple[Condensation, Array, Array]:
 
 @pytest.fixture(params=[True, False], ids=["PARDISO", "SuperLU"])
 def solver(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """Whether PARDISO solves."""
+    """Select the direct solver; the value is True for PARDISO."""
     if request.param and not direct.HAVE_PARDISO:
         pytest.skip("pypardiso is for x86-64")
     monkeypatch.setattr(direct, "HAVE_PARDISO", request.param)
@@ -49,7 +49,7 @@ def test_complement_and_both_halves_of_a_solve() -> None:
     gone = np.setdiff1d(np.arange(3 * NODES), kept)
     eliminated = np.linalg.solve(dense[np.ix_(gone, gone)], dense[np.ix_(gone, kept)])
     wanted = dense[np.ix_(kept, kept)] - dense[np.ix_(kept, gone)] @ eliminated
-    for _ in range(2):  # the second time with what was analysed
+    for _ in range(2):  # the second time with the stored analysis
         assert it.factorise(blocks) == pytest.approx(wanted, rel=1e-5, abs=1e-5)
     rhs = rng.standard_normal((NODES, 3))
     passed_on = dense[np.ix_(kept, gone)] @ np.linalg.solve(dense[np.ix_(gone, gone)], rhs.ravel()[gone])

@@ -1,4 +1,4 @@
-"""The one entry: any scenes, in order, the same bytes on one worker or two; coupons against closed forms."""
+"""`simulate`: any scenes, in order, bit-identical on one or two workers; homogeneous tests in closed form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 import tisim
 
 SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=20e3, bulk_modulus=400e3)
-# Small Lame: compressible enough that the free sides matter.
+# small Lame parameter: compressible enough for the lateral stretch to matter
 SHEAR, BULK = 30e3, 120e3
 
 
@@ -47,7 +47,7 @@ def test_progress_counts_to_the_end() -> None:
     seen: list[tuple[float, int]] = []
     tisim.simulate(scenes()[:2], workers=1, on_progress=lambda done, total: seen.append((done, total)))
     assert [(done, total) for done, total in seen if done % 1 == 0] == [(1, 2), (2, 2)]
-    assert seen == sorted(seen)  # a scene of several steps counts by parts on the way
+    assert seen == sorted(seen)  # a scene of several steps counts in fractions
 
 
 BAD: list[tuple[tisim.Scene, str]] = [
@@ -90,7 +90,7 @@ C = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 
 
 def energies() -> dict[str, Energy]:
-    """The paper's energies (isochoric where it is not stress-free as printed) of principal stretches."""
+    """The paper's energies of principal stretches, isochoric if the printed one has a stress at rest."""
     p = {
         law: tisim.material_from_moduli(law, shear_modulus=SHEAR, bulk_modulus=BULK).parameters
         for law in tisim.laws.names()
@@ -147,7 +147,7 @@ def slope(f: Callable[[float], float], x: float) -> float:
 
 
 def closed_form(w: Energy, mode: str, s: float) -> float:
-    """Nominal stress along x [Pa]: free sides found as the root of their stress, shear by its energy."""
+    """Nominal stress along x [Pa]; lateral stretches from zero lateral stress, shear from its energy."""
     if mode == "simple-shear":
         gamma = s - 1
         # principal stretches of simple shear: t, 1, 1/t with t - 1/t = gamma
@@ -183,7 +183,7 @@ def test_coupons_follow_the_closed_forms(law: str, mode: str) -> None:
 
 
 def test_a_coupon_that_would_be_crushed_ends_there() -> None:
-    """St Venant-Kirchhoff, pulled both ways: at 1.4 only a state without any volume balances."""
+    """St Venant-Kirchhoff in equibiaxial tension: at 1.4 only a state of zero volume is in equilibrium."""
     material = tisim.material_from_moduli("st-venant-kirchhoff", shear_modulus=SHEAR, bulk_modulus=BULK)
     coupon = tisim.Coupon(material=material, mode="equibiaxial", stretches=(1.1, 1.2, 1.4))
     (result,) = tisim.simulate([coupon], workers=1)
@@ -198,7 +198,7 @@ def test_export_and_picture(tmp_path: Path) -> None:
     )
     path = tisim.write(result, tmp_path / "beam.vtu")
     back = meshio.read(path)
-    # the half that was solved comes with its mirror image
+    # the solved half is shown with its mirror image
     assert len(back.points) > result.mesh.n_nodes
     assert back.points[:, 2].min() == pytest.approx(result.positions[-1][:, 2].min())
     assert back.points[:, 1].min() == pytest.approx(-result.positions[-1][:, 1].max())

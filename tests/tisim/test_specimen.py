@@ -1,4 +1,4 @@
-"""Imperfect specimens against beam theory: arcs, tapers, gradients, skins and voids."""
+"""Imperfect specimens against beam theory: curvature, taper, gradients, skins and voids."""
 
 import numpy as np
 import pytest
@@ -34,14 +34,14 @@ def sag(**kw):
 
 
 def strain(**kw):
-    """Of a pulled beam's middle, away from the face where the pull is spread evenly."""
+    """Axial strain in the middle of a beam in tension, away from the face with a uniform traction."""
     result = solve_beam(slender(gravity=NONE, tip_force=(0.01, 0.0, 0.0), **kw))
     middle = np.abs(result.mesh.nodes[:, 0] - LENGTH / 2) < LENGTH / 4
     return np.polyfit(result.mesh.nodes[middle, 0], result.positions[0][middle, 0], 1)[0] - 1.0
 
 
 def tip_sag(stiffness, weight):
-    """Sag of a cantilever's end, in Euler-Bernoulli theory: EI and q, each relative, as functions of x."""
+    """Tip deflection of an Euler-Bernoulli cantilever with relative EI(x) and q(x)."""
     x = np.linspace(0.0, LENGTH, 4001)
     beyond = cumulative_trapezoid(weight(x)[::-1], x, initial=0.0)[::-1]
     moment = cumulative_trapezoid(beyond[::-1], x, initial=0.0)[::-1]
@@ -132,11 +132,12 @@ def test_transverse_gradient_bends_a_pulled_beam_and_softens_it():
             imperfections=Imperfections(transverse_gradient=gradient),
         )
     )
-    # E (1 + g z): no moment about the axis where the curvature is g times the strain; the stiff side is up
+    # E (1 + g z): no moment about the centre line if the curvature is g times the strain; the stiff side is
+    # up
     strain = pull / (YOUNG * np.pi * RADIUS**2)
     assert deflection(result)[2] == pytest.approx(gradient * strain * LENGTH**2 / 2, rel=0.05)
     thick = {"section": Circle(radius=0.008), "imperfections": Imperfections(transverse_gradient=gradient)}
-    softer = 1 / (1 - gradient**2 * 0.008**2 / 4)  # the neutral axis moves by g I / A
+    softer = 1 / (1 - gradient**2 * 0.008**2 / 4)  # the neutral axis shifts by g I / A
     assert sag(**thick) / sag(section=Circle(radius=0.008)) == pytest.approx(softer, rel=0.01)
 
 
@@ -164,7 +165,7 @@ def test_straightened_arc_carries_bending_stiffness_times_curvature():
     discretisation = beam_discretisation(scene)
     found = clamp_moments(scene, discretisation, imperfect_system(scene, discretisation), result.positions[0])
     wanted = YOUNG * np.pi * RADIUS**4 / 4 * 1.0
-    # bent upwards at rest: it would turn the near clamp down and the far one up
+    # its stress-free shape bends upwards: straight, it would turn the near clamp down and the far one up
     assert found == pytest.approx([-wanted, wanted], rel=0.02)
     assert np.abs(result.positions[0] - result.mesh.nodes).max() < 1e-4
 

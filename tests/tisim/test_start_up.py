@@ -1,4 +1,4 @@
-"""What a new process loads before its first solve: MKL without a walk over the disk, kernels that can err."""
+"""Loading at the first solve: MKL without a search of the disk, compiled kernels and their error messages."""
 
 import os
 import subprocess
@@ -58,7 +58,7 @@ count(np.zeros(3))
 
 @pytest.mark.parametrize(("age", "kept"), [(3600.0, False), (0.0, True)])
 def test_a_lock_that_a_killed_process_left_does_not_keep_kernels_from_the_disk(tmp_path, age, kept):
-    """But for one that a process may have taken just now."""
+    """A lock that is an hour old is removed; one that was just created is kept, and nothing is cached."""
     lock = tmp_path / "ticache.lock"
     lock.touch()
     os.utime(lock, (time.time() - age,) * 2)
@@ -84,7 +84,7 @@ def test_errors_of_kernels_show_their_line():
 
 
 def test_later_calls_of_a_kernel_take_what_the_first_one_took():
-    """By the short way where the arguments are of the same kind, and as Taichi does where they are not."""
+    """Calls with arguments of the same types take the fast path, all others are checked as Taichi does."""
     ensure_runtime()
 
     @ti.kernel

@@ -1,4 +1,4 @@
-"""A step that is refused leaves nothing behind, in each kind of scene whose material remembers."""
+"""A rejected step leaves no trace, in each type of scene with a history-dependent material."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SMALL = {"axial_element_size": 0.01, "radial_elements": 1}
 PULL = tisim.Course(start=1.0, frames=(1.0, 3.0)).ramp(to=1.2, duration=1.0).hold(2.0)
 PUSH = tisim.Course(start=1.0, frames=(1.0, 3.0)).ramp(to=0.9, duration=1.0).hold(2.0)
 
-# scene, what solves a step, the calls of it that are refused, seconds of the scene, what the cuts may change
+# scene, module and name of the step solver, calls of it to reject, duration [s], tolerance on displacements
 CASES: dict[str, tuple[tisim.Scene, Any, str, set[int], float, float]] = {
     "coupon": (tisim.Coupon(material=BOTH, course=PULL), coupon_solve, "newton", {2, 4, 5, 14}, 3.0, 1e-3),
     "press": (
@@ -57,7 +57,7 @@ CASES: dict[str, tuple[tisim.Scene, Any, str, set[int], float, float]] = {
 
 @pytest.mark.parametrize("kind", CASES)
 def test_a_refused_step_leaves_nothing_behind(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What points remember is, to the bit, what the accepted steps alone make; these fill the time."""
+    """The history equals, bit for bit, that of the accepted steps alone; these cover the whole duration."""
     scene, owner, name, refused, duration, change = CASES[kind]
     straight = tisim.simulate(scene)
     accepted: list[tuple[float, np.ndarray]] = []
@@ -71,7 +71,7 @@ def test_a_refused_step_leaves_nothing_behind(kind: str, monkeypatch: pytest.Mon
         outcome = solve(*arguments, **options)
         if calls not in refused:
             return outcome
-        if isinstance(outcome, tuple):  # of a poke, with why it is refused
+        if isinstance(outcome, tuple):  # of a poke: outcome and reason
             return replace(outcome[0], status=Status.NOT_CONVERGED), Status.NOT_CONVERGED
         return replace(outcome, status=Status.NOT_CONVERGED)
 
@@ -98,7 +98,7 @@ def test_a_refused_step_leaves_nothing_behind(kind: str, monkeypatch: pytest.Mon
     assert np.array_equal(body.state, fresh.state)
     for what in (_viscous, _stored, _dissipated):
         assert np.array_equal(what(body), what(fresh))
-    # other steps, the same course
+    # different steps, the same course
     moved, kept = cut.positions - cut.mesh.nodes, straight.positions - straight.mesh.nodes
     assert np.abs(moved - kept).max() < change * np.abs(kept).max()
 

@@ -1,4 +1,4 @@
-"""Scenes whose material remembers: coupons, cylinders, beams, pokes, released beams."""
+"""History-dependent materials in scenes: homogeneous, compression and indentation tests, beams."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tisim import parts
 
 G = 3e4
 SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=G, bulk_modulus=20 * G)
-# of laws and parts whose kernels other tests need as well: each set is compiled for itself
+# laws and parts that other tests use too: each set compiles its own kernels
 STIFF = tisim.material_from_moduli("ogden", shear_modulus=G, bulk_modulus=1000 * G)
 MATRIX = tisim.material_from_moduli("neo-hookean", shear_modulus=G, bulk_modulus=1000 * G)
 PRONY = tisim.Prony(fractions=(0.3, 0.2), times=(1.0, 20.0))
@@ -26,7 +26,7 @@ def relaxation(time: np.ndarray) -> np.ndarray:
 
 
 def creep(time: np.ndarray) -> np.ndarray:
-    """Compliance J(t) G of the relaxation above, by the poles of its Laplace transform."""
+    """Creep compliance G J(t) for the relaxation above, from the poles of its Laplace transform."""
     (g1, g2), (a, b) = PRONY.fractions, (1 / t for t in PRONY.times)
     # s G(s) = [ (1+g1+g2) s^2 + (a + b + g1 b + g2 a) s + a b ] / [(s + a)(s + b)]
     poly = np.array([1 + g1 + g2, a + b + g1 * b + g2 * a, a * b])
@@ -67,7 +67,7 @@ def test_a_coupon_with_all_parts_is_the_point_and_loses_the_area_of_its_loop() -
     )
     found = tisim.simulate(tisim.Coupon(material=material, course=course))
     assert found.ok
-    x = found.positions[:, 13]  # no node in particular: every one moves with the same F
+    x = found.positions[:, 13]  # any node: F is homogeneous
     stretch = np.column_stack([x[:, k] / found.mesh.nodes[13, k] for k in range(3)])
     point = parts.respond(material, found.time, stretch[:, :, None] * np.eye(3))
     assert found.nominal_stress == pytest.approx(point.stress[:, 0, 0, 0], abs=2e-3 * G)
@@ -77,7 +77,7 @@ def test_a_coupon_with_all_parts_is_the_point_and_loses_the_area_of_its_loop() -
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 60.0, 90.0])
 def test_a_strip_with_fibres_at_an_angle_shears_and_carries_along_x_only(angle: float) -> None:
-    """Cauchy stress along x alone; at 0 and 90 degrees the stress of the closed form."""
+    """Only the Cauchy stress along x is not zero; at 0 and 90 degrees it has the closed form."""
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     fibres = tisim.HolzapfelGasserOgden(direction=(c, s, 0.0), k1=5e3, k2=0.5)
     material = replace(MATRIX, fibres=fibres)
@@ -103,7 +103,7 @@ def test_a_strip_with_fibres_at_an_angle_shears_and_carries_along_x_only(angle: 
 
 
 def test_a_softened_coupon_needs_no_course() -> None:
-    """Stretches in turn are a path: the way back is softer, the way on is the law's."""
+    """The order of the stretches is a path: unloading is softer, further loading follows the law."""
     path = (1.2, 1.4, 1.2, 1.5)
     soft = tisim.simulate(tisim.Coupon(material=replace(SOFT, softening=MULLINS), stretches=path))
     law = tisim.simulate(tisim.Coupon(material=SOFT, stretches=path))
@@ -123,7 +123,7 @@ def test_a_cylinder_follows_a_course(platens: str) -> None:
     found = tisim.simulate(scene)
     assert found.ok
     assert (np.diff(found.dissipated, prepend=0.0) > 0.0).all()
-    if platens == "free":  # homogeneous: that is a coupon
+    if platens == "free":  # homogeneous, as a coupon
         coupon = tisim.simulate(tisim.Coupon(material=scene.material, course=course))
         assert found.nominal_stress == pytest.approx(coupon.nominal_stress, rel=1e-5)
         volume = np.pi * 0.01**2 * 0.012
@@ -132,14 +132,14 @@ def test_a_cylinder_follows_a_course(platens: str) -> None:
 
 @pytest.mark.parametrize("law", ["neo-hookean", "ogden"])
 def test_creep_of_a_cantilever_by_correspondence(law: str) -> None:
-    """At small strain and fixed nu: the elastic deflection times the creep function."""
+    """At small strain and constant nu: elastic deflection times creep function."""
     times = (0.0, 0.5, 2.0, 10.0, 60.0)
     elastic = tisim.material_from_moduli(law, shear_modulus=1e6, bulk_modulus=1e9)
     beam = tisim.Beam(material=elastic, length=0.05)
     hang = tisim.Course(frames=times, growth=0.35).jump(1.0).hold(60.0)
     found = tisim.simulate(replace(beam, material=replace(elastic, viscosity=PRONY), course=hang))
     wanted = sag(tisim.simulate(beam)) * creep(np.array(times))
-    # the part of the bulk modulus that elements take pointwise does not relax: 0.2 % at once
+    # the pointwise part of the elements' bulk modulus does not relax: 0.2 % at t = 0
     assert sag(found) == pytest.approx(wanted, rel=3e-3)
     assert sag(found)[-1] == pytest.approx(wanted[-1], rel=3e-4)
     assert found.time == pytest.approx(times)
@@ -166,7 +166,7 @@ def test_beams_of_a_chain_and_workers_agree_with_beams_alone() -> None:
             tisim.Beam(material=replace(VISCOUS, parameters=p), length=0.06, course=course, **SMALL)
         )
     together = tisim.simulate(scenes, workers=1)
-    # one alike is led by its neighbour's states and factor
+    # a similar beam starts from its neighbour's states and factor
     assert together[1].cost.factorisations < together[0].cost.factorisations
     for scene, result in zip(scenes, together, strict=True):
         alone = tisim.simulate(scene)
@@ -201,7 +201,7 @@ def test_an_imperfect_beam_creeps_from_its_own_shape() -> None:
 
 @pytest.mark.parametrize("supports", ["clamped-free", "clamped-clamped"])
 def test_clamps_that_yield_turn_as_the_beam_creeps(supports: str) -> None:
-    """At once the instantaneous material's beam, in the long run the long-time one's, clamps and all."""
+    """Initially the instantaneous material's solution, finally the long-time one's, with compliant clamps."""
     clamps = tisim.ClampImperfections(compliance=4.0 if supports == "clamped-free" else 20.0)
     hang = tisim.Course(frames=(0.0, 5.0, 600.0)).jump(1.0).hold(600.0)
     soft = tisim.Beam(
@@ -225,7 +225,7 @@ def test_clamps_that_yield_turn_as_the_beam_creeps(supports: str) -> None:
 
 
 def test_a_released_viscous_beam_loses_what_its_material_says() -> None:
-    """A light beam swings; its log decrement is pi tan delta of the material at that frequency."""
+    """The log decrement of a light beam is pi tan delta of its material at its frequency."""
     weak = tisim.Prony(fractions=(0.05,), times=(0.02,))
     elastic = tisim.material_from_moduli("neo-hookean", shear_modulus=1e5, bulk_modulus=1e7)
     solver = tisim.Solver(method="implicit", duration=0.35, time_step=8e-4)
@@ -238,7 +238,7 @@ def test_a_released_viscous_beam_loses_what_its_material_says() -> None:
         z = sag(result)
         turns = np.flatnonzero((z[1:-1] - z[:-2]) * (z[2:] - z[1:-1]) < 0.0) + 1
         swing = np.abs(np.diff(z[turns]))
-        # once the equilibrium that it swings about has crept to its place
+        # after the equilibrium position of the oscillation has crept to its limit
         decay = np.log(swing[2] / swing[6]) / 2.0
         return float(decay), float((result.time[turns[6]] - result.time[turns[2]]) / 2.0)
 
@@ -273,12 +273,12 @@ def test_a_poke_relaxes_in_a_hold_and_comes_back_softer() -> None:
     assert found.time == pytest.approx((1.0, 1.5, 3.0, 11.0, 12.0))
     assert found.load == pytest.approx((2e-3, 2e-3, 2e-3, 2e-3, 1e-3))
     assert (np.diff(f) < 0.0).all()
-    # the long-time material's force below, the instantaneous one's above
+    # above the force of the long-time material, below that of the instantaneous one
     elastic = force(
         tisim.simulate(tisim.Poke(material=SOFT, depth=2e-3, refinement=0.5, frame_spacing=2e-3))
     )[0]
     assert elastic < f[3] < f[0] < 1.5 * elastic
-    # the history fades: what is left of the relaxation at 11 s, for a load that grew within the first second
+    # fading history: remaining relaxation at 11 s for a load that grew within the first second
     left = 0.2 * np.exp(-10.5 / 20.0)
     assert f[3] / elastic - 1.0 == pytest.approx(left, rel=0.1)
     assert (np.diff(found.dissipated) > 0.0).all()
@@ -294,7 +294,7 @@ def test_a_slow_poke_is_the_long_time_materials_and_a_quick_one_the_instantaneou
         tisim.simulate(tisim.Poke(material=SOFT, depth=depth, refinement=0.5, frame_spacing=depth))
     )[0]
     assert slow == pytest.approx(elastic, rel=0.01)
-    # the volume does not relax
+    # the bulk modulus does not relax
     assert 1.3 * elastic < quick < 1.5 * elastic
 
 
@@ -309,9 +309,9 @@ def test_a_softened_poke_comes_back_softer_without_a_clock() -> None:
 
 
 def test_a_sphere_on_a_viscous_half_space_in_loading() -> None:
-    """Lee and Radok, J. Appl. Mech. 27, 1960: F(t) is G(t) convolved with the elastic force at G = 1.
+    """Lee and Radok, J. Appl. Mech. 27, 1960: F(t) is the convolution of G(t) and the elastic force at G = 1.
 
-    The elastic block's own force takes the place of Hertz's, so that the block's size does not matter.
+    The elastic force is that of the simulated block instead of Hertz's, so that the block's size cancels.
     """
     elastic = tisim.material_from_moduli("neo-hookean", shear_modulus=G, bulk_modulus=100 * G)
     ball = tisim.Rod(radius=5e-3, tip="hemisphere")
@@ -321,7 +321,7 @@ def test_a_sphere_on_a_viscous_half_space_in_loading() -> None:
     scene = tisim.Poke(material=replace(elastic, viscosity=PRONY), rod=ball, friction=0.0, course=push)
     found = force(tisim.simulate(scene))
     law = force(tisim.simulate(replace(scene, material=elastic)))
-    # Hertz's power at constant speed: (3/2) s^(1/2) / t^(3/2) ds
+    # Hertz at constant speed: kernel (3/2) s^(1/2) / t^(3/2) ds
     s = np.linspace(0.0, 1.0, 4001)[1:] - 0.5 / 4000
     wanted = [np.mean(relaxation(t - s * t) * 1.5 * np.sqrt(s)) for t in times]
     assert found / law == pytest.approx(wanted, rel=0.01)

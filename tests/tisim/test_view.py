@@ -1,4 +1,4 @@
-"""Results in three dimensions: what a page holds, files, moving pictures, and the page in a real browser."""
+"""Three-dimensional views of results: content of a page, files, films, and the page in a browser."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def shown(poke: tisim.Result) -> View:
 
 @pytest.fixture(scope="module")
 def files(poke: tisim.Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with poke.pvd and beam.vtu."""
+    """Folder with poke.pvd and beam.vtu."""
     folder = tmp_path_factory.mktemp("shown")
     tisim.write(poke, folder / "poke.pvd")
     tisim.write(tisim.simulate(BEAM), folder / "beam.vtu")
@@ -51,7 +51,7 @@ def data_of(page: str) -> dict[str, Any]:
 
 
 def test_a_page_holds_positions_and_fields(shown: View) -> None:
-    """Decoded as the script does it: positions to the 65,535th part of the picture, fields to the 255th."""
+    """Decoded as by the script: positions to 1/65,535 of the picture, fields to 1/255 of their range."""
     data = data_of(shown.html())
     numbers = zlib.decompress(base64.b64decode(data["numbers"]))
     for mesh, surface in zip(data["meshes"], shown.surfaces, strict=True):
@@ -178,7 +178,7 @@ def test_no_ffmpeg_is_said_in_one_sentence(
 
 @pytest.fixture(scope="module")
 def browser():
-    """A real Chromium, where there is one."""
+    """Chromium, if it is installed; else the tests are skipped."""
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if found is None:
@@ -192,7 +192,7 @@ def browser():
 
 
 def test_the_page_in_a_browser(browser: Any, shown: View, tmp_path: Path) -> None:
-    """At a phone's width: it draws, frames step by keyboard, colours change, and nothing complains."""
+    """At a phone's width: the page draws, frames step by keyboard, colours change, no errors are logged."""
     page = browser.new_page(viewport={"width": 390, "height": 844})
     complaints: list[str] = []
     page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
@@ -230,7 +230,7 @@ def picture_of(page: Any, folder: Path) -> Image.Image:
 
 
 def test_views_of_ones_own_share_a_page(browser: Any, tmp_path: Path) -> None:
-    """Two views, one script; those far off the screen give their context back and come again."""
+    """Two views share one script; a view far off the screen releases its WebGL context and restores it."""
     corner = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], dtype=np.int32)
     field = Field(name="<height>", unit="m", values=corner[:, :, 2])

@@ -1,4 +1,4 @@
-"""Pressed cylinders: curves between runs, made data told apart, repeats, refusals, the Ecoflex data."""
+"""Compression tests: curves between simulations, identification of platens, repeats, refusals, Ecoflex."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def trial(stretch: np.ndarray, stress: np.ndarray, name: str = "made", mode: str
 
 
 def mooney(stretch: np.ndarray, c10: float, c01: float) -> np.ndarray:
-    """Nominal stress of an incompressible Mooney-Rivlin body in free compression, in closed form."""
+    """Nominal stress of an incompressible Mooney-Rivlin body between frictionless platens, in closed form."""
     return 2.0 * (stretch - stretch**-2) * (c10 + c01 / stretch)
 
 
@@ -56,7 +56,7 @@ def made_bonded(shear: float, ratio: float, slack: float) -> CouponTrial:
 
 def test_curves_between_the_nodes_are_what_a_run_gives() -> None:
     values = {"shear_modulus": 23e3, "bulk_ratio": 90.0}
-    stretches = (0.93, 0.78, 0.57)  # further on, so coarse a mesh rolls onto the platen in jumps
+    stretches = (0.93, 0.78, 0.57)  # beyond, so coarse a mesh rolls onto the platen in jumps
     scene = tisim.Press(
         material=bonded().material(values), radius=0.025, height=0.030, stretches=stretches, refinement=COARSE
     )
@@ -96,7 +96,7 @@ def test_made_free_data_give_their_constants_back_and_look_nearly_bonded() -> No
     assert found.error < 0.005
     assert found.values["shear_modulus"] == pytest.approx(24e3, rel=0.02)
     assert found.values["second_share"] == pytest.approx(0.25, abs=0.03)
-    # the shapes are alike: what tells them apart is the modulus, if it is known from elsewhere
+    # the shapes are similar: the modulus distinguishes them, if it is known independently
     plain = trial(stretch, mooney(stretch, 12e3, 0.0))
     wrong = fit_press(plain, bonded(), last_strain=0.55, noise=NOISE)
     assert 0.005 < wrong.error < 0.05
@@ -144,6 +144,6 @@ def test_ecoflex_repeats_scatter_little_and_both_platens_are_weighed() -> None:
             for curves in (bonded(), press_curves("neo-hookean", "free", CYLINDER))
         ]
         held, slid = (fit.values["shear_modulus"] for fit in fits)
-        # a bonded cylinder of this shape is 1.4 times as stiff, so its material is that much softer
+        # the bonded force ratio of this shape is 1.4, so that the bonded fit has a smaller modulus
         assert 1.25 < slid / held < 1.7
         assert max(fit.error for fit in fits) < 0.1

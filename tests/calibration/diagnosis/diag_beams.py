@@ -1,7 +1,7 @@
-"""Tiny beams for the plumbing of the beams' model: two cantilevers and a bridge, photographed by this file.
+"""Small photographed beams for tests of the outline model: two cantilevers and, optionally, bridges.
 
-They are simulated by tisim itself, on the mesh that the model uses: what is tested is how effects, noise and
-nuisances run through the model, not whether tisim is right.
+tisim simulates them on the mesh that the model uses: the tests check how effects, noise and nuisances enter
+the model, not the simulator.
 """
 
 from __future__ import annotations
@@ -40,9 +40,10 @@ def tiny(
     seed: int = 0,
     sure: bool = True,
 ) -> Experiment:
-    """An experiment with one material a shear modulus (S0, S1, ...); noise scales all errors.
+    """Write and read an experiment with one material for each shear modulus (S0, S1, ...).
 
-    change: what is wrong with a beam at a time [s]. sure: radius, length and density are known exactly.
+    `noise` scales all errors. `change` applies the fault of a beam at a time [s]. With `sure`, radius, length
+    and density are known exactly.
     """
     rng = np.random.default_rng([3, seed])
     trials, tables = [], {}
@@ -88,13 +89,13 @@ def tiny(
 
 
 def _edges(result: tisim.Result) -> list[Array]:
-    """Upper and lower edge [mm] at points 1.3 mm or so apart, from 1 mm off the clamp."""
+    """Upper and lower edge [mm] at points some 1.3 mm apart, without the end points."""
     assert isinstance(result.scene, tisim.Beam)
     seen = outline(result.mesh, result.positions[-1])
     free = (seen.x >= -1e-9) & (seen.x <= result.scene.length + 1e-9)
     found = []
     for line in (seen.upper[free], seen.lower[free]):
-        t = np.arange(len(line)) / 2.0  # middle nodes lie at odd places: quadratics through each three
+        t = np.arange(len(line)) / 2.0  # mid-side nodes have odd indices: one quadratic per three nodes
         at = np.linspace(0.0, t[-1], int(1e3 * result.scene.length / 1.3))[1:-1]
         k = 2 * np.minimum(at.astype(int), len(line) // 2 - 1)
         s = (at - k / 2.0)[:, None]
@@ -104,7 +105,7 @@ def _edges(result: tisim.Result) -> list[Array]:
 
 
 def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) -> tuple[Array, Array]:
-    """Contour errors of 0.1 mm over 5 mm, and one draw of shift, roll and scale, as the entries say."""
+    """Add contour errors of 0.1 mm with correlation length 5 mm, and one draw of shift, roll and scale."""
     shift = 0.1 * noise * rng.standard_normal(2)
     roll = np.radians(0.15) * noise * rng.standard_normal()
     scale = 1.0 + 0.003 * noise * rng.standard_normal()
@@ -128,6 +129,6 @@ def beam_model(
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> OutlineModel:
-    """With the catalogue's effects."""
+    """Model with the catalogue's effects."""
     effects = {n: e for n, e in effects_of("outlines").items() if n not in without}
     return OutlineModel(made, effects=effects, simulator=simulator, workers=workers)  # type: ignore[arg-type]

@@ -1,7 +1,8 @@
-"""Measurements whose simulator is a formula: the engine's search can be judged without any FEM.
+"""Measurement model whose simulator is a formula, for tests of the engine's search without FEM.
 
-Two materials, three lengths each, 12 points on every beam. Rows are in units of their noise; a candidate's
-column is given by a shape along the beam and a weight of each length, so that what is alike is so on purpose.
+It has two materials with three lengths each and 12 points on every beam. Rows are in units of their noise. A
+candidate's column is a shape along the beam times a weight per length, so its similarity to others is by
+design.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def effect(name: str, *, bounds: tuple[float, float] = (-1e3, 1e3), prior_scale:
 
 @dataclass(frozen=True)
 class Beam:
-    """A record of the made measurements."""
+    """A record of the synthetic measurements."""
 
     name: str
     material: str
@@ -64,13 +65,13 @@ class Beam:
 def column(
     shape: Callable[[Array], Array], weights: Sequence[float] = (1.0, 1.0, 1.0), material: str = "all"
 ) -> Array:
-    """The same shape on every beam, weighted by length; of one material alone if it is named."""
+    """Column of one shape on every beam, weighted by length; of one material only if it is named."""
     parts = [weights[LENGTHS.index(n)] * shape(ALONG) * float(material in ("all", m)) for m, n in GROUPS]
     return np.concatenate(parts)
 
 
 def by_modulus(material: str) -> Array:
-    """What a modulus does: sag, strongly more with length."""
+    """Derivative with respect to a modulus: a sag that increases strongly with length."""
     return column(lambda x: x**2, (1.0, 3.0, 9.0), material)
 
 
@@ -83,7 +84,7 @@ def of_material(material: str) -> NDArray[np.bool_]:
 
 
 def waves(order: int) -> Array:
-    """(m, order): smooth bends that all beams share, degrees 0 to order - 1."""
+    """Smooth discrepancies common to all beams, cosines of degree 0 to order - 1, shape (m, order)."""
     return np.column_stack([column(_wave(k)) for k in range(order)])
 
 
@@ -91,7 +92,7 @@ def _wave(degree: int) -> Callable[[Array], Array]:
     return lambda x: np.asarray(np.cos(np.pi * degree * x))
 
 
-# Unit amplitudes of length 1 (one sigma before projection) of effects that are well apart.
+# Columns of norm 1 (one sigma per unit amplitude before projection) of effects that are well separated.
 def library() -> dict[str, Array]:
     raw = {
         "bend": column(lambda x: np.sin(np.pi * x)),
@@ -105,10 +106,18 @@ def library() -> dict[str, Array]:
 
 @dataclass(eq=False)
 class FakeModel(MeasurementModel):
-    """z = prediction - data, prediction = by_u u + columns a + bent (row . [u, a])^2; the noise is 1.
+    """z = prediction - data with y = by_u u + columns a, prediction = y + bent y^2; the noise is 1.
 
-    shapes: column of each effect everywhere; an effect named in `scoped` is a candidate of each material too.
-    hidden: added to the data. no_answer: states that have none.
+    Attributes
+    ----------
+    shapes : mapping of str to ndarray (m,)
+        Column of each effect on all beams.
+    scoped : tuple of str
+        Effects that are candidates of each material too.
+    hidden : ndarray (m,) or float
+        Systematic error added to the data.
+    no_answer : callable
+        True for states without a solution.
     """
 
     shapes: Mapping[str, Array] = field(default_factory=library)
@@ -116,7 +125,7 @@ class FakeModel(MeasurementModel):
     scoped: tuple[str, ...] = ()
     truth: Array = field(default_factory=lambda: np.array([1.0, -0.5]))
     hidden: Array | float = 0.0
-    drawn: Array | float = 0.0  # of the noise
+    drawn: Array | float = 0.0  # realisation of the noise
     bent: float = 0.0
     shared: bool = False  # one modulus for both materials
     no_answer: Callable[[State], bool] = lambda _: False
@@ -156,7 +165,7 @@ class FakeModel(MeasurementModel):
         return straight + self.bent * straight**2
 
     def _slope(self, state: State) -> Array:
-        """d prediction / d straight, (m, 1)."""
+        """d prediction / d y, shape (m, 1)."""
         flat = FakeModel.predicted(_straight(self), state)
         return (1.0 + 2.0 * self.bent * flat)[:, None]
 
@@ -227,7 +236,7 @@ class FakeModel(MeasurementModel):
     def noise_rms(self) -> float:
         return 1e-3
 
-    # -- what a lab can do next --
+    # -- possible next experiments --
 
     experiments = (Gauge(name="look", sentence="look at it", sds={}),)
 
@@ -243,6 +252,6 @@ def noise(seed: int) -> Array:
 
 
 def sigmas(columns: Array, model: FakeModel) -> float:
-    """Length of a column with the moduli projected out: sigmas of a unit amplitude."""
+    """Norm of a column with the moduli projected out: standard deviations per unit amplitude."""
     left = columns - model.by_u @ np.linalg.lstsq(model.by_u, columns, rcond=None)[0]
     return float(np.linalg.norm(left))

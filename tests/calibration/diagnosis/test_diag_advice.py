@@ -1,4 +1,4 @@
-"""The advised experiment in words: what all explanations have, nothing needs to part."""
+"""The advised experiment in words: effects common to all explanations need no separation."""
 
 from __future__ import annotations
 

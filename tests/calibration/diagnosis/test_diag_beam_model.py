@@ -1,4 +1,4 @@
-"""The beams' model: its noise, its derivatives, its folds, where effects may sit, and what it advises."""
+"""The outline model: noise, derivatives, folds, scopes of effects, and advised experiments."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from calibration.measurements.outlines.experiments import EXPERIMENTS, Gauge
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.simulators import OURS
 
-BARE = replace(OURS, reference=None)  # what made the data: there is no mesh error to correct
+BARE = replace(OURS, reference=None)  # made the data: there is no mesh error to correct
 FIRM = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
 STATE = State(u=np.array([np.log(SHEAR)]))
 TWO = State(u=np.log([SHEAR, 0.6 * SHEAR]))
@@ -74,7 +74,7 @@ def test_what_is_stated_with_an_sd_is_a_nuisance(tmp_path: Path) -> None:
     sizes = [
         np.linalg.norm(m.linearise(STATE, (Candidate(effect="radius"),)).columns) for m in (sure, unsure)
     ]
-    assert sizes[1] < 0.7 * sizes[0]  # a radius that the lab does not know tells less
+    assert sizes[1] < 0.7 * sizes[0]  # an uncertain radius reduces the information
 
 
 def test_without_noise_the_truth_leaves_nothing(two: OutlineModel) -> None:
@@ -100,7 +100,7 @@ def test_moduli_are_found_from_where_it_begins(two: OutlineModel) -> None:
 )
 def test_derivatives_are_those_of_the_residuals(two: OutlineModel, name: str) -> None:
     effect = EFFECTS[name]
-    there = {Candidate(effect="clamp-tilt", at="S0"): 0.01}  # not at the baseline
+    there = {Candidate(effect="clamp-tilt", at="S0"): 0.01}  # a state other than the baseline
     state = State(u=TWO.u, amplitudes=there)
     wanted = [c for c in two.candidates if c.effect == name]
     assert {c.at for c in wanted} >= ({"all"} if effect.belongs_to == "camera" else {"all", "S0", "S1"})
@@ -121,7 +121,7 @@ def test_derivatives_are_those_of_the_residuals(two: OutlineModel, name: str) ->
 
 
 def test_a_state_without_an_equilibrium_has_no_residuals(tmp_path: Path) -> None:
-    """Beams softer than 10 kPa are said to have none: true ones take long to fail."""
+    """Materials softer than 10 kPa are marked as not converged: true failures take long."""
 
     def run(scenes, *, workers):  # type: ignore[no-untyped-def]
         found = tisim.simulate([replace(b, material=FIRM) for b in scenes], workers=workers)
@@ -163,19 +163,19 @@ def test_groups_and_their_parts(two: OutlineModel) -> None:
     for family, groups in families.items():
         assert len(groups) == 2
         rows = np.array([two.rows(g) for _, g in groups])
-        assert (rows.sum(axis=0) == 1).all()  # every row in one group
+        assert (rows.sum(axis=0) == 1).all()  # every row is in one group
         for (_, g), mine in zip(groups, rows, strict=True):
             assert two.subset(g, others=False).points == mine.sum()
             for others, kept in ((False, mine), (True, ~mine)):
                 part = two.subset(g, others=others)
                 some = part.linearise(off, two.candidates[:2])
                 if family == "leave-one-photograph-out":
-                    continue  # photographs of one beam share what its corners may do
-                # trials share no nuisance here: a part is whitened as it was
+                    continue  # photographs of one beam share the nuisances of its corners
+                # trials share no nuisance here: a part is whitened as in the whole
                 assert some.z == pytest.approx(every.z[kept], abs=1e-5)
                 assert some.columns == pytest.approx(every.columns[kept], abs=1e-3)
                 assert some.by_u == pytest.approx(every.by_u[kept], abs=1e-3)
-    assert two.residuals([TWO])[0] == pytest.approx(whole)  # nothing was changed by splitting
+    assert two.residuals([TWO])[0] == pytest.approx(whole)  # splitting changes nothing
     (_, first), _ = families["leave-one-material-out"]
     assert two.unconstrained(first).tolist() == [True, False]
     (_, first), _ = families["leave-one-length-out"]
@@ -193,7 +193,7 @@ def test_patterns_are_as_long_as_residuals(two: OutlineModel) -> None:
         "drifts": (rows, degrees * 4),
     }
     assert all(np.linalg.matrix_rank(p) == p.shape[1] for p in patterns.values())
-    for k in range(4 * degrees):  # a trial's pattern lives in that trial
+    for k in range(4 * degrees):  # a trial's basis is zero outside that trial
         mine = np.concatenate([np.full(p.basis.shape[1], p.beam == k // degrees) for p in two.records])
         assert np.abs(patterns["trial bends"][: two.points][~mine, k]).max() < 1e-9
         assert np.linalg.norm(patterns["trial bends"][:, k]) > 0.0
@@ -235,7 +235,7 @@ def test_where_effects_of_single_specimens_may_sit(two: OutlineModel) -> None:
         for c in candidates_of(photographs_of(trials), EFFECTS)
         if c.effect == "residual-curvature"
     }
-    # S1 is one specimen, and known as its material
+    # S1 is one specimen, and scoped as its material
     assert found == {"all": 1, "S0": 2, "S1": 2, "short": 3, "long": 3}
     hit = [
         [
@@ -287,7 +287,7 @@ def test_a_density_is_needed(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[OutlineModel, list[Explanation]]:
-    """Beams bent in their mould, with two explanations: a bend, and a rig that leans."""
+    """Beams with residual curvature, with two explanations: a curvature and a tilted rig."""
 
     def arc(beam, _):  # type: ignore[no-untyped-def]
         return replace(beam, imperfections=replace(beam.imperfections, curvature=0.5))
@@ -323,7 +323,7 @@ def test_turning_the_beams_over_parts_a_bend_from_a_lean(
     assert set(found) == {e.name for e in EXPERIMENTS}
     assert found["turn-over"] > model.enough
     assert found["turn-over"] > 3.0 * max(found["swap-ends"], found["later"])
-    assert found["weigh"] == found["cut"] == found["lens"] == 0.0  # gauges of other effects
+    assert found["weigh"] == found["cut"] == found["lens"] == 0.0  # measurements of other effects
     _, leaning = explanations
     tilt, sd = leaning.fit.amplitude(leaning.candidates[0])
     assert found["level"] == pytest.approx(tilt**2 / (2e-3**2 + sd**2))

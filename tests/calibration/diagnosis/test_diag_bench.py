@@ -1,6 +1,6 @@
-"""The measured benches: beams of a solver that is not ours. Only this file reads what was put in.
+"""The measured benches: beams of another solver. Only this file reads the truth.
 
-The command sees a copy without the truth.
+The diagnosis reads a copy without the truth.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from _folders import measured
 from calibration.diagnosis import diagnose, model_of
 from calibration.experiment import read
 
-# A bench's own names and units (its README) to ours.
+# names and units of the benches' truth (their README) -> those of calibration
 NAMES = {
     "residual_curvature": ("residual-curvature", "curvature_per_m", 1.0),
     "eff_length": ("grip-length", "depth_mm", 1e3),
@@ -28,7 +28,7 @@ NAMES = {
 
 
 def diagnosed(name: str, folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """diagnosis.json's content, and the truth."""
+    """Content of diagnosis.json, and the truth."""
     bench = measured() / "bench" / name
     if not bench.is_dir():
         pytest.skip(f"no bench {name} among the measured experiments")
@@ -40,8 +40,10 @@ def diagnosed(name: str, folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def check_moduli(found: dict[str, float], truth: dict[str, Any]) -> None:
-    """Within 2 %. A beam tells the ratio of weight to stiffness: the stated density counts as the true one's
-    estimate, good to half a percent."""
+    """Assert that the moduli are within 2 % of the truth.
+
+    A beam determines the ratio of weight to stiffness, and the density is known to half a percent.
+    """
     for name, shear in truth["shear_modulus_Pa"].items():
         assert found[name] == pytest.approx(shear, rel=0.02), name
 

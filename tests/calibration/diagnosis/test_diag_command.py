@@ -1,4 +1,4 @@
-"""`python -m calibration.diagnose`: bad input ends in one sentence, and nothing is written."""
+"""`python -m calibration.diagnose`: invalid input ends in one sentence, and nothing is written."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def diagnose(*arguments: object) -> Result:
 
 @pytest.fixture
 def beam(tmp_path: Path) -> Path:
-    """A beam that reads well; nothing here comes as far as simulating it."""
+    """A valid experiment with a beam; no test here simulates it."""
     x = np.linspace(1.0, 49.0, 40)
     edges = [np.column_stack([x, side - 1e-3 * x**2]) for side in (10.0, -10.0)]
     return write_experiment(

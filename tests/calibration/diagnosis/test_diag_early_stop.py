@@ -1,4 +1,4 @@
-"""Beams as the paper's rule stops them: where one long run has them at that time, however long it took."""
+"""Beams stopped by the paper's rule: equal to one long run at that time, for any duration of the runs."""
 
 from dataclasses import replace
 
@@ -29,7 +29,7 @@ def released(shear: float, length: float) -> Beam:
 
 @pytest.fixture(scope="module")
 def beams() -> list[Beam]:
-    # the softest of three alike takes longest; another length in between
+    # the softest of the three beams of 50 mm takes longest; the one of 60 mm lies in between
     return [released(60e3, 0.05), released(30e3, 0.06), released(40e3, 0.05), released(15e3, 0.05)]
 
 
@@ -55,12 +55,12 @@ def test_a_beam_that_the_rule_never_stops_says_so(beams: list[Beam], monkeypatch
     assert [r.status for r in found] == [Status.UNFINISHED]
 
 
-# -- the model: beams at rest guide a search, and mend what they are --
+# -- the model: beams at rest are the surrogate for derivatives --
 
 
 @pytest.fixture(scope="module")
 def early(tmp_path_factory: pytest.TempPathFactory) -> OutlineModel:
-    """Two short beams, as they hang at rest."""
+    """Two short beams photographed at rest."""
     experiment = tiny(tmp_path_factory.mktemp("rest"), lengths_mm=(50.0, 60.0))
     model = beam_model(experiment, simulator=EARLY, workers=1)
     model.update_nuisances(State(u=np.full(1, np.log(SHEAR))))
@@ -73,8 +73,10 @@ def columns(model: OutlineModel, names: list[str]) -> tuple[Linearisation, list[
 
 
 def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: OutlineModel) -> None:
-    """All of the way from the stop to equilibrium ends where the experiment was photographed, which the
-    stopped beams are far from; it is the column of the fault, in the residuals themselves."""
+    """The column of the fault is the difference of the residuals at rest and at the stop.
+
+    An amplitude of 1 gives static equilibrium, where the experiment was photographed and chi-square is small.
+    """
     linear, (fault,) = columns(early, ["not-at-equilibrium"])
     state = replace(linear.state, amplitudes={fault: 1.0})
     stopped, rested = early.residuals([linear.state, state])
@@ -84,7 +86,7 @@ def test_a_beam_that_goes_on_to_rest_is_where_rest_is(early: OutlineModel) -> No
 
 
 def test_what_else_may_be_is_seen_in_beams_at_rest(early: OutlineModel) -> None:
-    """Columns by moduli and effects are those of a simulator that solves for rest on the same mesh."""
+    """Columns of moduli and effects are those of a static simulator on the same mesh."""
     names = ["residual-curvature", "coarse-mesh"]
     guided, some = columns(early, names)
     still = beam_model(early.experiment, simulator=replace(EARLY.as_surrogate, name="still"), workers=1)

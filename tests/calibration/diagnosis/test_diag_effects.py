@@ -1,4 +1,4 @@
-"""The effects on beams, one by one: what their amplitude does to the scene and to the outline seen."""
+"""The effects on beams, one by one: changes of the scene and of the observed outline with the amplitude."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from calibration.measurements.outlines._effect import Situation
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.simulators import OURS
 
-# The catalogue's names.
+# the names of the catalogue
 CATALOGUE = [
     "density",
     "grip-length",
@@ -53,7 +53,7 @@ RIG = {
     "grip-squeeze",
     "clamp-gap",
 }
-BARE = replace(OURS, reference=None)  # what made the data: there is no mesh error to correct
+BARE = replace(OURS, reference=None)  # made the data: there is no mesh error to correct
 STATE = State(u=np.array([np.log(SHEAR)]))
 
 
@@ -71,7 +71,7 @@ def linear(model: OutlineModel) -> Linearisation:
 
 
 def stepped(name: str, part: float = 1.0, on: State = STATE) -> State:
-    """A state with one step of an effect more, in all beams."""
+    """State with an additional step of an effect, in all beams."""
     more = Candidate(effect=name, position=EFFECTS[name].positions[0], alternatives=0)
     return State(u=on.u, amplitudes={**on.amplitudes, more: part * EFFECTS[name].step})
 
@@ -168,7 +168,7 @@ def test_a_step_moves_the_outlines_that_it_may_and_no_others(
             rows = np.concatenate([np.full(p.basis.shape[1], p.beam == i) for p in model.records])
             may = effect.applies_to(t) and c.at in ("all", t.material, t.id)
             size = np.linalg.norm(linear.columns[rows, k]) if rows.any() else 0.0
-            # whitening mixes photographs through what they share only: none here, all is known exactly
+            # whitening mixes photographs only through shared nuisances: there are none, all is known exactly
             assert (size > 1e-6) == may, (c.label, t.id, size)
 
 
@@ -184,7 +184,7 @@ def test_half_a_step_does_half(model: OutlineModel, name: str) -> None:
 
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_what_is_there_and_a_step_add_up(model: OutlineModel, name: str) -> None:
-    """A state with an amplitude and a step on it is the state with their sum: scene, picture and all."""
+    """An amplitude and a step on it give the scene and the image of their sum."""
     effect = EFFECTS[name]
     place = effect.positions[0]
     for i, t in enumerate(model.trials):
@@ -229,7 +229,7 @@ def test_effects_compose(model: OutlineModel) -> None:
 
 
 def test_signs_are_those_that_are_written(model: OutlineModel) -> None:
-    """Which way the free end goes, by effect: up or down, for a positive amplitude."""
+    """Sign of the free end's vertical motion for a positive amplitude of each effect."""
     up = ["clamp-tilt", "residual-curvature", "camera-roll"]
     down = ["added-mass", "creep", "density", "grip-length", "free-length", "clamp-compliance", "taper"]
     up += ["skin", "strain-stiffening", "radius"]
@@ -265,7 +265,7 @@ def test_a_bridge_is_slack_where_its_clamps_are_nearer_than_its_length(model: Ou
     beam = model.scenes.beam(i, stepped("clamp-gap"), time=10.0, fidelity=COARSE)
     assert beam.length == pytest.approx(0.1502)
     seen = beam.length + beam.clamp_imperfections.far_shift[0]
-    assert seen == pytest.approx(0.150)  # of the far clamp
+    assert seen == pytest.approx(0.150)  # position of the far clamp
     still = replace(beam.clamp_imperfections, far_shift=(0.0, 0.0))
     ideal = model.scenes.beam(i, STATE, time=10.0, fidelity=COARSE)
     assert replace(beam, length=0.15, clamp_imperfections=still) == ideal
@@ -279,7 +279,7 @@ def test_a_grip_that_holds_deeper_frees_both_ends_of_a_bridge(model: OutlineMode
 
 
 def test_photographs_share_what_they_can(tmp_path: Path) -> None:
-    """Photographs at several times are of one solved scene, unless what is there differs in time."""
+    """Photographs at several times share one solved scene, unless an effect depends on time."""
     experiment = tiny(tmp_path, lengths_mm=(50.0,), times=(10.0, 100.0, 1000.0))
     model = beam_model(experiment, simulator=BARE, workers=1)
     same = model.results(STATE)
@@ -291,7 +291,7 @@ def test_photographs_share_what_they_can(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("loss", [0.0, 0.1, 0.3, 0.6, 0.85])
 def test_a_void_bends_as_much_as_one_with_sharp_ends(model: OutlineModel, loss: float) -> None:
-    """By beam theory: the same flexibility is added along the beam as by 15 mm that lack this part of E I."""
+    """The void adds the same flexibility (beam theory) as 15 mm of beam without this fraction of E I."""
     trial = model.trials[0]
     ideal = model.scenes.beam(0, STATE, time=10.0, fidelity=COARSE)
     situation = Situation(trial=trial, time=10.0, position=0.5)

@@ -1,4 +1,4 @@
-"""Sets of causes as explanations: what they cost, which are rivals, how sure the first one is."""
+"""Sets of causes as explanations: penalties, equivalent explanations, confidence of the first."""
 
 from __future__ import annotations
 
@@ -94,14 +94,14 @@ def test_a_set_that_only_adds_to_a_better_one_is_none() -> None:
         ("a",),
         ("b", "c"),
     )
-    # but a part of the best set is one, and so is a superset of what is worse
+    # a part of the best set is equivalent to it, and so is a superset of a worse set
     assert equivalent_explanations([made(10.0, "a", "b"), made(12.0, "a")], 6.0) == (("a", "b"), ("a",))
 
 
 def test_a_richer_law_is_a_rival_of_several_causes_though_it_is_less_simple() -> None:
     pair, law = made(10.0, "a", "b"), made(40.0, "law", constants=27.0)
     assert equivalent_explanations([pair, law], 6.0) == (("a", "b"), ("law",))
-    # it fits worse; one cause is simpler than it; it with one more than the others is
+    # no alternative: a worse fit with fewer constants, a law against one simpler cause, a law with two causes
     assert equivalent_explanations([pair, made(40.0, "law", constants=20.0)], 6.0) == (("a", "b"),)
     assert equivalent_explanations([made(10.0, "a"), law], 6.0) == (("a",),)
     more = made(40.0, "law", "c", "d", constants=27.0)
@@ -122,7 +122,7 @@ def test_confidence_is_high_for_what_is_clear_and_even_for_what_is_not() -> None
 
 @pytest.mark.parametrize("size", [2.0, 3.0, 4.0, 6.0])
 def test_confidence_is_how_often_the_first_would_be_first_again(size: float) -> None:
-    """Against noise drawn here and fits made one by one, of the truth that the best explanation predicts."""
+    """Compared with refits of noise drawn here, about the truth predicted by the best explanation."""
     shapes = library()
     hidden = size / sigmas(shapes["bend"], FakeModel()) * shapes["bend"]
     model = FakeModel(hidden=hidden)

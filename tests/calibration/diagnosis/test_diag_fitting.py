@@ -1,4 +1,4 @@
-"""Fits of baseline and amplitudes against a formula whose minimum is known."""
+"""Fits of baseline and amplitudes to a formula with a known minimum."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def test_a_curved_response_is_followed_to_its_minimum() -> None:
 def test_a_fit_starts_from_the_amplitudes_that_are_known() -> None:
     model = FakeModel(hidden=6.0 * library()["bend"])
     begun = State(u=model.truth, amplitudes={BEND: 6.0, SLOPE: 3.0})
-    found = fit(model, begun, (BEND,))  # the slope is not asked for: it is taken out
+    found = fit(model, begun, (BEND,))  # the slope is not a candidate: it is removed
     assert set(found.state.amplitudes) == {BEND}
     assert found.state.amplitudes[BEND] == pytest.approx(6.0)
-    assert model.solves == 0  # there already
+    assert model.solves == 0  # the start is the minimum
 
 
 @pytest.mark.parametrize(("bounds", "hidden", "ends"), [((0.0, 4.0), 9.0, 4.0), ((0.0, 4.0), -5.0, 0.0)])
@@ -90,8 +90,8 @@ def test_where_the_derivatives_lie_the_fit_says_so() -> None:
 
 
 def test_too_few_steps_are_said() -> None:
-    """Steps that take a tenth of chi-square count a fifth: a fit that is still falling is not at its end."""
-    model = FakeModel(truth=np.array([9.0, -9.0]))  # steps of u are no longer than 0.7
+    """Steps that lower chi-square by more than 0.1 count a fifth, since the fit is still converging."""
+    model = FakeModel(truth=np.array([9.0, -9.0]))  # a step of u is at most 0.7
     found = fit(model, start(model), max_steps=2)
     assert not found.converged
     assert found.message == "not converged in 10 steps"
@@ -103,7 +103,7 @@ def test_states_without_an_answer_are_stepped_around() -> None:
     model = FakeModel(truth=np.array([1.0, -0.5]), no_answer=lambda s: s.u[0] > 0.5)
     found = fit(model, start(model), max_steps=30)
     assert found.state.u[0] <= 0.5
-    assert found.state.u[0] > 0.45  # as near as it can come
+    assert found.state.u[0] > 0.45  # as near as possible
     assert np.isfinite(found.chi2)
     assert not found.converged
 

@@ -1,4 +1,4 @@
-"""The gain on what a fit has not seen, against plain least squares fold by fold."""
+"""Held-out improvement against linear least squares, fold by fold."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BEND = Candidate(effect="bend")
 
 @pytest.fixture(autouse=True)
 def _to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fits stop at a twentieth of chi-square: for comparisons with least squares they shall not."""
+    """Lower the fits' tolerance on chi-square, 0.05, for comparisons with least squares."""
     monkeypatch.setattr("calibration.diagnosis.engine.fitting.TOLERANCE", 1e-10)
 
 
@@ -31,7 +31,7 @@ def both(model: FakeModel, *candidates: Candidate) -> tuple[Fit, Fit]:
 
 
 def left_out(model: FakeModel, columns: np.ndarray, groups: list[np.ndarray]) -> np.ndarray:
-    """Residuals of each group, predicted from all others; moduli that only it tells of fitted to it."""
+    """Residuals of each group predicted from all others; moduli without other data are fitted to it."""
     found = np.zeros(len(model.data))
     for group in groups:
         seen = np.linalg.norm(model.by_u[~group], axis=0) > 0
@@ -88,13 +88,13 @@ def test_what_is_kept_is_the_least_part_of_the_information() -> None:
 
 
 def test_an_effect_that_lives_in_one_length_is_held_out_by_material() -> None:
-    model = FakeModel(hidden=12.0 * library()["slack"], drawn=noise(3))  # the longest beams only
+    model = FakeModel(hidden=12.0 * library()["slack"], drawn=noise(3))  # in the longest beams only
     baseline, chosen = both(model, Candidate(effect="slack"))
     gain = held_out_improvement(model, baseline, chosen)
     assert gain.held_out == "leave-one-material-out"
     assert gain.folds == 2
     assert gain.kept == pytest.approx(0.5, abs=0.05)
-    # the modulus of the material left out is told by nothing else: it is fitted there, the effect is not
+    # no other fold constrains the modulus of the left-out material: it is fitted there, the effect is not
     groups = [of_material(m) for m in ("S0", "S1")]
     after = left_out(model, library()["slack"][:, None], groups)
     before = left_out(model, np.zeros((72, 0)), groups)
@@ -104,13 +104,15 @@ def test_an_effect_that_lives_in_one_length_is_held_out_by_material() -> None:
 
 
 def test_only_what_the_training_does_not_tell_of_is_fitted_to_the_fold() -> None:
-    """A modulus of the material left out, beside a coordinate that all share: were that one to move as well,
-    it would give back what it had taken from the effect."""
+    """The left-out material's modulus is fitted to the fold, a coordinate shared by all materials is not.
+
+    If the shared coordinate moved too, it would undo its share of the effect.
+    """
     model = FakeModel(hidden=12.0 * library()["slack"], drawn=noise(3))
     common = library()["slack"] + 0.3 * library()["slope"]
     model.by_u = np.column_stack([model.by_u, 3.0 * common])
     model.data = model.data + 3.0 * common
-    model.baseline.__dict__["bounds"] = np.tile([-np.inf, np.inf], (3, 1))  # of the third coordinate too
+    model.baseline.__dict__["bounds"] = np.tile([-np.inf, np.inf], (3, 1))  # for the third coordinate as well
     baseline, chosen = both(model, Candidate(effect="slack"))
     gain = held_out_improvement(model, baseline, chosen)
     assert gain.held_out == "leave-one-material-out"
@@ -132,12 +134,12 @@ def test_each_fold_has_its_skill_and_its_amplitudes() -> None:
     assert 0.6 < gain.skill < 1.2
     assert gain.helps_everywhere
     assert np.array(gain.amplitudes)[:, 0] == pytest.approx(12.0, abs=4.0)
-    assert math.isnan(skill(1.0, 0.5, 1.0))  # nothing to gain
+    assert math.isnan(skill(1.0, 0.5, 1.0))  # no improvement possible
     assert skill(2.0, 3.0, 1.0) < 0.0
 
 
 def held(*skills: float, points: int = 10) -> HeldOut:
-    """Parts of this skill each, of a baseline that misses ten times as much as noise does."""
+    """Folds with these skills, for a baseline whose error is ten times the noise."""
     parts = tuple(
         Prediction(
             name=f"{k}",
@@ -165,10 +167,10 @@ def held(*skills: float, points: int = 10) -> HeldOut:
     ("skills", "mostly"),
     [
         ([0.9] * 17 + [-0.1] * 2, True),
-        ([0.9] * 12 + [-0.1] * 7, False),  # chance alone gains in so many of 19
-        ([0.9] * 17 + [-6.0] * 2, False),  # where it is worse, it is much worse
+        ([0.9] * 12 + [-0.1] * 7, False),  # chance alone improves as many of 19
+        ([0.9] * 17 + [-6.0] * 2, False),  # two folds become much worse
         ([0.4] * 19, False),
-        ([0.9] * 3 + [-0.1], False),  # of few parts all have to gain
+        ([0.9] * 3 + [-0.1], False),  # of few folds all have to improve
         ([], False),
     ],
 )
@@ -180,7 +182,7 @@ def test_many_parts_may_hold_some_that_gain_nothing(skills: list[float], mostly:
 def test_where_no_family_keeps_half_the_best_is_taken() -> None:
     thirds = [np.arange(72) % 3 == k for k in range(3)]
     shapes = {"bend": column(lambda x: np.where(x < 0.5, 1.0, -1.0))}
-    heavy = np.where(np.arange(72) % 3 == 0, 3.0, 1.4) * shapes["bend"]  # most of it in one third
+    heavy = np.where(np.arange(72) % 3 == 0, 3.0, 1.4) * shapes["bend"]  # mostly in one third
     model = FakeModel(
         shapes={"bend": heavy},
         hidden=2.0 * heavy,
@@ -220,4 +222,4 @@ def test_an_effect_that_is_not_there_gains_nothing() -> None:
         baseline, chosen = both(model, BEND)
         gained.append(held_out_improvement(model, baseline, chosen).log_likelihood)
     assert np.mean(gained) < 0.0
-    assert json.dumps(gained)  # plain floats
+    assert json.dumps(gained)  # JSON accepts plain floats only

@@ -1,4 +1,4 @@
-"""Three causes at once, on formulas: found where pairs do not do, with what would do as well."""
+"""Three simultaneous causes, on formulas: found if pairs do not suffice, with equivalent explanations."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_what_would_do_as_well_as_one_of_three_is_named_too(of: str) -> None:
 
 
 def test_stand_ins_are_tried_in_the_place_of_each() -> None:
-    """With one third beside one pair nothing else would find the twin."""
+    """With a single third cause beside a single pair no other step would find the twin."""
     for of in THREE:
         shapes = library()
         shapes["twin"] = shapes[of] + 0.03 * shapes["ripple"]
@@ -78,7 +78,7 @@ def test_stand_ins_are_tried_in_the_place_of_each() -> None:
 def beside(
     names: tuple[str, str], hidden: np.ndarray, seed: int, *, at: str = "all", scoped: tuple[str, ...] = ()
 ) -> tuple[list[Explanation], list[str]]:
-    """What comes of a third cause beside a pair, the first of which sits somewhere, and what was told."""
+    """Explanations from a third cause beside a pair, whose first cause has the scope `at`, and messages."""
     model = FakeModel(hidden=hidden, drawn=noise(seed), scoped=scoped)
     start = fit_baseline(model)
     linear = model.linearise(start.state, model.candidates)
@@ -102,7 +102,7 @@ def test_a_third_without_which_the_pair_does_is_not_even_fitted() -> None:
 
 
 def test_each_of_three_may_sit_elsewhere_than_in_the_pair() -> None:
-    """Bent in both materials, where the pair had it in one: no other third makes up for that."""
+    """The true bend is in both materials, the pair's in one only; no other third cause compensates this."""
     found, _ = beside(("bend", "kink"), together(*THREE), 291, at="S0", scoped=("bend",))
     best = min(found, key=lambda e: e.score)
     assert {c.label for c in best.candidates} == set(THREE)
@@ -116,7 +116,7 @@ def test_three_others_than_the_pair_are_sought_too() -> None:
 
 
 def test_all_three_are_needed() -> None:
-    """Of a pair of which one is wrong, a third makes it idle: these are two causes."""
+    """A third cause that makes a wrong cause of the pair superfluous leaves a pair, not three causes."""
     found, told = beside(("bend", "slope"), together("bend", "kink"), 290)
     assert any("kink" in t for t in told)
     assert found == []
@@ -133,7 +133,7 @@ def test_what_three_causes_leave_is_unexplained() -> None:
 
 
 def test_causes_that_could_neither_leave_noise_nor_take_a_tenth_are_not_fitted() -> None:
-    """Beside what nothing explains, small causes are seen far above noise, and still change no verdict."""
+    """Beside a large unexplained discrepancy, small causes are significant but change no verdict."""
     odd = 60.0 * waves(7)[:, 5] / np.linalg.norm(waves(7)[:, 5])
     fitted = {}
     for size in (7.0, 40.0):

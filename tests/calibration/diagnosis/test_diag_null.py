@@ -1,4 +1,4 @@
-"""Null distributions: p-values are uniform on noise, small on structure; the tail is that of exact theory."""
+"""Null distributions: p-values are uniform on noise and small on structure; the tail follows exact theory."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def test_each_test_alone_is_that_of_the_chi_square(null: Null, jacobian: np.ndar
     span = np.linalg.qr(waves(7) - free @ (free.T @ waves(7)))[0]
     exact = float(chi2.sf(np.sum((span.T @ z) ** 2), 7))
     assert found.each["waves"] == pytest.approx(exact, abs=4.0 * np.sqrt(exact / DRAWS))
-    # the best of several tests is judged harder than that test alone, and not harder than by their number
+    # the combined p-value exceeds the smallest of the tests, and at most by the number of tests
     smallest = min(found.each.values())
     assert 0.9 * smallest <= found.p_value <= 3.3 * smallest
 
 
 def test_specimens_may_differ_by_a_bad_lab_s_scatter(jacobian: np.ndarray) -> None:
-    """LARGEST instead of SCATTER is noise; what goes beyond is seen."""
+    """Scatter of the size LARGEST, instead of SCATTER, counts as noise; more is detected."""
     null = Null(ROWS, scatter_basis(ROWS, ROWS - 6, 6), seed=4)
     spread = np.zeros(ROWS)
     spread[-6:] = np.sqrt(chi2.ppf(0.5, 6) / 6) * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
@@ -81,12 +81,12 @@ def test_the_strongest_test_is_named(null: Null, jacobian: np.ndarray) -> None:
 
 
 def test_what_the_fit_could_do_is_not_counted(null: Null, jacobian: np.ndarray) -> None:
-    # far more coordinates: residuals are smaller, and p stays what it is
+    # with many more coordinates the residuals are smaller, and p is unchanged
     many = np.column_stack([jacobian, np.random.default_rng(5).standard_normal((ROWS, 40))])
     z = fitted(noise(400), many)
     assert z @ z < 55.0
     assert null.lack_of_fit(z, many).p_value > 0.05
-    assert null.lack_of_fit(z, jacobian).p_value > 0.99  # mistaken for a fit of two coordinates: too good
+    assert null.lack_of_fit(z, jacobian).p_value > 0.99  # taken for a fit of two coordinates: too good
 
 
 def test_p_is_never_zero(null: Null, jacobian: np.ndarray) -> None:
@@ -95,14 +95,14 @@ def test_p_is_never_zero(null: Null, jacobian: np.ndarray) -> None:
 
 
 def test_what_is_beyond_all_draws_costs_none(jacobian: np.ndarray) -> None:
-    """There the number of tests bounds the chance; nearer to noise the draws decide."""
+    """Beyond all draws the number of tests bounds p; closer to noise the draws determine it."""
     null = Null(ROWS, {"waves": waves(7), "edges": np.eye(ROWS)[:, ::12]}, seed=3)
     plain = null.lack_of_fit(fitted(noise(1), jacobian), jacobian)
     null.noise[:] = np.nan
     far = null.lack_of_fit(fitted(3.0 * noise(1), jacobian), jacobian)
     assert 1.0 / (DRAWS + 1) <= far.p_value < 0.001 < plain.p_value
     assert set(far.each) == set(plain.each)
-    assert min(far.each.values()) == 1.0 / (DRAWS + 1)  # as little as draws could show
+    assert min(far.each.values()) == 1.0 / (DRAWS + 1)  # the smallest p that draws can give
     with np.errstate(invalid="ignore"):
         assert null.lack_of_fit(fitted(noise(1), jacobian), jacobian).p_value != plain.p_value
 
@@ -133,7 +133,7 @@ def test_the_best_of_independent_candidates_is_that_of_theory(null: Null) -> Non
     gains = null.max_improvement(independent(8))
     for gain in (2.0, 4.0, 7.0, 10.0, 15.0, 25.0, 40.0):
         exact = -np.expm1(8.0 * np.log1p(-chi2.sf(gain, 1)))
-        # the tail's height has the error of the draws' 1 % quantile
+        # the height of the tail has the error of the draws' 1 % quantile
         error = np.sqrt((1.0 - exact) / (max(exact, 0.01) * DRAWS))
         assert gains.p_value(gain) == pytest.approx(exact, rel=4.0 * error), gain
 
@@ -167,7 +167,7 @@ def test_chance_falls_on_and_on(null: Null) -> None:
     gain = np.linspace(0.0, 80.0, 801)
     found = np.array([gains.p_value(g) for g in gain])
     assert (np.diff(found) <= 0.0).all()
-    assert (np.diff(found[gain > gains.drawn[-1]]) < 0.0).all()  # where no draw tells any more
+    assert (np.diff(found[gain > gains.drawn[-1]]) < 0.0).all()  # beyond the largest draw
     assert 0.0 < found[-1] < 1e-12
     assert found[0] == 1.0
 

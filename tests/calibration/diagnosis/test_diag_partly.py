@@ -1,5 +1,4 @@
-"""A verdict in degrees on formulas: what takes most of the explainable misfit is named, and what is left is
-said."""
+"""Graded verdicts, on formulas: causes of most of the explainable misfit are named, the rest is stated."""
 
 from __future__ import annotations
 
@@ -38,7 +37,7 @@ def hidden(name: str, size: float) -> np.ndarray:
 
 
 def outside(size: float) -> np.ndarray:
-    """A wave that no effect makes, alike on all beams, of this many standard deviations."""
+    """A wave that no effect can produce, equal on all beams, with a norm of `size` standard deviations."""
     wave = waves(7)[:, 6]
     return np.asarray(size * wave / np.linalg.norm(wave))
 
@@ -49,7 +48,7 @@ def partly() -> tuple[FakeModel, Diagnosis]:
     return model, diagnose(model)
 
 
-# -- resampling and shares --
+# -- resampling and fractions --
 
 
 def test_every_group_once_is_the_fit_itself() -> None:
@@ -81,7 +80,7 @@ def test_few_tests_are_cut_into_stretches() -> None:
     groups = groups_of(model)
     assert groups.over == "fifths of each record"
     assert groups.count == 10
-    assert (np.diff(groups.of_row) >= 0).all()  # each is a stretch, no point by itself
+    assert (np.diff(groups.of_row) >= 0).all()  # each group is a contiguous stretch
 
 
 def test_the_systematic_misfit_is_estimated_without_bias() -> None:
@@ -164,7 +163,7 @@ def test_what_takes_little_is_not_named_but_said() -> None:
 
 
 def test_what_helps_one_part_only_is_not_named() -> None:
-    """An effect with the sign of each length its own: fitted on some lengths, it misleads on the others."""
+    """The hidden effect changes its sign with length: a fit to some lengths mispredicts the others."""
     shape = column(lambda x: np.sin(np.pi * x), (1.0, 1.0, 1.0))
     turned = column(lambda x: np.sin(np.pi * x), (1.5, 1.0, -0.5))
     model = FakeModel(shapes={"bend": shape}, hidden=12.0 * turned, drawn=noise(4), shared=True)
@@ -175,8 +174,10 @@ def test_what_helps_one_part_only_is_not_named() -> None:
 
 
 def test_a_rejected_set_of_few_causes_is_no_reason_against_more() -> None:
-    """One cause takes 96 %, another 81 %, two together 98 %: the pair adds little to the first, much to the
-    second."""
+    """One cause explains 96 %, another 81 %, both 98 %.
+
+    The pair adds little to the first, and much to the second.
+    """
 
     def tried(sets: dict[tuple[str, ...], float]) -> tuple[str, ...]:
         left = [(SimpleNamespace(names=n), s) for n, s in sets.items()]
@@ -193,7 +194,7 @@ def test_a_rejected_set_of_few_causes_is_no_reason_against_more() -> None:
 
 
 def test_what_predicts_too_little_is_not_named() -> None:
-    """The same data as above, of a judge who asks for more skill than there is."""
+    """The data of `partly`, with rules that require more skill than the explanation has."""
     model, named = partly()
     assert named.held_out is not None
     assert named.held_out.skill > Rules().least_skill
@@ -206,7 +207,7 @@ def test_what_predicts_too_little_is_not_named() -> None:
 
 @pytest.mark.parametrize("elsewhere", [False, True])
 def test_several_causes_in_one_test_of_several_explain_in_part(elsewhere: bool) -> None:
-    """Nothing else confirms them. With one of them in the other tests as well, they are found."""
+    """Two causes in one test only are not confirmed; they are if the other tests have one of them too."""
     names = ("bend", "kink")
     here = np.arange(72) < 12
     shapes = {n: np.where(here | (elsewhere and n == "kink"), library()[n], 0.0) for n in names}
@@ -273,7 +274,7 @@ def test_stated_noise_that_the_data_contradict_is_said() -> None:
 
 
 def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("calibration.measurements._model.FEWEST", 8)  # of 12 points a beam
+    monkeypatch.setattr("calibration.measurements._model.FEWEST", 8)  # of 12 points per beam
     small = 0.1 * noise(6)
     stated = diagnose(FakeModel(drawn=small), gain=False)
     assert stated.finding.verdict == "none"
@@ -286,8 +287,7 @@ def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytes
 
 
 def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Curve]:
-    """Repeats of one test of full scale 2, each off by a smooth curve of its own, and a trend in their
-    order."""
+    """Repeats of a test of full scale 2, each with its own smooth deviation, and a trend with their order."""
     random = np.random.default_rng(seed)
     x = np.linspace(0.0, 1.0, 50)
     found = []

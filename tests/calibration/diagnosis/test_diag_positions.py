@@ -1,4 +1,4 @@
-"""A cause that sits somewhere is found where it sits, between the places that are screened."""
+"""A cause with a position along the specimen is found there, between the screened positions."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ GRID = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 
 
 def dent(place: float) -> np.ndarray:
-    """A bend that begins at a place, in the shorter beams of one material."""
+    """A kink that begins at a position, in the shorter beams of one material."""
     kink = column(lambda x: np.maximum(x - place, 0.0), (3.0, 1.0, 0.0), MATERIALS[0])
     return np.asarray(kink)
 
 
 @dataclass(eq=False)
 class Placed(FakeModel):
-    """With an effect "dent" that is a candidate at each place of the grid."""
+    """Model with an effect "dent" that is a candidate at each position of the grid."""
 
     def __post_init__(self) -> None:
         self.shapes = {**library(), "dent": dent(0.5)}
@@ -51,14 +51,14 @@ def test_a_large_cause_between_two_places_is_found_there(at: float) -> None:
     assert found.chosen is not None
     (cause,) = found.chosen.candidates
     assert cause.effect == "dent"
-    assert cause.position == pytest.approx(at, abs=0.02)  # the grid is 0.1 wide, the points 0.09
+    assert cause.position == pytest.approx(at, abs=0.02)  # the grid spacing is 0.1, that of points 0.09
     assert found.chosen.lack_of_fit.p_value > 0.01
     assert cause in found.screened.candidates
 
 
 def test_left_at_its_grid_the_cause_would_not_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the move is for."""
-    module = sys.modules["calibration.diagnosis.engine.search"]  # the package has a function of that name
+    """Without the refinement of the position the verdict is "unexplained"."""
+    module = sys.modules["calibration.diagnosis.engine.search"]  # the package has a function with this name
     monkeypatch.setattr(module, "at_best_position", lambda _model, explanation, _null: explanation)
     assert search(placed(0.347, 40.0, 3)).verdict == "unexplained"
 

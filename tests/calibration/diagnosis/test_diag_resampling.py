@@ -1,4 +1,4 @@
-"""Resampled fits: coordinates that one group alone tells of are eliminated, which changes no answer."""
+"""Resampled fits: coordinates that only one group constrains are eliminated, which changes no result."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ GROUPS, EACH, OWN, SHARED = 7, 20, 2, 4
 
 @dataclass
 class Linear:
-    """What resampling asks of a fit."""
+    """The part of a fit that resampling uses."""
 
     z: np.ndarray
     jacobian: np.ndarray
 
 
 def fit_with_own_coordinates(seed: int) -> tuple[Linear, Groups]:
-    """Coordinates of all groups, then OWN of each; the prior couples two of those, and holds one alone."""
+    """Shared coordinates, then OWN per group; the prior couples two of these, and alone constrains one."""
     random = np.random.default_rng(seed)
     n = SHARED + OWN * GROUPS
     rows = np.zeros((GROUPS * EACH, n))
     rows[:, : SHARED - 1] = random.standard_normal(
         (len(rows), SHARED - 1)
-    )  # of the last only the prior tells
+    )  # only the prior constrains the last one
     for g in range(GROUPS):
         here = slice(EACH * g, EACH * (g + 1))
         own = slice(SHARED + OWN * g, SHARED + OWN * (g + 1))
@@ -45,7 +45,7 @@ def fit_with_own_coordinates(seed: int) -> tuple[Linear, Groups]:
 def test_elimination_gives_what_the_whole_system_gives() -> None:
     fit, groups = fit_with_own_coordinates(1)
     drawn = groups.draws(20, seed=2)
-    assert (drawn == 0.0).any()  # a group that is not drawn: the prior alone tells of its coordinates
+    assert (drawn == 0.0).any()  # only the prior constrains a group that is not drawn
     found = Resampled(fit, groups).replicates(drawn)  # type: ignore[arg-type]
     size = np.linalg.norm(fit.jacobian, axis=0)
     scaled = fit.jacobian / size
@@ -71,4 +71,4 @@ def test_what_is_solved_in_each_replicate_is_what_groups_share(monkeypatch: pyte
 
     monkeypatch.setattr(resampling.np.linalg, "solve", watched)
     Resampled(fit, groups).replicates(groups.draws(5, seed=0))  # type: ignore[arg-type]
-    assert sizes == [SHARED + 2]  # with the two that the prior couples
+    assert sizes == [SHARED + 2]  # and the two that the prior couples

@@ -1,4 +1,4 @@
-"""Two rounds of a diagnosis: what a round costs, and what is named where nobody states the noise."""
+"""Two rounds of a diagnosis: the cost of a round, and named causes if the noise is not stated."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def hidden(name: str, size: float) -> np.ndarray:
 
 @dataclass(eq=False)
 class OfUnknownNoise(FakeModel):
-    """Beams whose noise nobody states, of this full scale."""
+    """Beams without stated noise, of this full scale."""
 
     scale: float = 1e3
 
@@ -52,7 +52,7 @@ def test_a_departure_that_a_smooth_error_may_make_is_not_named_though_a_cause_ex
 
 
 def rounds_concluded(monkeypatch: pytest.MonkeyPatch, further: str) -> list[bool]:
-    """Of each round that is concluded from now on, whether it had this further effect."""
+    """Return a list that records, for each round concluded from now on, if it had this further effect."""
     concluded: list[bool] = []
     unwatched = run.concluded
 
@@ -69,7 +69,7 @@ def rounds_concluded(monkeypatch: pytest.MonkeyPatch, further: str) -> list[bool
 def test_a_first_round_is_concluded_only_where_the_second_says_less(
     named: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Predictions and advice of a round that is not reported would cost more than its search."""
+    """Predictions and advice for an unreported round would cost more than its search."""
     rare = replace(effect("ripple"), further=True)
     shapes = {n: library()[n] for n in ("bend", "ripple")}
     outside = 30.0 * waves(7)[:, 6] / np.linalg.norm(waves(7)[:, 6])
@@ -95,7 +95,7 @@ def test_a_first_round_is_concluded_only_where_the_second_says_less(
 def test_of_two_rounds_that_explain_only_what_is_said_is_concluded(
     fewer: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two usual causes, or one further one that has their shape: fewer are said."""
+    """The first round needs two causes; a further cause with their sum as its shape is preferred."""
     usual = {n: library()[n] for n in ("bend", "slope")}
     both = hidden("bend", 40.0) + hidden("slope", 40.0)
     rare = both / np.linalg.norm(both) if fewer else library()["ripple"]

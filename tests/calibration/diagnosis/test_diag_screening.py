@@ -1,4 +1,4 @@
-"""What screening and pairs say to first order, against plain least squares."""
+"""First-order results of screening and of pairs, against linear least squares."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_what_can_only_be_positive_gains_nothing_where_it_would_be_negative() ->
         expected = 36.0 * sigmas(library()["bend"], model) ** 2 if sign > 0 else 0.0
         assert seen.improvements(at.z)[bend] == pytest.approx(expected)
         assert seen.improvements(at.z[None])[0, bend] == pytest.approx(expected)
-    # what a fit has there already may become less
+    # an amplitude that a fit has already may decrease
     held = fit(model, State(u=model.truth), (Candidate(effect="bend"),))
     assert not screen(at, model.effects, held=held).upwards.any()
 
@@ -118,7 +118,7 @@ def test_a_basis_leaves_out_what_is_there_twice() -> None:
 
 
 def brute(at: Linearisation, of: int) -> list[tuple[float, frozenset[str]]]:
-    """Sets of so many effects by the improvement of chi-square that least squares give them, best first."""
+    """Sets of `of` effects by their improvement of chi-square in least squares, best first."""
     best: dict[frozenset[str], float] = {}
     base = chi2(at.by_u, at.z)
     for some in combinations(range(len(at.candidates)), of):
@@ -153,7 +153,7 @@ def test_pairs_of_causes_that_are_one_and_of_unseen_ones_are_left_out() -> None:
     names = [{at.candidates[k].effect for k in pair} for pair in found]
     assert {"bend", "twin"} not in names
     assert not any("density" in n for n in names)
-    assert len(names) == 15 - 1  # six effects that are seen, in twos
+    assert len(names) == 15 - 1  # pairs of six identifiable effects, without the twins
 
 
 def test_threes_are_those_of_a_search_through_all() -> None:
@@ -187,7 +187,7 @@ def test_no_threes_of_causes_that_are_one() -> None:
     found = best_triples(screen(at, model.effects), at.z, count=100)
     names = [{at.candidates[k].effect for k in three} for three in found]
     assert not any({"bend", "twin"} <= n for n in names)
-    assert len(names) == 20 - 4  # six effects in threes, less those of both with one of the others
+    assert len(names) == 20 - 4  # triples of six effects, without those of both twins
 
 
 def test_no_pairs_of_one_candidate() -> None:

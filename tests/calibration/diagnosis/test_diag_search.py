@@ -1,4 +1,4 @@
-"""Verdicts of the search on formulas: what is hidden is found, and what is not there is not."""
+"""Verdicts of the search, on formulas: hidden causes are found, and no others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from calibration.measurements._state import State
 
 
 def at_sigmas(name: str, size: float, *, material: str = "all") -> np.ndarray:
-    """A column of an effect, of this many sigmas once the moduli are projected out."""
+    """Column of an effect with a norm of `size` sigmas after the moduli are projected out."""
     raw = library()[name]
     raw = raw if material == "all" else np.where(of_material(material), raw, 0.0)
     return np.asarray(raw * (size / sigmas(raw, FakeModel())))
@@ -63,7 +63,7 @@ class Instant(EffectModel):
 
 
 def test_what_costs_no_simulation_is_fitted_whatever_it_promises() -> None:
-    """A column says little of an effect that is far from linear. Promises of 49 and 400."""
+    """A column predicts little of a strongly nonlinear effect. Predicted improvements are 49 and 400."""
     both = at_sigmas("bend", 20.0) + at_sigmas("ripple", 7.0)
     plain = FakeModel(hidden=both, drawn=noise(51))
     instant = Instant(**{f.name: getattr(plain.effects["ripple"], f.name) for f in fields(EffectModel)})
@@ -173,7 +173,7 @@ def test_nuisances_are_taken_anew_where_the_fit_ends() -> None:
     model = FakeModel(truth=np.array([2.0, -2.0]))
     found = fit_baseline(model)
     assert found.converged
-    assert len(model.updated) == 1  # where the rough fit ended, and no further: it hardly moved again
+    assert len(model.updated) == 1  # after the rough fit only, since the fit hardly moved afterwards
     assert model.updated[-1].u == pytest.approx(found.state.u, abs=0.05)
 
 

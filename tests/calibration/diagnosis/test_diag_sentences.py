@@ -1,4 +1,4 @@
-"""Verdicts in sentences: what all sets of causes share, and how much of it that is."""
+"""Verdicts in sentences: the causes common to all explanations, and their fraction of the misfit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A diagnosis as its file tells it: the keys and units that readers rely on."""
+"""The file of a diagnosis: the keys and units that readers rely on."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def hidden(name: str, size: float) -> np.ndarray:
 
 
 def written(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Through the file's text and back; NaN and infinity are no JSON."""
+    """Content of the file after writing and reading as JSON, which has no NaN or infinity."""
     data = json.loads(json.dumps(diagnosis.to_json(), allow_nan=False))
     assert isinstance(data, dict)
     return data
@@ -79,7 +79,7 @@ def test_found() -> None:
     assert cause["effect"] == "bend"
     assert cause["scope"] == "all"
     truth = 12.0 / sigmas(library()["bend"], model)
-    size = cause["parameters"]["size_mm"]  # the amplitude in the file's unit
+    size = cause["parameters"]["size_mm"]  # amplitude in the unit of the file
     assert size["sd"] == pytest.approx(1e3 * truth / 12.0, rel=1e-3)
     assert abs(size["value"] - 1e3 * truth) < 4.0 * size["sd"]
     assert cause["confidence"] > 0.95
@@ -132,7 +132,7 @@ def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
 
 
 def test_where_else_a_cause_may_sit_is_a_note() -> None:
-    """A bend in the beams of S0 alone is a candidate everywhere, and one of S0."""
+    """A bend in the beams of S0 alone is a candidate for all beams, and for S0."""
     shapes = library()
     one = {"bend": np.where(of_material("S0"), shapes["bend"], 0.0), "kink": shapes["kink"]}
     model = FakeModel(shapes=one, scoped=("bend",), hidden=20.0 * one["bend"], drawn=noise(2))
@@ -172,7 +172,7 @@ def test_ambiguous() -> None:
 
 
 def test_where_a_rival_is_the_simulators_own_fault_that_is_mended_first() -> None:
-    """No specimen is measured for it: a simulator that is wrong would answer."""
+    """No specimen is measured to test it, since the prediction would be that of the faulty simulator."""
     shapes = library()
     shapes["twin"] = shapes["bend"] + 0.03 * shapes["ripple"]
     model = FakeModel(shapes=shapes, hidden=hidden("bend", 9.0), drawn=noise(3))

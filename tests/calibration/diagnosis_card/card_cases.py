@@ -1,4 +1,4 @@
-"""Diagnoses put together by hand (no search, no FEM), and beams photographed on a faulty rig."""
+"""Diagnoses constructed without search and FEM, and beams photographed on a faulty rig."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MODULI = {"S0": 30e3, "S1": 10e3}
 
 
 def bench(folder: Path) -> Experiment:
-    """Cantilevers of 50 and 100 mm of S0 and S1, two specimens of S1; the outlines are not looked at."""
+    """Cantilevers of 50 and 100 mm of S0 and S1, two specimens of S1; no test uses the outlines."""
     x = np.linspace(1.0, 45.0, 30)
     table = outline_columns(np.column_stack([x, 10.0 + 0 * x]), np.column_stack([x, -10.0 + 0 * x]))
     trials = [
@@ -50,8 +50,11 @@ def bench(folder: Path) -> Experiment:
 def diagnosis(
     causes: Mapping[Candidate, float], *, verdict: str = "found", rivals: Sequence[tuple[str, ...]] = ()
 ) -> Diagnosis:
-    """Of `bench`: these amplitudes [SI] beside moduli of S0 and of the two specimens of S1, whose geometric
-    mean is MODULI; a made Jacobian, in which the first amplitude is correlated with the moduli."""
+    """Diagnosis of `bench` with these amplitudes [SI].
+
+    The moduli are those of S0 and of the two specimens of S1; the geometric mean per material is MODULI. In
+    the synthetic Jacobian the amplitudes are correlated with the moduli.
+    """
     u = np.log([30e3, 10e3 * 1.1, 10e3 / 1.1])
     baseline = _fit(u + 0.1, {})
     explanations: tuple[Explanation, ...] = ()
@@ -100,8 +103,7 @@ def diagnosis(
     )
 
 
-# free length [mm], material and specimen of the beams of `bench`, photographed 10 s later than their length
-# in mm
+# free length [mm], material and specimen of the beams of `bench`; the capture time [s] is 10 + length in mm
 _BEAMS = ((50.0, "S0", "S0-a"), (50.0, "S1", "S1-a"), (100.0, "S1", "S1-b"))
 
 
@@ -138,7 +140,7 @@ def _fit(u: np.ndarray, causes: dict[Candidate, float]) -> Fit:
 
 
 def rig_file(path: Path, *effects: dict[str, Any], **more: Any) -> Path:
-    """A rig.yaml with independent effects."""
+    """Write a rig.yaml with independent effects."""
     sds = [a["sd"] for e in effects for a in e["parameters"].values()]
     content = {
         "format": 1,
@@ -162,8 +164,10 @@ def rig_effect(name: str, parameter: str, value: float, sd: float, **more: Any) 
 def faulty_beam(
     folder: Path, material: tisim.Material, *, tilt_deg: float = 0.0, depth_mm: float = 0.0
 ) -> Path:
-    """A cantilever of 60 mm whose clamp is tilted and holds it deeper than its face, by tisim on a mesh of
-    this file's own; one photograph, without any noise."""
+    """Experiment with one photograph without noise of a 60 mm cantilever, simulated by tisim on another mesh.
+
+    The clamp is tilted by `tilt_deg` and holds the beam only from `depth_mm` behind its face.
+    """
     beam = tisim.Beam(
         material=material,
         length=(60.0 + depth_mm) / 1e3,
@@ -180,7 +184,7 @@ def faulty_beam(
 
 
 def _edge(result: tisim.Result, side: float, depth_mm: float) -> np.ndarray:
-    """One edge [mm], 1.3 mm between points, x from the clamp's face."""
+    """One edge [mm] at points 1.3 mm apart, x from the clamp's face."""
     rest, now = 1e3 * result.mesh.nodes, 1e3 * result.positions[-1]
     on = (np.abs(rest[:, 1]) < 1e-9) & (np.abs(rest[:, 2] - side * rest[:, 2].max()) < 1e-6)
     on &= (rest[:, 0] > -1e-9) & (rest[:, 0] < 1e3 * result.scene.length + 1e-9)  # type: ignore[union-attr]

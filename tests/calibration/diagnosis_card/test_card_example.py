@@ -1,4 +1,4 @@
-"""The example of docs/reference/extended-cards.md, run as it stands there."""
+"""The example of docs/reference/extended-cards.md runs as printed."""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
-"""`calibration.fit --rig`: a calibration on a rig whose faults are known. A beam made by tisim: it is tested
-that the faults reach scenes, pictures and error bars, not tisim."""
+"""`calibration.fit --rig`: a calibration with known faults of the rig.
+
+tisim makes the beam: the tests check that the faults enter scenes, images and error bars, not the simulator.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +51,7 @@ def found(out: Path) -> dict[str, float]:
 
 @pytest.fixture(scope="module")
 def experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A clamp that is tilted, and holds 1.5 mm behind its face."""
+    """A beam whose clamp is tilted and holds it from 1.5 mm behind the clamp's face."""
     return faulty_beam(tmp_path_factory.mktemp("faulty"), TRUTH, tilt_deg=-2.0, depth_mm=1.5)
 
 
@@ -75,7 +77,7 @@ def test_the_modulus_is_found_on_a_known_rig_and_missed_without(experiment: Path
 
 
 def test_what_is_not_known_of_the_rig_is_a_nuisance(experiment: Path, tmp_path: Path) -> None:
-    """One sd of the tilt, 0.1 degrees, lifts the far end by that angle times its distance from the clamp."""
+    """One sd of the tilt, 0.1 degrees, lifts the far end by this angle times its distance from the clamp."""
     data = read(experiment)
     rig = read_rig(rig_file(tmp_path / "rig.yaml", TILT, DEPTH))
     outlines = measurements(OnSetup.of(data, rig), "S1", LAW, workers=1, simulator=BARE).outlines

@@ -1,5 +1,4 @@
-"""Which diagnoses write a rig.yaml that `calibration.fit --rig` reads: those of photographed beams, and no
-other."""
+"""Only diagnoses of photographed beams write a rig.yaml that `calibration.fit --rig` reads."""
 
 from __future__ import annotations
 
@@ -40,7 +39,7 @@ def test_what_is_found_on_other_measurements_corrects_nothing(effects: Mapping[s
 @pytest.mark.parametrize("effect", faults(BEAMS), ids=lambda e: e.name)
 @pytest.mark.parametrize("end", [0, 1])
 def test_what_is_found_on_photographed_beams_is_read(effect: Effect, end: int, tmp_path: Path) -> None:
-    """As far as an amplitude may go: a file holds six digits of it."""
+    """At the bounds of the amplitude, to the six digits of the file."""
     amplitude = effect.bounds[end]
     found = diagnosis({Candidate(effect=effect.name): amplitude})
     *_, path = write_cards(tmp_path / "cards", found, bench(tmp_path / "bench"))
@@ -58,6 +57,6 @@ def test_a_record_is_refused_whatever_its_effects_are_called(tmp_path: Path) -> 
         path.write_text(text.replace("corrects: outlines\n", f"corrects: {word}\n"), encoding="utf-8")
         with pytest.raises(InputError, match=f"key corrects: .*{said}"):
             read_rig(path)
-    # a file of before there was this key
+    # files from before this key existed
     path.write_text(text.replace("corrects: outlines\n", ""), encoding="utf-8")
     assert read_rig(path).amplitudes == pytest.approx((0.02,), rel=1e-5)

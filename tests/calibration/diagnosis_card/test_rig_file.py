@@ -1,4 +1,4 @@
-"""rig.yaml: what may stand in it, and what it does to a beam and to its picture."""
+"""rig.yaml: its valid content, and its influence on a beam and its image."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_doubt_keeps_an_amplitude_in_its_bounds(tmp_path: Path) -> None:
         rig_effect("clamp-compliance", "rad_per_Nm", 0.01, 0.1),
     )
     path = rig_file(tmp_path / "rig.yaml", *effects, covariance={"names": ["a", "b"], "matrix": matrix})
-    assert min(r.amplitudes[1] for _, r in read_rig(path).doubts()) == 0.0  # no clamp yields by less
+    assert min(r.amplitudes[1] for _, r in read_rig(path).doubts()) == 0.0  # no compliance is negative
 
 
 def test_it_says_what_it_is(tmp_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_it_says_what_it_is(tmp_path: Path) -> None:
     assert rig.digest[:16] in rig.sentence
     assert "grip-length of S7 reaches no beam of this experiment" in rig.sentence
     assert "found on these very measurements" in rig.sentence
-    assert pickle.loads(pickle.dumps(rig)) == rig  # fits run in processes
+    assert pickle.loads(pickle.dumps(rig)) == rig  # fits run in worker processes
 
 
 BAD: list[tuple[dict[str, Any], dict[str, Any], str]] = [

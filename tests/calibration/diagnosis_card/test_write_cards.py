@@ -1,4 +1,4 @@
-"""What a diagnosis found, as cards that the factory and a later calibration read."""
+"""Results of a diagnosis as cards for the factory and for later calibrations."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_the_factory_takes_the_cards_of_a_found_effect(tmp_path: Path) -> None:
 
 
 def test_uncertainty_and_correlation_are_the_fits(tmp_path: Path) -> None:
-    """Against the same numbers by the inverse of the normal matrix, in the test's own words."""
+    """Against the inverse of the normal matrix, computed here."""
     found = diagnosis({STIFFENING: 0.5})
     write_cards(tmp_path / "cards", found, bench(tmp_path / "bench"))
     fit = found.finding.explanations[0].fit
@@ -114,7 +114,7 @@ def test_without_a_cause_cards_are_the_baselines(verdict: str, tmp_path: Path) -
     assert shear == pytest.approx(MODULI["S0"] * np.exp(0.1), rel=1e-5)
     assert f"Verdict: {verdict}" in card.provenance
     assert ("the measurements depart from it" in card.provenance) == (verdict == "unexplained")
-    assert not (cards / "rig.yaml").exists()  # the earlier diagnosis' rig is not this one's
+    assert not (cards / "rig.yaml").exists()  # the rig of the earlier diagnosis is removed
 
 
 def test_a_material_called_rig_is_refused(tmp_path: Path) -> None:
@@ -145,12 +145,12 @@ def test_moduli_that_are_not_the_fits_are_an_error(tmp_path: Path) -> None:
 def test_a_dataset_gets_the_material_that_the_diagnosis_had(
     name: str, amplitude: float, tmp_path: Path
 ) -> None:
-    """The factory's against the one in the scene that explained the measurements, 1 s after release."""
+    """The factory's material equals that of the scene that explained the measurements, 1 s after release."""
     experiment = bench(tmp_path / "bench")
     write_cards(tmp_path / "cards", diagnosis({Candidate(effect=name): amplitude}), experiment)
     trial = experiment.trials[0]
     assert isinstance(trial, BeamTrial)
-    # what stiffens is simulated as yeoh throughout; the rest of a dataset as neo-Hookean
+    # a stiffening material is simulated as yeoh throughout, the other materials as neo-Hookean
     base = "yeoh" if name == "strain-stiffening" else "neo-hookean"
     plain = tisim.material_from_moduli(base, shear_modulus=30e3, bulk_modulus=9e6, density=1000.0)
     situation = Situation(trial=trial, time=1.0)

@@ -1,4 +1,4 @@
-"""Pressed cylinders for tests of their diagnosis: closed forms and FElupe's table, no code of ours."""
+"""Compression tests for the tests of their diagnosis: closed forms and FElupe's table, no code of tisim."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.compression.model import CompressionModel
 
 Array = NDArray[np.float64]
-Stress = Callable[[Array], Array]  # over the shear modulus, of the strain (positive in compression)
+Stress = Callable[[Array], Array]  # stress over shear modulus, of the strain (positive in compression)
 
 SHEAR = {"soft": 1.3e4, "hard": 3.7e4}
 TABLE = json.loads(BONDED.read_text(encoding="utf-8"))
@@ -25,13 +25,13 @@ TOP = 0.45  # strain
 
 
 def sliding(strain: Array) -> Array:
-    """Incompressible Neo-Hookean cylinder between platens without friction."""
+    """Stress over shear modulus of an incompressible Neo-Hookean cylinder between frictionless platens."""
     s = 1.0 - strain
     return s - s**-2
 
 
 def bonded(law: str = "neo-hookean") -> Stress:
-    """FElupe's cylinder of 50 by 30 mm."""
+    """Interpolate FElupe's stress of a cylinder of 50 by 30 mm between bonded platens."""
     strains = np.array(TABLE["strains"])
     curve = TABLE["stress_over_shear_modulus"][law]
     spline = CubicSpline([0.0, *strains], [0.0, *curve])
@@ -39,7 +39,7 @@ def bonded(law: str = "neo-hookean") -> Stress:
 
 
 def ramps(count: int, top: float = TOP, points: int = 70) -> Array:
-    """Strain, pressed and released `count` times in all."""
+    """Strain of `count` ramps, alternately loading and unloading."""
     there = np.linspace(0.0, top, points)
     return np.concatenate([there if k % 2 == 0 else there[-2::-1] for k in range(count)])
 
@@ -54,8 +54,11 @@ def pressed(
     seed: int = 0,
     noise: float = 0.003,
 ) -> CouponTrial:
-    """stress: over the shear modulus, of a strain or as it is.
-    noise: sd over the largest stress."""
+    """Synthetic compression test.
+
+    `stress` is a function of the strain, or values at the strains, over the shear modulus. `noise` is the
+    standard deviation over the largest stress.
+    """
     rng = np.random.default_rng(seed)
     x = ramps(1) if strain is None else strain
     clean = SHEAR[material] * (stress(x) if callable(stress) else stress)
@@ -73,7 +76,7 @@ def pressed(
 
 
 def both(stress: Stress, *, strain: Array | None = None, seed: int = 0, noise: float = 0.003) -> Experiment:
-    """One cylinder of each material."""
+    """Experiment with one cylinder of each material."""
     return experiment(
         *(
             pressed(f"{m}-1", stress, strain=strain, material=m, seed=seed + k, noise=noise)
@@ -85,7 +88,7 @@ def both(stress: Stress, *, strain: Array | None = None, seed: int = 0, noise: f
 def press_model(
     made: Experiment, *, without: Sequence[str] = (), cylinder: Cylinder | None = None
 ) -> CompressionModel:
-    """With the catalogue's effects of the first round."""
+    """Model with the catalogue's effects of the first round."""
     known = effects_of("compression").items()
     effects = {n: e for n, e in known if n not in without and not e.further}
     return CompressionModel(made, effects=effects, cylinder=cylinder)  # type: ignore[arg-type]

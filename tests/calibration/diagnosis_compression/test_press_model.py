@@ -1,4 +1,4 @@
-"""What a model of presses is made of: stored simulations, gaps, remarks, the command."""
+"""The compression model: stored simulations, gaps, remarks, repeatability, the command."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from calibration.measurements.homogeneous.model import HomogeneousModel
 
 @pytest.mark.parametrize(("law", "share"), [("neo-hookean", 0.0), ("mooney-rivlin 0.3", 0.3)])
 def test_stored_simulations_against_another_solver(law: str, share: float) -> None:
-    """To half of the height; FElupe's table has the side's contact too."""
+    """Up to half of the height; FElupe's table includes the contact of the side."""
     strain = np.array(TABLE["strains"])
     used = strain <= 0.5
     s = 1.0 - strain
@@ -48,7 +48,7 @@ def test_stored_simulations_against_another_solver(law: str, share: float) -> No
 
 @pytest.mark.parametrize("slender", [1.0, 2.0])
 def test_stored_simulations_between_the_stored_heights(slender: float) -> None:
-    """The same at heights that are not stored, to 20 %."""
+    """The ratio at diameter-to-height ratios that are not stored."""
     curve = np.array(TABLE["neo_hookean_by_diameter_over_height"][str(slender)])
     strain = np.array(TABLE["strains"])[: curve.size]
     ours = BondedRatio(cylinder=Cylinder(radius=0.5 * slender, height=1.0)).log_ratio(1.0 - strain, {})
@@ -56,7 +56,7 @@ def test_stored_simulations_between_the_stored_heights(slender: float) -> None:
 
 
 def test_chains_near_their_ends_are_not_tabled() -> None:
-    """1 / N of 0.3: at 45 % strain the free cylinder's chains are at 0.65 of their length, at 65 % at 0.8."""
+    """At 1 / N = 0.3 the free cylinder's chains reach 0.65 of their length at 45 % strain, 0.8 at 65 %."""
     ours = BondedRatio(cylinder=USUAL).log_ratio(np.array([0.55, 0.35]), {"limited-extensibility": 0.3})
     assert 0.35 < ours[0] < 0.5
     assert np.isnan(ours[1])
@@ -88,7 +88,7 @@ def test_amplitude_zero_is_the_baseline() -> None:
 
 
 def test_platens_do_not_pull() -> None:
-    """A cylinder that is met late carries nothing before."""
+    """A cylinder that is touched late has no stress before."""
     model = press_model(both(sliding))
     late = State(u=model.start(), amplitudes={Candidate(effect="strain-offset"): 0.05})
     for r, p in zip(model.records, model.stresses(late), strict=True):
@@ -97,7 +97,7 @@ def test_platens_do_not_pull() -> None:
 
 
 def six() -> CompressionModel:
-    """Four repeats, and two cylinders of another material; each record may deviate."""
+    """Four repeats, and two cylinders of another material; each record has its own deviation."""
     trials = [
         pressed(f"{m}-{k}", sliding, material=m, strain=ramps(1, top=0.45 - 0.01 * k), seed=k)
         for m, count in (("soft", 4), ("hard", 2))
@@ -114,7 +114,7 @@ CAUSES = {
 
 
 def test_coordinates_of_different_records_move_together_and_derive_as_one_at_a_time() -> None:
-    """Two moduli, six deviations of as many terms, and the mesh's error that all records share."""
+    """Two moduli, deviations of six records, and the mesh error that all records share."""
     model = six()
     state = State(u=model.start() + 0.01, amplitudes=CAUSES)
     terms, mesh = len(model.coordinates.terms), len(model.coordinates.mesh(state.u))
@@ -142,7 +142,7 @@ def test_a_record_is_not_simulated_again_for_what_does_not_reach_it(monkeypatch:
     everything = [r.name for r in model.records]
     assert solved == everything
     solved.clear()
-    # a deviation, a mesh error of platens that do not hold, a load cell: none of them is of the specimen
+    # a deviation, a mesh error of frictionless platens, a load cell's gain: none changes the specimen
     u = state.u.copy()
     u[2:] += 0.01
     model.stresses(State(u=u, amplitudes={**state.amplitudes, Candidate(effect="force-gain"): 0.1}))
@@ -152,7 +152,7 @@ def test_a_record_is_not_simulated_again_for_what_does_not_reach_it(monkeypatch:
     assert solved == ["hard-1"]
     for name, a, b in zip(everything, before, after, strict=True):
         assert np.array_equal(a, b) == (name != "hard-1")
-    # of a fold, its record alone
+    # a fold simulates its own record only
     solved.clear()
     u[:2] += 0.02
     fold = dict(model.folds()["leave-one-trial-out"])["soft-2"]
@@ -183,7 +183,7 @@ def test_pictures_and_words() -> None:
     model = press_model(both(sliding, seed=1))
     found = diagnose(model, gain=False)
     names = [p.name for p in figures_of(model, found)]
-    assert names == ["residuals", "curves", "rms"]  # the curves lie on each other
+    assert names == ["residuals", "curves", "rms"]  # the curves coincide
     for p in figures_of(model, found):
         p.figure.savefig(io.BytesIO(), format="png")
     assert "too few repeats" in model.noise_sentence()
@@ -212,7 +212,7 @@ def test_the_command(tmp_path: Path) -> None:
 
 
 def test_a_fit_that_wants_beyond_a_bound_ends_there() -> None:
-    """More force than bonded platens hold, and a toe: the rest of the fit goes on along the bound."""
+    """More force than bonded platens give, and a toe: the other parameters are fitted along the bound."""
     strain = ramps(1)
     more = np.exp(0.4 * BondedRatio(cylinder=USUAL).log_ratio(1.0 - strain, {})) * bonded()(
         np.maximum(strain - 0.004, 0.0)
@@ -229,7 +229,7 @@ def test_a_fit_that_wants_beyond_a_bound_ends_there() -> None:
 
 
 def test_rubbing_platens_are_between_the_slab_and_bonded_ones() -> None:
-    """Little friction: the closed form of the slab method (D/h = 5/3); much: bonded."""
+    """Little friction: closed form of the slab method (D/h = 5/3); much friction: bonded."""
     effects = effects_of("compression")
     model = CompressionModel(both(sliding), effects=effects)  # type: ignore[arg-type]
     u = model.start()
@@ -252,7 +252,7 @@ def test_rubbing_platens_are_between_the_slab_and_bonded_ones() -> None:
 
 
 def again(strain_of: Callable[[Array, int], Array], grown: float, *, scatter: float = 0.0) -> Experiment:
-    """Six tests of one bonded cylinder; strain_of : what it feels; grown : of the stress, a test."""
+    """Six tests of one bonded cylinder at the strain `strain_of`; the stress grows by `grown` per test."""
     rng = np.random.default_rng(5)
     x = ramps(1)
     factors = [(1.0 + grown * k) * np.exp(scatter * rng.standard_normal()) for k in range(6)]
@@ -265,7 +265,7 @@ def again(strain_of: Callable[[Array, int], Array], grown: float, *, scatter: fl
 
 
 def test_what_goes_on_from_test_to_test_is_no_scatter() -> None:
-    """Nor is the noise of single points, of which small strains have most in a logarithm."""
+    """Nor is noise of single points, which is largest at small strains in a logarithm."""
     found = repeatability_of(press_model(again(lambda x, _: x, 0.01)).records, LAST)
     assert found.sds.max() < 0.003
     (drift,) = found.drifts

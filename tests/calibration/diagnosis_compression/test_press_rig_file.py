@@ -1,4 +1,4 @@
-"""What a diagnosis of pressed cylinders finds in the rig is on record, and corrects no calibration."""
+"""Rig faults from a diagnosis of compression tests are recorded, and correct no calibration."""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
-"""Effects hidden in made presses are found, and nothing where there is nothing. The data are closed forms and
-FElupe's table (`diagnosis_press_cases`); seeds are counted up from 1."""
+"""Effects hidden in synthetic compression tests are found, and no others.
+
+The data are closed forms and FElupe's table (`diagnosis_press_cases`); seeds are counted from 1.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,7 @@ def test_nothing_is_named_where_nothing_is_wrong(seed: int) -> None:
 def test_one_loading_shows_what_it_cannot_see() -> None:
     unseen = {i.effect for i in diagnosed(both(sliding, seed=1)).undetectable}
     assert unseen >= {"force-gain", "hysteresis", "mullins", "rate-dependence", "anisotropy"}
-    # a frame that gives way as little as frames do is not seen beside cylinders as soft as these
+    # the usual compliance of a frame is not visible beside cylinders as soft as these
     assert "machine-compliance" in unseen
     assert not unseen & {"platen-bonding", "second-invariant", "stress-offset"}
 
@@ -70,7 +72,7 @@ def stuck() -> tuple[CompressionModel, Diagnosis]:
 
 
 def test_bonded_platens_are_found_by_the_shape_of_the_curve() -> None:
-    """The force of another solver's bonded cylinder; calibrated as free, moduli are 30 % off."""
+    """The force of another solver's bonded cylinder; the calibration with free platens is 30 % too stiff."""
     _, found = stuck()
     check_found(found, "platen-bonding", "part_of_bonded", 1.0)
     for name, shear in SHEAR.items():
@@ -93,7 +95,7 @@ def test_without_friction_in_the_library_its_name_is_not_used() -> None:
 
 
 def test_two_causes_at_once() -> None:
-    """Bonded, and of Mooney and Rivlin with a share of 0.3: what platens hold depends on the law."""
+    """Bonded platens and a Mooney-Rivlin fraction of 0.3; the bonded ratio depends on the law."""
     found = diagnosed(both(bonded("mooney-rivlin 0.3"), seed=1))
     assert {"platen-bonding", "second-invariant"} in [set(names) for names in found.finding.equivalent]
     causes = {c["effect"]: next(iter(c["parameters"].values())) for c in found.causes()}
@@ -108,7 +110,7 @@ def test_preload() -> None:
 
 
 def test_a_machine_that_gives_way() -> None:
-    """By 0.3 strains a MPa: the same for both materials, so that a law of theirs cannot do it."""
+    """0.3 strain per MPa for both materials, which no material law can imitate."""
 
     def shown(shear: float) -> Stress:
         true = np.linspace(0.0, 0.7, 20001)
@@ -132,7 +134,7 @@ def test_a_zero_of_the_force() -> None:
 
 
 def test_a_tilted_face() -> None:
-    """3 % of the height, by columns over a fine grid of the face; its toe is small, so the noise must be."""
+    """Tilt of 3 % of the height, by columns on a fine grid; its toe is small, and so must be the noise."""
     grid = np.linspace(-1.0, 1.0, 401)
     x, y = np.meshgrid(grid, grid)
     late = np.quantile(0.03 * 0.5 * (1.0 + x[x**2 + y**2 < 1.0]), (np.arange(400) + 0.5) / 400)
@@ -157,9 +159,11 @@ def test_hysteresis_and_softening_come_over_from_coupons() -> None:
 
 @pytest.mark.parametrize(("at", "verdict"), [(0.12, "unexplained"), (0.25, "partly explained")])
 def test_a_kink_is_in_no_library(at: float, verdict: str) -> None:
-    """Something gives at a strain, and the curve goes on 3 % lower (as a kink in one Ecoflex record). In the
-    middle of the curve platens that hold stand in for most of it, in both materials alike; what they leave is
-    said."""
+    """The stress drops by 3 % at a strain (as in one Ecoflex record).
+
+    In the middle of the curve platen friction imitates most of the drop, in both materials alike; the
+    remainder is reported.
+    """
     found = diagnosed(
         both(lambda strain: sliding(strain) * (1.0 - 0.03 * (strain > at)), seed=1, noise=0.002)
     )
@@ -174,8 +178,10 @@ def test_a_kink_is_in_no_library(at: float, verdict: str) -> None:
 
 
 def test_repeats_tell_how_much_tests_differ() -> None:
-    """Five repeats that scatter by 2 % in scale and 1 % in slope depart from one law more than their noise;
-    that they differ is no cause. With as much noise but no repeats, the same curve is a departure."""
+    """Five repeats with scatter of 2 % in scale and 1 % in slope deviate from one law by more than noise.
+
+    Their scatter is no cause. Without repeats, the same curve with the same noise is a lack of fit.
+    """
     rng = np.random.default_rng(1)
     strain = ramps(1)
     curves = [
@@ -192,8 +198,10 @@ def test_repeats_tell_how_much_tests_differ() -> None:
 
 
 def test_naming_the_specimen_costs_no_repeats() -> None:
-    """25 tests of one cylinder: with its name the first loading is a state of its own, the other 24 repeat
-    each other; without it all 25 do."""
+    """25 tests of one cylinder, with and without its name.
+
+    With the name the first loading is a separate state, and the other 24 are repeats; without it all 25 are.
+    """
     rng = np.random.default_rng(2)
     strain = ramps(1)
     curves = [sliding(strain) * np.exp(0.02 * a) for a in rng.standard_normal(25)]
@@ -203,12 +211,11 @@ def test_naming_the_specimen_costs_no_repeats() -> None:
     assert len(without.repeats) == 25
     assert with_name.repeats == without.repeats[1:]
     assert with_name.sds == pytest.approx(without.sds, rel=0.3, abs=1e-3)
-    assert with_name.sds[1] > 0.01  # of the scale, which one specimen's modulus does not take
+    assert with_name.sds[1] > 0.01  # scatter of the scale, which the specimen's modulus does not absorb
 
 
 def test_three_causes_at_once() -> None:
-    """Bonded, a second invariant, and a zero of the strain that is off, as it may be in the Ecoflex of the
-    real data."""
+    """Bonded platens, a second invariant, and a zero error of the strain, as possible in the Ecoflex data."""
     found = diagnosed(both(lambda x: bonded("mooney-rivlin 0.3")(x + 0.005), seed=2, noise=0.001))
     assert found.finding.equivalent[0] == ("platen-bonding", "second-invariant", "strain-offset")
     (offset,) = [c for c in found.causes() if c["effect"] == "strain-offset"]
@@ -217,7 +224,7 @@ def test_three_causes_at_once() -> None:
 
 
 def test_platens_that_hold_all_they_can_may_be_one_of_two_causes() -> None:
-    """Bonded cylinders held 1.2 times as much in the force's logarithm: beyond what the effect reaches."""
+    """Bonded cylinders with 1.2 times the logarithm of the force ratio, more than the effect's bound."""
 
     def harder(strain: Array) -> Array:
         s = 1.0 - strain

@@ -1,4 +1,4 @@
-"""Coupon experiments for tests of their diagnosis: closed forms that share no code with calibration."""
+"""Homogeneous tests for the tests of their diagnosis: closed forms that share no code with calibration."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def trial(
     stretch_sd: float = 0.0,
     seed: int = 0,
 ) -> CouponTrial:
-    """Noise of `sd` [Pa] on the stress; None: none, and none stated."""
+    """Synthetic trial with noise of `sd` [Pa] on the stress; None: no noise, and no stated error."""
     rng = np.random.default_rng(seed)
     clean = stress(mode, stretch) if callable(stress) else stress
     time = None if rate is None else np.cumsum([0.0, *np.abs(np.diff(stretch))]) / rate
@@ -52,7 +52,7 @@ def trial(
 
 
 def ramps(top: float, count: int, points: int = 40) -> Array:
-    """Out and back `count` times in all."""
+    """Stretch of `count` ramps, alternately loading and unloading."""
     there = np.linspace(1.0, top, points)
     return np.concatenate([there if k % 2 == 0 else there[-2::-1] for k in range(count)])
 
@@ -65,7 +65,7 @@ def coupon_model(
     further: bool = False,
     richer: tuple[str, int] | None = None,
 ) -> HomogeneousModel:
-    """With the catalogue's effects; those of the second round where `further`."""
+    """Model with the catalogue's effects; those of the second round only if `further`."""
     known = effects_of("homogeneous").items()
     effects = {n: e for n, e in known if n not in without and (further or not e.further)}
     return HomogeneousModel(made, effects=effects, law=law, richer=richer)  # type: ignore[arg-type]

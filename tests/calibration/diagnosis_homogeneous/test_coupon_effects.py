@@ -1,4 +1,4 @@
-"""Each effect on coupons: what it does to the stress, and where no protocol shows it."""
+"""Each effect on homogeneous tests: its stress, and the protocols in which it is not identifiable."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ FURTHER = {
 
 
 def everything() -> HomogeneousModel:
-    """A design in which every effect shows."""
+    """A design in which every effect is visible."""
     cycles = ramps(1.8, 4)
     return coupon_model(
         experiment(
@@ -93,7 +93,7 @@ def test_zero_is_the_baseline_and_more_is_not(name: str) -> None:
 def test_constitutive_effects_are_the_laws_of_tisim(name: str, amplitude: float, law: str) -> None:
     model = everything()
     state = State(u=np.full(1, np.log(G)), amplitudes={Candidate(effect=name): amplitude})
-    # as compressible as a mesh wants it: K/G 300
+    # as compressible as meshes need: K/G 300
     parameters: dict[str, float | tuple[float, ...]] = {
         "strain-stiffening": {"mu": G, "stiffening": amplitude, "bulk": 300.0 * G},
         "second-invariant": {
@@ -137,16 +137,16 @@ def test_a_loop_closes_at_both_ends() -> None:
     base = model.stresses(State(u=np.full(1, np.log(G))))[0]
     lost = with_effect(model, "hysteresis", 0.4)[0] - base
     record = model.records[0]
-    assert np.abs(lost[: record.points // 4]).max() == 0.0  # the first loading
+    assert np.abs(lost[: record.points // 4]).max() == 0.0  # first loading
     back = slice(40, 79)
     assert lost[back].min() < -0.05 * G
     assert lost[back][0] == pytest.approx(0.0, abs=0.04 * G)
     assert lost[back][-1] == pytest.approx(0.0, abs=1e-3 * G)
-    assert np.abs(lost[79:118]).max() == 0.0  # loaded again: hysteresis leaves it, Mullins does not
+    assert np.abs(lost[79:118]).max() == 0.0  # reloading: unchanged by hysteresis, softened by Mullins
     worn = with_effect(model, "mullins", 0.4)[0] - base
     assert np.abs(worn[:40]).max() == 0.0
     assert worn[79:118].min() < -0.05 * G
-    # Ogden and Roxburgh's: at half of the largest energy erf(1/2) / erf(1) of the softening at rest
+    # Ogden and Roxburgh: at half of the largest energy, erf(1/2) / erf(1) of the softening at rest
     s = model.records[0].stretch[81:118]
     energy = (s**2 + 2.0 / s - 3.0) / (1.8**2 + 2.0 / 1.8 - 3.0)
     part = np.interp(0.5, energy, worn[81:118] / base[81:118])
@@ -159,8 +159,8 @@ def test_friction_of_platens_for_little_of_it() -> None:
     rubbed = with_effect(model, "platen-friction", 1e-3)
     pressed = model.records[2].stretch
     assert rubbed[2][1:] / base[2][1:] - 1.0 == pytest.approx(1e-3 * pressed[1:] ** -1.5, rel=0.01)
-    assert rubbed[0] == pytest.approx(base[0])  # nothing where nothing is pressed
-    # the formula for little friction and that for more of it meet
+    assert rubbed[0] == pytest.approx(base[0])  # no effect in tension
+    # the formulas for small and larger friction agree at their limit
     lower, upper = (with_effect(model, "platen-friction", a)[2][1:] for a in (0.0033, 0.0034))
     assert upper / lower - 1.0 == pytest.approx(1e-4 * pressed[1:] ** -1.5, rel=0.05)
 
@@ -168,7 +168,7 @@ def test_friction_of_platens_for_little_of_it() -> None:
 def test_what_no_protocol_shows_has_no_column() -> None:
     plain = coupon_model(experiment(trial("pull", "uniaxial", ramps(1.8, 1))))
     assert invisible(plain) == {"rate-dependence", "hysteresis", "mullins", "anisotropy"}
-    for seed in range(6):  # noise about rest is no second loading
+    for seed in range(6):  # noise near rest is no second loading
         one = trial("pull", "uniaxial", ramps(1.8, 2), stretch_sd=0.002, seed=seed)
         assert invisible(coupon_model(experiment(one))) == {"rate-dependence", "mullins", "anisotropy"}
     twice = coupon_model(experiment(trial("pull", "uniaxial", ramps(1.8, 3), stretch_sd=0.002)))
@@ -182,7 +182,7 @@ def test_what_no_protocol_shows_has_no_column() -> None:
 
 
 def invisible(model: HomogeneousModel) -> set[str]:
-    """Effects of which no candidate has a column, apart from those that have no candidate at all."""
+    """Effects whose candidates have no column, except those without candidates."""
     linear = model.linearise(State(u=np.full(len(model.names), np.log(G))), model.candidates)
     seen = {c.effect for c, column in zip(linear.candidates, linear.columns.T, strict=True) if column.any()}
     return {c.effect for c in model.candidates} - seen

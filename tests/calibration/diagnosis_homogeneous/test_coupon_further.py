@@ -1,4 +1,4 @@
-"""Causes that are asked only where the usual ones do not explain the data, on data of another maker."""
+"""Causes of the second round, tested if the usual ones do not explain the data, on data of other code."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tisim import Material
 SIGMAS = 60.0
 
 
-# where three usual causes stand in for one, all sets of three are tried: 9 core-s
+# with three usual causes that imitate one, all sets of three are tried: 9 core-s
 DEAR = "tension-compression-asymmetry"
 
 
@@ -58,7 +58,7 @@ def test_the_usual_causes_are_asked_alone_first(tmp_path: Path) -> None:
 
 
 def relaxing(stretch: Array, time: Array, *, fraction: float, tau: float) -> Array:
-    """Boltzmann's integral over a fine grid of straight lines between the points."""
+    """Boltzmann's integral on a fine grid with linear interpolation between the points."""
     fine = np.linspace(time[0], time[-1], 40001)
     elastic = neo_hookean("uniaxial", np.interp(fine, time, stretch))
     step = fine[1] - fine[0]
@@ -89,7 +89,7 @@ def test_a_hold_shows_the_relaxation_time() -> None:
 
 
 def pressed_again(strain_of: Callable[[Array, int], Array], factor: float) -> list[Array]:
-    """Stress of three tests of one piece, by the number of the test."""
+    """Stress of three tests of one specimen, by the index of the test."""
     strain = np.linspace(0.0, 0.4, 30)
     return [(1.0 + factor * k) * neo_hookean("uniaxial", 1.0 - strain_of(strain, k)) for k in range(3)]
 
@@ -114,7 +114,7 @@ def test_what_goes_on_from_test_to_test(
         assert stress == pytest.approx(w, rel=2e-3, abs=1e-6 * G)
     best = search(model).explanations[0]
     assert best.names == (name,)
-    # two tests alike do not show it, nor do tests of different reach
+    # two equal tests do not identify it, nor do tests of different range
     assert not any(
         v for c, v in coupon_model(experiment(*trials[:2]), further=True).visible.items() if c.effect == name
     )
@@ -124,7 +124,7 @@ def test_what_goes_on_from_test_to_test(
 
 
 def of_ogden(mode: str, s: Array) -> Array:
-    """Two terms, by tisim's own law: what is tested is the choice among laws."""
+    """Two Ogden terms by tisim's own law: the test is about the choice among laws."""
     made = Material(law="ogden", parameters={"mu": (3e4, 4e2), "alpha": (1.6, 6.0), "bulk": 2e8})
     return nominal_stress(made, mode, s)  # type: ignore[arg-type]
 
@@ -166,13 +166,13 @@ def test_the_law_that_the_data_bear_is_a_cause_of_its_own() -> None:
     found = fit(model, State(u=plain.state.u, amplitudes={form: 1.0}), (form,))
     assert plain.chi2 > 20.0 * found.chi2
     assert found.chi2 < 2.0 * model.points
-    assert found.state.amplitudes[form] == 1.0  # there or not, and no part of the way
+    assert found.state.amplitudes[form] == 1.0  # present or absent, no value in between
     assert model.brings(form) == 3
     assert model.brings(Candidate(effect="second-invariant")) == 0
 
 
 def test_a_constant_ends_at_its_bound_and_the_fit_with_it() -> None:
-    """Ogden's exponent is searched down to -12; the material has -20."""
+    """The lower bound of Ogden's exponent is -12; the material has -20."""
     material = Material(law="ogden", parameters={"mu": (-3e3,), "alpha": (-20.0,), "bulk": 1e8})
     made = experiment(
         *(
@@ -192,7 +192,7 @@ def test_a_constant_ends_at_its_bound_and_the_fit_with_it() -> None:
 
 
 def test_a_cause_that_is_there_or_not_is_held_out_where_the_others_foretell_it() -> None:
-    """A law's constants from two modes say little of the third; four fifths of the records say the last."""
+    """Two modes constrain the constants for the third poorly; four fifths of the records predict the last."""
     made = experiment(
         *(
             trial(mode, mode, ramps(top, 1, 25), of_ogden(mode, ramps(top, 1, 25)), sd=1500.0, seed=k)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Laws compared as baselines: each material by itself, and where the search for a law's constants begins."""
+"""Laws compared as baselines: each material separately, and the start of the search for constants."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def two_materials() -> HomogeneousModel:
 
 
 def test_laws_are_compared_material_by_material(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They share no coordinate: what is compared of all is the sum of what is compared of each."""
+    """Materials share no coordinate, so that scores are sums over materials."""
     monkeypatch.setattr(HomogeneousModel, "laws", LAWS)
     model = two_materials()
     parts = model.with_law("ogden", 1)
@@ -57,7 +57,7 @@ def test_laws_are_compared_material_by_material(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_constants_begin_at_the_volume_that_is_held() -> None:
-    """At eight times its length a rubber is 1 % larger: at constant volume the exponent comes out wrong."""
+    """At eight times its length a rubber's volume is 1 % larger; constant volume gives a wrong exponent."""
     stretch = ramps(8.0, 1, 25)
     model = coupon_model(experiment(trial("A", "uniaxial", stretch, of_ogden, sd=None)))
     law = parametrisation("ogden", terms=1)
@@ -69,7 +69,7 @@ def test_constants_begin_at_the_volume_that_is_held() -> None:
 
 
 def test_a_richer_law_begins_at_its_own_moduli() -> None:
-    """The neo-Hookean modulus of a rubber that stiffens is many times too large for the law that stiffens."""
+    """The neo-Hookean modulus of a stiffening rubber is much too large for the stiffening law."""
     trials = [
         trial(m, "uniaxial", ramps(8.0, 1, 25), of_ogden, sd=2e3, material=m, seed=k)
         for k, m in enumerate("AB")

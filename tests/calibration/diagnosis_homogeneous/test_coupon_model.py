@@ -1,4 +1,4 @@
-"""Coupons as the search for causes sees them: residuals, noise, specimens, folds, errors."""
+"""The homogeneous model in the search: residuals, noise, specimens, folds, errors."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_long_records_are_thinned_without_losing_what_they_say() -> None:
     found = fit(long, State(u=long.start()))
     sd = float(np.sqrt(found.covariance()[0, 0]))
     raw = np.linspace(1.0, 2.0, 5000)
-    stated = 2e3 / np.linalg.norm(neo_hookean("uniaxial", raw))  # Fisher's, of ln G
+    stated = 2e3 / np.linalg.norm(neo_hookean("uniaxial", raw))  # Fisher information of ln G
     assert sd == pytest.approx(stated, rel=0.02)
     assert abs(found.state.u[0] - np.log(G)) < 4.0 * sd
 
@@ -55,7 +55,7 @@ def test_specimens_have_moduli_of_their_own_near_each_other() -> None:
     assert found.converged
     assert np.exp(found.state.u) == pytest.approx([G, 1.2 * G, G], rel=0.01)
     assert model.shear_moduli(found.state.u) == pytest.approx({"A": G * 1.2**0.5, "B": G}, rel=0.01)
-    scatter = model.residuals([found.state])[0][model.points :]  # 15 % a specimen
+    scatter = model.residuals([found.state])[0][model.points :]  # 15 % per specimen
     apart = (found.state.u[1] - found.state.u[0]) / 2.0 / 0.15
     assert float(scatter @ scatter) == pytest.approx(2.0 * apart**2)
     assert scatter.size == 1  # the mean of the two is free

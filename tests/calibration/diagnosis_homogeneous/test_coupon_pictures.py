@@ -1,4 +1,4 @@
-"""The first picture of a page: curves where the departure shows between them, what is left of them else."""
+"""The first figure of a page: curves if the lack of fit is visible between them, else the residuals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole diagnoses of made coupons: names, advice, pictures. The blind cases stand in tests/blind."""
+"""Complete diagnoses of synthetic homogeneous tests: causes, advice, figures. Blind cases: tests/blind."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tisim import laws
 
 
 def softened(mode: str, s: Array) -> Array:
-    """A rig that gives way by 1e-6 per Pa, pulled to strains `s` of its own travel."""
+    """Stress with a rig compliance of 1e-6 per Pa, at the strains `s` of the rig's displacement."""
     grid = np.linspace(0.5, 3.0, 20001)
     p = neo_hookean(mode, grid)
     return np.interp(s, grid + 1e-6 * p, p)
@@ -88,7 +88,7 @@ def test_pictures_show_something() -> None:
     model, found = diagnosed()
     pictures = figures_of(model, found)
     by_name = {p.name: p for p in pictures}
-    assert list(by_name) == ["residuals", "curves", "rms"]  # the curves lie on each other
+    assert list(by_name) == ["residuals", "curves", "rms"]  # the curves coincide
     for p in pictures:
         file = io.BytesIO()
         p.figure.savefig(file, format="png")
@@ -111,7 +111,7 @@ def test_pictures_without_a_cause() -> None:
 
 @pytest.mark.parametrize(("times", "verdict"), [(1.3, "none"), (2.2, "unexplained")])
 def test_specimens_of_one_material_that_differ_too_much_are_unexplained(times: float, verdict: str) -> None:
-    """Say, that a file was handed to another material."""
+    """For example if a file was assigned to a wrong material."""
     trials = [
         trial(
             f"t{k}{n}",
@@ -133,7 +133,7 @@ def test_specimens_of_one_material_that_differ_too_much_are_unexplained(times: f
 
 
 def test_a_card_has_the_bulk_modulus_that_the_baseline_has(tmp_path: Path) -> None:
-    """Coupons are fitted at K/G 3000, by which a stress is the incompressible one."""
+    """Homogeneous tests are fitted at K/G 3000, where stresses are practically the incompressible ones."""
     model, found = diagnosed()
     assert model.baseline.bulk_ratio == 3000.0
     (path, _rig) = write_cards(tmp_path / "cards", found, model.experiment)

@@ -1,4 +1,4 @@
-"""Indentation trials whose force is a formula, and their model."""
+"""Indentation trials with given forces, and their model."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SIZE = (0.1, 0.1, 0.03)
 
 
 def path(*, deep: float = 2e-3, back: bool = True, hold: float = 0.0, cycles: int = 1) -> tuple[Array, Array]:
-    """Time [s] and depth [m] at 1 mm/s, sampled every 0.05 s."""
+    """Time [s] and depth [m] at 1 mm/s for the default depth, sampled every 0.05 s."""
     legs = []
     for _ in range(cycles):
         legs.append(np.linspace(0.0, deep, 41))
@@ -61,5 +61,5 @@ def experiment(*trials: PokeTrial) -> Experiment:
 
 
 def indentation_model(*trials: PokeTrial) -> IndentationModel:
-    """With the catalogue's effects."""
+    """Model with the catalogue's effects."""
     return IndentationModel(experiment(*trials), effects=effects_of("indentation"))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Curves of two meshes as one: the finer one's forces, and the coarser one's changes in proportion."""
+"""Curves of two meshes combined: forces of the finer one, and relative changes of the coarser one."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SHORT = DEEP[:12]
 
 
 def test_deeper_than_the_finer_mesh_the_ratio_at_its_end_holds() -> None:
-    """The coarser mesh is 4 % too stiff at all depths: so the sum is the finer one carried on."""
+    """The coarser mesh is 4 % too stiff at all depths, so that the result continues the finer curve."""
     whole = deepened(made(SHORT, 1e-2 * SHORT, side=0.1, finer=3e-3), made(DEEP, 1.04e-2 * DEEP, side=0.1))
     assert whole.at(DEEP) == pytest.approx(1e-2 * DEEP, rel=1e-6)
     assert whole.sides(DEEP)[:, 0] == pytest.approx(1e-3 * DEEP, rel=1e-6)
@@ -44,8 +44,10 @@ def test_deeper_than_the_finer_mesh_the_ratio_at_its_end_holds() -> None:
 
 
 def test_a_change_counts_in_proportion() -> None:
-    """A tenth more on the coarser mesh is a tenth more on the finer one; across the rod what both meshes are
-    off by is no change."""
+    """10 % more on the coarser mesh is 10 % more on the finer one.
+
+    A lateral force that both curves of the coarser mesh have is no change.
+    """
     fine = made(DEEP, 1e-2 * DEEP, side=0.0, finer=6e-3)
     coarse = made(DEEP, 1.04e-2 * DEEP, side=0.02)
     change = made(DEEP, 1.1 * 1.04e-2 * DEEP, side=0.02)
@@ -55,7 +57,7 @@ def test_a_change_counts_in_proportion() -> None:
 
 
 def test_a_change_on_the_finer_mesh_is_carried_on_by_the_coarser_one() -> None:
-    """A tenth more there, a fifth more on the coarser mesh below its end."""
+    """10 % more on the finer mesh, 20 % more on the coarser mesh below the end of the finer."""
     fine, coarse = made(SHORT, 1e-2 * SHORT, side=0.0, finer=3e-3), made(DEEP, 1.04e-2 * DEEP, side=0.0)
     pairs = [
         (made(SHORT, 1.1e-2 * SHORT, side=0.0), fine, FINE),
@@ -67,7 +69,7 @@ def test_a_change_on_the_finer_mesh_is_carried_on_by_the_coarser_one() -> None:
 
 
 def test_cells_that_come_to_touch_elsewhere_are_no_change() -> None:
-    """A hundredth up and down once a cell of the ball's contact, on a smooth change of up to a fifth."""
+    """An oscillation of 1 % per cell of the contact, on a smooth change of up to 20 %."""
     depth = np.linspace(0.125e-3, 4e-3, 32)
     width = np.sqrt(depth / 4e-3)
     truth = 1.0 - 0.2 * width**3
@@ -88,7 +90,7 @@ def test_in_retraction_the_same_fraction_is_lost_at_the_same_fraction_of_the_dep
 
 
 def test_the_common_mesh_error_is_smaller_where_the_finer_mesh_reaches() -> None:
-    """The factor that all forces share: that of the finer mesh above its end, the coarser mesh's below."""
+    """The factor common to all forces is the finer mesh's up to its end, the coarser mesh's below."""
     time = np.linspace(0.0, 6.0, 60)
     (record,) = records_of([trial("p", time, 1e-3 * time, time, depth_sd=0.0)])
     force = np.full(record.points, 2.0)

@@ -1,4 +1,4 @@
-"""The model of indentation: phases, derivatives, what a protocol cannot identify, what a search finds."""
+"""The indentation model: phases, derivatives, effects that a protocol cannot identify, searches."""
 
 from __future__ import annotations
 
@@ -25,13 +25,15 @@ from calibration.measurements.indentation.model import IndentationModel
 from tisim import Block
 
 SHEAR = 2e4
-K = 1e-2  # of the made curves: force over G and depth [m]
+K = 1e-2  # of the synthetic curves: force over G and depth [m]
 
 
 @pytest.fixture(autouse=True)
 def made_curves(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Curves in place of simulations: straight but for a bend, wider rods stiffer, a change by the name's
-    size."""
+    """Replace simulations by curves that are nearly straight and stiffer for wider indenters.
+
+    The number in an effect's name scales its change. The list that is returned records the requests.
+    """
     asked: list[str] = []
 
     def fetch(_: CurveCache, wanted: Sequence[CurveRequest]) -> list[Curve]:
@@ -69,7 +71,7 @@ def noisy(force: np.ndarray, seed: int = 0) -> np.ndarray:
 
 
 def relaxed(time: np.ndarray, force: np.ndarray, tau: float) -> np.ndarray:
-    """A tenth of the force in a Maxwell branch, stepped in time."""
+    """Force with a tenth in a Maxwell branch, integrated in time steps."""
     q = np.zeros_like(force)
     for k in range(1, force.size):
         fade = np.exp(-(time[k] - time[k - 1]) / tau)
@@ -99,7 +101,7 @@ def test_columns_are_the_residuals_derivatives() -> None:
     linear = model.linearise(base, wanted)
     for k, c in enumerate(wanted):
         if model.effects[c.effect].scene is not None:
-            continue  # at none these are chords to a simulated amplitude
+            continue  # at amplitude 0 their columns are secants to a simulated amplitude
         h = 1e-3 * amounts[c]
         z = model.residuals([State(u=base.u, amplitudes={c: h}), base])
         np.testing.assert_allclose((z[0] - z[1]) / h, linear.columns[:, k], rtol=2e-2, atol=1e-2 / h)
@@ -116,7 +118,7 @@ def test_columns_are_the_residuals_derivatives() -> None:
     ],
 )
 def test_what_a_protocol_does_not_show(protocol: dict[str, bool], hidden: set[str]) -> None:
-    """Loading alone shows nothing of history; one rod in one material never the load cell's gain."""
+    """Loading alone does not identify history; one indenter in one material never the load cell's gain."""
     time, depth = path(**protocol)
     model = indentation_model(trial("p", time, depth, noisy(curve(depth))))
     state = State(u=model.start())
@@ -141,13 +143,13 @@ def test_a_gain_shows_where_a_second_rod_pokes_the_material() -> None:
 
 
 def test_relaxation_is_the_solid_of_one_time() -> None:
-    """Against a Maxwell branch beside a spring, in closed form: a ramp, then a hold."""
+    """Against the closed form of a Maxwell branch beside a spring, for a ramp and a hold."""
     tau, part = 3.0, 0.4
     time, depth = path(back=False, hold=20.0)
     model = indentation_model(trial("p", time, depth, curve(depth)))
     r = model.records[0]
     elastic = r.depth / r.depth.max()
-    end = 2.0  # of the ramp [s], at 0.5 a second
+    end = 2.0  # end of the ramp [s], at a rate of 0.5 per second
     ramp = part * 0.5 * (r.time - tau * -np.expm1(-r.time / tau))
     held = part * (1.0 - 0.5 * tau * (np.exp(-(r.time - end) / tau) - np.exp(-r.time / tau)))
     lost = part * (_faded(r, tau) @ np.diff(elastic, prepend=0.0))
@@ -186,7 +188,7 @@ def test_a_clean_record_has_no_cause_and_an_offset_is_measured() -> None:
 
 
 def test_noise_of_the_depth_is_not_found_again() -> None:
-    """The simulation at noisy depths would be noisy itself, and depart."""
+    """A simulation at the noisy depths would be noisy, and show a lack of fit."""
     time, depth = path(cycles=2)
     smallest = []
     for seed in range(4):
@@ -226,7 +228,7 @@ def test_without_pokes_is_refused() -> None:
 
 
 def test_a_wrong_thickness_may_be_in_blocks_of_one_size() -> None:
-    """Two materials, a thin and a thick block of each: the thin mould may be off, or that of one material."""
+    """Two materials with a thin and a thick block each: the thin mould may be wrong, or one material's."""
     time, depth = path()
     trials = []
     for m, height in product(("S", "T"), (0.012, 0.032)):
@@ -248,15 +250,18 @@ def test_a_wrong_thickness_may_be_in_blocks_of_one_size() -> None:
 
 
 def test_a_fit_of_friction_begins_where_its_column_leads() -> None:
-    """Towards each of its chords, the furthest at its bound: what slides freely loses no force on the way
-    back, what rubs a little does, and from between a fit of the one may end at the other."""
+    """A fit starts at the secant in its direction, the outermost at its bound.
+
+    Free sliding loses no force in retraction, but a little friction does; a fit between the two could
+    converge to the other secant.
+    """
     time, depth = path()
     model = indentation_model(trial("p", time, depth, noisy(curve(depth))))
     base = fit_baseline(model)
     both = [c for c in model.candidates if c.effect == "friction" and c.at == "all"]
     assert [model._step(c, base.state) for c in both] == [-0.5, -0.6]
     linear = model.linearise(base.state, both)
-    assert np.abs(linear.columns[:, 0] - linear.columns[:, 1]).max() < 0.1  # made curves are straight in it
+    assert np.abs(linear.columns[:, 0] - linear.columns[:, 1]).max() < 0.1  # curves are linear in it
     null = Null(len(base.z), model.discrepancy_basis())
     started = []
 
@@ -271,7 +276,7 @@ def test_a_fit_of_friction_begins_where_its_column_leads() -> None:
 
 
 def test_friction_takes_force_on_the_way_back_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A tenth at half the way; the rod is drawn back in the simulation where the record has a way back."""
+    """It is a tenth at half of the depth; the simulation retracts if the record does."""
     time, depth = path()
     made, retractions = CurveCache.fetch, []
 
@@ -301,7 +306,7 @@ def test_friction_takes_force_on_the_way_back_only(monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("at", "there"),
     [
-        *(("all", True), ("S", True), ("p", False), ("T", False)),  # no thickness of a trial
+        *(("all", True), ("S", True), ("p", False), ("T", False)),  # no thickness of a single trial
         *(("block 100 x 100 x 30 mm", True), ("S block 100 x 100 x 30 mm", True)),
         *(("block 100 x 100 x 12 mm", False), ("T block 100 x 100 x 30 mm", False)),
     ],
@@ -314,7 +319,7 @@ def test_an_effect_reaches_what_is_in_its_materials_blocks(at: str, there: bool)
 
 
 def test_a_card_names_the_depths_of_the_records_that_an_effect_is_in() -> None:
-    """As the lab recorded them, from above the surface to the deepest point."""
+    """The recorded depths, from above the surface to the deepest point."""
     time, depth = path()
     a = trial("a", time, depth - 0.1e-3, noisy(curve(depth - 0.1e-3)))
     b = trial("b", time, 0.5 * depth, noisy(curve(0.5 * depth, 4e-3), 1), radius=4e-3)
@@ -325,7 +330,7 @@ def test_a_card_names_the_depths_of_the_records_that_an_effect_is_in() -> None:
 
 
 def test_forces_across_are_rows_of_their_record() -> None:
-    """They are left out with it, and are no residual along the indenter."""
+    """Lateral forces are left out with their record, and add no residual along the indenter."""
     time, depth = path()
     plain = trial("plain", time, depth, noisy(curve(depth)))
     push = noisy(curve(depth), 1)

@@ -1,4 +1,4 @@
-"""Amplitudes between those that are simulated."""
+"""Interpolation between simulated amplitudes."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def test_a_parabola_is_met(a: float, curve: tuple[float, float, float]) -> None:
     assert found == pytest.approx(parabola(a), abs=1e-9)
 
 
-def test_what_liesnode_weights_goes_on_without_a_jump() -> None:
-    """A fourth power, which no parabola is: steps of a thousandth of the range move it by as little."""
+def test_what_lies_at_a_node_weights_goes_on_without_a_jump() -> None:
+    """For a fourth power, steps of a thousandth of the range change the interpolant by less than 3e-4."""
     at = np.linspace(-0.5, 0.5, 1001)
     found = [sum(p * n**4 for n, p in node_weights(NODES, a, straight=False)) for a in at]
     assert np.abs(np.diff(found)).max() < 3e-4

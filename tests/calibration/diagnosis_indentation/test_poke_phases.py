@@ -1,4 +1,4 @@
-"""Strokes and holds of records whose depth is noisy, cut where they are."""
+"""Strokes and holds of records with noisy depths are separated at the right samples."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from poke_records import trial
 
 from calibration.measurements.indentation._phases import phases_of
 
-SAMPLES, TOP = 45, 0.4e-3  # of a stroke; of the depth [m]
-NOISE = 2e-5  # a twentieth of the stroke: its ends, and a hold's, are extremes of it
+SAMPLES, TOP = 45, 0.4e-3  # samples per stroke; maximum depth [m]
+NOISE = 2e-5  # a twentieth of the stroke, so that ends of strokes and holds are its extremes
 
 PROTOCOLS = {
     "up and down": [("loading 1", TOP), ("unloading 1", 0.0)],
@@ -20,7 +20,7 @@ PROTOCOLS = {
 
 
 def record(protocol: str) -> tuple[np.ndarray, np.ndarray, list[int]]:
-    """Time, depth without noise, and where each part ends; samples of a hold come ever more slowly."""
+    """Time, noise-free depth, and the ends of the phases; the sampling of a hold becomes sparser."""
     time, depth, ends = [np.zeros(1)], [np.zeros(1)], []
     for name, to in PROTOCOLS[protocol]:
         hold = name.startswith("hold")
@@ -35,8 +35,11 @@ def record(protocol: str) -> tuple[np.ndarray, np.ndarray, list[int]]:
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
 def test_a_noisy_shallow_record_is_cut_where_it_is(protocol: str) -> None:
-    """One record in a hundred at most is cut otherwise: no hold is made up where the rod turns at once, none
-    is lost, and what lies in a part is the part's own line to within the noise."""
+    """At most one record in a hundred is separated differently.
+
+    No hold is invented at a reversal, none is lost, and the points of a phase lie on its line within the
+    noise.
+    """
     time, depth, ends = record(protocol)
     wrong = []
     for seed in range(100):

@@ -1,4 +1,4 @@
-"""The model under test, with the catalogue's effects; `benchmarks.blind.release` makes the data."""
+"""The release model under test, with the catalogue's effects; `benchmarks.blind.release` makes the data."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def bar_model(
     fem: bool = True,
     further: bool = False,
 ) -> ReleaseModel:
-    """With the catalogue's effects; those of the second round where `further`."""
+    """Model with the catalogue's effects; those of the second round only if `further`."""
     known = effects_of("release").items()
     effects = {n: e for n, e in known if n not in without and (further or not e.further)}
     return ReleaseModel(made, effects=effects, workers=workers, fem=fem)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Advice after cantilever releases: how far an experiment separates causes, against the experiment done."""
+"""Advice after cantilever releases: predicted separation of causes against the performed experiment."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from calibration.measurements.release._vibration import free_vibration
 from calibration.measurements.release.experiments import EXPERIMENTS, FURTHER, HEAVIER, RepeatedRelease
 from calibration.measurements.release.model import ReleaseModel
 
-# so stiff that the linear beam of the data holds with 60 g on it
+# so stiff that the data's linear beam theory holds with 60 g on the beam
 YIELDING = Truth(shear=3e6, viscous=2e-4, clamp=0.01)
 RELAXING = Truth(branches=((0.08, 0.5),))
 HUNG = (0.0, 0.01)
@@ -40,7 +40,7 @@ def made(truth: Truth, **how: Any) -> ReleaseModel:
 
 
 def explained(model: ReleaseModel, causes: Sequence[tuple[str, float | None]]) -> list[Explanation]:
-    """Each cause (effect, kind) by itself in all trials, fitted with nuisances taken at the first."""
+    """Explanations by one cause (effect, kind) in all trials, with nuisances updated at the first one."""
     null = Null(model.points + len(model.baseline.prior), {})
     found: list[Explanation] = []
     state = State(u=model.start())
@@ -66,7 +66,7 @@ def in_all(model: ReleaseModel, name: str, kind: float | None = None) -> Candida
 
 
 def yielding(hung: Sequence[float]) -> tuple[ReleaseModel, list[Explanation]]:
-    """Bars in a clamp that turns, and what else may make them soft: held too deep, or thinner than stated."""
+    """Beams in a compliant clamp, with alternatives for their softness: grip length and section."""
     model = made(YIELDING, hung=hung, sd_mm=0.01, rate=450.0, seconds=0.75)
     return model, explained(
         model, [("clamp-compliance", None), ("grip-length", None), ("section-scale", None)]
@@ -80,12 +80,12 @@ def clamped() -> tuple[ReleaseModel, list[Explanation], dict[str, Advice]]:
 
 
 def behind(rivals: Sequence[Explanation]) -> np.ndarray:
-    """By how much chi-square data part the first explanation from each other."""
+    """Difference in chi-square of each other explanation from the first."""
     return np.array([e.fit.chi2 - rivals[0].fit.chi2 for e in rivals[1:]])
 
 
 def supposed(model: ReleaseModel, base: State, name: str, amplitude: float) -> Explanation:
-    """As if a cause of this size were there, whatever the data say."""
+    """Explanation by a cause of this amplitude, without a fit to the data."""
     c = in_all(model, name)
     linear = model.linearise(replace(base, amplitudes={c: amplitude}), (c,))
     departure = LackOfFit(p_value=0.5, each={}, worst="none")
@@ -93,14 +93,16 @@ def supposed(model: ReleaseModel, base: State, name: str, amplitude: float) -> E
 
 
 def test_what_an_experiment_promises_is_what_it_gives() -> None:
-    """The same bars with 50 g more, made and fitted together with those before: chi-square parts the causes
-    by what was promised beside what the first data gave."""
+    """The same beams with 50 g more, fitted together with the earlier ones.
+
+    The gain in the separation by chi-square agrees with the predicted one.
+    """
     model, rivals, promised = clamped()
     done, after = yielding((*HUNG, *(m + HEAVIER for m in HUNG)))
     gained = behind(after) - behind(rivals)
     assert promised["heavier"].separations == pytest.approx(gained, rel=0.5)
     assert min(gained) > 5.0 * max(behind(rivals))
-    # and the predicted beams vibrate as slowly as those that were then released
+    # and the predicted frequencies are those of the beams released afterwards
     heavier = next(e for e in EXPERIMENTS if e.name == "heavier")
     assert isinstance(heavier, RepeatedRelease)
     new = model.predicted_in(heavier, rivals[0].fit.state)
@@ -111,7 +113,7 @@ def test_what_an_experiment_promises_is_what_it_gives() -> None:
 
 
 def test_bars_let_go_once_more_tell_as_much_again() -> None:
-    """A bar that is straight, and the same from end to end, is not changed by turning it over or round."""
+    """Turning or reversing a straight and uniform beam does not change it."""
     _, rivals, promised = clamped()
     for name in ("turn-over", "swap-ends"):
         assert promised[name].separations == pytest.approx(behind(rivals), rel=0.15)
@@ -128,7 +130,7 @@ def test_what_parts_all_rivals_comes_first() -> None:
     assert worths == sorted(worths, reverse=True)
     assert worths[0] < 2.0
     blind = [a for a in rest if a.name in ("weigh", "level", "ruler", "known-way")]
-    assert rest[-4:] == blind  # gauges of other effects
+    assert rest[-4:] == blind  # measurements of other effects
     assert all(a.separations == (0.0, 0.0) for a in blind)
     said = advice(model, rivals)
     apart = round(float(np.sqrt(min(best.separations))))
@@ -148,8 +150,10 @@ def test_of_those_that_part_all_the_cheapest_comes_first(monkeypatch: pytest.Mon
 
 
 def test_two_rivals_parted_are_worth_more_than_three_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Callipers see the thin bar, here twice among the rivals, and not the deep grip; a clamp loaded by hand
-    parts the three by less than half of what is enough."""
+    """Callipers identify the thin section, here twice among the alternatives, but not the deep grip.
+
+    A clamp loaded by hand separates all three, by 0.4 of the required separation.
+    """
     model, (turning, deep, thin), promised = clamped()
     unseen, enough = promised["callipers"].separations
     assert unseen == 0.0
@@ -191,7 +195,7 @@ def test_a_longer_record_parts_relaxation_times() -> None:
     model = made(RELAXING)
     rivals = explained(model, [("relaxation", 0.5), ("relaxation", 1.0)])
     found = {a.name: a.separations[0] for a in advise(model, rivals)}
-    assert found["record-longer"] > 3.0 * found["turn-over"] > 0.0  # which is no more than another record
+    assert found["record-longer"] > 3.0 * found["turn-over"] > 0.0  # which only repeats the record
     longer = next(e for e in EXPERIMENTS if e.name == "record-longer")
     assert isinstance(longer, RepeatedRelease)
     new = model.predicted_in(longer, rivals[0].fit.state)
@@ -204,7 +208,7 @@ def test_a_longer_record_parts_relaxation_times() -> None:
 
 
 def test_a_new_experiment_is_as_the_first_explanation_predicts() -> None:
-    """And draws nothing from the data that were there: these stay as they are."""
+    """It takes no data from the existing records, which stay unchanged."""
     model, rivals, _ = clamped()
     before = [r.measured() for r in model.records]
     for e in EXPERIMENTS:
@@ -220,7 +224,7 @@ def test_a_new_experiment_is_as_the_first_explanation_predicts() -> None:
 
 
 def test_what_cannot_be_let_go_is_not_advised(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A bar that stands on its clamp, under its own weight a thousand times: it would buckle."""
+    """A beam that stands on its clamp under a thousand times gravity buckles."""
     model, rivals, _ = clamped()
     buckled = RepeatedRelease(
         name="stand", sentence="stand it up", changed=lambda s: replace(s, gravity=(-9.81e3, 0.0))

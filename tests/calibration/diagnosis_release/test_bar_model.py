@@ -1,4 +1,4 @@
-"""The reduced beam against beam theory, the model's derivatives and folds, and input that cannot be used."""
+"""The reduced beam against beam theory, the model's derivatives and folds, and unusable input."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def test_markers_make_it_a_bar(tmp_path: Path) -> None:
 
 
 def test_names_of_earlier_versions_are_understood(tmp_path: Path) -> None:
-    """`radius` meant another quantity in other kinds; `relaxation-branch` was a name for `relaxation`."""
+    """`radius`, ambiguous among models, is now `section-scale`; `relaxation-branch` is `relaxation`."""
     experiment = read(write_bars(tmp_path / "e", Truth()))
     model = model_of(experiment, kind="bars", without=["radius", "relaxation-branch"])
     assert set(EFFECTS) - set(model.effects) == {"section-scale", "relaxation"}
@@ -142,7 +142,7 @@ def test_a_record_states_its_groups_and_ranges(tmp_path: Path) -> None:
 
 
 def test_a_record_without_an_answer_leaves_the_others(tmp_path: Path) -> None:
-    """An effect that leaves one beam without an answer does not touch the rows of another record."""
+    """An effect that leaves one beam without a solution does not change the rows of other records."""
     model = bar_model(read(write_bars(tmp_path / "e", Truth())), fem=False)
     state = State(u=model.start())
     heavy = next(c for c in model.candidates if (c.effect, c.at) == ("added-mass", "10 g hung"))

@@ -1,4 +1,4 @@
-"""Released bars in a fit: the diagnosis's model and modulus; a relaxation spectrum from two loads."""
+"""Released beams in a fit: agreement with the diagnosis; a relaxation spectrum from two loads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SHEAR, BRANCHES = 6e5, ((0.25, 0.02), (0.15, 0.6))
 
 
 def released(folder: Path, law: str, specs: tuple[str, ...] = ()) -> ModelObjective[ReleaseModel]:
-    """The objective of a fit; without FEM, since the made bars are of beam theory."""
+    """Objective of a fit without FEM, since the synthetic beams follow beam theory."""
     experiment = read(folder)
     (material,) = experiment.materials
     data = measurements(
@@ -48,7 +48,7 @@ def _of_beam_theory(objective: ModelObjective[ReleaseModel]) -> ModelObjective[R
 
 
 def test_a_fit_and_a_diagnosis_agree(tmp_path: Path) -> None:
-    """To a tenth of the standard deviation: one model, one noise, the modulus of the vibration."""
+    """Agreement to 0.1 standard deviations: the same model, noise and modulus of vibration."""
     experiment = read(write_bars(tmp_path, Truth(), hung=(0.0,)))
     model = model_of(experiment, kind="release", workers=1)
     assert isinstance(model, ReleaseModel)
@@ -68,7 +68,7 @@ def test_a_fit_and_a_diagnosis_agree(tmp_path: Path) -> None:
 
 
 def test_the_spectrum_of_a_bar_comes_back(tmp_path: Path) -> None:
-    """Its storage modulus and loss where it vibrates, and what it loses from 0.2 to 2 s."""
+    """Storage modulus and loss factor at the vibration, and the relaxation from 0.2 to 2 s."""
     folder = write_bars(
         tmp_path, Truth(shear=SHEAR, viscous=1e-9, branches=BRANCHES), hung=(0.0,), seconds=4.0
     )
@@ -85,7 +85,7 @@ def test_the_spectrum_of_a_bar_comes_back(tmp_path: Path) -> None:
     right, known = at_frequency(SHEAR, truth.spectrum(), period)
     assert storage == pytest.approx(right, rel=0.01)
     assert _loss(branches, period) == pytest.approx(_loss(known, period), rel=0.06)
-    # how straight the bar was held is not known: what it loses at once rests on that, what it loses later not
+    # the initial pose is uncertain, and with it the immediate relaxation, but not the later one
     lost = long_time * (spectrum.modulus(0.2) - spectrum.modulus(2.0)) / storage
     there = truth.spectrum()
     assert lost == pytest.approx(SHEAR * (there.modulus(0.2) - there.modulus(2.0)) / right, rel=0.2)
@@ -96,7 +96,7 @@ def _loss(branches: tuple[tuple[float, float], ...], period: float) -> float:
 
 
 def test_a_hung_mass_does_not_teach_damping(tmp_path: Path) -> None:
-    """Its vibration is left out of a fit over time, and the fit says so; in a plain fit it is compared."""
+    """Its free vibration is left out of a fit over time, with a remark; a fit without time uses it."""
     folder = write_bars(tmp_path, Truth(), hung=(0.0, 0.01))
     plain = released(folder, "neo-hookean")
     over_time = released(folder, "neo-hookean", ("prony:1",))
@@ -109,8 +109,10 @@ def test_a_hung_mass_does_not_teach_damping(tmp_path: Path) -> None:
 
 
 def test_where_a_mass_hangs(tmp_path: Path) -> None:
-    """On the upper edge its arm grows as the face turns: the bar comes to rest lower. Not without a load, nor
-    beside the face."""
+    """On the upper edge the lever arm grows as the end face rotates, and the beam settles lower.
+
+    Heights without a load, or outside the face, are refused.
+    """
     middle, edge = (
         read(write_bars(tmp_path / str(z), Truth(), hung=(0.05,), tip_force_height_mm=z)) for z in (0.0, 10.0)
     )
@@ -136,7 +138,7 @@ def test_a_bar_that_does_not_swing_has_no_spectrum(tmp_path: Path) -> None:
 
 
 def test_storage_modulus_and_branches() -> None:
-    """Of a Maxwell element: G w^2 tau^2 / (1 + w^2 tau^2), in parts of which its branch is given."""
+    """A Maxwell element adds G w^2 tau^2 / (1 + w^2 tau^2); branches are fractions of the storage modulus."""
     shear, branches = at_frequency(1e3, Prony(fractions=(0.5,), times=(0.02,)).spectrum(), 0.02)
     assert shear == pytest.approx(1250.0)
     assert branches == ((pytest.approx(0.4), 0.02),)

@@ -1,5 +1,4 @@
-"""Whole diagnoses of made bars: what is hidden is found, nothing is found where nothing is hidden, and what
-is not in the library has no name."""
+"""Complete diagnoses of synthetic beams: hidden causes are found, unknown effects get no name."""
 
 from __future__ import annotations
 
@@ -30,7 +29,7 @@ from calibration.measurements.release.model import ReleaseModel
 CLEAN = Truth()
 YIELDING = Truth(clamp=0.1)
 RELAXING = Truth(branches=((0.08, 0.5),))
-# a part of 0.015 every third of a decade, from a hundredth of a second to twenty seconds
+# branches of 0.015 each, three per decade, from 0.01 s to 20 s
 CREEPING = Truth(branches=tuple((0.015, 10.0 ** (k / 3.0)) for k in range(-6, 5)))
 HUMMING = Truth(extra=lambda t: 1e-4 * np.exp(-t) * np.sin(130.0 * t))
 
@@ -64,7 +63,7 @@ def test_a_yielding_clamp_is_found() -> None:
     (parameters,) = [p for name, p in named(found).items() if name == "clamp-compliance"]
     estimate = parameters["rad_per_Nm"]
     assert abs(estimate["value"] - YIELDING.clamp) < 3.0 * estimate["sd"] < YIELDING.clamp
-    # the modulus had taken the clamp's share of the softness
+    # the baseline's modulus had absorbed the softness of the clamp
     assert found.baseline.shear_modulus_Pa["S0"] < 0.93 * YIELDING.shear
     assert found.extended is not None
     assert found.extended.shear_modulus_Pa["S0"] == pytest.approx(YIELDING.shear, rel=0.03)
@@ -77,7 +76,7 @@ def test_a_second_relaxation_time_is_found() -> None:
     assert (cause["effect"], cause["scope"]) == ("relaxation", "all")
     assert cause["kind"] == "relaxation time 0.5 s"
     estimate = cause["parameters"]["fraction_of_modulus"]
-    assert abs(estimate["value"] - 0.08 / 1.08) < 3.0 * estimate["sd"]  # of the modulus before it relaxes
+    assert abs(estimate["value"] - 0.08 / 1.08) < 3.0 * estimate["sd"]  # of the instantaneous modulus
 
 
 def test_creep_is_found_and_is_no_single_time() -> None:
@@ -137,7 +136,7 @@ def test_cards_of_a_bar(tmp_path: Path) -> None:
 
 
 def test_a_rig_of_bars_is_a_record_and_corrects_no_photograph(tmp_path: Path) -> None:
-    """Its clamp-compliance has the name of a beam's, and would be taken for one."""
+    """Its clamp-compliance has the name of an outline effect, for which it could be mistaken."""
     model, found = diagnosed(YIELDING)
     _, path = write_cards(tmp_path / "cards", found, made(YIELDING))
     rig = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -163,7 +162,7 @@ def test_a_rig_of_bars_is_a_record_and_corrects_no_photograph(tmp_path: Path) ->
 
 
 def fitted(truth: Truth, name: str) -> tuple[float, float, float]:
-    """Amplitude, sd and gain in chi-square of a cause in all records that it applies to."""
+    """Amplitude, standard deviation and gain in chi-square of a cause in all applicable records."""
     model = bar_model(made(truth), workers=1, fem=False, further=True)
     baseline = fit_baseline(model)
     cause = next(c for c in model.candidates if c.effect == name)
@@ -178,7 +177,7 @@ def test_a_mass_that_is_tied_loosely_is_measured() -> None:
 
 
 def test_a_mass_that_rubs_is_measured() -> None:
-    """Beside its other damping the swing loses four deflections by the friction a period."""
+    """Friction takes four times its static deflection per period from the amplitude, beside damping."""
     truth = Truth(rub=2e-3)
     stiff, _, _ = beam(truth, 0.01)
     load = np.zeros(len(stiff))

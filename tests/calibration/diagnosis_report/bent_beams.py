@@ -1,4 +1,4 @@
-"""Two photographs each of two cantilevers that were bent in their mould, by a planar elastica."""
+"""Two photographs each of two cantilevers with residual curvature from casting, by a planar elastica."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ RADIUS = 0.010
 
 
 def elastica(length: float, shear_modulus: float, curvature: float) -> tuple[np.ndarray, np.ndarray]:
-    """Upper and lower edge [mm], (40, 2) each, of an inextensible round bar, rho = 1000 kg/m3, E = 3 G, free
-    of stress as an arc [1/m], upwards where positive."""
+    """Upper and lower edge [mm], (40, 2) each, of a round, inextensible cantilever of E = 3 G.
+
+    The density is 1000 kg/m3; the stress-free shape is an arc of `curvature` [1/m], positive upwards.
+    """
     stiffness = 3.0 * shear_modulus * np.pi * RADIUS**4 / 4.0
     weight = 1000.0 * 9.81 * np.pi * RADIUS**2
 

@@ -1,4 +1,4 @@
-"""Made diagnoses for the page's tests: a linear simulator, searched by the real search."""
+"""Diagnoses for the page's tests: the real search on a linear simulator."""
 
 from __future__ import annotations
 
@@ -42,8 +42,11 @@ def effect(
 
 
 class LinearModel(MeasurementModel):
-    """z = offset + A u + sum of amplitudes times columns. `twin` points nearly where `bend` does, nothing
-    points where `blind` should."""
+    """z = offset + A u + sum of amplitudes times columns.
+
+    For the kind "ambiguous" the column of `twin` is almost parallel to that of `bend`; the column of `blind`
+    is that of a modulus.
+    """
 
     kind = "made"
     unit = ("mm", 1e3)
@@ -65,7 +68,7 @@ class LinearModel(MeasurementModel):
             "twin": np.sqrt(1.0 - apart**2) * basis[:, 2] + apart * basis[:, 3],
             "lens": basis[:, 4],
             "coarse-mesh": basis[:, 5],
-            "blind": basis[:, 0],  # what a coordinate does as well
+            "blind": basis[:, 0],  # also the column of a coordinate
         }
         self.candidates = (
             *(Candidate(effect=n) for n in self.effects),
@@ -130,7 +133,7 @@ class LinearModel(MeasurementModel):
 
 
 def diagnosis(kind: Kind, *, place: str = "S0") -> tuple[Diagnosis, LinearModel]:
-    """A diagnosis that ends in this verdict, with a made gain where a cause is named, and its model."""
+    """Diagnosis with this verdict, with an invented held-out improvement if it has a cause, and its model."""
     model = LinearModel(kind, place=place)
     made = diagnose(model, rules=Rules(seed=1), gain=False)
     assert made.finding.verdict == kind
@@ -149,7 +152,7 @@ def diagnosis(kind: Kind, *, place: str = "S0") -> tuple[Diagnosis, LinearModel]
 
 
 class Page(HTMLParser):
-    """Text, values of <data>, sources of pictures, tags and attributes."""
+    """Text, values of <data>, image sources, tags and attributes of a page."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -190,7 +193,7 @@ class Page(HTMLParser):
 
 
 def numbers(told: Any) -> list[float]:
-    """All figures in a JSON value."""
+    """All numbers in a JSON value."""
     if isinstance(told, Mapping):
         return [v for part in told.values() for v in numbers(part)]
     if isinstance(told, list):

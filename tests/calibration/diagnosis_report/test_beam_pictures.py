@@ -1,4 +1,4 @@
-"""Beams' pictures: what is drawn is what was fitted, and the extension lies where the points are."""
+"""Figures of beams: the drawn values are the fitted ones, and the extension passes through the points."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from calibration.experiment import read
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.turned import turned
 
-LEFT = ("residual-curvature", "creep")  # of the catalogue, to keep the test short
+LEFT = ("residual-curvature", "creep")  # a part of the catalogue, for speed
 ODD = "a_long(%)-" + 60 * "x"
 
 
@@ -29,7 +29,7 @@ ODD = "a_long(%)-" + 60 * "x"
 def bent(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, OutlineModel]:
     folder = bent_folder(tmp_path_factory.mktemp("bent") / "x", curvature=3.0, name=ODD)
     model = OutlineModel(read(folder), effects={n: e for n, e in EFFECTS.items() if n in LEFT}, workers=1)
-    # an elastica differs from a thick beam by more than noise, which is not the matter here
+    # an elastica differs from a thick beam by more than noise, which does not matter here
     return diagnose(model, rules=Rules(lack_of_fit_level=0.0), gain=False), model
 
 
@@ -61,7 +61,7 @@ def test_the_extension_is_drawn_where_the_points_are(beams: list[DrawnTrial]) ->
             assert e.smooth_after is not None
             drawn_line = e.smooth_before - e.smooth_after
             far = np.abs(drawn_line) > 2e-4
-            # away from the baseline both lie on the same side of it
+            # far from the baseline both lie on the same side of it
             assert np.all(np.sign(drawn_line[far]) == np.sign(e.smooth_before[far]))
             assert np.allclose(np.linalg.norm(e.normal, axis=1), 1.0)
 
@@ -97,7 +97,7 @@ def test_panels_are_a_grid_of_materials_and_kinds(beams: list[DrawnTrial]) -> No
 
 
 def test_the_beams_can_be_turned_around(bent: tuple[Diagnosis, OutlineModel]) -> None:
-    """The outline as a tube about its registered points, on the surface of the body of the extension."""
+    """The outline is a tube about its registered points, on the surface of the extension's body."""
     found, model = bent
     seen = explained_photographs(model, found)
     view = turned(seen, title="bent")
@@ -110,7 +110,7 @@ def test_the_beams_can_be_turned_around(bent: tuple[Diagnosis, OutlineModel]) ->
         wanted = feet + s.left[:, None] * normal
         centres = tube.positions[0].reshape(-1, 6, 3).mean(axis=1)
         assert np.allclose(centres[:, 1], 0.0, atol=1e-12)
-        if len(centres) == len(wanted):  # of short edges, no point is left out
+        if len(centres) == len(wanted):  # short edges keep all points
             assert centres[:, [0, 2]] == pytest.approx(wanted, abs=1e-9)
         middle = body.positions[0][np.abs(body.positions[0][:, 1]) < 1e-6]
         gap = np.linalg.norm(centres[:, None, [0, 2]] - middle[None, :, [0, 2]], axis=2).min(axis=1)

@@ -1,4 +1,4 @@
-"""The page of a diagnosis: it stands alone, tells what the JSON tells, and survives any name."""
+"""The page of a diagnosis: self-contained, consistent with the JSON file, and safe for any name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class DrawnModel(LinearModel):
 
 
 class MuteModel(LinearModel):
-    """A kind whose beam has no equilibrium to draw."""
+    """A model whose beam has no equilibrium to draw."""
 
 
 @figures_of.register(DrawnModel)
@@ -78,7 +78,7 @@ def test_figures_are_those_of_the_json(case: tuple[Kind, Diagnosis, Page, list[P
     assert (told["extended"] is None) == (kind in ("none", "unexplained"))
     for key in ("causes", "baseline", "extended", "not_visible"):
         for value in numbers(told[key]):
-            # of a cause the sd stands in the text beside its value
+            # the sd of a cause is in the text beside its value
             assert value in page.values or key == "causes", (key, value)
     gain = told["gain"] or {}
     for key in ("rms_mm_before", "rms_mm_after", "rms_mm_noise", "log_likelihood"):
@@ -107,7 +107,7 @@ def test_pictures_are_files_and_not_blank(case: tuple[Kind, Diagnosis, Page, lis
     _, _, _, paths = case
     assert paths[0].name == "report.html"
     assert sorted(p.name for p in paths[0].parent.iterdir()) == sorted(p.name for p in paths)
-    assert len({p.name for p in paths}) == 4  # evidence, and two of the domain's that ask for one name
+    assert len({p.name for p in paths}) == 4  # evidence, and two of the model's with the same name
     for p in paths[1:]:
         pixels = imread(io.BytesIO(p.read_bytes()))[..., :3]
         inked = np.any(np.abs(pixels - 1.0) > 0.1, axis=2)
@@ -134,7 +134,7 @@ def test_unexplained_shows_the_test_that_fails_and_names_nothing() -> None:
 
 def test_what_cannot_be_seen_is_listed_with_its_amplitude() -> None:
     page = _page(*diagnosis("none"))
-    assert "no amplitude shows" in page.text  # of `blind`
+    assert "no amplitude shows" in page.text  # for `blind`
     assert "take the blind away" in page.text
     made, _ = diagnosis("none")
     threshold = next(i.threshold for i in made.undetectable if i.effect == "coarse-mesh")
@@ -176,7 +176,7 @@ def test_missing_pictures_are_said(tmp_path: Path) -> None:
 
 
 def test_a_fit_that_did_not_converge_is_said_where_the_verdict_stands_on_it() -> None:
-    """Those of causes that are not named are in the notes."""
+    """Fits of causes that are not named are in the notes."""
     made, model = diagnosis("found")
     first, *others = made.finding.explanations
     lame = replace(first, fit=replace(first.fit, converged=False, message="not converged in 10 steps"))

@@ -1,4 +1,4 @@
-"""Units read from parameters' names, bars of the evidence, names drawn."""
+"""Units from the names of parameters, bars of the evidence, drawn names."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_what_was_only_screened_has_its_gain_to_first_order() -> None:
     screened = replace(made.finding, explanations=())
     linear = {b.name: b.gain for b in bars(screened)}
     assert all(b.behind is None for b in bars(screened))
-    # the model is linear, so that a fit in it gains what was screened
+    # the model is linear: a fit improves chi-square by the screened amount
     for e in made.finding.explanations:
         gain = made.finding.baseline.chi2 - e.fit.chi2
         assert linear[e.fit.label] == pytest.approx(gain, abs=1e-6)

@@ -1,4 +1,4 @@
-"""Pictures of one panel a trial: which trials have one, and what stands for the extension in them."""
+"""Figures with one panel per trial: the choice of trials, and the curve drawn for the extension."""
 
 from __future__ import annotations
 

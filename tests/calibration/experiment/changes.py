@@ -1,4 +1,4 @@
-"""How the tests spoil the sample experiment: each function makes a change to it."""
+"""Functions that make one part of the sample experiment invalid."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Change = Callable[[Sample], object]
 
 
 def put(part: str, key: str, value: object) -> Change:
-    """Sets a key of the sample's beam, capture, poke or coupon; dots lead deeper."""
+    """Set a key of the sample's beam, capture, poke or coupon; dots separate nested keys."""
 
     def change(s: Sample) -> None:
         target = getattr(s, part)
@@ -83,5 +83,5 @@ def metres(s: Sample) -> None:
     s.tables[OUTLINE] = {k: v if k == "side" else v * 1e-3 for k, v in s.tables[OUTLINE].items()}
 
 
-# what is changed, the file and the place (key or line) that the refusal must name, and what it expects
+# change, then file, location (key or line) and expectation that the error message must contain
 Case = tuple[Change, str, str, str]

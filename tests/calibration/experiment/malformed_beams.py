@@ -1,4 +1,4 @@
-"""Beams that are refused: keys, captures and markers."""
+"""Invalid beams: keys, captures and markers."""
 
 from __future__ import annotations
 

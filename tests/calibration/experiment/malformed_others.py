@@ -1,4 +1,4 @@
-"""What else is refused: the whole, pokes and coupons."""
+"""Other invalid input: the experiment as a whole, pokes and coupons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files, outlines and tables that are refused."""
+"""Invalid files, outlines and tables."""
 
 from __future__ import annotations
 

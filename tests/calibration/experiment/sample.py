@@ -1,4 +1,4 @@
-"""One experiment with everything in it that the format has, as plain values to be changed by a test."""
+"""An experiment with every part of the format, as plain values that a test can change."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PNG = b"\x89PNG not looked into"
 
 @dataclass
 class Sample:
-    """Trials in the order beam, poke, coupon; tables by file name; raw: other files."""
+    """Trials in the order beam, poke, coupon; tables by file name; `raw`: other files."""
 
     trials: list[dict[str, Any]]
     tables: dict[str, dict[str, Any]]

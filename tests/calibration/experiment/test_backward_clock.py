@@ -1,4 +1,4 @@
-"""A clock that runs backwards in a homogeneous test: all its lines are said, and left out if asked."""
+"""A clock that runs backwards in a homogeneous test: all lines are reported, and left out on request."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_all_lines_are_said_where_it_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_fewest_rows_are_left_out_if_asked(tmp_path: Path) -> None:
-    # the clock is set back by two rows: what it repeats is less than what follows
+    # the clock is set back by two rows: fewer rows repeat than follow
     data = read_experiment(
         pulled(tmp_path, [0, 1, 2, 3, 4, 5, 6, 7, 6.5, 7.5, 8, 9, 10]), leave_out_rows=True
     )

@@ -1,4 +1,4 @@
-"""How a command ends: 2 for bad input, 130 for Ctrl-C, one sentence either way."""
+"""Exit codes of a command: 2 for invalid input, 130 for Ctrl-C, with one sentence in both cases."""
 
 from __future__ import annotations
 

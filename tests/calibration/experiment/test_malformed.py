@@ -1,5 +1,4 @@
-"""Malformed experiments: each is refused in one sentence that names the file, the key or line, and what was
-expected."""
+"""Invalid experiments are refused in one sentence with the file, the key or line, and the expectation."""
 
 from __future__ import annotations
 
@@ -75,7 +74,7 @@ def _places(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]
 def test_no_value_in_any_place_ends_otherwise(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Odd values anywhere in the file: it reads, or it is refused in one sentence of bearable length."""
+    """An experiment with odd values anywhere is read, or refused in one sentence of limited length."""
     folder = sample().write(tmp_path_factory.mktemp("odd"))
     whole = yaml.safe_load((folder / YAML).read_text())
     *path, last = data.draw(st.sampled_from(list(_places(whole))))

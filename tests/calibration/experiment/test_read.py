@@ -1,4 +1,4 @@
-"""What a good experiment reads as: SI, complete, in the order of the file."""
+"""Reading a valid experiment: SI units, complete, in the order of the file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ import tisim
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, CouponTrial, PokeTrial, Registration, read
 
-# Its source writes 40.10 s where 41 s follow 40.9 s, as its own raw files show: no monotone time.
+# the source has 40.10 s where 41 s follows 40.9 s, as the raw files show: the time is not monotone
 BROKEN_CLOCKS = {
     "silicone-tension": "Dragon-Skin-FX-Pro.csv: line 410: column time_s: expected more than 40.9 s"
 }
@@ -165,7 +165,7 @@ def test_sides_traced_towards_the_clamp_are_turned_round(turned: str, tmp_path: 
 
 
 def test_a_contour_closed_at_its_end_and_a_beam_that_hangs_straight_down(tmp_path: Path) -> None:
-    """The sides may share their last point; the contour may fold past the vertical."""
+    """The sides may share their last point, and the contour may bend beyond the vertical."""
     s = np.linspace(0.02, 1.0, 40)
     angle = 1.8 * np.minimum(2 * s, 1.0)
     way = np.cumsum(np.column_stack([np.cos(angle), -np.sin(angle)]) * 2.5, axis=0)
@@ -252,7 +252,7 @@ def test_any_good_experiment_comes_out_a_thousandth_in_metres(
     # a tip that leaves through a side is refused
     across = max(2.0 * abs(push[i]) / block[i] for i in range(2)) / math.hypot(*push)
     depth = np.minimum(depth, 0.999 / across if across > 0.0 else np.inf)
-    assume(not 0.0 < depth.max() < 1e-3 * block[2])  # taken for metres, and refused
+    assume(not 0.0 < depth.max() < 1e-3 * block[2])  # such depths look like metres, and are refused
     stress = np.array(draw(st.lists(st.floats(-1e5, 1e5), min_size=3, max_size=6)))
     beam = beam_entry(
         "a",
@@ -310,7 +310,7 @@ def test_the_shared_experiments_read() -> None:
 def test_shared_records_with_a_broken_clock_are_refused_and_read_without_it(
     group: str, tmp_path: Path
 ) -> None:
-    """Time that runs back is refused (format 1); the same folder reads once those columns are taken out."""
+    """Time that decreases is refused (format 1); without these columns the same folder is read."""
     source = measured() / "real" / group / "experiment"
     if not source.is_dir():
         pytest.skip(f"no {group} among the measured experiments")

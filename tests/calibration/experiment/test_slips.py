@@ -1,4 +1,4 @@
-"""Slips of a lab: separators, units, keys that were forgotten, files that mean harm. Each is named."""
+"""Common errors in experiments: separators, units, missing keys, malicious files. Each is named."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def test_a_board_that_no_memory_holds(tmp_path: Path, squares: list[int]) -> Non
 
 
 def test_a_long_record_is_averaged_in_bins(tmp_path: Path) -> None:
-    """200,000 samples of a straight line with noise: 4,000 points on it, each the mean of 50."""
+    """200,000 samples of a noisy straight line become 4,000 points, each the mean of 50 samples."""
     rng = np.random.default_rng(3)
     n = 200_000
     stretch = np.linspace(1.0, 2.0, n)

@@ -1,4 +1,4 @@
-"""Made coupons: closed-form nominal stresses of incompressible laws, which share no code with calibration."""
+"""Synthetic homogeneous tests: closed-form stresses of incompressible laws, without code of calibration."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AB = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 
 
 def mooney(c10: float, c01: float, mode: str, s: Array) -> Array:
-    """2 (C10 dI1 + C01 dI2)/2 by the driven stretch (shared by all driven axes); simple shear by gamma."""
+    """Nominal stress in the stretch s of each driven axis; in simple shear s - 1 is the amount of shear."""
     if mode == "uniaxial":
         return 2 * (s - s**-2) * (c10 + c01 / s)
     if mode == "equibiaxial":
@@ -64,8 +64,11 @@ def coupon(
     relative: float = 0.0,
     seed: int = 0,
 ) -> CouponTrial:
-    """A coupon with normal errors: of stress_sd [Pa] and of `relative` in the stress, of stretch_sd in the
-    stretch that the lab writes down."""
+    """Synthetic homogeneous test with normal errors.
+
+    The stress has errors of `stress_sd` [Pa] and, relative to it, of `relative`; the recorded stretch has
+    errors of `stretch_sd`.
+    """
     rng = np.random.default_rng(seed)
     stress = law(mode, stretch) * (1.0 + relative * rng.normal(size=stretch.size))
     stress = stress + (stress_sd or 0.0) * rng.normal(size=stretch.size)

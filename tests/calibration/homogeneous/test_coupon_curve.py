@@ -1,4 +1,4 @@
-"""A material's curve as a spline: the stresses that are solved for, wherever they are asked for."""
+"""A material's stress curve as a spline agrees with the solved stresses."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_a_curve_has_the_stresses_that_are_solved_for(mode: made.CouponMode) -> 
 
 
 def test_its_slope_is_good_for_finite_differences() -> None:
-    """The step of a diagnosis is 1e-4."""
+    """The finite-difference step of a diagnosis is 1e-4."""
     stretch, step = np.linspace(0.5, 3.0, 60), 1e-4
     curve = Curve(RUBBER, "uniaxial")
     slope = (curve.at(stretch + step) - curve.at(stretch)) / step
@@ -38,7 +38,7 @@ def test_beyond_its_ends_it_is_solved_for() -> None:
 
 
 def test_a_law_without_stress_somewhere_is_solved_for_elsewhere() -> None:
-    """St Venant-Kirchhoff's cube tears in tension."""
+    """The St Venant-Kirchhoff law has no equilibrium at large tension."""
     material = tisim.material_from_moduli("st-venant-kirchhoff", shear_modulus=G, bulk_modulus=20 * G)
     stretch = np.array([0.95, 1.05, 4.0])
     found = Curve(material, "equibiaxial").at(stretch)

@@ -1,4 +1,4 @@
-"""Fits find what made the data, inside their intervals, and say what the data do not decide."""
+"""Fits recover the true parameters within their intervals, and report what the data do not determine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from calibration.measurements.homogeneous import FitStatus, fit_coupons, percent
 from calibration.parameters import parametrisation
 
 S = np.linspace(1.02, 3.0, 25)
-# the made laws are incompressible: K/G as high as the coordinates go
+# the true laws are incompressible: K/G at its upper bound
 STIFF = {"bulk_ratio": 5000.0}
 TRUTHS = {
     "neo-hookean": (lambda m, s: made.mooney(1.5e4, 0.0, m, s), {"shear_modulus": 3e4}),
@@ -27,7 +27,7 @@ TRUTHS = {
 
 @pytest.mark.parametrize("law", TRUTHS)
 def test_intervals_hold_the_truth(law: str) -> None:
-    """95 % intervals over 12 draws of the noise: at least 80 % hold it."""
+    """95 % intervals for 12 noise draws: at least 80 % contain the truth."""
     closed, truth = TRUTHS[law]
     inside, widths = [], []
     for seed in range(12):
@@ -43,7 +43,7 @@ def test_intervals_hold_the_truth(law: str) -> None:
                 inside.append(e.low <= truth[e.name] <= e.high)
                 widths.append((e.high - e.low) / truth[e.name])
     assert np.mean(inside) >= 0.8
-    assert np.max(widths) < 0.2  # and they are not wide enough to hold anything
+    assert np.max(widths) < 0.2  # intervals are narrow, too
 
 
 def test_two_ogden_terms_are_found_again() -> None:
@@ -68,7 +68,7 @@ def test_what_the_data_do_not_decide_is_flagged() -> None:
     closed, _ = TRUTHS["mooney-rivlin"]
     trials = [made.coupon("planar", S, closed, stress_sd=400.0)]
     fit = fit_coupons(parametrisation("mooney-rivlin"), trials, starts=1)
-    # planar tension sees C10 + C01 only; K/G it never sees
+    # planar tension depends on C10 + C01 only, and never on K/G
     assert fit.undecided["bulk_ratio"] == "held"
     assert fit.undecided["second_share"] in ("not identified", "at a bound")
     assert "shear_modulus" not in fit.undecided
@@ -111,7 +111,7 @@ def test_bad_calls_are_one_sentence() -> None:
 
 
 def test_where_the_law_is_wrong_the_intervals_widen() -> None:
-    """A curve that stiffens, seen by Neo-Hookean: the misfit, not the tiny noise, sets the width."""
+    """A stiffening curve fitted by the neo-Hookean law: the misfit, not the small noise, sets the width."""
     trials = [made.coupon("uniaxial", S, TRUTHS["ogden"][0], stress_sd=10.0)]
     fit = fit_coupons(parametrisation("neo-hookean"), trials, starts=1, held=STIFF)
     assert fit.identification is not None

@@ -1,4 +1,4 @@
-"""Weights and residuals of homogeneous tests as a fit sees them."""
+"""Weights and residuals of homogeneous tests in a fit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def model_of(*trials: CouponTrial, law: Parametrisation = LAW) -> HomogeneousMod
 
 
 def state(c10: float, c01: float, bulk_ratio: float = 5000.0) -> State:
-    """As nearly incompressible as the coordinates go."""
+    """State of a Mooney-Rivlin material, nearly incompressible by default."""
     shear_modulus = 2.0 * (c10 + c01)
     values = {"shear_modulus": shear_modulus, "second_share": 2.0 * c01 / shear_modulus}
     values["bulk_ratio"] = bulk_ratio
@@ -42,7 +42,7 @@ TRUE = state(1e4, 4e3)
 
 
 def residuals(model: HomogeneousModel, at: State) -> np.ndarray:
-    """Of the measured points alone."""
+    """Residuals of the measured points, without priors."""
     return model.residuals([at])[0][: model.points]
 
 
@@ -57,12 +57,12 @@ def test_residuals_are_model_minus_data_whitened() -> None:
 
 
 def test_stretch_errors_enter_by_the_slope() -> None:
-    """Chi-square of the true law stays one a point, with errors in stretch that are nine tenths of all."""
+    """Chi-square per point of the true law is 1, with stretch errors as nine tenths of the total error."""
     totals = []
     for seed in range(20):
         trial = made.coupon("uniaxial", S, _law, stress_sd=100.0, stretch_sd=0.03, seed=seed)
         totals.append(float((residuals(model_of(trial), TRUE) ** 2).mean()))
-    # 1620 points: chi-square a point has sd 0.035
+    # 1620 points: chi-square per point has sd 0.035
     assert abs(np.mean(totals) - 1.0) < 0.14
     blind = model_of(replace(trial, stretch_sd=0.0))
     assert (residuals(blind, TRUE) ** 2).mean() > 4.0
@@ -79,7 +79,7 @@ def test_without_a_lab_sd_the_scatter_speaks() -> None:
     assert record.estimated
     relative = relative_sd(trial.stretch, trial.stress)
     largest = trial.stress.max()
-    np.testing.assert_allclose(record.sd[0], 0.005 * largest)  # near rest, of the curve's largest stress
+    np.testing.assert_allclose(record.sd[0], 0.005 * largest)  # near rest, from the curve's largest stress
     np.testing.assert_allclose(record.sd[-1], relative * trial.stress[-1])
 
 
@@ -89,7 +89,7 @@ def test_smooth_or_short_curves_get_the_smallest_relative_sd() -> None:
 
 
 def test_repeated_stretches_are_scatter_too() -> None:
-    """A lab that notes its stretches coarsely: eight readings at each."""
+    """Coarsely recorded stretches, with eight readings at each."""
     coarse = np.repeat(np.linspace(1.2, 3.0, 20), 8)
     found = []
     for seed in range(20):
@@ -120,12 +120,12 @@ def test_the_search_takes_it() -> None:
     costs = Problem(parametrisation=LAW, objectives=(objective,)).costs(
         np.array([LAW.start(shear=2.8e4), LAW.start(shear=5.6e4)])
     )
-    # the start's K/G of 300 and its C01 are not the truth's, but near
+    # K/G of 300 and C01 at the start are not the truth's, but close
     assert costs[0] < 5 * objective.points < 0.1 * costs[1]
 
 
 def test_each_point_has_a_positive_sd() -> None:
-    """Also where the lab states none and the curve has no scatter; a curve without stress is refused."""
+    """Also if the lab states none and the curve has no scatter; a curve without stress is refused."""
     trial = made.coupon("planar", S, _law)
     sd = model_of(trial).noise.sd
     assert (np.isfinite(sd) & (sd > 0.0)).all()

@@ -1,4 +1,4 @@
-"""Measured rubber: the errors that are known of these curves, and what one mode says of another."""
+"""Measured rubber: published errors of fits to these curves, and predictions of one mode from another."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def silicone() -> dict[str, CouponTrial]:
-    """Meunier 2008, by mode; each point with the same error in kPa, as published fits weigh them."""
+    """Meunier 2008, by mode; all points have the same error in kPa, the weighting of published fits."""
     found = [t for t in read(MEUNIER).trials if isinstance(t, CouponTrial)]
     return {t.mode: replace(t, stress_sd=10e3) for t in found}
 
@@ -37,7 +37,7 @@ def test_neo_hookean_misses_equibiaxial_tension(silicone: dict[str, CouponTrial]
 
 
 def test_three_ogden_terms_reach_what_is_known(silicone: dict[str, CouponTrial]) -> None:
-    """0.9 % uniaxial, 0.5 % equibiaxial, 2.6 % planar, all modes at once."""
+    """Published errors: 0.9 % uniaxial, 0.5 % equibiaxial, 2.6 % planar, all modes fitted at once."""
     law = parametrisation("ogden", terms=3)
     fit = fit_coupons(law, list(silicone.values()), starts=2, evolution=600, held=STIFF)
     errors = {mode: percent_error(t, fit.material()) for mode, t in silicone.items()}

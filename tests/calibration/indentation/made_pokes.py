@@ -1,4 +1,4 @@
-"""Made pokes: trials from given curves, shared by the tests of this folder."""
+"""Synthetic indentation trials from given curves, shared by the tests of this folder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modul
 
 
 def trial(depth: Array, force: Array, *, time: Array | None = None, **changes: Any) -> PokeTrial:
-    """Straight down on a block of 60 x 60 x 30 mm, a sample every 0.1 s, unless told otherwise."""
+    """Vertical indentation of a block of 60 x 60 x 30 mm; by default one sample every 0.1 s."""
     given = {
         "id": "p1",
         "material": "S1",
@@ -34,7 +34,7 @@ def trial(depth: Array, force: Array, *, time: Array | None = None, **changes: A
 
 
 def hertz(depth: Array, radius: float, material: tisim.Material) -> Array:
-    """Force [N] of a smooth sphere on a half space: 4/3 E/(1 - nu^2) sqrt(R) d^1.5."""
+    """Force [N] of a frictionless sphere on a half space: 4/3 E/(1 - nu^2) sqrt(R) d^1.5."""
     mu, lam = (float(np.asarray(material.parameters[n])) for n in ("mu", "lam"))
     poisson = lam / (2 * (lam + mu))
     plane = 2 * mu * (1 + poisson) / (1 - poisson**2)

@@ -1,4 +1,4 @@
-"""What of a record is compared: all of it, or the first loading, and nothing hidden about the rest."""
+"""The compared part of a record: all of it, or the first loading, with a remark on the rest."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def force(depth: np.ndarray) -> np.ndarray:
 
 
 def first_loading(trial: PokeTrial, **options: Any) -> tuple[Record, str]:
-    """The record up to the end of its first loading, and what is said of the rest."""
+    """The record up to the end of its first loading, and the remarks on the rest."""
     (record,), said = part_of(records_of([trial]), **{"max_depth": None, "first_loading": True, **options})
     return record, "; ".join(said)
 
@@ -33,7 +33,7 @@ def test_it_ends_at_the_reversal() -> None:
     trial = made.trial(depth, force(depth))
     (whole,) = records_of([trial])
     record, said = first_loading(trial)
-    assert UP[-3] <= record.depth[-1] <= UP[-1]  # the mean of the last two samples or three
+    assert UP[-3] <= record.depth[-1] <= UP[-1]  # the mean of the last two or three samples
     assert (np.diff(record.depth) > 0).all()
     left = whole.points - record.points
     assert said == f"p1: {left} of {whole.points} points are not used: {left} after the first loading"
@@ -41,7 +41,7 @@ def test_it_ends_at_the_reversal() -> None:
 
 
 def test_it_ends_at_a_hold_on_the_way() -> None:
-    """Half way a hold of twice the loading's time, in which the force relaxes."""
+    """A hold at half of the depth, of twice the loading's duration, in which the force relaxes."""
     depth = np.concatenate([UP[:31], np.full(120, UP[30]), UP[31:]])
     record, said = first_loading(made.trial(depth, force(depth)))
     assert UP[28] <= record.depth[-1] <= UP[30] * (1 + 1e-9)
@@ -49,12 +49,12 @@ def test_it_ends_at_a_hold_on_the_way() -> None:
 
 
 def test_steps_with_holds_end_at_the_first() -> None:
-    """Pushed in 1 mm at a time at 100 samples a second, held 1 s after each."""
+    """Steps of 1 mm at 100 samples per second, each followed by a hold of 1 s."""
     depth = np.concatenate(
         [np.r_[np.linspace(k, k + 1, 50, endpoint=False), np.full(100, k + 1.0)] for k in range(4)]
     )
     t = made.trial(depth * 1e-3, force(depth * 1e-3), time=0.01 * np.arange(len(depth)))
-    # the means of twelve samples, 0.24 mm apart: none of them of the hold
+    # means of twelve samples, 0.24 mm apart, none of them from the hold
     assert 0.76e-3 < first_loading(t)[0].depth[-1] <= 1e-3
 
 
@@ -72,7 +72,7 @@ def test_noise_in_depth_is_no_reversal() -> None:
     noisy = depth + rng.normal(0.0, 2e-5, depth.shape)
     record, _ = first_loading(made.trial(noisy, force(depth), time=0.01 * np.arange(1202), depth_sd=2e-5))
     assert 2.85e-3 < record.depth[-1] < 3.06e-3
-    # 601 samples on the way in, twelve a point; depths are smoothed: their noise is no part of the force's
+    # 601 samples of loading, twelve per point; smoothing keeps the noise of depths out of the force's
     assert record.points == 50
     assert record.own_sd.mean() == pytest.approx(1e-3 / np.sqrt(12), rel=0.1)
 
@@ -87,14 +87,14 @@ def test_a_steady_or_sparse_record_is_whole() -> None:
 
 
 def test_a_start_above_the_block_is_a_way_to_go() -> None:
-    """2 mm above, 30 degrees from the vertical: the first touch is 2 / cos 30 mm on."""
+    """A start 2 mm above, at 30 degrees from the vertical: first touch is after 2 / cos 30 mm."""
     way = 2e-3 / np.cos(np.pi / 6)
     depth = np.linspace(0.0, way + 3e-3, 200)
     t = made.trial(
         depth, force(depth - way), start=(0.0, 0.0, 0.032), direction=(0.5, 0.0, -float(np.sqrt(0.75)))
     )
     record, _ = first_loading(t)
-    # where neighbours on both sides of first touch are averaged, the force is not that of their mean depth
+    # if samples before and after first touch are averaged, the force is not that of their mean depth
     np.testing.assert_allclose(
         record.force, force(record.depth), atol=500.0 * np.diff(record.depth).max() / 4
     )

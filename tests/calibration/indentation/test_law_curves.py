@@ -1,4 +1,4 @@
-"""Shape coordinates of laws: what of a material changes an indentation's force beside the modulus."""
+"""Shape coordinates of laws: the coordinates, beside the modulus, that change an indentation's force."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def curves(law: Parametrisation) -> LawCurves:
 
 @pytest.mark.parametrize(("law", "terms"), LAWS)
 def test_the_shape_is_all_but_the_modulus(law: str, terms: int) -> None:
-    """For random coordinates: stiffer materials have the same shape, and are simulated as one."""
+    """For random coordinates, a stiffer material has the same shape, and both share one simulation."""
     p = parametrisation(law, terms=terms)
     found = curves(p)
     rng = np.random.default_rng(3)

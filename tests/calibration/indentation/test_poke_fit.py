@@ -1,4 +1,4 @@
-"""A poke and a coupon of one material in one fit."""
+"""An indentation and a homogeneous test of one material in one fit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LAW = parametrisation("mooney-rivlin")
 
 
 def uniaxial(noise: float) -> CouponTrial:
-    """Incompressible Mooney-Rivlin in closed form: 2 (C10 + C01 / s) (s - s^-2)."""
+    """Incompressible Mooney-Rivlin material in closed form: 2 (C10 + C01 / s) (s - s^-2)."""
     s = np.linspace(1.0, 1.8, 30)
     rng = np.random.default_rng(1)
     stress = 2 * (C10 + C01 / s) * (s - s**-2) + rng.normal(0.0, noise, s.shape)
@@ -29,7 +29,7 @@ def uniaxial(noise: float) -> CouponTrial:
 
 
 def poke() -> ModelObjective[IndentationModel]:
-    """Made by tisim on another mesh; the fit has a coarse one."""
+    """Indentation simulated by tisim on another mesh; the mesh of the fit is coarse."""
     truth = tisim.Material(law="mooney-rivlin", parameters={"c10": C10, "c01": C01, "bulk": 300 * 2 * 12e3})
     scene = tisim.Poke(
         material=truth,
@@ -50,7 +50,7 @@ def poke() -> ModelObjective[IndentationModel]:
 
 
 def test_a_poke_and_a_coupon_in_one_fit() -> None:
-    """Both sound, the modulus within its interval; curves are taken a few times, not for each candidate."""
+    """The fit converges, the modulus is within its interval, and curves are simulated a few times only."""
     pokes, trial = poke(), uniaxial(300.0)
     coupons = HomogeneousModel(made.experiment(trial), baseline=Baseline.of_law([trial], LAW))
     both = (ModelObjective(coupons, name="coupon u"), pokes)
@@ -62,7 +62,7 @@ def test_a_poke_and_a_coupon_in_one_fit() -> None:
     assert abs(fit.shear_modulus - 24e3) < 2 * fit.shear_modulus_sd
     assert fit.shear_modulus_sd < 0.05 * 24e3
     assert fit.candidates > 100
-    assert pokes.model.curves.simulated <= 11  # both meshes of the block, and three of a law each time
+    assert pokes.model.curves.simulated <= 11  # two meshes of the block, and three curves of a law each time
 
 
 @pytest.mark.slow

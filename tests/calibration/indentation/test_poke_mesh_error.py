@@ -1,4 +1,4 @@
-"""What pokes state of their mesh's error, against what it is: another solver's forces."""
+"""The stated mesh error of indentations against the true one, from another solver's forces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHEAR = 1e4
 
 @pytest.mark.parametrize("name", ["ball", "thin"])
 def test_the_stated_error_holds_what_another_solver_says(name: str) -> None:
-    """Per depth at most 1.5 of the squared deviation that is stated."""
+    """The mean squared deviation per depth is at most 1.5 times the stated one."""
     entry = TABLE[name]
     setup = entry["setup"]
     tip, radius = setup["tip"], 1e-3 * setup["rod"]

@@ -1,4 +1,4 @@
-"""Indentation as a fit sees it: exact scale, first order in shape, its errors, its failures."""
+"""Indentation in a fit: proportionality to the modulus, first order in shape, errors, failures."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LINE = 450.0 * DEPTH
 FREE = parametrisation("neo-hookean")
 HELD = FREE.holding("bulk_ratio")
 MOONEY = parametrisation("mooney-rivlin").holding("bulk_ratio")
-COARSER = 0.8  # than usual, for speed
+COARSER = 0.8  # coarser than the default, for speed
 
 
 def pokes_of(*trials: PokeTrial, law: Parametrisation = FREE, **options: Any) -> Pokes:
@@ -49,7 +49,7 @@ _SIMULATED: dict[str, tisim.Result] = {}
 
 
 def simulate(scenes: Sequence[tisim.Scene], *, workers: int | None = None) -> list[tisim.Result]:
-    """`tisim.simulate`, each scene once in this file."""
+    """`tisim.simulate`, with every scene simulated once in this file."""
     missing = {repr(scene): scene for scene in scenes if repr(scene) not in _SIMULATED}
     _SIMULATED.update(zip(missing, tisim.simulate(list(missing.values()), workers=workers), strict=True))
     return [_SIMULATED[repr(scene)] for scene in scenes]
@@ -57,7 +57,7 @@ def simulate(scenes: Sequence[tisim.Scene], *, workers: int | None = None) -> li
 
 @pytest.fixture(scope="module", autouse=True)
 def _each_scene_once() -> Iterator[None]:
-    """Many tests begin without a known curve and count how many are asked for."""
+    """Use the cached `simulate`: many tests start without known curves and count the requests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(_curve_cache, "simulate", simulate)
         yield
@@ -65,7 +65,7 @@ def _each_scene_once() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def flat() -> Pokes:
-    """A flat rod 1 mm deep, linearised."""
+    """A flat indenter 1 mm deep, linearised."""
     pokes = pokes_of(made.trial(DEPTH, LINE, depth_sd=1e-5))
     assert pokes.linearise(SOFT)
     return pokes
@@ -78,7 +78,7 @@ def forces(pokes: Pokes, u: np.ndarray) -> np.ndarray:
 def simulated(
     shear_modulus: float, bulk_ratio: float, *, refinement: float = COARSER
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Depth and force of that poke, by tisim alone."""
+    """Depth and force of the same indentation, by tisim alone."""
     scene = tisim.Poke(
         material=FREE.material(at(shear_modulus, bulk_ratio)),
         block=tisim.Block(size=(0.06, 0.06, 0.03)),
@@ -93,8 +93,11 @@ def simulated(
 
 
 def test_force_is_proportional_to_the_modulus(flat: Pokes) -> None:
-    """Seven times as stiff, simulated anew, is what the known curves say: both are solved to 5e-4 of the
-    load, each on its own way (single precision in the far tissue's tangent)."""
+    """The known curves agree with a new simulation of a material seven times as stiff.
+
+    Both are solved to 5e-4 of the load, each with its own iterates (the far tissue's tangent has single
+    precision).
+    """
     load, force = simulated(7 * made.SHEAR, 300.0)
     stiff = at(7 * made.SHEAR)
     curve = flat.model._curve(flat.model.records[0], stiff)
@@ -103,7 +106,7 @@ def test_force_is_proportional_to_the_modulus(flat: Pokes) -> None:
 
 
 def test_residuals_have_the_chi_square_of_the_whole_covariance(flat: Pokes) -> None:
-    """Computed from it and not by whitening."""
+    """The reference is the covariance matrix itself, without whitening."""
     (row,) = flat.residuals(SOFT[None])
     assert row.shape == (flat.size(),) == (flat.points,)
     noise = flat.model.noise
@@ -116,21 +119,21 @@ def test_residuals_have_the_chi_square_of_the_whole_covariance(flat: Pokes) -> N
 
 
 def test_a_late_touch_is_a_nuisance(flat: Pokes) -> None:
-    """Depths all 20 um short, where the lab's sd of the touch is 20 um: it is found, and costs less."""
+    """All depths are 20 um too small, and the stated sd of first touch is 20 um: the nuisance is found."""
     truth, depth = forces(flat, SOFT), flat.model.records[0].depth
     late = made.trial(depth - 2e-5, truth, depth_sd=2e-5, force_sd=1e-4)
     blind, seeing = pokes_of(replace(late, depth_sd=0.0)), pokes_of(late)
     for pokes in (blind, seeing):
         assert pokes.linearise(SOFT)
     assert "touch of p1" not in blind.nuisances(SOFT)
-    # measured shallower than it was: the true depth is more, so the nuisance is positive
+    # measured depths are too small: the true depth is larger, so the nuisance is positive
     assert 0.3 < seeing.nuisances(SOFT)["touch of p1"] < 1.2
     cost = [float((p.residuals(SOFT[None]) ** 2).sum()) for p in (blind, seeing)]
     assert cost[1] < cost[0]
 
 
 def test_a_cause_that_reaches_no_record_changes_nothing() -> None:
-    """An explanation of older records, predicted for one without an inclusion and with another rod."""
+    """A cause found in other records is predicted for a record without inclusion, with another indenter."""
     pokes = pokes_of(made.trial(DEPTH, LINE), law=HELD, effects=effects_of("indentation"))
     assert pokes.linearise(SOFT)
     elsewhere = (Candidate(effect="inclusion-debonded"), Candidate(effect="friction", at="rod 9 mm flat"))
@@ -139,7 +142,7 @@ def test_a_cause_that_reaches_no_record_changes_nothing() -> None:
 
 
 def modulus_sd(pokes: Pokes) -> float:
-    """sd of ln G at the G that fits best, K/G known."""
+    """Standard deviation of ln G at the best G, with K/G known."""
     measured = sum(float(r.force.sum()) for r in pokes.model.records)
     best = made.SHEAR * measured / forces(pokes, SOFT).sum()
     assert pokes.linearise(at(best))
@@ -148,7 +151,7 @@ def modulus_sd(pokes: Pokes) -> float:
 
 
 def test_many_pokes_do_not_average_the_mesh_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One error of all pokes, with the square of the elements' size; what wanders does average."""
+    """All indentations share one error, proportional to the squared element size; the rest averages out."""
     monkeypatch.setattr(_curve_cache, "_KNOWN", {})
     two = [made.trial(DEPTH, LINE), made.trial(DEPTH, LINE, id="p2", start=(0.01, 0.0, 0.03))]
     one, pokes = pokes_of(two[0], law=HELD), pokes_of(*two, law=HELD)
@@ -160,9 +163,9 @@ def test_many_pokes_do_not_average_the_mesh_away(monkeypatch: pytest.MonkeyPatch
 
 
 def test_shape_is_first_order(flat: Pokes) -> None:
-    """Another K/G, simulated anew: the derivative, of the coarser mesh, takes most of its difference.
+    """For another K/G, the derivative on the coarser mesh accounts for most of the simulated difference.
 
-    (Between meshes this coarse the difference itself differs, by 1 % of the force.)
+    (Between meshes this coarse the difference itself varies by 1 % of the force.)
     """
     load, force = simulated(made.SHEAR, 40.0, refinement=0.7 * COARSER)
     change = force / simulated(made.SHEAR, 300.0, refinement=0.7 * COARSER)[1]
@@ -173,7 +176,7 @@ def test_shape_is_first_order(flat: Pokes) -> None:
 
 
 def test_curves_are_taken_again_only_where_the_shape_has_moved(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The finer mesh for all laws; the coarser one at K/G 300 and a step beside it, and both at 30."""
+    """The finer mesh for all laws; the coarser one at K/G 300 and one step beside it, and both at 30."""
     monkeypatch.setattr(_curve_cache, "_KNOWN", {})
     pokes = pokes_of(made.trial(DEPTH, LINE))
     for shear, ratio, simulations in ((1e4, 300, 3), (1e6, 300, 3), (1e4, 310, 3), (1e4, 30, 5)):
@@ -197,9 +200,12 @@ def test_repeats_share_a_simulation(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_modulus_of_a_hertzian_contact() -> None:
-    """Hertz's closed form for a frictionless ball at 0.1 radii: within 1 % and within the interval, which has
-    the mesh's error; a fit without that would claim 0.1 %. At 0.2 radii his small strains and parabola are
-    off by themselves: meshes of 0.75, 0.9, 1 go to 30.8, 31.1, 31.1 kPa there, to 29.4, 29.8, 29.9 here."""
+    """Hertz's closed form for a frictionless ball at 0.1 radii: within 1 %, and within the interval.
+
+    The interval includes the mesh error; a fit without it would state 0.1 %. At 0.2 radii Hertz's small
+    strains and parabola are inaccurate: meshes of 0.75, 0.9, 1 give 30.8, 31.1, 31.1 kPa there, and 29.4,
+    29.8, 29.9 here.
+    """
     soft = FREE.material(SOFT)
     depth = np.linspace(0.0, 2.5e-4, 51)
     rng = np.random.default_rng(0)
@@ -223,7 +229,7 @@ def test_modulus_of_a_hertzian_contact() -> None:
 
 
 def _cut(monkeypatch: pytest.MonkeyPatch, frames: int, *, which: Callable[[tisim.Material], bool]) -> None:
-    """Simulations of some materials end after some frames, as one that does not converge does."""
+    """Truncate simulations of some materials after some frames, as if they had not converged."""
 
     def cut(scenes: Sequence[tisim.Scene], *, workers: int | None = None) -> list[tisim.Result]:
         results = simulate(scenes, workers=workers)
@@ -244,11 +250,11 @@ def _cut(monkeypatch: pytest.MonkeyPatch, frames: int, *, which: Callable[[tisim
     monkeypatch.setattr(_curve_cache, "simulate", cut)
 
 
-SECOND = MOONEY.start(shear=made.SHEAR)  # a material that a search begins with
+SECOND = MOONEY.start(shear=made.SHEAR)  # a material at the start of a search
 
 
 def of_second(step: bool) -> Callable[[tisim.Material], bool]:
-    """That material, or the one a step beside it."""
+    """Predicate for that material or, with `step`, for the material one step beside it."""
     c01, c10 = (MOONEY.material(SECOND).parameters[n] for n in ("c01", "c10"))
     own = float(c01) / float(c01 + c10)
 
@@ -294,7 +300,7 @@ def test_a_poke_without_frames_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> 
         assert not pokes_of(made.trial(DEPTH, LINE), law=MOONEY).linearise(SECOND)
     with pytest.raises(RuntimeError, match="call update_nuisances"):
         pokes.residuals(SECOND[None])
-    # curves known before stay
+    # known curves are kept
     assert pokes.linearise(SECOND)
     before = forces(pokes, SECOND)
     far = SECOND + np.array([0.0, 0.0, 0.3])
@@ -312,7 +318,7 @@ def test_hardly_any_point_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_other_laws_have_curves_of_their_own(flat: Pokes) -> None:
-    """Mooney-Rivlin without its second constant is neo-Hookean but for the volume: the same force."""
+    """Mooney-Rivlin with C01 = 0 differs from neo-Hookean in its volumetric part only: the same force."""
     pokes = pokes_of(made.trial(DEPTH, LINE, depth_sd=1e-5), law=MOONEY)
     u = np.array([np.log(made.SHEAR), np.log(300.0), 0.0])
     assert pokes.linearise(u)
@@ -320,7 +326,7 @@ def test_other_laws_have_curves_of_their_own(flat: Pokes) -> None:
 
 
 def test_neo_hookean_at_the_held_bulk_ratio_is_the_baseline_of_a_diagnosis() -> None:
-    """The very forces and noise."""
+    """Forces and noise are identical."""
     trial = made.trial(DEPTH, LINE, depth_sd=1e-5)
     model = IndentationModel(made.experiment(trial), refinement=COARSER, workers=1)
     state = State(u=SOFT[:1])
@@ -341,7 +347,7 @@ def test_what_cannot_be_simulated_is_refused(tmp_path: Any) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("tip", ["flat", "hemisphere"])
 def test_recovery_from_a_finer_simulation(tip: str) -> None:
-    """Made by tisim itself at refinement 2 and another K/G: G within its 95 % interval, chi-square sound."""
+    """Data of tisim at refinement 2 and another K/G: G within its 95 % interval, chi-square plausible."""
     truth = tisim.material_from_moduli("neo-hookean", shear_modulus=18e3, bulk_modulus=18e3 * 120)
     scene = tisim.Poke(
         material=truth,
@@ -369,7 +375,7 @@ def test_recovery_from_a_finer_simulation(tip: str) -> None:
 
 @pytest.mark.slow
 def test_a_law_that_breaks_down_says_how_far_it_came() -> None:
-    """St Venant-Kirchhoff under a rod turns its elements over at 2 mm."""
+    """The St Venant-Kirchhoff law inverts elements under the indenter at 2 mm."""
     depth = np.linspace(0.0, 4e-3, 41)
     law = parametrisation("st-venant-kirchhoff")
     pokes = pokes_of(made.trial(depth, 450.0 * depth), law=law)

@@ -1,4 +1,4 @@
-"""Intervals by the likelihood, on problems whose answer is a formula."""
+"""Likelihood intervals, on problems with a closed-form solution."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from calibration.inference import Estimate, Polished, Problem, identify, polish,
 from calibration.parameters import parametrisation
 from tisim import Material, laws
 
-SLOPE = 12.0  # of what is read, by the inverse square of the locking stretch
-# of the three unknowns, with unit noise; the last one has a prior of this sd
+SLOPE = 12.0  # derivative of the reading by the inverse square of the locking stretch
+# readings are these combinations of the three unknowns, with unit noise; PRIOR is the sd of the last unknown
 READINGS = np.repeat([[1.0, 0.0, 0.0], [1.0, 1.2, 0.3], [0.0, 1.2, 0.3]], 10, axis=0)
 PRIOR = 1.1
 P = parametrisation("arruda-boyce")
@@ -43,7 +43,7 @@ def problem(locking: float, **options: object) -> tuple[Problem, np.ndarray]:
 def fitted(
     locking: float, *, reduced_chi2: float = 1.0, **options: object
 ) -> tuple[Problem, Polished, dict[str, Estimate], dict[str, Estimate]]:
-    """The problem, its best point, and its estimates by linear theory and by the likelihood."""
+    """The problem, its optimum, and its estimates by linear theory and by the likelihood."""
     made, truth = problem(locking, **options)
     end = polish(made, truth, tolerance=1e-8)
     known = identify(P, end.u, end.jacobian, reduced_chi2=reduced_chi2)
@@ -56,20 +56,20 @@ def fitted(
 
 
 def sd(scale: float = 1.0) -> float:
-    """Of SLOPE / locking^2, the others not known but by the prior."""
+    """Standard deviation of SLOPE / locking^2, with only the prior on the other unknowns."""
     information = READINGS.T @ READINGS / scale + np.diag([0.0, 0.0, PRIOR**-2.0])
     return float(np.linalg.inv(information)[1, 1] ** 0.5)
 
 
 def rise(end: float, best: float, scale: float = 1.0) -> float:
-    """Root of what chi-square rises by from the best locking stretch to another."""
+    """Square root of the increase in chi-square from the best locking stretch to another."""
     return abs(SLOPE / end**2 - SLOPE / best**2) / sd(scale)
 
 
 @pytest.mark.parametrize("scale", [1.0, 3.0])
 @pytest.mark.parametrize("locking", [4.0, 5.0, 6.0])
 def test_ends_are_where_chi_square_has_risen(locking: float, scale: float) -> None:
-    """Also where a misfit, as reduced chi-square, takes from what the data say."""
+    """The reduced chi-square of a misfit reduces the weight of the data."""
     _, _, linear, every = fitted(locking, reduced_chi2=scale)
     found = every["locking"]
     assert rise(found.low, found.value, scale) == pytest.approx(1.96, abs=0.1)
@@ -88,7 +88,7 @@ def test_linear_theory_would_miss_them() -> None:
 
 
 def test_bars_are_those_of_the_data_alone_and_no_wider_than_the_bounds_tell() -> None:
-    """An sd next to which the bounds are not wide is not made less by them."""
+    """Wide standard deviations are limited to that of the bounds."""
     _, end, linear, _ = fitted(4.5)
     best = float(np.exp(end.u[2]))
     assert linear["locking"].sd == pytest.approx(best**2 / (2.0 * SLOPE) * sd(), rel=0.03)
@@ -115,7 +115,7 @@ def test_nothing_is_solved_where_all_is_identified() -> None:
 
 
 def test_an_end_without_answer_stops_short_of_it() -> None:
-    """Where the law has no equilibrium beyond a stretch, the interval ends there."""
+    """If the law has no equilibrium beyond a stretch, the interval ends there."""
     fails = lambda m: m.parameters["locking"] > 4.5  # noqa: E731
     _, _, _, found = fitted(4.0, fails=fails)
     assert 4.5 <= found["locking"].high <= 5.0

@@ -1,4 +1,4 @@
-"""A polish ends where its steps gain nothing."""
+"""A polish ends when its steps bring no improvement."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ Array = NDArray[np.float64]
 
 
 class Slope:
-    """One residual of 2, with a slope that promises to take it away; each step that is tried takes `gain` of
-    chi-square, and no more."""
+    """One residual of 2 whose slope promises to remove it; each attempt lowers chi-square by `gain`."""
 
     parametrisation = SimpleNamespace(bounds=np.array([[-1e3, 1e3]]), spread=np.array([1.0]), names=("x",))
 

@@ -76,7 +76,7 @@ def test_a_stopped_search_goes_on_to_the_same_end() -> None:
 
     def stop(g: Generation) -> None:
         kept.append(g)
-        if len(kept) == 18:  # in the second run of two
+        if len(kept) == 18:  # in the second of two runs
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -95,7 +95,7 @@ def test_what_is_held_is_not_searched_and_one_coordinate_takes_few_candidates(be
     found = search(problem, start=p.start(shear=begin), spread=p.spread, on_progress=seen.append)
     assert found.reason == "converged: tolfun"
     assert problem.costs(found.u[None])[0] < CmaOptions().tolerance
-    assert found.evaluations <= (30 if begin > 1e4 else 60)  # CMA-ES in both coordinates: 190
+    assert found.evaluations <= (30 if begin > 1e4 else 60)  # CMA-ES in two coordinates takes 190
     candidates = np.concatenate([g.candidates for g in seen])
     assert np.unique(candidates[:, 1]).tolist() == [np.log(300.0)]
     assert len(np.unique(candidates[:, 0])) == found.evaluations
@@ -118,7 +118,7 @@ def test_one_coordinate_whose_best_is_at_its_bound() -> None:
 
 
 def held_problem(shear: float, **more: object) -> Problem:
-    """Ten readings of a shear modulus, K/G held."""
+    """Ten readings of a shear modulus, with fixed K/G."""
     p = neo_problem(np.full(10, 100.0 * np.log(shear)), **more)  # type: ignore[arg-type]
     law = p.parametrisation.holding("bulk_ratio")
     curve = p.objectives[0].objective  # type: ignore[attr-defined]
@@ -164,13 +164,13 @@ def test_polish_ends_where_linear_algebra_says() -> None:
     problem = mooney_problem(y)
     p = problem.parametrisation
     end = polish(problem, p.start(shear=1e4))
-    # linear in (c10, c01): the plain least-squares answer
+    # linear in (c10, c01): the solution of linear least squares
     s = np.linspace(1.05, 2.5, 30)
     columns = 2.0 * (s - s**-2)[:, None] * np.column_stack([np.ones_like(s), 1.0 / s]) / 50.0
     c10, c01 = np.linalg.lstsq(columns, y, rcond=None)[0]
     found = p.parameters(end.u)
     assert end.converged
-    # where the quadratic promise is below 0.1 of chi-square, within a third of a standard deviation
+    # the polish ends at a predicted gain in chi-square below 0.1, within a third of a standard deviation
     sd = np.sqrt(np.diag(np.linalg.inv(columns.T @ columns)))
     assert abs(found["c10"] - c10) < 0.33 * sd[0]  # type: ignore[operator]
     assert abs(found["c01"] - c01) < 0.33 * sd[1]  # type: ignore[operator]
@@ -198,7 +198,7 @@ def test_error_bars_are_those_of_linear_theory_and_blind_parameters_are_named() 
     assert shear.seen == "identified"
     assert bulk.seen == "not identified"
     assert [set(d) for d in known.blind] == [{"bulk_ratio"}]
-    # a misfit widens the bars, a lucky fit does not narrow them
+    # a misfit widens the intervals, a small chi-square does not narrow them
     assert known.scale == 1.0
     assert identify(p, end.u, end.jacobian, reduced_chi2=4.0).estimates[0].sd == pytest.approx(2 * shear.sd)
 
@@ -219,7 +219,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 
 
 def test_a_search_from_a_known_minimum_ends_soon_unless_it_finds_a_lower_one() -> None:
-    """Its end costs the same whether its generations are computed or replayed."""
+    """The end is the same if the generations are replayed."""
     p = parametrisation("mooney-rivlin")
     problem = mooney_problem(noisy(0))
     best, _ = run(CmaOptions(seed=3, tolerance=1e-6, max_generations=150))

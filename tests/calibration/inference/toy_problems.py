@@ -1,4 +1,4 @@
-"""Problems with known answers, without any simulation."""
+"""Problems with known solutions, without simulation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class Curve:
-    """Measurements y of f(material) with unit noise; NaN where `fails` says so."""
+    """Measurements y of f(material) with unit noise; the residuals are NaN if `fails(material)`."""
 
     name = "curve"
 
@@ -44,14 +44,14 @@ class Curve:
 
 
 def mooney(m: Material) -> Array:
-    """Nominal stress [in units of 50 Pa] of an incompressible Mooney-Rivlin strip, by the book."""
+    """Nominal stress [in units of 50 Pa] of an incompressible Mooney-Rivlin strip in closed form."""
     c10, c01 = float(m.parameters["c10"]), float(m.parameters["c01"])  # type: ignore[arg-type]
     s = np.linspace(1.05, 2.5, 30)
     return np.asarray(2.0 * (s - s**-2) * (c10 + c01 / s) / 50.0)
 
 
 def neo(m: Material) -> Array:
-    """Ten readings of mu, each to 1 %."""
+    """Ten measurements of ln(mu), each with standard deviation 0.01."""
     return np.full(10, 100.0 * np.log(float(m.parameters["mu"])))  # type: ignore[arg-type]
 
 

@@ -1,4 +1,4 @@
-"""What the commands have in common: verbs, versions, a light start, names with brackets, a full disk."""
+"""Common properties of the commands: verbs, versions, fast start, names with brackets, a full disk."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_help_names_every_domain() -> None:
 
 
 def test_brackets_in_names_are_no_markup(tmp_path: Path) -> None:
-    """rich takes [/red] for the end of a style that was never begun."""
+    """rich takes [/red] as the end of a style."""
     folder = strip(tmp_path / "[" / "red] lab")
     out = tmp_path / "out [" / "bold]"
     words = [str(folder), "--model", "neo-hookean", "--generations", "3", "--workers", "1", "--out", str(out)]

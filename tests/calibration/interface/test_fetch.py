@@ -1,4 +1,4 @@
-"""Public measurements: taken from a server, checked, written as an experiment. The server is local."""
+"""Public measurements: downloaded from a (local) server, checked, written as an experiment."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Quiet(SimpleHTTPRequestHandler):
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, Path]]:
-    """URL and folder of a server of made files; the source's checksums are theirs."""
+    """URL and folder of a server of synthetic files, whose checksums replace the source's."""
     root = tmp_path / "server"
     (source,) = [s for s in fetching.sources() if s.name == "ecoflex-cylinders"]
     sums = {}

@@ -1,4 +1,4 @@
-"""`calibration.fit`, `diagnose`, `reconstruct` and `read_experiment` as a notebook uses them."""
+"""`calibration.fit`, `diagnose`, `reconstruct` and `read_experiment` as used in a notebook."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from calibration.results import DiagnosisResult, Fits, Reconstruction
 
 
 def strip(folder: Path, *, shear_kPa: float = 30.0) -> Path:
-    """A strip pulled to twice its length, incompressible neo-Hookean."""
+    """Experiment with an incompressible neo-Hookean strip stretched to twice its length."""
     stretch = np.linspace(1.05, 2.0, 20)
     stress = shear_kPa * (stretch - stretch**-2)
     return write_experiment(

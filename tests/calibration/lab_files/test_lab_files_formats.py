@@ -1,4 +1,4 @@
-"""Files of testing machines: each format is found from the content and read to the numbers that it holds."""
+"""Files of testing machines: the format is identified by the content, and numbers are read exactly."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_the_examples_are_what_their_maker_writes(tmp_path: Path) -> None:
         ("Oscillation strain (%)", "Oscillation strain", "%", None),
         ("Cycle count", "Cycle count", None, None),
         ("Shear rate (1/s)", "Shear rate", "1/s", None),
-        ("Stress (mpa)", "Stress (mpa)", None, "stress"),  # milli or mega: not guessed
+        ("Stress (mpa)", "Stress (mpa)", None, "stress"),  # milli or mega: refused
         ("Torque (N.m)", "Torque", "N.m", None),
         ("Time at Break (s)", "Time at Break", "s", None),
         ("Date and time", "Date and time", None, None),
@@ -91,12 +91,12 @@ def test_headers_state_a_quantity_and_a_unit(
     ],
 )
 def test_a_format_is_found_from_the_content(file: str, format: str, names: list[str], tmp_path: Path) -> None:
-    copy = tmp_path / "record.dat"  # the name says nothing
+    copy = tmp_path / "record.dat"  # the name states no format
     copy.write_bytes((SAMPLES / file).read_bytes())
     found, tests = read_lab_file(copy)
     assert (found, [t.name for t in tests]) == (format, names)
     own = [i.name for i in importers() if formats._recognises(i, tests[0].file)]
-    assert own == [format]  # and no other takes it
+    assert own == [format]  # and no other format matches
 
 
 def test_decimal_commas_and_parameters_of_instron() -> None:
@@ -190,7 +190,7 @@ def test_two_formats_are_never_guessed_between(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("file", ["instron.csv", "zwick.txt", "trios.txt", "mach-1.txt", "plain.csv"])
 def test_damage_is_read_or_refused_in_a_sentence(file: str, tmp_path: Path) -> None:
-    """Bytes changed, cut out or doubled, 40 times: an error of any other kind is a fault of the program."""
+    """Changed, removed or inserted bytes, 40 times: no error other than InputError occurs."""
     rng = np.random.default_rng(7)
     whole = (SAMPLES / file).read_bytes()
     for _ in range(40):

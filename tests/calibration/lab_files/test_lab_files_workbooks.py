@@ -1,4 +1,4 @@
-"""Workbooks of testing machines: read by openpyxl, or refused in a sentence."""
+"""Workbooks of testing machines are read by openpyxl, or refused in one sentence."""
 
 from __future__ import annotations
 
@@ -41,8 +41,11 @@ def workbook(path: Path, sheets: dict[str, list[list[object]]]) -> Path:
 
 
 def another_program(path: Path, **parts: str) -> Path:
-    """A workbook as another program writes it: two sheets without styles, texts inline in the one, shared in
-    the other, which states a wrong size and leaves out empty rows and cells. `parts` take others' places."""
+    """Write a workbook like another program's, with two sheets without styles.
+
+    Texts are inline in the first sheet and shared in the second, which states a wrong size and leaves out
+    empty rows and cells. `parts` replace files of the archive.
+    """
     main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
     office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
     package = "http://schemas.openxmlformats.org/package/2006"
@@ -102,13 +105,13 @@ def test_a_table_in_a_workbook(tmp_path: Path) -> None:
 def test_a_workbook_of_another_program(tmp_path: Path) -> None:
     found, (test,) = read_lab_file(another_program(tmp_path / "other.xlsx"))
     assert (found, test.name, test.rows) == ("zwick", "Probe 1", (6, 7, 8, 9))
-    assert test.columns[1].cells[3] == "0.30000000000000004"  # nothing is lost
+    assert test.columns[1].cells[3] == "0.30000000000000004"  # full precision
     assert column(test, "Standardweg").tolist() == [0.0, 0.1e-3, 0.2e-3, (0.1 * 3) * 1e-3]
     assert column(test, "Standardkraft").tolist() == [0.0, -0.1, -0.2, -0.3]
 
 
 def test_cells_keep_their_values(tmp_path: Path) -> None:
-    """Numbers without loss; what is no number does not become one, a date's count of days for instance."""
+    """Numbers are exact, and other values do not become numbers, for example the day count of a date."""
     day = datetime.date(2026, 11, 23)
     values = [0.1, 1e-300, -7, 10**15, True, day, datetime.time(9, 30), " a ", None, "#DIV/0!"]
     (sheet,) = open_lab_file(workbook(tmp_path / "cells.xlsx", {"Sheet1": [[], values]})).sheets
@@ -118,7 +121,7 @@ def test_cells_keep_their_values(tmp_path: Path) -> None:
 
 
 def test_openpyxl_warns_nobody(tmp_path: Path) -> None:
-    """Of styles that it does not find, for instance."""
+    """openpyxl's warnings, for example about missing styles, are suppressed."""
     main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
     path = another_program(tmp_path / "a.xlsx", **{"xl/styles.xml": f'<styleSheet xmlns="{main}"/>'})
     with pytest.warns(UserWarning, match="no stylesheet"):
@@ -176,7 +179,7 @@ def test_what_is_no_workbook_is_refused(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_damage_is_read_or_refused_in_a_sentence(tmp_path: Path) -> None:
-    """Bytes of its parts changed, 60 times: an error of any other kind is a fault of the program."""
+    """Changed or removed bytes of the archive's files, 60 times: no error other than InputError occurs."""
     rng = np.random.default_rng(7)
     with zipfile.ZipFile(another_program(tmp_path / "whole.xlsx")) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}

@@ -1,4 +1,4 @@
-"""Added from outside the package by one file and one registration: an effect, a kind of measurement."""
+"""An effect and a measurement, each added from outside the package by one file and one registration."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def warming() -> Iterator[None]:
 
 
 def pulled(softening: float) -> Experiment:
-    """Three times out and back in simple tension, softer with each point."""
+    """Three cycles of simple tension, with a stress that softens from point to point."""
     ramp = np.linspace(1.0, 1.5, 40)
     stretch = np.concatenate([ramp, ramp[-2::-1]] * 3)
     clean = SHEAR * (stretch - stretch**-2) * (1.0 - softening * np.arange(stretch.size) / stretch.size)
@@ -96,12 +96,12 @@ def test_without_its_registration_it_has_no_name() -> None:
     assert "warming" not in {name for names in found.finding.equivalent for name in names}
 
 
-# -- a kind of measurement: a thin rod that is twisted, moment against angle --
+# -- a measurement: torsion of a thin rod, moment against angle --
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Twist:
-    """A trial, and its own record: moment = G polar angle / length."""
+    """A trial that is its own record: moment = G * stiffness * angle, with the polar moment over length."""
 
     name: str
     material: str
@@ -125,7 +125,7 @@ class Twist:
 
 @dataclass(frozen=True, kw_only=True)
 class TwistEffect(EffectModel):
-    """slack: of the angle [rad]."""
+    """`slack` is a lost angle [rad]."""
 
     slack: float = 0.0
 
@@ -230,7 +230,7 @@ def test_a_kind_of_ones_own_is_diagnosed(tmp_path: Path) -> None:
     assert told["gain"]["rms_mNm_after"] < told["gain"]["rms_mNm_before"]
     assert told["extended"]["shear_modulus_Pa"]["A"] == pytest.approx(SHEAR, rel=0.01)
     assert diagnose(model_of(twisted(0.0))).finding.verdict == "none"
-    # page and cards come by themselves
+    # page and cards need no further code
     assert write_report(found, model, tmp_path, title="torsion")[0].exists()
     assert {p.name for p in write_cards(tmp_path / "cards", found, experiment)} == {"A.yaml", "rig.yaml"}
 

@@ -1,4 +1,4 @@
-"""A measurement model as an objective of a fit: the model's chi-square, each prior counted once."""
+"""A measurement model as the objective of a fit: the model's chi-square, with each prior counted once."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ READINGS = np.random.default_rng(4).standard_normal(6)
 
 
 class Timed(MeasurementModel):
-    """Six readings of ln(G / 1 kPa) exp(-t), t an extra; the second half are of another trial."""
+    """Six readings of ln(G / 1 kPa) exp(-t), t an extra coordinate; the last three are of another trial."""
 
     kind = "timed"
 
@@ -69,7 +69,7 @@ def timed() -> ModelObjective[Timed]:
 
 
 def test_extras_are_profiled_with_their_priors() -> None:
-    """Chi-square at u is the least of the model's own over the extra; the law's prior is the problem's."""
+    """Chi-square at u is the model's minimum over the extra; the law's prior belongs to the problem."""
     objective = timed()
     u = np.log([9e3, 150.0])
     assert objective.linearise(u)
@@ -85,7 +85,7 @@ def test_extras_are_profiled_with_their_priors() -> None:
     assert objective.points == 6
     assert objective.extras == pytest.approx(best.x, abs=0.02)
     assert rows @ rows == pytest.approx(best.fun, rel=1e-3)
-    # and beside the point, where the extra follows
+    # and at another point, where the extra coordinate follows
     problem = Problem(parametrisation=LAW, objectives=(objective,))
     u = v = u + np.array([0.05, 0.0])
     assert problem.costs(v[None])[0] == pytest.approx(
@@ -116,7 +116,7 @@ def test_a_model_of_specimens_is_refused() -> None:
 
 
 def test_coupons_are_whitened_stress(tmp_path: Path) -> None:
-    """Of all trials of a material together, over the lab's error."""
+    """Stress residuals of all trials of a material, divided by the stated error."""
     s = np.linspace(1.05, 2.0, 20)
     pulls = {f"{k}.csv": {"stretch": s, "nominal_stress_kPa": k * (s - s**-2)} for k in (28.0, 31.0)}
     entries = [coupon_entry(f"pull-{n}", n, stress_sd_kPa=0.5, stretch_sd=0.0) for n in pulls]

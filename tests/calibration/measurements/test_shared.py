@@ -1,4 +1,4 @@
-"""What all kinds of measurement share: noise, strokes, folds, baselines, names that had two meanings."""
+"""Shared by all measurement models: noise, strokes, folds, baselines, renamed effects."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_whitened_residuals_have_the_chi_square_of_the_whole_covariance(symmetri
     z = noise.whiten(r)
     assert z @ z == pytest.approx(r[used] @ np.linalg.solve(covariance, r[used]))
     assert noise.whiten(np.column_stack([r, 2.0 * r]))[:, 1] == pytest.approx(2.0 * z)
-    # profiled: what is left over its own sd, and the nuisances at their most likely values
+    # profiled form: remaining residuals over their sd, and the nuisances' most likely values
     b, left = noise.estimate(r), noise.remove(r)[used] / noise.sd[used]
     assert left @ left + b @ b == pytest.approx(z @ z)
 
@@ -84,7 +84,7 @@ def test_a_memory_asks_once_and_forgets_the_oldest() -> None:
     assert squares([1, 2, 1]) == [1, 4, 1]
     assert squares([2, 3]) == [4, 9]
     assert asked == [1, 2, 3]
-    assert squares([5, 6, 7, 8, 1]) == [25, 36, 49, 64, 1]  # more than it keeps
+    assert squares([5, 6, 7, 8, 1]) == [25, 36, 49, 64, 1]  # more than the cache keeps
     assert squares([2]) == [4]
     assert asked == [1, 2, 3, 5, 6, 7, 8, 2]
 
@@ -105,7 +105,7 @@ class Spring:
 
 
 class Springs(MeasurementModel):
-    """Three springs, one a specimen, of force u^2; a spring longer than 1 has no force."""
+    """Three springs, one per specimen, with force u^2 for lengths up to 1; beyond, there is no solution."""
 
     kind = "springs"
 
@@ -141,7 +141,7 @@ def test_a_difference_goes_to_the_side_that_has_an_answer_for_its_own_coordinate
     expected = np.zeros((4, 3))
     expected[[0, 1], 0], expected[2, 1], expected[3, 2] = 1.0 + h, 2.0 - h, 0.4 + h
     assert by_u[:4] == pytest.approx(expected, abs=1e-9)
-    assert model.asked == 3  # where it is, all springs longer, all shorter
+    assert model.asked == 3  # the state itself, all springs longer, all shorter
 
 
 def test_strokes_are_cut_where_a_record_turns_by_more_than_its_noise() -> None:
@@ -172,7 +172,7 @@ class Piece:
 
 
 def test_a_fit_and_a_diagnosis_are_two_baselines_of_one_material() -> None:
-    """The same shear modulus and K/G by the coordinates of either are one material."""
+    """The same shear modulus and K/G in the coordinates of both give the same material."""
     pieces = [Piece("A", "one"), Piece("A", "two")]
     each = Baseline.per_specimen(pieces, bulk_ratio=300.0)
     law = parametrisation("neo-hookean")
@@ -188,13 +188,13 @@ def test_a_fit_and_a_diagnosis_are_two_baselines_of_one_material() -> None:
     assert whole.shear_moduli(v) == pytest.approx({"A": 2e4})
     assert whole.modulus_weights("A", v) @ np.array([1.0, 0.0]) == pytest.approx(1.0)
     assert each.modulus_weights("A", u) == pytest.approx([0.5, 0.5])
-    # the law's own prior of K/G holds for a fit; specimens are held together in a diagnosis
+    # a fit has the law's prior on K/G, a diagnosis the prior on the scatter of specimens
     assert each.prior.shape == (1, 2)
     assert whole.prior_residuals(v) == pytest.approx([0.0])
 
 
 def test_one_name_has_one_meaning() -> None:
-    """An effect that several kinds share is one entry of the catalogue."""
+    """An effect shared by several measurements is one entry of the catalogue."""
     known: dict[str, object] = {}
     for kind in kinds():
         for name, model in effects_of(kind).items():
@@ -211,7 +211,7 @@ def test_names_of_earlier_versions_are_understood() -> None:
 
 
 def test_a_model_of_one_law_refuses_another_in_a_sentence() -> None:
-    """Of a kind that takes `--law` and does not say how: commands print what is refused, exit code 2."""
+    """For a measurement that takes `--law` but has one law: commands print the sentence, exit code 2."""
     model = IndentationModel.__new__(IndentationModel)
     with pytest.raises(OptionError, match="indentation has one law only") as refused:
         model.with_law("ogden", 2)

@@ -1,4 +1,4 @@
-"""Dice against closed forms, its two methods against one another, and its refusals."""
+"""Dice coefficients against closed forms, agreement of the two methods, refusals."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def moved(body: trimesh.Trimesh, by: tuple[float, float, float]) -> trimesh.Trim
 
 
 def lens(radius: float, gap: float) -> float:
-    """Volume that two spheres share whose centres are `gap` apart."""
+    """Volume of the intersection of two spheres with centres `gap` apart."""
     return np.pi * (4 * radius + gap) * (2 * radius - gap) ** 2 / 12
 
 
@@ -29,7 +29,7 @@ def test_two_spheres(method, gap: float) -> None:
 
 @pytest.mark.parametrize("method", ["boolean", "winding"])
 def test_cylinder_displaced_sideways(method) -> None:
-    """The paper's Dice of 0.95 is 0.79 mm of lateral shift of a 20 mm beam."""
+    """The paper's Dice of 0.95 corresponds to a lateral shift of 0.79 mm of a 20 mm beam."""
     rod = trimesh.creation.cylinder(radius=0.01, height=0.1, sections=256)
     d = 0.00079
     shared = 2 * 1e-4 * np.arccos(d / 0.02) - d / 2 * np.sqrt(4e-4 - d**2)
@@ -54,7 +54,7 @@ def test_same_and_disjoint(method) -> None:
 
 
 def test_far_from_the_origin() -> None:
-    """manifold3d works in single precision, which ten metres away would cost half a per mille."""
+    """manifold3d has single precision, with an error of 0.5 per mille at ten metres."""
     box = trimesh.creation.box((0.02, 0.02, 0.1))
     away = (10.0, -7.0, 3.0)
     near = dice(box, moved(box, (0.001, 0, 0)))
@@ -64,7 +64,7 @@ def test_far_from_the_origin() -> None:
 
 
 def test_the_winding_method_takes_a_surface_that_crosses_itself() -> None:
-    """Two overlapping boxes in one surface: the part they share counts once."""
+    """Two overlapping boxes in one surface: their intersection counts once."""
     box = trimesh.creation.box((0.02, 0.02, 0.02))
     crossed = trimesh.util.concatenate([box, moved(box, (0.01, 0, 0))])
     whole = moved(trimesh.creation.box((0.03, 0.02, 0.02)), (0.005, 0, 0))
@@ -90,7 +90,7 @@ def test_refusals() -> None:
 
 
 def test_a_failing_boolean_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No other method steps in for it."""
+    """There is no fallback to another method."""
     box = trimesh.creation.box((0.02, 0.02, 0.02))
 
     def fails(*_: object, **__: object) -> None:

@@ -15,7 +15,7 @@ def cylinder(radius: float, *, sections: int = 256) -> trimesh.Trimesh:
 
 
 def test_point_to_surface_is_exact_below_a_tenth_of_a_millimetre() -> None:
-    """Where trimesh's own proximity query, in metres, is not."""
+    """trimesh's own proximity query, in metres, is not exact there."""
     rod = trimesh.creation.box((0.02, 0.02, 0.1)).subdivide().subdivide().subdivide()
     points = np.random.default_rng(1).uniform(-1, 1, (200, 3)) * [0.0099, 0.0099, 0.0499]
     true = (np.array([0.01, 0.01, 0.05]) - np.abs(points)).min(axis=1)
@@ -42,7 +42,7 @@ def test_concentric_spheres() -> None:
 
 
 def test_concentric_cylinders() -> None:
-    """Caps in one plane: the inner side is nearer to the outer cap than to the outer side near its ends."""
+    """With coplanar caps, the inner side is nearer to the outer caps than to the outer side near its ends."""
     R, r, L = 0.010, 0.008, 0.1
     d = R - r
     ring = 2 * np.pi * quad(lambda rho: (rho - r) * rho, r, R)[0]
@@ -54,13 +54,13 @@ def test_concentric_cylinders() -> None:
 
 @pytest.mark.parametrize("shift", [0.00079, 0.003])
 def test_cylinder_displaced_sideways(shift: float) -> None:
-    """On the side |distance to the other axis - R|; the caps stay in their planes."""
+    """On the side the distance is |distance to the other axis - R|; the caps stay in their planes."""
     R, L = 0.010, 0.1
 
     def gap(rho: float, phi: float) -> float:
         return float(np.hypot(rho * np.cos(phi) - shift, rho * np.sin(phi)) - R)
 
-    # inside the other cylinder the way to the plane of a cap may be the shorter one, within g of either end
+    # inside the other cylinder the plane of a cap may be nearer, within g of either end
     side = quad(lambda phi: abs(gap(R, phi)) - max(-gap(R, phi), 0.0) ** 2 / L, 0, np.pi)[0] / np.pi
     grid_rho, grid_phi = np.meshgrid((np.arange(400) + 0.5) / 400 * R, (np.arange(400) + 0.5) / 400 * np.pi)
     outside = np.maximum(np.hypot(grid_rho * np.cos(grid_phi) - shift, grid_rho * np.sin(grid_phi)) - R, 0.0)
@@ -68,13 +68,16 @@ def test_cylinder_displaced_sideways(shift: float) -> None:
     true = (side * L + cap * R) / (L + R)
     other = cylinder(R).apply_translation((shift, 0.0, 0.0))
     assert surface_distance(cylinder(R), other) == pytest.approx(true, rel=3e-3)
-    assert side == pytest.approx(2 * shift / np.pi, rel=0.02)  # and this is R (1 - Dice)
+    assert side == pytest.approx(2 * shift / np.pi, rel=0.02)  # equals R (1 - Dice)
 
 
 def test_hd95_is_the_larger_direction() -> None:
-    """A box against one 10 mm longer: 4.2 % of the longer one's area is its end face, 10 mm away, and the
-    next 0.8 % reach 1 mm along its sides; only 4.5 % of the shorter one's area is away from the longer one.
-    Ten of 8,192 points are 0.15 mm of its sides."""
+    """A box against one that is 10 mm longer.
+
+    4.2 % of the longer box's area is its end face, 10 mm away, and the next 0.8 % reach 1 mm along its sides;
+    only 4.5 % of the shorter box's area is away from the longer one. Ten of 8,192 points correspond to 0.15
+    mm of the sides.
+    """
     short = trimesh.creation.box((0.02, 0.02, 0.1))
     long = trimesh.creation.box((0.02, 0.02, 0.11)).apply_translation((0, 0, 0.005))
     assert hd95(short, long) == pytest.approx(0.009, abs=1.5e-4)
@@ -95,7 +98,7 @@ def test_figures_can_be_made_again() -> None:
     assert surface_distance(a, b, seed=1) == pytest.approx(surface_distance(a, b, seed=2), rel=1e-3)
 
 
-# As VTK's cell locator gave them (pyvista 0.46: find_closest_cell of each point), before it was replaced.
+# values of VTK's cell locator (pyvista 0.46: find_closest_cell of each point), which was used earlier
 BY_VTK = {
     ("box", "rod"): (0.0017092104217383793, 0.004912090162183505),
     ("ball", "far"): (0.03267246941445546, 0.048562905866707584),
@@ -119,7 +122,7 @@ def test_distances_are_those_of_vtk(pair: tuple[str, str]) -> None:
 
 
 def test_triangles_of_all_sizes_are_searched() -> None:
-    """Against every triangle of the surface, one by one: long caps, small facets, one without area."""
+    """Against samples of every triangle: long caps, small facets, one without area."""
     rod = cylinder(0.01, sections=64).subdivide()
     flat = np.vstack([rod.faces, [[0, 0, 1]]])
     surface = trimesh.Trimesh(rod.vertices, flat, process=False)
@@ -131,4 +134,4 @@ def test_triangles_of_all_sizes_are_searched() -> None:
         spread = a[:, None] + u[:, None] * (b - a)[:, None] + v[:, None] * (c - a)[:, None]
         sampled = np.linalg.norm(spread - point, axis=2).min()
         assert found <= sampled + 1e-12
-        assert found > sampled - 1e-3  # the grid's own coarseness
+        assert found > sampled - 1e-3  # resolution of the samples

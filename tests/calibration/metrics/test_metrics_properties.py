@@ -1,4 +1,4 @@
-"""What every metric must keep: symmetry, rigid motion, range, and zero for the same body."""
+"""Properties of every metric: symmetry, invariance under rigid motion, range, and equality of bodies."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ angle = st.floats(-3.0, 3.0)
 
 @st.composite
 def bodies(draw: st.DrawFn) -> trimesh.Trimesh:
-    """An ellipsoid somewhere near the origin, turned."""
+    """An ellipsoid near the origin, rotated."""
     body = trimesh.creation.icosphere(subdivisions=2)
     body.apply_scale([draw(size), draw(size), draw(size)])
     body.apply_transform(motion((draw(angle), draw(angle), 0.0), (draw(offset), draw(offset), draw(offset))))

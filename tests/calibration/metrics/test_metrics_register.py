@@ -1,4 +1,4 @@
-"""A metric of one's own, registered from outside the package: one object, one call."""
+"""A user's metric, registered from outside the package: one object, one call."""
 
 from __future__ import annotations
 

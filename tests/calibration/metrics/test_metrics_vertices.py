@@ -1,4 +1,4 @@
-"""The vertex variants by hand, and the floor that volume nodes give in closed form."""
+"""The vertex variants by hand, and the bias from volume nodes in closed form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_by_hand() -> None:
 
 
 def test_volume_nodes_are_a_third_of_the_radius_away_from_their_own_surface() -> None:
-    """Nodes spread evenly over a disc lie R/3 from its rim on average, 95 % within R (1 - sqrt(0.05))."""
+    """Uniform nodes of a disc are R/3 from its rim on average, and 95 % lie within R (1 - sqrt(0.05))."""
     R = 0.01
     k = np.arange(20_000) + 0.5
     radius, turn = R * np.sqrt(k / len(k)), k * np.pi * (3 - np.sqrt(5))

@@ -1,4 +1,4 @@
-"""`calibration.new`: experiments from files of machines, with answers or questions; the board to print."""
+"""`calibration.new`: experiments from files of machines, with answers or questions; the printed board."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from calibration.photo import find_board
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "datasets" / "lab-files"
 HEAVY = ("cma", "cv2", "matplotlib", "scipy.stats", "pyvista", "torch", "trimesh", "jinja2", "yaml")
-MU = 25e3  # Pa, of the made files
+MU = 25e3  # Pa, of the synthetic files
 
 
 def new(*words: str | Path, typed: str | None = None) -> tuple[int, str, str]:
@@ -44,7 +44,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_every_record_holds_the_material_that_it_was_made_of(made: Path) -> None:
-    """Units, signs, areas, lengths and zeros of five machines, by the modulus that comes out of each."""
+    """Units, signs, areas, lengths and zeros of five machines, checked by the resulting modulus."""
     trials = {t.id: t for t in read(made).trials}
     modes = {"pull": "uniaxial", "squeeze": "uniaxial", "shear": "simple-shear", "strip": "uniaxial"}
     reach = {"pull": 2.0, "squeeze": 0.7, "shear": 1.5, "strip": 1.6}
@@ -74,11 +74,11 @@ def test_what_was_taken_by_default_is_written_and_said(made: Path) -> None:
     ):
         assert line in text
     assert "pull.stretch_sd" in read(made).notes
-    assert "shear.stretch_sd" not in text  # the lab said that one
+    assert "shear.stretch_sd" not in text  # the lab stated this one
 
 
 def test_a_folder_makes_itself_again(made: Path, tmp_path: Path) -> None:
-    """Its answers name the files as they lie in it."""
+    """Its answers name the files by their paths in the folder."""
     again = tmp_path / "again"
     assert new("--yes", made / "answers.yaml", "--out", again)[0] == 0
     for path in filter(Path.is_file, made.rglob("*")):
@@ -106,7 +106,7 @@ def test_show_says_what_a_file_holds() -> None:
 
 
 def test_a_terminal_is_asked_for_what_is_missing(tmp_path: Path) -> None:
-    """A strip without units: explained, asked again after a slip, defaults by Enter, and the answers kept."""
+    """A strip without units: explanations, repeated questions after errors, defaults, and saved answers."""
     record = tmp_path / "my strip.csv"
     text = (SAMPLES / "plain.csv").read_text(encoding="utf-8").replace("strain %", "strain")
     record.write_text(text, encoding="utf-8")
@@ -134,7 +134,7 @@ def test_a_terminal_is_asked_for_what_is_missing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("reply", "code"), [("n", 2), ("y", 0)])
 def test_a_terminal_is_asked_about_the_implausible(reply: str, code: int, tmp_path: Path) -> None:
-    """A silicone of 75 MPa that stretches to 1.6: its stress is in kPa, not in MPa."""
+    """A silicone of 75 MPa stretched to 1.6: the stress is in kPa, not in MPa."""
     record = tmp_path / "strip.csv"
     text = (SAMPLES / "plain.csv").read_text(encoding="utf-8").replace("kPa", "MPa")
     record.write_text(text, encoding="utf-8")
@@ -152,10 +152,10 @@ def test_a_terminal_is_asked_about_the_implausible(reply: str, code: int, tmp_pa
 def test_photographs_become_captures_of_one_beam(tmp_path: Path) -> None:
     photos = ROOT / "datasets" / "measured" / "photographs" / "photos"
     first, second = photos / "cantilever-060.jpg", photos / "cantilever-100.jpg"
-    typed = ["two", "bar", "silicone", "bar"]  # name, id, material, the second of the same beam
+    typed = ["two", "bar", "silicone", "bar"]  # name, id, material; the second one is of the same beam
     typed += ["circle", "10", "", "100", "", "20", "clamped-free", ""]
     typed += ["60", "9 6", "8", "120", "9x6", "8", "1000", "5"]
-    typed += ["", "12 26"]  # the beam's rear lies on the board; where the corner of its squares is
+    typed += ["", "12 26"]  # the beam's back lies on the board; position of the corner of its squares
     out = tmp_path / "lab"
     code, shown, said = new(first, second, "--out", out, typed="\n".join(typed) + "\n")
     assert code == 0, (shown, said)
@@ -204,7 +204,7 @@ def test_further_photographs_of_the_board_come_along(tmp_path: Path) -> None:
 
 
 def test_the_printed_board_is_found_at_its_true_size() -> None:
-    """Its squares, drawn at 4 dots a millimetre, as the reconstruction of photographs sees them."""
+    """Its squares, rendered at 4 dots per millimetre and found as in the reconstruction of photographs."""
     text = board_pdf(BoardAnswers(squares=(9, 6), square_mm=12.5, page="a4")).decode("latin-1")
     page = [float(v) for v in re.search(r"MediaBox \[(.*?)\]", text)[1].split()]  # type: ignore[index]
     assert page[2:] == pytest.approx([297 / 25.4 * 72, 210 / 25.4 * 72], abs=1e-2)
@@ -241,7 +241,7 @@ def test_the_command_starts_light_and_is_listed() -> None:
 
 
 def test_what_was_typed_is_shown_where_it_cannot_be_used(tmp_path: Path) -> None:
-    """A section that contradicts the outline is found at the end; the end of the input stops the command."""
+    """A section that contradicts the outline is found at the end; the end of input stops the command."""
     outline = ROOT / "datasets/measured/bench/clean/beams/S0.5-cantilever-100-t100.csv"
     typed = [
         "",
@@ -272,7 +272,7 @@ def test_what_was_typed_is_shown_where_it_cannot_be_used(tmp_path: Path) -> None
 
 
 def test_a_position_begins_anywhere_and_a_clock_may_slip(tmp_path: Path) -> None:
-    """A cylinder of 20 mm, pressed by 4 mm from a position of 112 mm downwards; two rows came late."""
+    """A cylinder of 20 mm, compressed by 4 mm from a position of 112 mm downwards; two rows are late."""
     time = [0.0, 1.0, 2.0, 1.5, 3.0, 4.0, 3.9, 5.0, 6.0, 7.0, 8.0]
     rows = "".join(f"{t},{112 - 0.5 * t:.3f},{0.8 * t:.3f}\n" for t in time)
     (tmp_path / "a.csv").write_text("Time/s,Position (mm),Load (N)\n" + rows)

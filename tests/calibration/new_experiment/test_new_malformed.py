@@ -1,4 +1,4 @@
-"""Malformed files of machines, and answers that do not fit: one sentence, exit code 2, nothing written."""
+"""Invalid files of machines, and invalid answers: one sentence, exit code 2, nothing written."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Change = Callable[[str], str | bytes]
 
 
 def swap(old: str, new: str) -> Change:
-    """Replace the first place; it has to be there."""
+    """Replace the first occurrence, which must exist."""
 
     def change(text: str) -> str:
         assert old in text
@@ -29,7 +29,7 @@ def swap(old: str, new: str) -> Change:
 
 
 def lines(start: int, end: int, *instead: str) -> Change:
-    """Replace lines, counted from 1, both included."""
+    """Replace lines `start` to `end`, counted from 1, both included."""
 
     def change(text: str) -> str:
         rows = text.split("\n")
@@ -42,7 +42,7 @@ def same(text: str) -> str:
     return text
 
 
-# trial of datasets/lab-files/answers.yaml, change of its file, change of its answers, where and what is said
+# trial of datasets/lab-files/answers.yaml, change of its file, change of its answers, location and message
 CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
     # files
     "empty": ("pull", lambda _: "", {}, "instron.csv:", "the file is empty"),
@@ -134,7 +134,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "instron.csv:",
         "expected decimals with a point, as the answers say",
     ),
-    # what the formats promise
+    # violations of the formats
     "zwick without units": (
         "squeeze",
         lambda text: text.replace('"s"\t"mm"\t"N"\n', ""),
@@ -193,7 +193,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "column Time: expected more than 6 s before it, got 6; leave_out_rows: true",
     ),
     "a clock before 0": ("strip", lines(2, 2, "-1,0,0"), {}, "plain.csv: line 2:", "expected 0 s or more"),
-    # what is missing
+    # missing values
     "no unit": (
         "strip",
         swap("strain %", "strain"),
@@ -378,7 +378,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "o.csv: key beam.captures[#1].outline:",
         "expected a file",
     ),
-    # units that are plausible in no way
+    # implausible units
     "MPa for kPa": (
         "strip",
         swap("(kPa)", "(MPa)"),
@@ -441,7 +441,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
 
 
 def lab(folder: Path, trial: str, change: Change, keys: dict[str, Any]) -> Path:
-    """A copy of one trial of the example, with its file and its answers changed; the answers file."""
+    """Write a copy of one trial of the example with its file and answers changed; return the answers file."""
     answers = yaml.safe_load((SAMPLES / "answers.yaml").read_text(encoding="utf-8"))
     (own,) = (t for t in answers["trials"] if t["id"] == trial)
     if own["kind"] != "beam":
@@ -478,7 +478,7 @@ def test_malformed_imports_are_refused(case: str, tmp_path: Path) -> None:
 
 
 def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
-    """A modulus of 75 MPa, accepted by name; another check still stands."""
+    """A modulus of 75 MPa is accepted if the answers name the check."""
     trial, change, _, _, _ = CASES["MPa for kPa"]
     path = lab(tmp_path, trial, change, {"accept": ["modulus"]})
     done = CliRunner().invoke(app, ["--yes", str(path), "--out", str(tmp_path / "lab")])

@@ -1,4 +1,4 @@
-"""The commands of docs/how-to/lab-files.md run as they stand there, and its tables are those of the code."""
+"""The commands of docs/how-to/lab-files.md run as printed, and its tables agree with the code."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PAGE = "docs/how-to/lab-files.md"
 def test_commands_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_formats, "_IMPORTERS", dict(_formats._IMPORTERS))
     (tmp_path / "datasets").symlink_to(ROOT / "datasets")
-    (tmp_path / "lab").mkdir()  # an empty folder may be there
+    (tmp_path / "lab").mkdir()  # an empty folder may exist
     found = blocks(PAGE)
     assert len(found) == 4
     for block in found:
@@ -36,7 +36,7 @@ def test_tables_of_the_page_are_those_of_the_code() -> None:
     assert {i.name for i in importers()} <= named
     assert {c.name for c in CHECKS} <= named
     own = (set(CouponAnswers.model_fields) | set(PokeAnswers.model_fields) | {"board"}) - {
-        *("id", "kind", "material", "specimen", "mode"),  # of experiment.yaml
+        *("id", "kind", "material", "specimen", "mode"),  # keys of experiment.yaml
         *("block_mm", "inclusion", "rod", "start_mm", "direction"),
     }
     assert own <= named

@@ -1,4 +1,4 @@
-"""Photographs of beams that creep: curves of elastic beams against beams that do creep, and what is asked."""
+"""Photographs of creeping beams: curves of elastic beams against viscoelastic ones, and required input."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def one_beam() -> Experiment:
 
 
 def model_of(law: str) -> tuple[OutlineModel, NDArray[np.float64]]:
-    """A model over time, with the coordinates that its search begins from."""
+    """A model over time, with the start of its search."""
     experiment = one_beam()
     form = parts.with_parts(parametrisation(law), ("prony:1",), experiment, "S0")
     data = measurements(experiment, "S0", form, workers=1)
@@ -39,9 +39,11 @@ def model_of(law: str) -> tuple[OutlineModel, NDArray[np.float64]]:
 
 
 def test_curves_follow_a_beam_that_creeps() -> None:
-    """What a stiffer material, and a larger part that relaxes later, do to the photographs: to 2 % of the
-    largest change. Large rotations are the curves' error, within 5 % of the creep; it is corrected where a
-    fit stands."""
+    """Changes by a stiffer material and by slower, larger relaxation agree to 2 % of the largest change.
+
+    The error of the curves, from large rotations, is below 5 % of the creep; it is corrected at the fitted
+    state.
+    """
     model, u = model_of("neo-hookean")
     assert model._creep is not None
     states = [State(u=v) for v in (u, u + np.array([0.2, 0, 0, 0]), u + np.array([0, 0, 0.2, 0.2]))]
@@ -64,7 +66,7 @@ def test_a_law_with_further_constants_is_followed_step_by_step() -> None:
 
 
 def test_compliance_of_a_standard_linear_solid() -> None:
-    """J(t) = 1 - g/(1 + g) exp(-t/((1 + g) tau)), times the long-time modulus; two terms that are one."""
+    """J(t) = 1 - g/(1 + g) exp(-t/((1 + g) tau)), times the long-time modulus; also as two equal terms."""
     time = np.array([0.0, 0.3, 5.0, 400.0])
     expected = 1.0 - 0.4 / 1.4 * np.exp(-time / (1.4 * 2.0))
     np.testing.assert_allclose(

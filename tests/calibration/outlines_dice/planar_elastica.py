@@ -1,4 +1,4 @@
-"""Edges of a bent cantilever from the planar elastica, integrated here: no code shared with calibration."""
+"""Edges of a bent cantilever from a planar elastica, without code of calibration."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def edges(*, young: float, density: float, length: float, radius: float) -> tupl
     found = solve_bvp(slope, lambda a, b: np.array([a[0], b[1]]), s, start, tol=1e-8)
     assert found.success
     fine = np.linspace(0.0, length, 4001)
-    theta = -found.sol(fine)[0]  # of the tangent, positive upwards
+    theta = -found.sol(fine)[0]  # angle of the tangent, positive upwards
     step = np.diff(fine, prepend=0.0)
     x, z = np.cumsum(step * np.cos(theta)), np.cumsum(step * np.sin(theta))
     pick = np.linspace(20, len(fine) - 1, 60).astype(int)

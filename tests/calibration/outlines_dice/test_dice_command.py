@@ -17,7 +17,7 @@ SHEAR, RATIO = 500e3, 1000.0
 
 @pytest.fixture
 def folder(tmp_path):
-    """A beam of 6 mm, 100 mm long, that hangs by a third of its length."""
+    """A beam of 6 mm diameter and 100 mm length that sags by a third of its length."""
     young = 9 * RATIO / (3 * RATIO + 1) * SHEAR
     upper, lower = edges(young=young, density=1000.0, length=0.1, radius=0.003)
     entry = beam_entry(

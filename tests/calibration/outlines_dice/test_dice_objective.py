@@ -1,4 +1,4 @@
-"""Dice as an objective: against a cylinder's closed form, and against an elastica made elsewhere."""
+"""Dice as an objective, against a cylinder's closed form and an independent elastica."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def trial(upper, lower, *, length, radius, gravity=-9.81):
 
 
 def straight(shift):
-    """An unloaded 100 mm beam of 20 mm, traced `shift` too high."""
+    """An unloaded 100 mm beam of 20 mm diameter, traced `shift` too high."""
     x = np.linspace(0.001, 0.1, 60)
     edge = [np.column_stack([x, np.full_like(x, shift + side)]) for side in (0.01, -0.01)]
     return trial(*edge, length=0.1, radius=0.01, gravity=0.0)
 
 
 def bent(shear):
-    """A slender beam that hangs by a third of its length: shear and clamp change it by half a per cent."""
+    """A slender beam that sags by a third of its length; shear and clamp change this by 0.5 %."""
     young = 9 * RATIO / (3 * RATIO + 1) * shear
     upper, lower = edges(young=young, density=DENSITY, length=0.1, radius=0.003)
     assert lower[-1, 1] < -0.03
@@ -70,7 +70,7 @@ def test_cost_is_the_dice_lost_over_the_scale():
     lost = 1 - objective.overlaps([problem.parametrisation.material(u)])[0, 0]
     assert objective.points == 1
     assert problem.costs(u[None])[0] == pytest.approx(lost / SCALE**2, rel=1e-9)
-    assert problem.linearise(u)  # it has no nuisances to take
+    assert problem.linearise(u)  # there are no nuisances to update
 
 
 def test_dice_is_largest_at_the_modulus_that_the_elastica_was_made_with():

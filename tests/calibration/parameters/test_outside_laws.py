@@ -1,4 +1,4 @@
-"""A law that was registered outside of calibration: searched in its small-strain moduli, or in its own."""
+"""A law registered outside calibration is searched in its small-strain moduli, or in its own coordinates."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tisim import laws
 
 @pytest.fixture
 def twin(monkeypatch: pytest.MonkeyPatch) -> str:
-    """A second neo-Hookean law, known to `tisim.laws` alone."""
+    """A second neo-Hookean law that only `tisim.laws` knows."""
     names, get = laws.names(), laws.get
     monkeypatch.setattr(laws, "names", lambda: (*names, "twin"))
     monkeypatch.setattr(laws, "get", lambda name: get("neo-hookean" if name == "twin" else name))

@@ -36,7 +36,7 @@ def test_every_point_inside_the_bounds_is_a_sound_material(label: str, data: st.
     )
     u = p.bounds[:, 0] + part * (p.bounds[:, 1] - p.bounds[:, 0])
     values = p.values(u)
-    moduli = p.moduli(u)  # checks the parameters too
+    moduli = p.moduli(u)  # also checks the parameters
     shear = sum(v for k, v in values.items() if k.startswith("shear_modulus"))
     assert moduli.shear_modulus == pytest.approx(shear, rel=1e-9)
     assert moduli.bulk_modulus == pytest.approx(shear * values["bulk_ratio"], rel=1e-9)

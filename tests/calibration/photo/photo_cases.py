@@ -1,4 +1,4 @@
-"""Known beams: planar axes in mm and their exact outlines."""
+"""Beams of known shape: planar axes in mm and their exact outlines."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from calibration.experiment import TracedOutline
 
 Array = NDArray[np.float64]
 RADIUS = 10.0
-SMOOTH = 9  # degree of the polynomials along an edge in which fits compare
-# of true errors under the stated one: chi-square a mode, and the mode that errs most [sd]; 44 photographs of
-# 1600 pixels gave 0.01 to 0.35, and 0.2 to 1.5
+SMOOTH = 9  # polynomial degree along an edge for the comparison of fits
+# ranges for true errors relative to the stated ones: mean chi-square per mode, and largest mode [sd]; 44
+# photographs of 1600 pixels gave 0.01 to 0.35 and 0.2 to 1.5
 BAND, LARGEST = (0.003, 1.0), (0.1, 2.5)
 
 
 def hanging(length: float = 100.0, turn_deg: float = 28.0) -> Array:
-    """A cantilever's axis that turns down by `turn_deg`, (k, 2)."""
+    """Axis (k, 2) [mm] of a cantilever whose tangent turns down by `turn_deg`."""
     s = np.linspace(0.0, length, 4001)
     angle = -np.radians(turn_deg) * (1.0 - (1.0 - s / length) ** 3)
     return _integrate(s, angle)
 
 
 def bridge(length: float = 100.0, sag: float = 5.0) -> Array:
-    """An axis held at both ends, sagging in the middle."""
+    """Axis (k, 2) [mm] of a beam clamped at both ends with `sag` at mid-span."""
     x = np.linspace(0.0, length, 4001)
     return np.column_stack([x, -sag * (16.0 * (x / length) ** 2 * (1.0 - x / length) ** 2)])
 
 
 def edge(axis: Array, side: int, radius: float = RADIUS) -> Array:
-    """The exact outline: side +1 upper, -1 lower."""
+    """Exact outline (k, 2); `side` is +1 for the upper and -1 for the lower edge."""
     tangent = np.gradient(axis, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     return axis + side * radius * np.column_stack([-tangent[:, 1], tangent[:, 0]])
 
 
 def normal_error(points: Array, truth: Array) -> Array:
-    """Distance of each point from a dense curve, signed across it."""
+    """Signed normal distance of each point from a densely sampled curve."""
     _, nearest = cKDTree(truth).query(points)
     nearest = np.clip(nearest, 1, len(truth) - 2)
     tangent = truth[nearest + 1] - truth[nearest - 1]
@@ -49,8 +49,11 @@ def normal_error(points: Array, truth: Array) -> Array:
 
 
 def chi_squares(outline: TracedOutline, error: np.ndarray, degree: int) -> tuple[float, float]:
-    """Chi-square per mode of an error along the edges' polynomials up to a degree, and the largest single
-    one in sd, under the stated error and registration."""
+    """Mean chi-square per mode of an error, and its largest mode in standard deviations.
+
+    Modes are polynomials along the edges up to `degree`; variances follow from the stated error and
+    registration.
+    """
     covariance, basis, normals, points = [], [], [], []
     for line in (outline.upper, outline.lower):
         s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
@@ -77,7 +80,7 @@ def chi_squares(outline: TracedOutline, error: np.ndarray, degree: int) -> tuple
 
 
 def true_error(outline: TracedOutline, axis: np.ndarray) -> np.ndarray:
-    """Distance of the traced points from the true outline [m], upper edge first."""
+    """Signed distance of the traced points from the true outline [m], upper edge first."""
     sides = ((1, outline.upper), (-1, outline.lower))
     return 1e-3 * np.concatenate([normal_error(line * 1e3, edge(axis, side)) for side, line in sides])
 
@@ -90,7 +93,7 @@ def _integrate(s: Array, angle: Array) -> Array:
 
 
 def true_body(axis: Array, radius: float = RADIUS, sides: int = 64) -> trimesh.Trimesh:
-    """The tube about an axis as a closed mesh [m]; its polygon has the circle's area."""
+    """Tube about an axis as a closed mesh [m]; its polygonal section has the area of the circle."""
     points = axis[:: max(1, len(axis) // 400)] if (len(axis) - 1) % 400 == 0 else axis
     tangent = np.gradient(points, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)

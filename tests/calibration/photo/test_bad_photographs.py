@@ -1,4 +1,4 @@
-"""Photographs that cannot be used: each has its sentence and a picture."""
+"""Unusable photographs: each has its message and a picture."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_sentence_and_picture(sentence: str) -> None:
     assert picture is not None
     assert picture.shape == (*image.shape, 3)
     if "no board" not in sentence and "no specimen" not in sentence:
-        assert (picture != image[..., None]).any()  # something found is drawn in
+        assert (picture != image[..., None]).any()  # the picture shows what was found
 
 
 @pytest.fixture(scope="module")

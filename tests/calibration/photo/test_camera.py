@@ -1,4 +1,4 @@
-"""The camera that photographs of a board give, from corners whose places are known."""
+"""Camera calibration from corners of a board at known positions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOWER_LEFT = (12.0, 26.0)  # outer corner of the squares in the camera's frame [
 
 
 def board(view: View, seed: int, noise: float = 0.03) -> Board:
-    """The corners that a camera sees, `noise` px off."""
+    """The board's corners in the image of a camera, with noise of `noise` px."""
     i, j = np.meshgrid(np.arange(1, COLUMNS + 1), np.arange(1, ROWS + 1))
     points = SQUARE * np.stack([i, j], axis=-1)
     flat = 1e3 * points.reshape(-1, 2) + LOWER_LEFT
@@ -36,7 +36,7 @@ def board(view: View, seed: int, noise: float = 0.03) -> Board:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_one_view_ends_in_no_side_minimum(seed: int) -> None:
-    """A lens of twice the focal length that is assumed first: corners are met to their noise all the same."""
+    """The lens has twice the initial focal length; the corners are reproduced to their noise nevertheless."""
     rng = np.random.default_rng(seed)
     view = View(
         target=(46.0, 0.0, 11.0),

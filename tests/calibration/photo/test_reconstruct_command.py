@@ -100,7 +100,7 @@ def test_what_it_writes_is_an_experiment(done: Path) -> None:
             off = cases.normal_error(line * 1e3, cases.edge(AXIS, side))
             assert np.sqrt(np.mean(off**2)) < 0.1
     first, second, traced = (capture.outline for capture in trial.captures)
-    # of waves longer than 10 mm: what both statements mean, whatever kernel carries it
+    # for waves longer than 10 mm, where both kernels have the same meaning
     slow, given = (o.sd * np.sqrt(o.correlation / 0.010) for o in (first, traced))
     assert slow < 0.03e-3 < given
     assert (traced.sd, traced.correlation) == pytest.approx((0.1e-3, 5e-3))

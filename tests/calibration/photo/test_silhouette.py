@@ -1,4 +1,4 @@
-"""The inverse of perspective, against closed forms."""
+"""Reconstruction of the axis from perspective silhouettes, against closed forms."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from calibration.photo._silhouette import unproject
 
 
 def make_view(eye: np.ndarray) -> View:
-    """A camera at `eye` (x, y, z) [m], looking along y."""
+    """A camera at `eye` (x, y, z) [m] that looks along y."""
     camera = Camera(focal=4000.0, focal_sd=0.0, centre=(1000.0, 700.0), k1=-0.2, k2=0.05, noise=0.1, views=1)
     centre = np.array([eye[0], -eye[2], eye[1]])  # OpenCV's board frame: x, down, away
     return View(camera=camera, rotation=np.eye(3), shift=-centre)
@@ -20,7 +20,7 @@ def make_view(eye: np.ndarray) -> View:
 @pytest.mark.parametrize("height", [0.0, 0.08, -0.15])
 @pytest.mark.parametrize("side", [1, -1])
 def test_straight_cylinder(height: float, side: int) -> None:
-    """A tangent from the camera to a circle meets the mid plane at s: D^2 s^2 = R^2 ((s - a)^2 + D^2)."""
+    """A tangent from the camera to a circle meets the centre plane at s: D^2 s^2 = R^2 ((s - a)^2 + D^2)."""
     radius, distance, plane = 0.010, 0.4, -0.012
     a, d2 = height, distance**2
     root = radius * distance * np.sqrt(a**2 + d2 - radius**2)
@@ -31,11 +31,11 @@ def test_straight_cylinder(height: float, side: int) -> None:
     edge = unproject(view, pixels, tisim.Circle(radius=radius), plane=plane, side=side, window=0.004)
     assert edge.axis[:, 1] == pytest.approx(np.zeros(400), abs=1e-8)
     assert edge.outline[:, 1] == pytest.approx(np.full(400, side * radius), abs=1e-8)
-    assert abs(s) > radius * 1.0003  # what would be left uncorrected
+    assert abs(s) > radius * 1.0003  # the error without correction
 
 
 def test_ring() -> None:
-    """A curved axis: points of a torus where rays touch, found by minimising over its angles."""
+    """A curved axis: the points where rays touch a torus, from a closed form over its angles."""
     ring, radius, plane = 0.060, 0.010, -0.010
     view = make_view(np.array([0.10, plane - 0.35, 0.15]))
     phi = np.linspace(0.4, 1.6, 1200)

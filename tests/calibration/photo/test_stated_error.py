@@ -1,8 +1,8 @@
-"""What a traced outline states of its own error, against the true error of photographs of known beams.
+"""The stated error of a traced outline against its true error, from photographs of known beams.
 
-The truth is the tube that the blind laboratory photographed. Its traced outline misses it by white noise and
-by slow errors of lens and shading; the statement has one Gaussian for both and is meant to be right for
-long waves, cautious for short ones (`calibration.photo._trace.stated_error`).
+The truth is the tube that the blind laboratory photographed. The traced outline deviates by white noise and
+by slow errors of lens and shading. The statement has one Gaussian kernel for both and should be right for
+long waves and conservative for short ones (`calibration.photo._trace.stated_error`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from calibration.photo._trace import _SLOW, _SPACING, stated_error
 BOARD = Checkerboard(squares=(9, 6), square=0.008)
 SMALL = Lens(size=(800, 600), focal=1860.0, centre=(402.0, 297.0), k1=-0.1)
 LARGE = Lens(size=(1600, 1200), focal=3720.0, centre=(803.0, 594.0), k1=-0.1)
-MODULUS, RADIUS, DENSITY = 30e3, 0.010, 1000.0  # of the beams that are fitted [Pa], [m], [kg/m3]
+MODULUS, RADIUS, DENSITY = 30e3, 0.010, 1000.0  # of the fitted beams [Pa], [m], [kg/m3]
 
 
 def density(k: np.ndarray, sd: float, length: float) -> np.ndarray:
@@ -51,14 +51,14 @@ def test_noise_shorter_than_the_points_distance_keeps_its_density() -> None:
     assert correlation == 0.5 * _SPACING
     whole = density(np.zeros(1), 4e-6, 0.2e-3) + density(np.zeros(1), 5e-6, _SLOW)
     assert density(np.zeros(1), sd, correlation) == pytest.approx(whole, rel=1e-12)
-    # as the fit sums it, over points: within a tenth of the density
+    # summed over points, as in the fit: within a tenth of the density
     apart = _SPACING * np.arange(-50, 51)
     summed = _SPACING * sd**2 * np.exp(-0.5 * (apart / correlation) ** 2).sum()
     assert summed == pytest.approx(float(whole[0]), rel=0.1)
 
 
 def drawn(seed: int, lens: Lens) -> tuple[np.ndarray, np.ndarray, float]:
-    """A photograph of a beam, as the seed draws view, blur, noise and light; its axis and length [mm]."""
+    """Photograph of a beam with view, blur, noise and light drawn by the seed; its axis and length [mm]."""
     rng = np.random.default_rng(seed)
     length = float(rng.choice([60.0, 100.0]))
     axis = cases.hanging(length, float(rng.uniform(0.08, 0.3)) * length)
@@ -77,7 +77,7 @@ def drawn(seed: int, lens: Lens) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def drawn_view(rng: np.random.Generator, *, lower: float = 0.0) -> View:
-    """A camera that has board and beam in its picture; lower: by so much, for a beam that hangs deep [mm]."""
+    """A camera with board and beam in its image; `lower` [mm] shifts it for a beam with a large sag."""
     return View(
         target=(48.0 + float(rng.uniform(-3, 3)), 0.0, 14.0 - lower + float(rng.uniform(-3, 6))),
         distance=float(rng.uniform(430, 460)) + lower,
@@ -122,7 +122,7 @@ def test_true_errors_are_as_stated_in_large_photographs(seed: int, capsys: pytes
 
 
 def lab(folder: Path, seed: int, lengths: tuple[int, ...], lens: Lens) -> Path:
-    """An experiment of photographs of silicone cantilevers that the blind laboratory's solver bent."""
+    """An experiment with photographs of silicone cantilevers deformed by the blind laboratory's solver."""
     rng = np.random.default_rng(seed)
     (folder / "photos").mkdir(parents=True)
     trials = []

@@ -1,4 +1,4 @@
-"""Traced outlines of rendered photographs against the beams they show."""
+"""Outlines traced in rendered photographs against the photographed beams."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def specimen(section_sd: float = 1e-4, supports: str = "clamped-free") -> Specim
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Across the outlines [mm]: all, and what is left when shift, roll and scale are taken out."""
+    """Errors normal to the outlines [mm]: all, and the rest without shift, roll and scale."""
 
     all: np.ndarray
     shape: np.ndarray
@@ -65,7 +65,7 @@ def errors(found: Trace, axis: np.ndarray, supports: str = "clamped-free") -> Er
 
 
 def chi2(found: Trace, axis: np.ndarray) -> float:
-    """A mode, along polynomials, under the stated error."""
+    """Mean chi-square per mode, in polynomials along the edges, under the stated error."""
     return cases.chi_squares(found.outline, cases.true_error(found.outline, axis), cases.SMOOTH)[0]
 
 
@@ -104,14 +104,14 @@ def test_several_views_give_the_lens(camera: Camera) -> None:
 
 @pytest.mark.parametrize("name", VIEWS)
 def test_outline_in_the_boards_frame(name: str, images: dict, camera: Camera) -> None:
-    """The board's corner is known: place, size and shape are all to be right."""
+    """With the board's corner known, position, size and shape must be right."""
     found = trace(images[name], find_board(images[name], BOARD), camera, specimen(), CORNER)
     e = errors(found, cases.hanging())
     assert rms(e.all) < 0.04
     assert e.end < 0.08
     assert e.dice > 0.995
     assert abs(e.scale) < 3 * found.outline.registration.scale
-    # along the smooth modes; point by point the statement is cautious, see test_stated_error
+    # for smooth modes; for single points the statement is conservative, see test_stated_error
     assert rms(e.shape) < found.outline.sd * 1e3
     assert cases.BAND[0] < chi2(found, cases.hanging()) < cases.BAND[1]
     assert found.metres_per_pixel == pytest.approx(0.135e-3, abs=0.008e-3)
@@ -128,7 +128,7 @@ def test_frame_from_the_clamp(name: str, images: dict, camera: Camera) -> None:
 
 
 def test_known_diameter_stands_in_for_the_focal_length(images: dict) -> None:
-    """One view square on says nothing of the focal length, so nothing of the specimen's distance."""
+    """One perpendicular view does not determine the focal length, and so not the specimen's distance."""
     image = images["square on"]
     board = find_board(image, BOARD)
     alone = calibrate([board])
@@ -143,7 +143,7 @@ def test_known_diameter_stands_in_for_the_focal_length(images: dict) -> None:
 
 
 def test_at_the_papers_resolution() -> None:
-    """0.086 mm per pixel, one photograph: everything from this picture alone."""
+    """0.086 mm per pixel, one photograph, calibrated from this image alone."""
     image = photograph(
         Setting(tubes=(Tube(axis=cases.hanging(), radius=10.0),)), Lens(k1=-0.2), View(yaw=20.0)
     )
@@ -188,7 +188,7 @@ def further_boards() -> dict[float, list[Board]]:
 def test_tilts_and_distortion(
     tilt: float, direction: float, k1: float, further_boards: dict, capsys: pytest.CaptureFixture
 ) -> None:
-    """A lens calibrated on the photograph itself and two more views; for studies/photographs."""
+    """The lens is calibrated on the photograph itself and two more views; for studies/photographs."""
     turn = np.radians(direction)
     view = View(yaw=tilt * np.cos(turn), pitch=tilt * np.sin(turn), roll=3.0 * np.sin(2 * turn))
     axis = cases.hanging()

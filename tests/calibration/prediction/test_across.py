@@ -1,4 +1,4 @@
-"""Relaxation found in a coupon predicts the creep of a beam, both made by the blind laboratory."""
+"""Relaxation found in a homogeneous test predicts creep of a beam, both made by the blind laboratory."""
 
 from __future__ import annotations
 

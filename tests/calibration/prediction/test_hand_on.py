@@ -1,4 +1,4 @@
-"""Effects as parts of a material: the part shows what the effect does, and gives the record back."""
+"""Effects as parts of a material: the part has the effect's stress and reproduces the record."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ G = 3e4
 
 
 def relaxation(part: HandedOn, time: np.ndarray) -> np.ndarray:
-    """Of a part, over the modulus of the fit."""
+    """Relaxation modulus of a part over the modulus of the fit."""
     assert isinstance(part.part, tisim.Prony)
     spectrum = part.part.spectrum()
     return part.modulus_ratio * np.array([spectrum.modulus(t) for t in time])
@@ -90,7 +90,7 @@ def test_softening_is_ogden_and_roxburghs() -> None:
 
 
 def test_fibres_have_the_effects_stress() -> None:
-    """Of a strip along them: the slope of k1/2 (s^2 - 1)^2 by its stretch s."""
+    """Stress of a strip along them: derivative of k1/2 (s^2 - 1)^2 by its stretch s."""
     effect = effects_of("homogeneous")["anisotropy"]
     assert effect.hands_on is not None
     part = effect.hands_on(Occurrence(amplitude=0.5, variant=None, shear_modulus=G, records=())).part
@@ -110,8 +110,7 @@ def handed_law(name: str, amplitude: float) -> tuple[str, dict[str, float]]:
 
 
 def test_a_laws_form_is_a_law_with_the_effects_stress() -> None:
-    """`tisim`'s Mooney-Rivlin law against baseline and effect in tension, at constant volume; the constants
-    of the other two."""
+    """The Mooney-Rivlin law agrees with baseline and effect in tension; the constants of two other laws."""
     law, parameters = handed_law("second-invariant", 0.3)
     s = np.linspace(1.05, 1.8, 5)
     (stress,) = nominal_stresses(tisim.Material(law=law, parameters=dict(parameters)), [("uniaxial", s)])
@@ -137,7 +136,7 @@ NOISE = 0.004
 
 
 def made_record() -> CouponTrial:
-    """A ramp and a hold by the blind laboratory's own integration."""
+    """A ramp and a hold, integrated by the blind laboratory."""
     made = respond(SOLID, "uniaxial", PULL, tolerance=1e-5)
     sd = NOISE * float(made.stress.max())
     stress = made.stress + sd * np.random.default_rng(3).standard_normal(made.stress.size)
@@ -153,7 +152,7 @@ def made_record() -> CouponTrial:
 
 
 def test_a_record_comes_back_from_the_part_that_was_found_in_it() -> None:
-    """`tisim.Coupon` along the record's course with the card's material, against the elastic baseline."""
+    """`tisim.Coupon` on the record's course with the card's material, against the elastic baseline."""
     trial = made_record()
     effects = {"rate-dependence": effects_of("homogeneous")["rate-dependence"]}
     model = HomogeneousModel(experiment(trial), effects=effects)  # type: ignore[arg-type]

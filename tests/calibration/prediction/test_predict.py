@@ -1,4 +1,4 @@
-"""`calibration.predict`: cards against records they were not fitted to, and some trials against others."""
+"""`calibration.predict`: cards against records of other tests, and some trials against others."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from calibration.prediction.schema import PredictionFile
 G, BULK = 3e4, 9e7
 FRACTIONS, TIMES = (0.06,) * 6, tuple(10.0 ** (k / 2) for k in range(-1, 5))
 SOLID = Solid(mu=(G,), alpha=(2.0,), prony=Prony(fractions=FRACTIONS, times=TIMES))
-NOISE = 0.005  # of the largest stress
+NOISE = 0.005  # relative to the largest stress
 COURSES = {
     "slow": Course(start=1.0, samples=25).ramp(1.3, 0.01),
     "held": Course(start=1.0, samples=25).ramp(1.2, 0.1).hold(60.0),
@@ -35,7 +35,7 @@ COURSES = {
 
 
 def content(**more: Any) -> dict[str, Any]:
-    """A card of the truth, its baseline 20 % stiffer than in the long run."""
+    """A card of the truth with a baseline 20 % stiffer than the long-time modulus."""
     return {
         "material": "S0",
         "uncertainty": {"shear_modulus_high": 0.02, "shear_modulus_low": -0.02, "text": ""},
@@ -63,7 +63,7 @@ def card(folder: Path, **more: Any) -> Path:
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two records of a viscous coupon, by the blind laboratory's own integration."""
+    """Two records of a viscous homogeneous test, integrated by the blind laboratory."""
     rng = np.random.default_rng(1)
     tables, trials = {}, []
     for name, course in COURSES.items():
@@ -104,7 +104,7 @@ def test_a_card_predicts_what_it_was_not_fitted_to(measured: Path, tmp_path: Pat
 
 
 def test_a_wide_band_leaves_the_lines_to_be_seen(measured: Path, tmp_path: Path) -> None:
-    """Of a baseline that states an error of ten times its modulus; a narrow band is drawn whole."""
+    """The band is wide for a baseline error of ten times the modulus; a narrow band is drawn completely."""
     spans = []
     for error in (10.0, 0.01):
         wide = {**content()["baseline"], "model_error": error}
@@ -146,8 +146,7 @@ def test_cards_scale_their_parts_by_how_well_they_are_known(tmp_path: Path) -> N
 
 
 def test_what_lies_outside_of_where_a_card_was_measured_is_said(measured: Path, tmp_path: Path) -> None:
-    """A relaxation measured for 20 s, in tests of 30 and 62 s; within 100 s, and of what no range is stated,
-    nothing is said."""
+    """Relaxation measured for 20 s gives a note in tests of 30 and 62 s; measured for 100 s, it does not."""
     effect = {
         "effect": "relaxation",
         "parameters": {"fraction_of_modulus": {"value": 0.2, "sd": 0.02}},
@@ -164,7 +163,7 @@ def test_what_lies_outside_of_where_a_card_was_measured_is_said(measured: Path, 
 
 
 def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
-    """A fit to the hold, of the diagnosis' own models, predicts the slow ramp."""
+    """A fit of the diagnosis' models to the hold predicts the slow ramp."""
     found = calibration.predict(measured, calibrate="held", predict="slow", law="neo-hookean", workers=1)
     assert [r.trial for r in found.prediction.records] == ["slow"]
     assert found.prediction.models == ("baseline", "extended")
@@ -178,8 +177,10 @@ def test_some_trials_predict_others(measured: Path, tmp_path: Path) -> None:
 
 
 def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) -> None:
-    """Mooney and Rivlin's law pulled by 30 %: a second invariant, or an offset of the strain? Equibiaxial
-    tension would tell."""
+    """In tension to 30 % a second invariant (truth) and an offset of the strain fit equally.
+
+    They differ in the predicted equibiaxial tension.
+    """
     c01 = 0.125 * 30e3
     c10 = 15e3 - c01
     stretch = np.linspace(1.0, 1.3, 25)
@@ -201,7 +202,7 @@ def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) 
     assert any("do not tell second-invariant from strain-offset" in note for note in found.notes)
     (record,) = found.records
     choice = record.sd("extended", "choice")
-    # the difference of two that are as likely over root 2; beside an offset the stress is neo-Hookean
+    # the difference of two equally likely models over sqrt(2); with an offset the stress is neo-Hookean
     one, other = (record.predicted[m].value[record.used] for m in ("extended", "baseline"))
     assert choice[-1] == pytest.approx(abs(one[-1] - other[-1]) / np.sqrt(2.0), rel=0.1)
     assert (record.sd("baseline", "choice") == 0.0).all()

@@ -1,4 +1,4 @@
-"""A cantilever let go, by Euler and Bernoulli's modes: made data that share no code with the simulator."""
+"""Release of a cantilever in Euler-Bernoulli modes: synthetic data that share no code with the simulator."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ SILICONE = MaterialBelief(name="silicone", density=DENSITY)
 
 
 def deflection(x, t, modes=4):
-    """w and its slope at x [m], t [s] after the release: uniform load, each mode damped by c_K w^2 / 2."""
+    """Deflection w [m] and its slope at x [m], t [s] after release from uniform load.
+
+    The first `modes` modes are superposed; each decays at the rate c_K w^2 / 2.
+    """
     w, slope = np.zeros_like(t), np.zeros_like(t)
     for n in range(modes):
         middle = (n + 0.5) * np.pi
@@ -29,7 +32,7 @@ def deflection(x, t, modes=4):
         share = np.trapezoid(shape(y), y) / np.trapezoid(shape(y) ** 2, y)
         omega = b**2 * np.sqrt(YOUNG * SIDE**2 / (12.0 * DENSITY * LENGTH**4))
         rate = 0.5 * STIFFNESS_DAMPING * omega**2
-        root = np.emath.sqrt(rate**2 - omega**2)  # real where overdamped
+        root = np.emath.sqrt(rate**2 - omega**2)  # real if overdamped
         up, down = -rate + root, -rate - root
         after = np.maximum(t, 0.0)
         swing = (up * np.exp(down * after) - down * np.exp(up * after)) / (up - down)
@@ -41,13 +44,13 @@ def deflection(x, t, modes=4):
 
 
 def first_mode():
-    """Frequency [rad/s] and damping ratio of the first mode."""
+    """Angular frequency [rad/s] and damping ratio of the first mode."""
     omega = 1.8751041**2 * np.sqrt(YOUNG * SIDE**2 / (12.0 * DENSITY * LENGTH**4))
     return omega, 0.5 * STIFFNESS_DAMPING * omega
 
 
 def trial(noise=0.0, shift=(0.0, 0.0, 0.0), seconds=3.0, **changes):
-    """shift: by how much the stalk's marker really sits elsewhere than stated [m]."""
+    """Synthetic trial; `shift` [m] is the true minus the stated position of the stalk's marker."""
     rng = np.random.default_rng(7)
     time = np.arange(0.0, seconds, 0.01)
     found = []
@@ -56,7 +59,7 @@ def trial(noise=0.0, shift=(0.0, 0.0, 0.0), seconds=3.0, **changes):
         w, slope = deflection(np.full_like(time, stated[0]), time - RELEASE)
         foot = np.array([stated[0], 0.0, 0.0])
         a = np.arctan(slope)
-        d = place - foot  # a stalk turned by the slope
+        d = place - foot  # the stalk rotates with the section
         u = np.column_stack([
             np.cos(a) * d[0] - np.sin(a) * d[2] - d[0],
             np.zeros_like(a),

@@ -1,4 +1,4 @@
-"""Markers on a body that moves in closed form: a rigid swing, a quadratic field, an arc."""
+"""Markers on a body with a closed-form motion: a rigid rotation, a quadratic field, an arc."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LENGTH, SIDE = 0.1, 0.03
 
 
 def result_of(mesh, positions):
-    """A result that holds these positions (f, n, 3) and nothing else of worth."""
+    """A result with these positions (f, n, 3); its other values are placeholders."""
     beam = tisim.Beam(
         material=tisim.material_from_moduli("neo-hookean", shear_modulus=1e5, bulk_modulus=1e6), length=LENGTH
     )
@@ -46,7 +46,7 @@ def about_y(angle):
 @pytest.mark.parametrize("kind", ["tet10", "tet4", "hex8"])
 @pytest.mark.parametrize("mirror", [False, True])
 def test_rigid_pendulum(kind, mirror):
-    """A rigid bar turning about the clamp's middle carries markers on it, off it and off its corner."""
+    """A rigid beam rotating about the clamp's centre carries markers on it, off it and off its corner."""
     mesh = bar(kind, mirror)
     angles = np.array([0.0, 0.3, -1.2])
     swing = np.array([about_y(a) for a in angles])
@@ -71,14 +71,14 @@ def test_surface_markers_follow_a_quadratic_field_exactly():
 
 
 def test_stalk_on_an_arc():
-    """Bent to an arc of curvature k, the section at x turns by k x; a stalk turns with it."""
+    """On an arc of curvature k, the section at x rotates by k x, and a stalk rotates with it."""
     mesh, k = bar(), 2.0
     x, y, z = mesh.nodes.T
 
     def bent(x, y, z):
         return np.column_stack([(1 / k + z) * np.sin(k * x), y, (1 / k + z) * np.cos(k * x) - 1 / k])
 
-    tall = np.array([[0.1, 0.0, 0.025], [0.05, 0.004, -0.027]])  # on the end's edge; below the bottom face
+    tall = np.array([[0.1, 0.0, 0.025], [0.05, 0.004, -0.027]])  # above the end's edge; below the bottom face
     found = marker_displacements(result_of(mesh, [bent(x, y, z)]), tall)[:, 0]
     expected = bent(*tall.T) - tall
     assert np.linalg.norm(expected, axis=1).min() > 2e-3
@@ -86,7 +86,7 @@ def test_stalk_on_an_arc():
 
 
 def test_nearest_point_of_a_triangle():
-    """Over the face, beyond an edge, beyond a corner."""
+    """Nearest points inside the face, on an edge, and at a corner."""
     triangle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
     for at, nearest in [((0.2, 0.3, 5.0), (0.2, 0.3, 0.0)), ((0.5, -2.0, 1.0), (0.5, 0.0, 0.0)),
                         ((-1.0, 3.0, 0.0), (0.0, 1.0, 0.0))]:  # fmt: skip

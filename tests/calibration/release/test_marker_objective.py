@@ -1,4 +1,4 @@
-"""Modulus, damping and release come back from a made ring-down; what a trial lacks is said."""
+"""Modulus, damping and release time are recovered from a synthetic free vibration; missing data are named."""
 
 from __future__ import annotations
 
@@ -44,10 +44,11 @@ def soft(shear):
 
 
 def test_least_chi_square_lies_at_the_true_modulus():
-    """With the true damping: the parabola through four moduli has its end within 2 % of the truth.
+    """With the true damping, the minimum of a parabola through four moduli is within 2 % of the truth.
 
-    Beam theory lacks shear (0.7 % of the modulus at this slenderness), the clamp holds the width, the time
-    step is long."""
+    Beam theory neglects shear (0.7 % of the modulus at this slenderness), the clamp constrains the width, and
+    the time step is long.
+    """
     wanted = objective(made.trial(noise=1e-4, marker_sd=1e-4), window=0.3)
     shears = np.array([288e3, 294e3, 300e3, 306e3])
     matches = wanted.matches([soft(g) for g in shears], [Damping(stiffness=made.STIFFNESS_DAMPING)] * 4)
@@ -67,7 +68,7 @@ def test_settled_modulus_comes_back():
 
 @pytest.mark.slow
 def test_modulus_damping_and_release_come_back():
-    """All together, from 10 % off, as in `test_least_chi_square_lies_at_the_true_modulus`."""
+    """All three from a start 10 % off, as in `test_least_chi_square_lies_at_the_true_modulus`."""
     wanted = objective(made.trial(noise=1e-4, marker_sd=1e-4))
     fit = fit_motion(wanted, LAW, shear=270e3, damping=Damping(mass=0.5, stiffness=2e-3))
     assert fit.converged, fit.message
@@ -81,9 +82,10 @@ def test_modulus_damping_and_release_come_back():
 
 
 def test_a_marker_that_sits_elsewhere_is_found():
-    """The stalk's marker sits 3 mm higher than stated: its x displacement tells, once its place may be off.
+    """The stalk's marker is 3 mm higher than stated, which its x displacement shows if its position is free.
 
-    The difference from where it is stated counts: beam theory and solid do not agree to a tenth of a mm."""
+    The result is compared with that of the stated position: beam theory and solid differ by a tenth of a mm.
+    """
     stated, trial = made.trial(), made.trial(shift=(0.0, 0.0, 3e-3))
     settled = {"stages": ("settled",), "window": 1.5, "markers": ["stalk", "end"]}
     free = [objective(t, nuisances=Nuisances(position=5e-3, frame=0.0), **settled) for t in (stated, trial)]
@@ -94,7 +96,7 @@ def test_a_marker_that_sits_elsewhere_is_found():
 
 
 def test_free_offset_leaves_the_swing_alone():
-    """A constant added after the release is taken up by the offset, and moves nothing else."""
+    """A constant added after the release is absorbed by the offset, and changes nothing else."""
     trial = made.trial()
     sunk = replace(
         trial,

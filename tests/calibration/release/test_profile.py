@@ -1,4 +1,4 @@
-"""Nuisances at their best against the covariance they stand for; a delay against the one put in."""
+"""Profiled nuisances against the full covariance; an estimated delay against the true one."""
 
 from __future__ import annotations
 

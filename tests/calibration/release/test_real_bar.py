@@ -1,4 +1,4 @@
-"""The measured Dragon Skin bar, where it is at hand: see docs/bar.md."""
+"""The measured Dragon Skin beam, if it is available: see docs/bar.md."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ pytestmark = [
 
 
 def test_modulus_of_the_settled_pose_and_frequency_of_another_trial():
-    """Others found 267 to 298 kPa by statics; the frequency asks for a few per cent more stiffness."""
+    """Published static moduli are 267 to 298 kPa; the frequency requires a few per cent more stiffness."""
     experiment = read(FOLDER)
     trials = {t.id: t for t in experiment.trials}
     belief = experiment.materials["dragonskin10"]

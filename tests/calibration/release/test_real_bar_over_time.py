@@ -1,4 +1,4 @@
-"""A small part of `studies/release/over_time.py`, where the measured Dragon Skin bar is at hand."""
+"""A small part of `studies/release/over_time.py`, if the measured Dragon Skin beam is available."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 
 
 def test_one_spectrum_for_a_run_of_each_load() -> None:
-    """By the reduced beam alone. The frequency with 52 g is predicted: its free vibration is left out."""
+    """With the reduced beam only. The frequency with 52 g is a prediction: its vibration is not fitted."""
     whole = experiment_of(FOLDER)
     experiment = replace(whole, trials=tuple(t for t in whole.trials if t.id in ("gravity-a", "load52-a")))
     _, objective = measured(experiment)
@@ -35,8 +35,10 @@ def test_one_spectrum_for_a_run_of_each_load() -> None:
 
 
 def test_what_hangs_rubs() -> None:
-    """With 52 g the damping ratio grows as the motion dies, as dry friction makes it; by itself the bar's
-    does not. No linear material does that."""
+    """With 52 g, and only then, the damping ratio increases as the motion decays, as with dry friction.
+
+    No linear material behaves so.
+    """
     for name, rows in swings(experiment_of(FOLDER)):
         ratios = np.array([ratio for _, _, ratio in rows])
         grown = ratios[3:].mean() / ratios[:2].mean()

@@ -1,4 +1,4 @@
-"""A made swing with creep comes back; what does not swing is refused."""
+"""A synthetic free vibration with creep is recovered; records without a vibration are refused."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from calibration.measurements.release import ringdown
 
 
 def made(rng=None):
-    """7.7 Hz (damped) at 5 % about a centre of -6.3 mm that sinks by 0.4 a decade; a faster mode besides."""
+    """7.7 Hz (damped) at 5 % about a centre of -6.3 mm that sinks by 0.4 per decade, with a faster mode."""
     t = np.arange(0.0, 2.0, 0.01)
     w = 2.0 * np.pi * 7.7
     c = 0.05 * w / np.sqrt(1.0 - 0.05**2)

@@ -1,4 +1,4 @@
-"""The reduced beam with a relaxation spectrum against the solid of tisim, released with the same material."""
+"""The reduced beam with a relaxation spectrum against tisim's solid, released with the same material."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ SECONDS, STEP = 1.2, 2e-3
 
 @pytest.mark.slow
 def test_frequency_damping_and_rest() -> None:
-    """Frequency to 1.5 %, what is lost in a cycle to 5 %, the centre of the motion to 2 %: beam theory errs
-    by as much without memory, which `corrections` takes away."""
+    """Frequency within 1.5 %, loss per cycle within 5 %, centre of the motion within 2 %.
+
+    Beam theory has errors of this size without viscosity, too, which `corrections` removes.
+    """
     material = material_from_moduli(
         "neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR, density=DENSITY
     )
@@ -54,7 +56,7 @@ def test_frequency_damping_and_rest() -> None:
     q = free_vibration(parameters).coordinates(result.load)
     moved = beam_markers(parameters, q, [(LENGTH, 0.0)]).displacement[0, :, 1]
     reduced = ringdown(result.load, 1e3 * moved, first=0.15, last=1.1)
-    # BDF2 slows an angular frequency w by the part (w dt)^2 / 3
+    # BDF2 reduces an angular frequency w by the fraction (w dt)^2 / 3
     slowed = 1.0 - (STEP / period) ** 2 / 3.0
     assert reduced.frequency * slowed == pytest.approx(solid.frequency, rel=0.015)
     assert reduced.damping_ratio == pytest.approx(solid.damping_ratio, rel=0.05)

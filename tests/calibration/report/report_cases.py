@@ -1,4 +1,4 @@
-"""Made calibrations and experiments for the page's tests; a planar elastica as the photograph of a beam."""
+"""Synthetic calibrations and experiments for the page's tests; a planar elastica as photographed beam."""
 
 from __future__ import annotations
 
@@ -23,8 +23,11 @@ RADIUS, LENGTH = 0.010, 0.050
 
 
 def elastica(shear_modulus: float) -> tuple[np.ndarray, np.ndarray]:
-    """Upper and lower edge [mm], (25, 2) each, of a round bar that hangs from a clamp at rho = 1000 kg/m3:
-    inextensible, E I theta'' = w (L - s) cos theta, theta the slope downwards, E = 3 G."""
+    """Upper and lower edge [mm], (25, 2) each, of a round cantilever under its own weight.
+
+    Inextensible elastica E I theta'' = w (L - s) cos theta; theta is the downward slope, rho = 1000 kg/m3,
+    E = 3 G.
+    """
     stiffness = 3.0 * shear_modulus * np.pi * RADIUS**4 / 4.0
     weight = 1000.0 * 9.81 * np.pi * RADIUS**2
     s = np.linspace(0.0, LENGTH, 201)
@@ -44,7 +47,7 @@ def elastica(shear_modulus: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def beam_folder(folder: Path) -> Path:
-    """One cantilever of 50 mm with one photograph, and a beam that nobody has traced."""
+    """Experiment with one cantilever of 50 mm with one traced photograph, and one beam without an outline."""
     upper, lower = elastica(10e3)
     photographs = [capture_entry(60.0, "beams/b.csv")]
     traced = beam_entry("hanging", material="S1", captures=photographs, free_length_mm=50.0)
@@ -61,7 +64,7 @@ def beam_folder(folder: Path) -> Path:
 
 
 def coupon_folder(folder: Path) -> Path:
-    """Two tensile curves of an incompressible Neo-Hookean material, G = 100 kPa, of two materials."""
+    """Tensile curves of an incompressible Neo-Hookean material, G = 100 kPa, as those of two materials."""
     stretch = np.linspace(1.0, 2.0, 15)
     table = {"stretch": stretch, "nominal_stress_kPa": 100.0 * (stretch - stretch**-2)}
     return write_experiment(
@@ -73,7 +76,7 @@ def coupon_folder(folder: Path) -> Path:
 
 
 def calibration(label: str = "neo-hookean", *, material: str = "A", **more: Any) -> Calibration:
-    """A converged fit of G = 100 kPa with a made chi-square of 90 over 100 points."""
+    """Converged fit of G = 100 kPa with an invented chi-square of 90 over 100 points."""
     mu, bulk = 1e5, 3e7
     by_law: dict[str, dict[str, Any]] = {
         "neo-hookean": {"mu": mu, "lam": bulk - 2.0 * mu / 3.0},
@@ -128,7 +131,7 @@ def estimate(name: str = "shear_modulus", *, value: float = 1e5, seen: str = "id
 
 
 class Page(HTMLParser):
-    """What the tests look at: text, values of <data>, sources of pictures, tags, rows of tables."""
+    """Parts of the page that the tests check: text, values of <data>, image sources, tags, table rows."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -147,7 +150,7 @@ class Page(HTMLParser):
         return " ".join(" ".join(self.words).split())
 
     def row(self, first: str) -> list[str]:
-        """The first row of a table that begins so."""
+        """First table row whose first cell is `first`."""
         return next(r for r in self.rows if r and r[0] == first)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:

@@ -1,4 +1,4 @@
-"""The page that `calibration.fit` writes for one beam: figures equal the JSON, pictures are inside it."""
+"""The page of `calibration.fit` for one beam: figures equal the JSON file's, pictures are embedded."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def test_figures_are_those_of_the_json(page: Page, result: Calibration) -> None:
     assert float(sd) == pytest.approx(result.shear_modulus_sd / 1e3, rel=0.5)
     assert result.rms is not None
     assert float(row[7]) == pytest.approx(1e3 * result.rms, abs=0.0005)
-    # the made beams are no elastica: the headline says that the law lacks something
+    # the synthetic beams are no elastica: the headline states a lack of fit
     assert page.text.count(f"Until then: {row[2]} kPa by neo-hookean") == 1
     assert "python -m calibration.diagnose" in page.text
 
 
 def test_the_fit_found_the_elastica(result: Calibration) -> None:
-    # a bar of length 2.5 diameters bends by more than an elastica, so that the fit takes it for stiffer
+    # a beam of 2.5 diameters deflects more than an elastica, so the fit has a larger modulus
     assert 10e3 < result.shear_modulus < 15e3
 
 
@@ -76,7 +76,7 @@ def test_the_page_needs_nothing_beside_it(page: Page) -> None:
 
 
 def test_the_beam_can_be_turned_around(page: Page) -> None:
-    """Once, with the rms that the table states; its script is the page's own."""
+    """There is one view, with the rms of the table; its script is in the page."""
     assert page.raw.count('<section class="tisim-view"') == 1
     assert page.raw.count("getContext") == 1
     label = re.search(r"hanging at [\d.]+ s · outline from body: ([\d.]+) mm rms, registered", page.raw)
@@ -107,7 +107,7 @@ def test_data_command_and_what_was_not_used(study: tuple[Path, Path], page: Page
     assert options["--out"] == str(out)
     assert "untraced: not traced yet" in page.text
     assert "one beam alone: no length can be left out" in page.text
-    assert "a <made> experiment" in page.text  # escaped in the raw page
+    assert "a <made> experiment" in page.text  # escaped in the source
     assert "<made>" not in page.raw
 
 

@@ -1,4 +1,4 @@
-"""The page where there are no beams, no results, no error bars, and where fits went wrong."""
+"""Pages without beams, results or error bars, and pages of failed fits."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def test_coupons_alone(tmp_path: Path) -> None:
     assert "No calibration: 1 of 3 fits" in page.text
     assert "mooney-rivlin: no equilibrium (nothing holds <there>)" in page.text
     assert page.row("neo-hookean")[2:4] == ["100.0 ± 0.7", "held at its prior, 300, not measured"]
-    assert page.row("neo-hookean")[6] == "2.0"  # chi-square 4 more, one constant less
-    # the curve was made by the same law, incompressible
+    assert page.row("neo-hookean")[6] == "2.0"  # chi-square larger by 4, one constant fewer
+    # the curve was made with the same law, incompressible
     error = page.row("pull-A")
     assert error[:3] == ["pull-A", "uniaxial", "15"]
     assert float(error[3].removesuffix(" %")) < 0.5
@@ -47,7 +47,7 @@ def test_all_fits_failed(tmp_path: Path) -> None:
     assert "A: no result, since no law has a fit (2 no equilibrium)." in page.text
     assert "B: no result, since no law has a fit (1 no equilibrium)." in page.text
     assert "3 fits: 3 no equilibrium" in page.text
-    assert "--material" not in page.text  # both of the experiment's materials are on the page
+    assert "--material" not in page.text  # the page has both materials of the experiment
 
 
 def test_all_fits_of_beams_failed(tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_held_out_beams(tmp_path: Path) -> None:
 
 
 def test_beams_without_equilibrium_at_the_parameters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # a solve that fails in earnest takes minutes
+    # a true failure of the solver takes minutes
     monkeypatch.setattr(ModelObjective, "linearise", lambda _self, _u: False)
     result = calibration(material="S1", rms=1e-4)
     page = Page(write_report(tmp_path, [result], read(beam_folder(tmp_path / "data"))))

@@ -1,4 +1,4 @@
-"""Verdicts, figures and nuisances as people read them."""
+"""Verdicts, figures and nuisances as readable text."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ def test_some_laws_are_alike() -> None:
 
 
 def test_misfit_shrinks_differences() -> None:
-    # 30 less of chi-square settles it at the noise, and nothing where every law misses by ten times that
+    # a difference of 30 in chi-square is decisive at the noise level, but not if all laws miss by ten times
+    # it
     laws = [
         calibration(chi2=980.0, reduced_chi2=10.0),
         calibration("ogden", chi2=970.0, reduced_chi2=10.0),

@@ -1,4 +1,4 @@
-"""Edges of beams whose mid line is known in closed form; shares nothing with the code under test."""
+"""Edges of beams whose centre line is known in closed form; no code shared with the code under test."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ H = 0.010  # half height
 
 
 def hanging(s: Array, *, length: float, drop: float) -> tuple[Array, Array]:
-    """Line of angle -drop sin(pi s / 2 length): level at the clamp, straight at its end."""
+    """Line whose angle is -drop sin(pi s / 2 length): horizontal at the clamp, straight at its end."""
     grid = np.linspace(0.0, 1.2 * length, 20_001)
     angle = -drop * np.sin(np.pi * grid / (2 * length))
     step = np.diff(grid)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])[:-1]
@@ -32,7 +32,7 @@ def traced(
     seed: int = 0,
     margin: float = 1e-3,
 ) -> TracedOutline:
-    """Edges H above and below the hanging line, from `margin` to the free end, with noise across it."""
+    """Edges at distance H from the hanging line, from `margin` to the free end, with noise along normals."""
     rng = np.random.default_rng(seed)
     edges = []
     for sign, count in zip((1.0, -1.0), counts, strict=True):

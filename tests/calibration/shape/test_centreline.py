@@ -1,4 +1,4 @@
-"""The mid line of traced edges against lines in closed form."""
+"""The centre line of traced edges against closed forms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_bridge_reaches_the_far_clamp() -> None:
 
 
 def test_shift_and_roll_stay_in_the_line() -> None:
-    """A photograph that lies askew: the line must say so, since that is what the data say."""
+    """The line keeps a misalignment of the photograph, since it represents the data."""
     roll, up = np.radians(1.0), 0.5e-3
     outline = cases.traced(drop=0.0)
     turn = np.array([[np.cos(roll), np.sin(roll)], [-np.sin(roll), np.cos(roll)]])
@@ -53,7 +53,7 @@ def test_shift_and_roll_stay_in_the_line() -> None:
 
 
 def test_sd_is_the_scatter_of_the_line() -> None:
-    """Over noisy tracings of one beam the error along the normal has the sd that is claimed."""
+    """Over noisy tracings of one beam, the normal error has the stated sd."""
     scores = []
     for seed in range(16):
         outline = cases.traced(noise=1e-4, seed=seed)

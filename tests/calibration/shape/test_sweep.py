@@ -1,4 +1,4 @@
-"""Swept bodies against volumes and planes in closed form."""
+"""Swept bodies against closed-form volumes and planes."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_free_end_is_cut_across_the_line() -> None:
 
 
 def test_clamped_ends_are_cut_along_the_faces() -> None:
-    """A line that enters the clamps askew still ends in their planes."""
+    """A line oblique to the clamps' faces ends in their planes."""
     x = np.linspace(0.0, 0.15, 301)
     slope = -0.3 * np.cos(np.pi * x / 0.15)
     z = -0.3 * 0.15 / np.pi * np.sin(np.pi * x / 0.15)
@@ -100,7 +100,7 @@ def test_bend_sharper_than_the_section_is_refused() -> None:
 
 
 def test_traced_edges_lie_on_the_swept_body() -> None:
-    """The CAD body of traced edges has those edges as its outline in the image plane."""
+    """The image-plane outline of the CAD body of traced edges is these edges."""
     from calibration.shape import centreline
 
     outline = cases.traced()
@@ -108,4 +108,4 @@ def test_traced_edges_lie_on_the_swept_body() -> None:
     rim = np.concatenate([outline.upper, outline.lower])
     on_rim = body.vertices[np.abs(body.vertices[:, 1]) < 1e-9][:, [0, 2]]
     gap = np.linalg.norm(rim[:, None] - on_rim[None], axis=2).min(axis=1)
-    assert gap.max() < 0.7e-3  # half a step between sections, which are 1 mm apart
+    assert gap.max() < 0.7e-3  # sections are 1 mm apart: half of that, and a margin

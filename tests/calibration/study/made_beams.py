@@ -1,7 +1,7 @@
-"""Beams photographed by this file: simulated on its own mesh, traced, disturbed, written as a lab would.
+"""Photographed beams: simulated on their own mesh, traced, disturbed, and written as by a laboratory.
 
-It shares no code with calibration: the edges are splines through the mesh's corner nodes, the noise is drawn
-from the format's own words.
+This module shares no code with calibration: the edges are splines through the mesh's corner nodes, and the
+noise is drawn as the format describes it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def made(
     rings: int = 5,
     name: str = "S0",
 ) -> Path:
-    """An experiment folder with cantilevers and bridges of one material; noise scales all errors."""
+    """Write an experiment with cantilevers and bridges of one material; `noise` scales all errors."""
     rng = np.random.default_rng(seed)
     trials, tables = [], {}
     for length, bridge in [(x, False) for x in lengths_mm] + [(x, True) for x in bridges_mm]:
@@ -70,7 +70,7 @@ def made(
 
 
 def _solved(beam: tisim.Beam) -> tisim.Result:
-    """Solved once for all seeds of a test."""
+    """Result of a beam, solved once for all seeds of a test."""
     key = repr(beam)
     if key not in _SOLVED:
         (_SOLVED[key],) = tisim.simulate([beam], workers=1)
@@ -82,13 +82,13 @@ _SOLVED: dict[str, tisim.Result] = {}
 
 
 def _edge(result: tisim.Result, side: float, rng: np.random.Generator) -> Array:
-    """Points along one edge [mm], every 1.3 mm or so, from 1 mm off the clamp."""
+    """Points along one edge [mm], some 1.3 mm apart, from 1 mm off the clamp."""
     rest, now = result.mesh.nodes, result.positions[-1]
     on = (np.abs(rest[:, 1]) < 1e-12) & (np.abs(rest[:, 2] - side * rest[:, 2].max()) < 1e-9)
     on &= (rest[:, 0] >= -1e-12) & (rest[:, 0] <= result.scene.length + 1e-12)  # type: ignore[union-attr]
     order = np.argsort(rest[on, 0])
     x, line = rest[on, 0][order], now[on][order][:, [0, 2]]
-    corners = slice(None, None, 2)  # middle nodes of the 10-node elements lie between
+    corners = slice(None, None, 2)  # mid-side nodes of the 10-node elements lie between
     curve = CubicSpline(x[corners], line[corners])
     at = np.arange(1e-3, x[-1] - 0.5e-3, 1.3e-3)
     return 1e3 * curve(at + rng.uniform(-3e-4, 3e-4, len(at)))
@@ -107,7 +107,7 @@ def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) 
         C = np.exp(-((s[:, None] - s[None]) ** 2) / (2.0 * 5.0**2))
         values, vectors = np.linalg.eigh(C)
         error = 0.1 * noise * vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.standard_normal(len(s)))
-        error += 0.002 * noise * rng.standard_normal(len(s))  # a tracer's last digit
+        error += 0.002 * noise * rng.standard_normal(len(s))  # rounding by the tracer
         traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
         found.append(scale * traced @ turn.T + shift)
     return found[0], found[1]

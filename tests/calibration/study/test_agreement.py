@@ -1,7 +1,7 @@
-"""A fit and a diagnosis of one bench are of one model: the same modulus, to a tenth of its error bar.
+"""A fit and a diagnosis of one bench use one model: moduli agree to a tenth of the error bar.
 
-The clean bench has one specimen a material: one modulus a specimen, which is the diagnosis, is one modulus a
-material, which is the fit. Both hold K/G at 300, and have the neo-Hookean law.
+The clean bench has one specimen per material, so that the diagnosis (one modulus per specimen) and the fit
+(one per material) have the same moduli. Both hold K/G at 300 and use the neo-Hookean law.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LAW = parametrisation("neo-hookean").holding("bulk_ratio")
 
 
 def fitted(material: str, begin: float) -> tuple[float, float, float]:
-    """Shear modulus [Pa], its standard deviation and chi-square over points of the fit."""
+    """Shear modulus [Pa], its standard deviation and chi-square per point of the fit."""
     data = measurements(read(CLEAN), material, LAW, workers=1)
     problem = Problem(parametrisation=LAW, objectives=data.objectives)
     end = polish(problem, np.log([begin, 300.0]))
@@ -37,7 +37,7 @@ def fitted(material: str, begin: float) -> tuple[float, float, float]:
 
 
 def diagnosed(materials: list[str]) -> tuple[dict[str, float], float]:
-    """Shear moduli [Pa] and chi-square over points of the baseline of a diagnosis."""
+    """Shear moduli [Pa] and chi-square per point of the baseline of a diagnosis."""
     experiment = read(CLEAN)
     some = replace(experiment, trials=tuple(t for t in experiment.trials if t.material in materials))
     model = OutlineModel(some, workers=1)
@@ -56,7 +56,7 @@ def test_one_material() -> None:
 
 @pytest.mark.slow
 def test_all_materials_of_the_clean_bench() -> None:
-    """The diagnosis of all of them at once, as the command makes it."""
+    """The diagnosis of all materials at once, like the command's."""
     truth = yaml.safe_load((CLEAN / "truth.yaml").read_text(encoding="utf-8"))["shear_modulus_Pa"]
     moduli, _ = diagnosed([*truth])
     for material, other in moduli.items():

@@ -1,4 +1,4 @@
-"""A fit that ends at a bound, or misses by more than chance, is no calibration: status, message, card."""
+"""A fit at a bound, or with a significant misfit, is no calibration: status, message, card."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ QUICK = FitOptions(cma=CmaOptions(max_generations=25), leave_one_out=False)
 
 
 class Linear:
-    """Residuals linear in ln G and ln K/G: data that see both, and are best met at the values given."""
+    """Residuals linear in ln G and ln K/G with the minimum at the given values."""
 
     name = "linear"
     reference = None
@@ -57,7 +57,7 @@ class Linear:
 
 
 def fitted(data: Linear, law: str = "neo-hookean", *, free: bool = True) -> Calibration:
-    """free : K/G is to be found."""
+    """Fit of these data; with `free`, K/G is fitted."""
     p, held = parametrisation(law), cast(Any, data)
     whole = Measurements(
         material="S0",
@@ -80,12 +80,12 @@ def test_data_that_the_law_meets_are_a_calibration() -> None:
 
 @pytest.mark.parametrize("ratio", [0.5, 4.0])
 def test_a_bulk_modulus_at_its_bound_or_far_off_its_prior(ratio: float) -> None:
-    """0.5 lies beyond the bound of 3, 4 within it, at 3.9 sd of the prior (ln 300 +- 1.1)."""
+    """0.5 lies beyond the bound of 3; 4 is allowed, but at 3.9 sd of the prior (ln 300 +- 1.1)."""
     found = fitted(Linear(20e3, ratio, noise=0.3))
     assert found.status == "lack of fit"
     assert found.message.startswith("the data ask for something that neo-hookean lacks (K/G ")
     assert "python -m calibration.diagnose" in found.message
-    # K/G is the prior's, with its uncertainty, and the shear modulus is fitted beside it
+    # K/G and its uncertainty are the prior's, and the shear modulus is fitted with it
     assert found.bulk_modulus / found.shear_modulus == pytest.approx(300.0, rel=0.05)
     bulk = next(e for e in found.estimates if e.name == "bulk_ratio")
     assert bulk.seen == "held"
@@ -94,7 +94,7 @@ def test_a_bulk_modulus_at_its_bound_or_far_off_its_prior(ratio: float) -> None:
 
 
 def test_a_bulk_modulus_is_held_unless_it_is_asked_for() -> None:
-    """At the prior's centre, wherever the data would take it; its interval is the prior's."""
+    """It is held at the prior's centre for any data; its interval is the prior's."""
     found = fitted(Linear(20e3, 250.0, noise=0.3), free=False)
     bulk = next(e for e in found.estimates if e.name == "bulk_ratio")
     assert bulk.seen == "held"
@@ -106,7 +106,7 @@ def test_a_bulk_modulus_is_held_unless_it_is_asked_for() -> None:
 
 @pytest.mark.parametrize("free", [False, True])
 def test_the_bar_of_the_shear_modulus_holds_the_priors_uncertainty(free: bool) -> None:
-    """ln G moves by -s for each unit of ln K/G that is not known: s from the rows of the data."""
+    """ln G changes by -s per unit of the uncertain ln K/G; s follows from the rows of the data."""
     data = Linear(20e3, 0.5, coupling=1.0)
     found = fitted(data, free=free)
     a, b = data.rows.T
@@ -135,7 +135,7 @@ def test_the_card_holds_the_priors_ratio_and_says_so(tmp_path: Path) -> None:
 
 
 def test_a_constant_at_a_bound_gives_way_to_a_settled_law() -> None:
-    """Ogden fits a little better with its exponent at a bound; the card takes the law that is settled."""
+    """Ogden fits slightly better with its exponent at a bound; the card has the law without this problem."""
     settled = fitted(Linear(20e3, 250.0))
     at_bound = replace(settled, law="ogden", label="ogden", chi2=settled.chi2 - 50.0, unsettled=("alpha",))
     assert best([at_bound, settled]) is settled
@@ -167,7 +167,7 @@ def test_a_bound_counts_where_the_data_press_against_it() -> None:
 def test_a_held_constant_is_no_lack_of_fit() -> None:
     p = parametrisation("neo-hookean").holding("bulk_ratio")
     u = p.start(shear=2e4)
-    u[1] += 0.1  # ten of the sd that holds it
+    u[1] += 0.1  # ten sd of the prior that holds it
     assert off_prior(p, u) == {}
 
 
@@ -175,7 +175,7 @@ def test_a_held_constant_is_no_lack_of_fit() -> None:
     ("values", "lacks"),
     [
         ([0.5] * 44, False),
-        ([2.5] * 4 + [0.5] * 40, False),  # chance puts 2 of 44 there, and 4 at times
+        ([2.5] * 4 + [0.5] * 40, False),  # by chance 2 of 44 are there, sometimes 4
         ([2.5] * 8 + [0.5] * 36, True),
         ([5.5] + [0.5] * 43, True),
         ([3.0] + [0.5] * 43, False),

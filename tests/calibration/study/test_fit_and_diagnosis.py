@@ -1,4 +1,4 @@
-"""A fit and a diagnosis of one experiment: the same records, forward model and noise, so the same modulus."""
+"""A fit and a diagnosis of one experiment have the same records, model and noise, and so the same modulus."""
 
 from __future__ import annotations
 
@@ -25,9 +25,12 @@ MEASURED = Path(__file__).parents[3] / "datasets" / "measured"
     [("coupons", "homogeneous", 2), ("compression", "compression", 2), ("indentation", "indentation", 1)],
 )
 def test_they_agree_to_a_tenth_of_a_standard_deviation(folder: str, kind: str, materials: int) -> None:
-    """The neo-Hookean shear modulus of each material: `calibration.fit`'s end (one modulus a material, K/G
-    held by its prior) and the baseline of a diagnosis (one modulus a specimen, their geometric mean), in the
-    standard deviation of the baseline. The hidden cause is in both."""
+    """The fit's neo-Hookean modulus of each material equals that of the diagnosis' baseline.
+
+    `calibration.fit` has one modulus per material, with K/G held by its prior; the baseline has one per
+    specimen, and their geometric mean is compared, in its standard deviation. The data of both have the
+    hidden cause.
+    """
     experiment = read(MEASURED / folder)
     model = model_of(experiment)
     assert model.kind == kind
@@ -43,9 +46,11 @@ def test_they_agree_to_a_tenth_of_a_standard_deviation(folder: str, kind: str, m
 
 
 def test_the_softest_photographs_agree_on_a_coarse_mesh() -> None:
-    """S1 of the clean bench is bent to strains of 0.7, where laws that take volume in different ways have
-    different moduli (with Yeoh's as baseline 0.13 of the sd, by all three beams): both have the neo-Hookean
-    law. The longest cantilever alone."""
+    """The longest cantilever of S1, the softest material of the clean bench, on a coarse mesh.
+
+    It is bent to strains of 0.7, where laws with different volumetric parts have different moduli (by 0.13 sd
+    for Yeoh's as baseline, with all three beams); here both have the neo-Hookean law.
+    """
     whole = read(MEASURED / "bench" / "clean")
     experiment = replace(whole, trials=tuple(t for t in whole.trials if t.id == "S1-cantilever-100"))
     model = model_of(experiment, kind="outlines", simulator="coarse-mesh", workers=1)
@@ -62,8 +67,10 @@ def test_the_softest_photographs_agree_on_a_coarse_mesh() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("material", ["S0", "S0.5", "S1"])
 def test_photographs_agree_at_the_same_bulk_modulus(material: str) -> None:
-    """What `calibration.fit --model neo-hookean` and `calibration.diagnose` print for a material of the clean
-    bench: K/G is held at 300 in both; 0.005, 0.04 and 0.03 of an error bar that knows K/G."""
+    """Results of `calibration.fit --model neo-hookean` and `calibration.diagnose` for a material of a bench.
+
+    K/G is held at 300 in both; they differ by 0.005, 0.04 and 0.03 of the error bar for known K/G.
+    """
     whole = read(MEASURED / "bench" / "clean")
     experiment = replace(whole, trials=tuple(t for t in whole.trials if t.material == material))
     model = model_of(experiment, kind="outlines", workers=1)
@@ -72,5 +79,5 @@ def test_photographs_agree_at_the_same_bulk_modulus(material: str) -> None:
     (bulk,) = (e for e in found.estimates if e.name == "bulk_ratio")
     assert bulk.seen == "held"
     assert bulk.value == pytest.approx(300.0, rel=0.01)
-    assert bulk.high / bulk.low > 10.0  # what is known of it, not the hold
+    assert bulk.high / bulk.low > 10.0  # the interval of the prior
     assert found.shear_modulus == pytest.approx(modulus, abs=0.1 * found.shear_modulus_sd)

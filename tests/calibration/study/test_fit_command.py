@@ -1,4 +1,4 @@
-"""`python -m calibration.fit` as people run it."""
+"""`python -m calibration.fit` from a user's point of view."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from factory.materials import load_card
 TRUTH = tisim.material_from_moduli("neo-hookean", shear_modulus=12e3, bulk_modulus=6e6, density=1000.0)
 
 
-# finer than the search's mesh and coarser than the one that corrects it: 4 micrometres off at a tip
+# finer than the search's mesh and coarser than the one that corrects it: error of 4 micrometres at a tip
 MESH = {"layer": 0.0025, "rings": 4}
 
 
 def fit(*arguments: str) -> Result:
-    """The command, in this process."""
+    """Run the command in this process."""
     return CliRunner().invoke(app, list(arguments))
 
 
@@ -123,16 +123,16 @@ def test_killed_and_stopped_it_goes_on_to_the_same_answer(fitted: Path, tmp_path
     arguments.append("--no-held-out")
     _interrupt(arguments, history, signal.SIGKILL, after=2)
     with history.open("a") as file:
-        file.write('{"restart": 0, "index": 2, "cand')  # a line that a kill cut short
+        file.write('{"restart": 0, "index": 2, "cand')  # a line truncated by a kill
     stopped = _interrupt(arguments, history, signal.SIGTERM, after=4)
     assert "best so far" in stopped
     assert (out / "report.html").exists()
-    assert not (out / "cards").exists()  # a stopped search's parameters are not a fit
+    assert not (out / "cards").exists()  # a stopped search is not a fit
     done = fit(*arguments)
     assert done.exit_code == 0, done.stderr
     again = json.loads((out / "fits" / "S0-neo-hookean.json").read_text())["calibration"]
     once = result(fitted)
-    # beams started from other neighbours differ by the solver's tolerance, no more
+    # beams that start from other neighbours' solutions differ by the solver's tolerance
     assert again["candidates"] == once["candidates"]
     assert np.allclose(again["u"], once["u"], rtol=1e-5)
 
@@ -210,11 +210,11 @@ def test_a_malformed_folder_writes_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no SIGKILL on this system")
 def test_workers_of_a_killed_fit_write_no_more(fitted: Path, tmp_path: Path) -> None:
-    """Two fits in two processes; the parent is killed, its workers end and do not go on with the files."""
+    """After the parent of two worker processes is killed, they end and write no further files."""
     out = tmp_path / "out"
     arguments = [str(fitted / "experiment"), "--model", "neo-hookean,mooney-rivlin", "--out", str(out)]
     history = out / "fits" / "S0-mooney-rivlin.jsonl"
     _interrupt([*arguments, "--workers", "2"], history, signal.SIGKILL, after=3)
-    # a worker that had not ended with its parent would have ended with its fit
+    # a surviving worker would have finished its fit
     assert history.exists()
     assert not (out / "fits" / "S0-mooney-rivlin.json").exists()

@@ -1,4 +1,4 @@
-"""Any mix of trials is one fit: what enters, and what is said to be left out."""
+"""Any mix of trials is one fit: used trials, and remarks on the ones left out."""
 
 from __future__ import annotations
 
@@ -51,18 +51,20 @@ def test_beams_pokes_and_coupons_are_one_fit(tmp_path: Path) -> None:
 
 
 def test_settled_markers_say_the_modulus(tmp_path: Path) -> None:
-    """A bar that sinks by w: E = rho g L^4 A / (8 w I), for a deflection small enough for beam theory."""
+    """A beam with tip deflection w: E = rho g L^4 A / (8 w I), small enough for beam theory."""
     data = measurements(read(mixed(tmp_path, kinds="beam")), "S0", NEO, workers=1)
     found = calibrate(data)
     young = 1000.0 * 9.81 * 0.1**4 / (8.0 * 0.004) * 4.0 / 0.01**2
     assert found.status == "converged"
-    # beam theory leaves out shear and the clamp's give; a marker's own place is known to 1 mm only
+    # beam theory neglects shear and the clamp's compliance; a marker's position is known to 1 mm only
     assert found.shear_modulus == pytest.approx(young / 3.0, rel=0.06)
 
 
 def test_wide_intervals_are_those_of_the_likelihood(tmp_path: Path) -> None:
-    """A strip that stiffens by 0.5 % more than a neo-Hookean one: chains that lock early are excluded, by
-    less than linear theory says."""
+    """The strip stiffens by 0.5 % more than a neo-Hookean one: early locking is excluded.
+
+    The likelihood's interval is narrower at its lower end than that of linear theory.
+    """
     stretch = np.linspace(1.05, 2.0, 20)
     stress = 30.0 * (stretch - stretch**-2) * (1.0 + 0.005 * (stretch - 1.0))
     tables = {"pull.csv": {"stretch": stretch, "nominal_stress_kPa": stress}}
@@ -86,7 +88,7 @@ def test_the_bar_at_rest() -> None:
     folder = measured() / "real" / "clamped-beam-dragonskin10" / "experiment"
     found = calibrate(measurements(read(folder), "dragonskin10", NEO))
     assert found.status == "converged"
-    # others' static fits: E of 267 to 298 kPa; ours of one trial each: 250 to 279 (docs/bar.md)
+    # published static fits: E of 267 to 298 kPa; here, one trial each: 250 to 279 (docs/bar.md)
     assert 250e3 < 3.0 * found.shear_modulus < 298e3
 
 

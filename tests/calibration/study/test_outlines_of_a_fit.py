@@ -1,6 +1,6 @@
-"""What a fit needs of the outlines' model: nuisances by name and sign, one trial left out, a mesh that fails.
+"""The outline model in a fit: names and signs of nuisances, one trial left out, a failing mesh.
 
-Beams are made on the mesh that the model uses, without noise: what is tested is not whether tisim is right.
+The beams are made on the model's mesh without noise: the tests are not about the simulator.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def thinner(trial: BeamTrial) -> BeamTrial:
 
 
 def lifted(trial: BeamTrial) -> BeamTrial:
-    """In its first photograph, by one standard deviation."""
+    """The trial with its first photograph shifted upwards by one standard deviation."""
     first = trial.captures[0]
     assert first.outline is not None
     up = np.array([0.0, first.outline.registration.shift])
@@ -112,7 +112,7 @@ def test_one_trial_alone_and_the_others(experiment: Experiment) -> None:
     assert alone.points + rest.points == whole.points
     v = U + 0.05
     for part, trial in ((alone, 0), (rest, 1)):
-        assert part.linearise(v)  # nothing is taken anew
+        assert part.linearise(v)  # nothing is updated
         assert part.model.noise.columns is whole.model.noise.columns
         seen = part.model.seen(part.state(v))
         assert [s.photograph.beam for s in seen] == [trial] * 2
@@ -120,7 +120,7 @@ def test_one_trial_alone_and_the_others(experiment: Experiment) -> None:
         assert len(rows) == part.points
         left = part.model.registered(part.state(v))
         assert [bool(np.isfinite(x).all()) for x in left] == [k // 2 == trial for k in range(4)]
-    # what is seen of a photograph alone is explained by nuisances that the others do not hold
+    # nuisances fitted to one photograph alone are not constrained by the others
     assert np.sum(alone.residuals(v[None]) ** 2) < np.sum(whole.residuals(v[None]) ** 2)
 
 

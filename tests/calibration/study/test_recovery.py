@@ -1,4 +1,4 @@
-"""Data made elsewhere (a bench by another solver; this suite's own photographs): is the truth recovered?"""
+"""Data from other code (a bench by another solver; photographs made by this suite) recover the truth."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def test_the_clean_bench(material: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("law", tisim.laws.names())
 def test_intervals_hold_the_truth(law: str, tmp_path: Path) -> None:
-    """95 % intervals hold the truth in at least 90 % of 20 seeds; the polish alone, started off the truth."""
+    """95 % intervals contain the truth for at least 90 % of 20 seeds; polish only, from a perturbed start."""
     p = parametrisation(law)
-    # the softest beams that each law can hold up: St Venant-Kirchhoff folds at the clamp below 50 kPa, on a
-    # mesh as fine as that which makes the data
+    # the softest beam that each law can support: St Venant-Kirchhoff collapses at the clamp below 50 kPa, on
+    # a mesh as fine as that of the data
     shear = 50e3 if law == "st-venant-kirchhoff" else 12e3
     values = {"shear_modulus": shear, "bulk_ratio": 400.0, **SHAPES.get(law, {})}
     truth = np.array([c.inside(values[c.name]) for c in p.coordinates])

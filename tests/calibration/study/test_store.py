@@ -1,4 +1,4 @@
-"""Fits on disk: damage is a sentence, never a traceback, and nothing is lost by it."""
+"""Fits on disk: damage gives one sentence, never a traceback, and no loss."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_a_line_cut_short_by_a_kill_is_dropped(tmp_path: Path) -> None:
 
 
 def test_a_result_of_an_earlier_version_is_assessed() -> None:
-    """It has no word of a lack of fit; its reduced chi-square has."""
+    """The file states no lack of fit, but its reduced chi-square shows one."""
     old = Calibration(
         material="S0",
         law="neo-hookean",

@@ -1,6 +1,6 @@
-"""An experiment of unloaded beams, whose figures are known whatever the material, and fits as files.
+"""An experiment of unloaded beams, whose errors are known for any material, and files of fits.
 
-An unloaded beam stays straight; a photograph that lies d too high makes it the cylinder displaced by d.
+An unloaded beam stays straight; its outline displaced by d is that of the cylinder displaced by d.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ RADIUS_MM, LENGTH_MM = 10.0, 50.0
 
 
 def displaced(folder: Path, shifts_mm: dict[str, tuple[float, ...]], *, gravity: float = 0.0) -> Path:
-    """One 50 mm beam a mixture, a photograph for each shift [mm]; "S0.5" has the softener ratio 0.5."""
+    """Write one 50 mm beam per mixture, a capture for each shift [mm]; "S0.5" has the softener ratio 0.5."""
     trials, tables, materials = [], {}, {}
     x = np.linspace(0.5, LENGTH_MM, 40)
     for mixture, shifts in shifts_mm.items():
@@ -46,7 +46,7 @@ def displaced(folder: Path, shifts_mm: dict[str, tuple[float, ...]], *, gravity:
 def fit_file(
     folder: Path, *, digest: str, material: str, law: str, parameters: dict[str, Any], **more: Any
 ) -> Path:
-    """MATERIAL-LAW.json as a study leaves it; `more` replaces values of the calibration."""
+    """Write MATERIAL-LAW.json as a study writes it; `more` replaces values of the calibration."""
     calibration = {
         "material": material,
         "law": law,

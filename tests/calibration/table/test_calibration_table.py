@@ -31,7 +31,7 @@ def experiment(tmp_path):
 
 @pytest.fixture
 def fits(tmp_path, experiment):
-    """Neo-Hookean of both mixtures; Ogden of one without equilibrium; nothing of other laws."""
+    """Neo-Hookean fits of both mixtures, a failed Ogden fit of one, and no other laws."""
     folder, digest = tmp_path / "made" / "fits", read(experiment).digest
     for material in SHIFTS:
         fit_file(folder, digest=digest, material=material, law="neo-hookean",
@@ -47,7 +47,7 @@ def table(path):
 
 
 def shared_part(shift_mm):
-    """Overlap of two circles of 10 mm."""
+    """Dice of two circles of radius 10 mm at a distance `shift_mm`."""
     half = shift_mm / 20
     return 2 / np.pi * (np.arccos(half) - half * np.sqrt(1 - half**2))
 
@@ -57,26 +57,26 @@ def test_figures_of_displaced_cylinders_beside_the_printed_ones(tmp_path, experi
     arguments = [str(experiment), "--fits", str(fits.parent), "--no-run", "--out", str(out),
                  "--model", "neo-hookean,ogden,arruda-boyce"]  # fmt: skip
     found = RUNNER.invoke(app, arguments)
-    assert found.exit_code == 1, found.output  # written, though laws are without figures
+    assert found.exit_code == 1, found.output  # the table is written although some laws have no results
     rows = table(out / "table.csv")
-    assert len(rows) == 6 + 1  # with neo-Hookean's average
+    assert len(rows) == 6 + 1  # with the average of neo-Hookean
     wanted = {"S0": shared_part(0.5), "S1": (shared_part(1.0) + shared_part(2.0)) / 2}
     for mixture, dice in wanted.items():
         row = rows["neo-hookean", mixture]
         shift = np.mean(SHIFTS[mixture])
         assert float(row["dice"]) == pytest.approx(dice, abs=0.002)
-        # the sides lie 2 d / pi apart, the end faces stay in their planes
+        # the sides are 2 d / pi apart, the end faces stay in their planes
         assert float(row["surface_distance_mm"]) == pytest.approx(2 * shift / np.pi * 50 / 60, rel=0.03)
         assert float(row["hd95_mm"]) == pytest.approx(shift, rel=0.03)
         assert float(row["volume_difference_percent"]) < 0.2
-        assert float(row["node_distance_mm"]) > 1.0  # the floor of nodes taken for a surface
+        assert float(row["node_distance_mm"]) > 1.0  # bias of volume nodes used as a surface
         assert float(row["node_hd95_mm"]) > 3.0
         assert float(row["candidate_core_s"]) == pytest.approx(5.0 / 50)
         assert (float(row["fit_core_s"]), float(row["fit_wall_s"])) == (7.0, 9.0)
         assert float(row["shear_modulus_kPa"]) == pytest.approx(20.0)
     average = rows["neo-hookean", "average"]
     assert float(average["dice"]) == pytest.approx((wanted["S0"] + wanted["S1"]) / 2, abs=0.002)
-    assert float(average["paper_dice"]) == pytest.approx((0.957 + 0.891) / 2)  # of the same mixtures
+    assert float(average["paper_dice"]) == pytest.approx((0.957 + 0.891) / 2)  # average of the same mixtures
 
 
 def test_paper_stands_beside(tmp_path, experiment, fits):
@@ -177,7 +177,7 @@ def test_unknown_law_is_refused(experiment):
 
 @pytest.mark.slow
 def test_missing_fits_are_made(tmp_path, monkeypatch):
-    """A beam that its weight hardly bends: any stiff material fits it."""
+    """A beam with a negligible deflection: any stiff material fits it."""
     monkeypatch.chdir(tmp_path)
     folder = displaced(tmp_path / "bench", {"S0": (0.2,)}, gravity=-9.81)
     found = RUNNER.invoke(app, [str(folder), "--model", "neo-hookean", "--workers", "1"])

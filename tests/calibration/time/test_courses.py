@@ -1,4 +1,4 @@
-"""Ramps and holds of a record, and what they can show."""
+"""Ramps and holds of a record, and the effects that they identify."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`calibration.fit --start`: parts of a material card held in a fit, or where its search begins."""
+"""`calibration.fit --start`: parts of a material card, held in a fit or as the start of its search."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_parts_of_a_card_are_held(experiment: Path, tmp_path: Path) -> None:
     made = again.simulated()
     assert made.viscosity == Prony(fractions=(0.3, 0.2), times=(2.0, 60.0))
     assert made.softening == OgdenRoxburgh(r=1.8, m=1500.0, beta=0.15)
-    # what is held stands in the new card, which a dataset and a further fit take
+    # held parts are in the new card, which a dataset and a further fit read
     fits = calibration.fit(experiment, start=path, out=tmp_path / "out", **FAST)
     (written,) = fits.write_cards(tmp_path / "new")
     assert load_card(written.stem, written.parent).for_law("ogden").viscosity == made.viscosity

@@ -33,7 +33,7 @@ TRUTH = {
     "mullins_m": 1500.0,
     "mullins_beta": 0.15,
 }
-FAST = {"generations": 4, "workers": 1, "seed": 1}  # the polish ends where the search does
+FAST = {"generations": 4, "workers": 1, "seed": 1}  # the polish converges to the same optimum
 
 
 def experiment(folder: Path) -> Path:
@@ -110,7 +110,7 @@ def test_the_report_shows_the_stress_over_time(fitted: Fits, tmp_path: Path) -> 
 
 
 def test_the_data_choose_the_number_of_terms(tmp_path: Path) -> None:
-    """Both fits stand; that with the second term is better by far more than its two constants cost."""
+    """Both fits are kept; the second term improves the fit by far more than its two constants cost."""
     hold = REST.ramp(1.5, 0.5).hold(300.0)
     solid = replace(SOLID, softening=None)
     folder = write(tmp_path / "e", [trial("t", "uniaxial", hold, solid=solid, noise=0.005)])
@@ -121,7 +121,7 @@ def test_the_data_choose_the_number_of_terms(tmp_path: Path) -> None:
     chosen = parts.choose(found)
     assert chosen.parts == ("prony:2",)
     assert "neo-hookean+prony-1 +" in chosen.note
-    # noise alone: chi-square falls by about one a constant, and the smaller fit is chosen
+    # for noise alone chi-square decreases by about one per constant, and the smaller fit is chosen
     alike = [
         replace(found[0], chi2=found[1].chi2 + 2.0, reduced_chi2=1.0),
         replace(found[1], reduced_chi2=1.0),

@@ -1,5 +1,8 @@
-"""A coupon and an indentation in one fit over time. The indentation is a ball on a half-space, in loading and
-holds by the hereditary integral, its elastic curve Hertz's in place of simulations."""
+"""A homogeneous test and an indentation in one fit over time.
+
+The indentation is that of a ball on a half-space by the hereditary integral, with Hertz's elastic curve in
+place of simulations.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +64,7 @@ def simulated(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]
 
 
 def pushed() -> PokeTrial:
-    """To 0.5 mm, a hold, to 1 mm, a longer one."""
+    """Indentation to 0.5 mm, a hold, to 1 mm, a longer hold."""
     made = poke(ramp=1.0, hold=1.0)
     time = np.concatenate([np.arange(0.0, 8.0, 0.1), np.arange(8.0, 130.0, 0.5)])
     corners = ([0.0, 1.0, 6.0, 7.0, 130.0], [0.0, 0.5e-3, 0.5e-3, 1e-3, 1e-3])
@@ -80,7 +83,7 @@ def pushed() -> PokeTrial:
 
 
 def flat(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
-    """The flat rod's elastic curve by the laboratory's own finite elements: its loading at once."""
+    """Elastic curve of a flat indenter from the loading in the laboratory's own finite elements."""
     del self
     step = load()["thick, hold"]
     time, force = np.array(step["time"]), np.array(step["force"])
@@ -109,7 +112,7 @@ def flat(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
 def test_retraction_does_not_spoil_the_relaxation(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
-    """Another code's flat rod, pushed, held and drawn back, at finite strain and with friction."""
+    """A flat indenter of other code is pushed, held and retracted, at finite strain and with friction."""
     monkeypatch.setattr(CurveCache, "fetch", flat)
     case = draw_indentation(seed)
     write(replace(case, pokes=tuple(p for p in case.pokes if p.base == "thick")), tmp_path / "e")
@@ -160,4 +163,4 @@ def test_both_together_find_the_truth(monkeypatch: pytest.MonkeyPatch) -> None:
         for p, truth in TRUTH.items():
             assert found[name][p].value == pytest.approx(truth, rel=0.15), (name, p)
     width = {n: np.log(e["shear_modulus"].high / e["shear_modulus"].low) for n, e in found.items()}
-    assert width["both"] < 0.6 * width["poke"]  # the mesh error is common to all forces of an indenter
+    assert width["both"] < 0.6 * width["poke"]  # all forces of an indenter share the mesh error

@@ -1,4 +1,4 @@
-"""Kinds of measurement that a fit follows over time: cylinders, indentation, all of them together."""
+"""Measurements that a fit follows over time: compression, indentation, and all of them together."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def experiment(*trials: Trial) -> Experiment:
 
 
 def poke(*, ramp: float, hold: float, noise: float = 0.0) -> PokeTrial:
-    """To 1 mm and back, a tenth of a second a row."""
+    """Indentation to 1 mm and back, with ten rows per second."""
     end = 2.0 * ramp + hold
     time = np.linspace(0.0, end, round(10.0 * end) + 1)
     depth = 1e-3 * np.interp(time, [0.0, ramp, ramp + hold, end], [0.0, 1.0, 1.0, 0.0])
@@ -110,7 +110,7 @@ def test_the_window_is_that_of_all_tests_together() -> None:
     both = experiment(trial("c", "uniaxial", REST.ramp(1.5, 0.1).hold(300.0)), poke(ramp=0.5, hold=20.0))
     law = parts.with_parts(parametrisation("ogden"), ("prony:1",), both, "M")
     window = law.parts[0].window
-    assert window.first == pytest.approx(0.4)  # rows of the ramp
+    assert window.first == pytest.approx(0.4)  # from the rows of the ramp
     assert window.last == pytest.approx(300.0, rel=0.05)
     alone = OVER_TIME.window(experiment(both.trials[1]))
     assert alone.last == pytest.approx(20.0, rel=0.05)
@@ -126,7 +126,7 @@ def test_an_indentation_has_its_points_on_its_course(noise: float) -> None:
     assert record.course.depth[record.course.at] == pytest.approx(record.depth)
     assert record.course.time[record.course.at] == pytest.approx(record.time)
     held = np.flatnonzero(record.direction == 0.0)
-    assert record.count[held[0]] == 1.0  # closer where the hold begins
+    assert record.count[held[0]] == 1.0  # closest at the beginning of the hold
     assert record.count[held].max() > 10.0
     (corner,) = np.flatnonzero(np.isclose(record.course.time, made.record.time[5]))[:1]
     assert record.course.depth[corner] == pytest.approx(1e-3, rel=0.05)

@@ -1,4 +1,4 @@
-"""Meat, indented and held, where it is at hand: see studies/indentation/meat.md."""
+"""Indentation and hold of meat, if the data are available: see studies/indentation/meat.md."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(
 
 
 def test_a_hold_is_predicted_from_the_relaxation_of_another_place() -> None:
-    """The force falls to half; fitted to half a per cent, predicted to two from the same piece."""
+    """The force relaxes to half; it is fitted to 0.7 %, and predicted from the same piece to 4 %."""
     here, there = (read(RECORDS / f"RDG2-1{place}.csv") for place in "CE")
     own = fit(here)
     assert rms(here, own.force) < 0.007

@@ -1,4 +1,4 @@
-"""Forces of viscous indentations from the elastic curve: other code, closed forms, limits."""
+"""Forces of viscoelastic indentation from the elastic curve: other code, closed forms, limits."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def followed(prony: Prony, time: Array, depth: Array) -> Array:
 
 
 def test_a_sphere_on_a_half_space_is_that_of_other_finite_elements() -> None:
-    """In loading, from their own elastic curve (Lee and Radok)."""
+    """In loading, from the elastic curve of the same elements (Lee and Radok)."""
     stored = load()
     elastic, viscous = stored["half-space, elastic"], stored["half-space, loading, finer"]
     speed = 1e-4
@@ -40,7 +40,7 @@ def test_a_sphere_on_a_half_space_is_that_of_other_finite_elements() -> None:
 
 
 def test_retraction_is_tings() -> None:
-    """F(t) = int_0^t1 G(t - s) dF/ds ds, the contact as wide at t1 as at t: int_t1^t G(t - s) d' ds = 0."""
+    """Ting: F(t) = int_0^t1 G(t - s) dF/ds ds with the contact of t1: int_t1^t G(t - s) d' ds = 0."""
     prony = Prony(fractions=(1.5,), times=(2.0,))
     turn, end = 3.0, 5.0
     time = np.linspace(0.0, end, 401)
@@ -49,7 +49,7 @@ def test_retraction_is_tings() -> None:
         return np.asarray(1.0 + 1.5 * np.exp(-t / 2.0))
 
     def pushed(since: float, now: float) -> float:
-        """Of the depth alone, its speed 1 up to the turn and -1 after."""
+        """Hereditary integral of the depth, with speed 1 up to the turn and -1 after it."""
         s = np.linspace(since, turn, 2001)
         back = np.linspace(turn, now, 2001)
         return float(np.trapezoid(relaxing(now - s), s) - np.trapezoid(relaxing(now - back), back))
@@ -62,7 +62,7 @@ def test_retraction_is_tings() -> None:
         assert np.interp(at, time, found) == pytest.approx(expected, rel=5e-3)
     left = float(brentq(lambda t: pushed(0.0, t), turn, end))
     assert np.interp(left - 0.1, time, found) > 0.0
-    assert (found[time > left + 0.05] == 0.0).all()  # before the indenter is back at the surface
+    assert (found[time > left + 0.05] == 0.0).all()  # zero before the indenter is back at the surface
     assert left < 2.0 * turn - 0.3
 
 
@@ -73,13 +73,13 @@ def test_a_spring_that_was_left_is_met_again_where_it_has_recovered_to() -> None
     (own,) = loads(prony.spectrum(), time, depth, np.zeros(1)).T
     again = time[(time > 3.0) & (own > 0.0)][0]
     assert own.max() == pytest.approx(own[time <= 1.0].max())
-    assert again > 3.05  # it is still below the surface
+    assert again > 3.05  # its surface has not fully recovered
     assert own[-1] == pytest.approx(1.0 + 2.0 * np.exp(-0.45), rel=0.1)
 
 
 @pytest.mark.parametrize("fraction", [0.0, 0.7])
 def test_what_does_not_relax_in_time_has_the_elastic_force(fraction: float) -> None:
-    """Both ways: a time far beyond the test stiffens, one far below does nothing."""
+    """Both limits: a time far beyond the test adds stiffness, one far below it has no effect."""
     time = np.linspace(0.0, 2.0, 101)
     depth = 1e-3 * np.minimum(time, 2.0 - time)
     for tau, factor in ((1e9, 1.0 + fraction), (1e-9, 1.0)):

@@ -1,4 +1,4 @@
-"""The stress of materials that remember, along the course of a record."""
+"""Stress of history-dependent materials along the course of a record."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_the_stress_is_the_blind_laboratorys(mode: CouponMode, course: object) -
     assert np.abs(stress(MATERIAL, made) - made.stress).max() < 5e-4 * np.abs(made.stress).max()
 
 
-# the laboratory follows a strip that shears slowly
+# the laboratory's solution for a strip with shear is slow
 _OBLIQUE = [
     pytest.param(mode, parts, marks=[pytest.mark.slow] if mode == "uniaxial" and parts else [])
     for mode in ("uniaxial", "equibiaxial", "planar")
@@ -51,8 +51,10 @@ _OBLIQUE = [
 def test_fibres_beside_other_parts_are_the_blind_laboratorys(
     mode: CouponMode, parts: tuple[str, ...]
 ) -> None:
-    """A strip shears, its two lateral stretches differ, and with viscosity or softening both depend on the
-    past. The neo-Hookean law (Ogden's with alpha 2), whose kernels compile in a quarter of the time."""
+    """The strip shears and its lateral stretches differ; viscosity and softening make both history-dependent.
+
+    The law is neo-Hookean (Ogden's with alpha 2), whose kernels compile in a quarter of the time.
+    """
     angle = float(np.radians(35.0))
     solid = replace(
         SOLID,
@@ -74,7 +76,7 @@ def test_fibres_beside_other_parts_are_the_blind_laboratorys(
 
 
 def test_a_strip_with_oblique_fibres_is_tisims() -> None:
-    """It shears, relaxes and softens."""
+    """The strip shears, relaxes and softens."""
     direction = (float(np.cos(0.6)), float(np.sin(0.6)), 0.0)
     material = tisim.Material(
         law="ogden",
@@ -97,7 +99,7 @@ def test_a_strip_with_oblique_fibres_is_tisims() -> None:
 
 
 def test_a_cylinder_that_its_platens_have_left_recovers_freely() -> None:
-    """At small strain: a spring with the material's memory, which is followed by other code."""
+    """At small strain the reference is a spring with the material's relaxation, by other code."""
     time = np.concatenate(
         [np.linspace(0.0, 1.0, 21), np.linspace(1.5, 11.0, 60), np.linspace(11.1, 13.0, 60)]
     )
@@ -130,7 +132,7 @@ def test_simple_shear_is_tisims() -> None:
     own = stress(MATERIAL, record(made))
     theirs = respond(MATERIAL, time, F).stress[:, 0, 0, 2]
     assert np.abs(own - theirs).max() < 1e-3 * np.abs(theirs).max()
-    # at the corners, which are rows, nothing is refined: the rest differs by the finer steps only
+    # rows at the corners need no refinement: differences come from the finer steps only
     assert np.abs(theirs).max() > 1e4
 
 
@@ -195,7 +197,7 @@ def test_a_specimen_remembers_its_earlier_tests() -> None:
 
 
 def test_means_of_long_records_are_those_of_the_stress() -> None:
-    """A hold of 2000 rows: points of a fit are means, and each is compared with the mean of the model."""
+    """A hold of 2000 rows: points of a fit are means, compared with means of the model."""
     time = np.concatenate([np.linspace(0.0, 2.0, 40), np.linspace(2.0, 200.0, 2001)[1:]])
     stretch = np.interp(time, [0.0, 2.0], [1.0, 1.4])
     whole = CouponTrial(
@@ -220,7 +222,7 @@ def test_means_of_long_records_are_those_of_the_stress() -> None:
     first = thinned.course.first
     means = np.add.reduceat(rows, first) / np.diff(np.append(first, every.size))
     assert stress(MATERIAL, thinned) == pytest.approx(means, rel=1e-9)
-    # points of a hold stand closer where the stress changes faster
+    # points of a hold are denser while the stress changes faster
     held = thinned.time[thinned.time > 2.0]
     assert np.diff(held)[-1] > 10.0 * np.diff(held)[0]
 

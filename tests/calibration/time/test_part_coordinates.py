@@ -55,7 +55,7 @@ def test_times_that_do_not_rise_have_no_answer() -> None:
 
 
 def test_times_of_one_ramp_alone_begin_apart() -> None:
-    """A record without a hold shows a single time; two terms that begin there have no answer."""
+    """A record without a hold shows one time only; equal times of two terms would have no solution."""
     law = parametrisation("neo-hookean").with_parts(
         [part_coordinates("prony:3", replace(WINDOW, last=WINDOW.first))]
     )

@@ -1,4 +1,4 @@
-"""Homogeneous tests over time, made by the blind laboratory: it shares no code with calibration or tisim."""
+"""Homogeneous tests over time by the blind laboratory, which shares no code with calibration or tisim."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def trial(
     seed: int = 0,
     specimen: str | None = None,
 ) -> CouponTrial:
-    """noise : standard deviation, as a fraction of the largest stress."""
+    """Synthetic trial; `noise` is the standard deviation as a fraction of the largest stress."""
     made = _response(solid, mode, course)
     sd = (noise or 0.005) * float(np.abs(made.stress).max())
     error = noise / (noise or 1.0) * sd * np.random.default_rng(seed).standard_normal(made.stress.size)
@@ -56,7 +56,7 @@ def trial(
 
 
 def write(folder: Path, trials: list[CouponTrial], *, clock: bool = True) -> Path:
-    """The trials as an experiment."""
+    """Write the trials as an experiment; return its folder."""
     folder.mkdir(parents=True, exist_ok=True)
     entries = []
     for t in trials:

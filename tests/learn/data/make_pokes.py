@@ -1,7 +1,7 @@
-"""Makes pokes.npz, a small part of the `quick` dataset: python tests/learn/data/make_pokes.py QUICK.zarr
+"""Make pokes.npz, a small part of the `quick` dataset: python tests/learn/data/make_pokes.py QUICK.zarr
 
-The store is built before by `python -m factory.build --model ogden --recipe quick`. Every other frame is
-kept, displacement as 16-bit integers of each frame's largest component (steps of 3e-4 mm at most).
+Build the store first: `python -m factory.build --model ogden --recipe quick`. Every other frame is kept;
+displacements are 16-bit integers relative to each frame's largest component (steps of 3e-4 mm at most).
 """
 
 from __future__ import annotations

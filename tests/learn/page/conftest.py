@@ -1,4 +1,4 @@
-"""One trained run for all tests of the page."""
+"""One trained run, shared by all tests of the page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from learn.predictor import Predictor
 from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
-# as `learn.evaluate` makes them; in mm, by rings of distance
+# as `learn.evaluate` fits them, with factors per ring of distance [mm]
 WIDTHS = Intervals(
     level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
     factors=[1.5, 1.4, 1.3, 1.2, 1.1], force_scale=0.02, force=1.7,
@@ -21,7 +21,7 @@ WIDTHS = Intervals(
 
 @pytest.fixture(scope="package")
 def predictor(tmp_path_factory: pytest.TempPathFactory) -> Predictor:
-    """A run of invariant-gnn-small with intervals, trained for an epoch on a made-up store."""
+    """Predictor of invariant-gnn-small with intervals, trained for one epoch on a synthetic store."""
     torch.set_num_threads(1)
     folder = tmp_path_factory.mktemp("page")
     store = write_store(folder / "s.zarr", shapes=3, sites=3, frames=3)

@@ -1,7 +1,7 @@
-"""The page in a real Chromium, opened from disk: values, controls, two widths, no error.
+"""The page in Chromium, opened from disk: values, controls, two widths, no errors.
 
-The median time of a frame is printed (`-rP`) and kept as a property: machines of tests share their cores,
-so that no bound is set here (docs/how-to/live-page.md has figures).
+The median time of a frame is printed (`-rP`) and recorded as a property. Test machines share their cores, so
+that no bound is set here (docs/how-to/live-page.md has figures).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ pytestmark = [
         reason=f"one of {', '.join(NEEDED)} is not installed",
     ),
 ]
-# mm, degrees, kPa: inside, steep, beyond what was trained
+# mm, degrees, kPa: inside the trained ranges, steep, outside the trained ranges
 POKES = [
     {"interior": 0, "x": 3.0, "y": -8.0, "angle": 12.0, "heading": 40.0, "depth": 2.0, "modulus": 12.0},
     {"interior": 1, "x": -20.0, "y": 15.5, "angle": 33.0, "heading": -120.0, "depth": 1.3, "modulus": 25.0},
@@ -59,7 +59,7 @@ def browser() -> Iterator[Any]:
 
 
 def opened(browser: Any, written: Written, **device: Any) -> Any:
-    """The page when it is ready, at a phone's width; its errors in `page.faults`."""
+    """Open the page at a phone's width and wait until it is ready; its errors are in `page.faults`."""
     page = browser.new_page(viewport={"width": 390, "height": 700}, **device)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(str(error)))
@@ -101,7 +101,7 @@ def test_it_is_one_small_file(written: Written) -> None:
 
 
 def test_the_browser_says_what_python_says(page: Any, written: Written, predictor: Predictor) -> None:
-    """To 1e-6 of the largest displacement and of the force: onnxruntime and torch in this process."""
+    """Agreement to 1e-6 of the largest displacement and of the force with onnxruntime and torch in Python."""
     content: Content = content_of(predictor, shapes=["shape-0"], pokes=1)
     session, names = _graph(written.path), content.graph.outputs()
     ask = "async (poke) => { const r = await (await tisim).surrogate.ask(poke);"
@@ -125,7 +125,7 @@ def test_the_browser_says_what_python_says(page: Any, written: Written, predicto
 
 
 def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
-    """Sliders, keys, mouse; beyond what was trained it says so, and the FEM poke is beside on request."""
+    """Sliders, keys and mouse move the indenter; the page marks extrapolation and shows the FEM poke."""
 
     def now() -> dict[str, float]:
         found: dict[str, float] = page.evaluate("async () => (await tisim).poke")
@@ -172,19 +172,19 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
 
 
 def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> None:
-    """On a phone: one finger on the block holds the rod; two turn and zoom the view, and the rod stays."""
+    """On a phone one finger on the block moves the indenter; two rotate and zoom the view only."""
     page = opened(browser, written, has_touch=True, is_mobile=True)
     screen = page.context.new_cdp_session(page)
     box = page.locator("#picture").bounding_box()
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55
 
     def touch(kind: str, *fingers: float) -> None:
-        """Fingers by how far they are to the right of the picture's middle [pixels]."""
+        """Fingers at these distances to the right of the picture's centre [pixels]."""
         points = [{"x": middle[0] + x, "y": middle[1], "id": k} for k, x in enumerate(fingers)]
         screen.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
 
     def state() -> tuple[list[float], float]:
-        """Where the rod is, and how far the camera."""
+        """Contact point (x, y) and distance of the camera."""
         x, y, away = page.evaluate(
             "async () => { const t = await tisim;"
             " while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 5));"
@@ -196,7 +196,7 @@ def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> No
     place, away = state()
     touch("Move", 25)
     touch("Move", 50)
-    touch("End")  # a browser may hold a move back until the next frame, but not beyond the end
+    touch("End")  # a browser may delay a move until the next frame, but not beyond the end
     moved, still = state()
     assert moved[0] > place[0] + 5.0
     assert still == away
@@ -222,7 +222,7 @@ def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> No
 
 
 def test_it_is_readable(page: Any) -> None:
-    """Each control has a name, the force is spoken, and a phone's width needs no scrolling sideways."""
+    """Controls have names, the force is announced, contrast suffices, a phone needs no lateral scrolling."""
     nameless = page.evaluate(
         "() => [...document.querySelectorAll('input, select, button, canvas')]"
         ".filter((e) => !(e.labels?.length || e.textContent.trim() || e.ariaLabel)).map((e) => e.id)"
@@ -236,7 +236,7 @@ def test_it_is_readable(page: Any) -> None:
     assert min(contrast.values()) >= 4.5, min(contrast.items(), key=lambda item: item[1])
 
 
-# of text against the first opaque ground behind it, white where a ground is translucent: WCAG 2.2, 1.4.3
+# contrast of text against the first opaque background behind it, white if none is opaque: WCAG 2.2, 1.4.3
 CONTRAST = """() => {
   const parse = (c) => c.match(/[\\d.]+/g).map(Number);
   const linear = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
@@ -261,7 +261,7 @@ CONTRAST = """() => {
 def test_the_picture_and_the_time_of_a_frame(
     page: Any, tmp_path: Path, record_property: pytest.RecordProperty
 ) -> None:
-    """A screenshot that shows something, the median time, and not one error in all that was done."""
+    """The screenshot is not blank, the median time is recorded, and no error occurred."""
     from PIL import Image
 
     shot = page.locator("#picture").screenshot(path=tmp_path / "poke.png")

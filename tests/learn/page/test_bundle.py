@@ -1,4 +1,4 @@
-"""The committed bundle is made of the committed sources, and carries its licences."""
+"""The committed bundle is built from the committed sources and includes its licences."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _sums(folder: Path, names: list[str]) -> dict[str, str]:
 
 
 def test_bundle_and_sources_agree() -> None:
-    """Where this fails, build it again: cd learn/page/js && npm ci && npm run build."""
+    """If this fails, build the bundle again: cd learn/page/js && npm ci && npm run build."""
     sources = [path.name for path in SOURCES.iterdir() if path.suffix in (".js", ".mjs", ".json")]
     made = [path.name for path in BUNDLE.iterdir() if path.name != "bundle.json"]
     assert RECORD["sources"] == _sums(SOURCES, sources)
@@ -43,7 +43,7 @@ def test_licences_are_beside_it() -> None:
 
 
 def test_it_takes_no_origin_for_the_base_of_a_url() -> None:
-    """That of a page opened from disk is "null" in Firefox, where the page did not start."""
+    """The origin of a page opened from disk is "null" in Firefox, where the page did not start."""
     assert "location.origin" not in (BUNDLE / "page.js").read_text(encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""The graph that the browser runs says what `learn.real_time` says."""
+"""The graph that the browser runs agrees with `learn.real_time`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _ask(content: Content, interior: int, poke: list[float]) -> dict[str, torch.
 
 @pytest.mark.parametrize("name", ["shape-0", "shape-2", "none"])
 def test_it_answers_as_real_time_does(predictor: Predictor, content: Content, name: str) -> None:
-    """Displacement, force, where the rod is, distance from what was trained, intervals."""
+    """Displacement, force, direction, distance from the trained ranges, intervals."""
     names = [interior["name"] for interior in content.about["interiors"]]
     inside = {"inclusion": {"kind": "none"}} if name == "none" else {"shape": name}
     touch = predictor.real_time({**inside, "shear_modulus_kPa": 12.0})
@@ -59,7 +59,7 @@ def test_it_answers_as_real_time_does(predictor: Predictor, content: Content, na
 
 
 def test_beyond_names_the_quantities_of_the_domain(predictor: Predictor, content: Content) -> None:
-    """What the table of the page calls outside is what `Domain.check` calls outside."""
+    """The page's table and `Domain.check` agree on the quantities that are outside."""
     assert predictor.domain is not None
     for poke in ([0.0, 0.0, 0.1, 0.0, 0.012, 1e4], [0.04, 0.0, 0.7, 0.0, 2e-3, 9e4]):
         found = _ask(content, 0, poke)
@@ -67,7 +67,7 @@ def test_beyond_names_the_quantities_of_the_domain(predictor: Predictor, content
         values = dict(zip(keys, found["values"].tolist(), strict=False))
         checks = predictor.domain.check(values, content.about["interiors"][0]["kind"])
         assert [check.key for check in checks] == keys
-        # a kind that the dataset does not state is not known, neither inside nor outside
+        # an inclusion's kind that the dataset does not state is unknown, neither inside nor outside
         assert (found["beyond"] > 0).tolist() == [check.inside is False for check in checks]
 
 
@@ -79,7 +79,7 @@ def test_a_rod_that_does_not_touch_has_no_force(content: Content) -> None:
 
 
 def test_simulated_pokes_are_those_of_the_test_part(predictor: Predictor, content: Content) -> None:
-    """In 16 bits: off by half a step at most; the surrogate is asked at the very pose of the simulation."""
+    """Displacements in 16 bits err by half a step; the surrogate takes the exact pose of the simulation."""
     store = predictor.store
     shown = content.about["simulated"]
     assert len(shown) == 2

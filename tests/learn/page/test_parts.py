@@ -1,4 +1,4 @@
-"""The run's own part of a page: kept as a zip, from which the same page is made later."""
+"""The run's own part of a page, saved as a zip, from which the same page is made later."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_page_from_the_zip_is_the_page_from_the_run(
 
 
 def _without(saved: Path, path: Path, name: str, content: bytes | None) -> Path:
-    """The zip with another content of one member, or without it."""
+    """Copy of the zip with other content of one member, or without it."""
     with zipfile.ZipFile(saved) as old, zipfile.ZipFile(path, "w") as new:
         for member in old.namelist():
             found = old.read(member) if member != name else content
