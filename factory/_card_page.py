@@ -69,10 +69,10 @@ def _head(facts: Facts) -> Iterator[str]:
     attributes = facts.data.attributes
     yield f"# {_title(facts)}"
     yield (
-        "A rod is pushed into blocks of soft tissue with a rigid inclusion: "
-        f"{counted(len(facts.summary.done), 'simulated poke')} with {_frames(facts)} states in equilibrium, "
+        'Indentations ("pokes") of blocks of soft tissue with a rigid inclusion: '
+        f"{counted(len(facts.summary.done), 'simulated poke')} with {_frames(facts)} equilibrium states, "
         "each with depth, forces and the deformed surface. "
-        "Made by `python -m factory.card` of tisim from the store itself."
+        "`python -m factory.card` of tisim made this page from the store."
     )
     date = facts.date.isoformat() if facts.date else "not recorded"
     yield _table(
@@ -94,14 +94,14 @@ def _holds(facts: Facts) -> Iterator[str]:
     summary, recipe = facts.summary, facts.identity["recipe"]
     protocol = recipe["protocol"]
     each = protocol["shared_sites"] + protocol["own_sites"]
-    yield "## What it holds"
+    yield "## Content"
     failed = f", of which {len(summary.failed)} failed" if summary.failed else ""
     failed += f", of which {summary.waiting} are not simulated yet" if summary.waiting else ""
     yield (
         f"Recipe `{recipe['name']}`: {recipe.get('description', '')}. {len(summary.shapes)} shapes x "
         f"{len(summary.levels)} material levels x {each} contact points = {summary.pokes} pokes{failed}. "
-        f"Of the contact points of a shape {protocol['shared_sites']} common to its material levels, "
-        f"{protocol['own_sites']} drawn for each. The seed is {facts.data.attributes['seed']}."
+        f"Of the contact points of a shape, {protocol['shared_sites']} are common to all material levels, "
+        f"and {protocol['own_sites']} are drawn for each level. The seed is {facts.data.attributes['seed']}."
     )
     shapes = [(f"`{shape['id']}`", shape.get("kind", ""), _lengths(shape)) for shape in recipe["shapes"]]
     yield _table(("rigid inclusion", "kind", "mm"), shapes)
@@ -124,7 +124,7 @@ def _holds(facts: Facts) -> Iterator[str]:
             for level, part in zip(summary.levels, parts, strict=True)
             if part
         ]
-        yield "Besides the law:\n\n" + "\n".join(stated)
+        yield "Parts beside the law:\n\n" + "\n".join(stated)
 
 
 def _simulated(facts: Facts) -> Iterator[str]:
@@ -132,17 +132,17 @@ def _simulated(facts: Facts) -> Iterator[str]:
     protocol, rod = recipe["protocol"], recipe["rod"]
     nodes, elements = (table[name][table["done"]] for name in ("mesh_nodes", "mesh_elements"))
     course = protocol.get("course")
-    motion = "along a course over time (quasi-static)" if course else "in steps of equilibrium, without time"
+    motion = "along a course over time (quasi-static)" if course else "in quasi-static steps, without time"
     versions = ", ".join(f"{name} {number}" for name, number in facts.identity["versions"].items())
     sides = " x ".join(f"{side:g}" for side in recipe["block_mm"])
     tolerance = facts.data.attributes["solver_tolerance"]
-    yield "## How it was simulated"
+    yield "## Simulation"
     lines = [
         f"Law: `{facts.data.attributes['model']}`; finite elements in large deformation, static equilibrium.",
         f"Block: {sides} mm, its base and the inclusion fixed.",
-        f"Rod: {rod['tip']}, radius {rod['radius_mm']:g} mm, edge rounded by {rod['edge_radius_mm']:g} mm; "
-        f"contact with Coulomb friction of {recipe['friction']:g}.",
-        f"Motion: up to {protocol['depth_mm']:g} mm from first touch, up to "
+        f"Indenter: {rod['tip']}, radius {rod['radius_mm']:g} mm, edge radius {rod['edge_radius_mm']:g} mm; "
+        f"contact with a Coulomb friction coefficient of {recipe['friction']:g}.",
+        f"Motion: up to {protocol['depth_mm']:g} mm from first contact, up to "
         f"{protocol['max_angle_deg']:g} degrees from the normal, {motion}; a frame every "
         f"{protocol['frame_spacing_mm']:g} mm.",
         f"Mesh: {nodes.min()} to {nodes.max()} nodes (mean {nodes.mean():.0f}), {elements.min()} to "
@@ -156,12 +156,12 @@ def _simulated(facts: Facts) -> Iterator[str]:
     derived = len(facts.summary.done) - solves(facts)
     if derived:
         lines.append(
-            f"One solve for several pokes: {derived} of the {len(facts.summary.done)} pokes differ from "
-            "another by the modulus alone, move as that one, and have its forces times `force_factor`; "
+            f"Shared solves: {derived} of the {len(facts.summary.done)} pokes differ from another only by a "
+            "factor of the moduli. They have its displacements, and its forces times `force_factor`; "
             "`solved_as` names it."
         )
     else:
-        lines.append("Every poke has a solve of its own.")
+        lines.append("Every poke was solved itself.")
     yield "\n".join(f"- {line}" for line in lines)
 
 
@@ -171,7 +171,7 @@ def _reached(facts: Facts) -> Iterator[str]:
     yield "![Deepest frame and largest force by shape and softness](features.png)"
     yield (
         "Mean ± standard deviation over pokes (deepest frame, largest force) and over frames; "
-        "`softness.csv` holds the same, `features.csv` each shape and softness."
+        "`softness.csv` has the same values, `features.csv` those of each shape and softness."
     )
     rows = []
     for level in summary.levels:
@@ -182,21 +182,24 @@ def _reached(facts: Facts) -> Iterator[str]:
         paper = _paper.PAPER.get(summary.model, {}).get(level)
         if paper:
             rows.append((f"`{level}`, the paper's", str(_paper.pokes_a_level()), *_pairs(paper)))
-    measured = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
+    measured = ("deepest [mm]", "largest force [N]", "depth per frame [mm]", "force per frame [N]")
     yield _table(("material level", "pokes", *measured), rows)
     if beside_the_paper(facts):
         snapshots = _paper.SNAPSHOTS.get(summary.model)
-        theirs = f" It has {snapshots} snapshots of this law, from pokes asked to {_paper.DEPTH_MM:g} mm."
+        theirs = (
+            f" It has {snapshots} snapshots of this law, from pokes with a requested depth of "
+            f"{_paper.DEPTH_MM:g} mm."
+        )
         yield f"Rows of the paper: {_paper.SOURCE}.{theirs if snapshots else ''}"
     yield (
-        "By shape: means, in brackets the least of the deepest frames and the largest of the forces; the "
-        "share of the depth asked for that was reached; pokes that ended before it."
+        "By shape: means, in brackets the smallest of the deepest frames and the largest force; fraction of "
+        "the requested depth that was reached; number of pokes that ended before it."
     )
     yield _table(
         ("shape", "softness", "pokes", "deepest [mm]", "force [N]", "reached", "ended early"),
         [_row(row) for row in facts.rows],
     )
-    yield "What ended the pokes: " + _ends(facts) + "."
+    yield "Reasons why pokes ended: " + _ends(facts) + "."
     poke = facts.data.poke(facts.shown)
     yield f"![Poke {poke.index}: {poke.shape}, {poke.level}](poke.png)"
     yield f"*Poke {poke.index}, the deepest: {poke.shape} in {poke.level}, {1e3 * poke.depth.max():.2f} mm.*"
@@ -208,14 +211,14 @@ def _accuracy(facts: Facts) -> Iterator[str]:
     yield "`python -m factory.verify` checked every file and every frame, and found:"
     yield _table(("check", "faults"), [(name, str(len(found))) for name, found in facts.found.faults.items()])
     yield (
-        f"The worst of all frames: residual {worst.residual:.2g} of the load; base reaction off the rod's "
-        f"force by {worst.force_gap:.2g} of it; smallest det F {worst.min_jacobian:.3g}; tissue "
-        f"{1e3 * worst.penetration:.3g} mm within the rod."
+        f"Worst values of all frames: residual {worst.residual:.2g} of the load; difference of base reaction "
+        f"and indenter force {worst.force_gap:.2g} of the force; smallest det F {worst.min_jacobian:.3g}; "
+        f"overlap of tissue and indenter {1e3 * worst.penetration:.3g} mm."
     )
     yield (
-        "That is equilibrium of the discrete model, not its distance from the truth: `studies/depth` of "
-        "tisim compares the force with independent solvers by depth, `docs/explanation/simulation.md` says "
-        "how far each kind of scene can be trusted."
+        "These checks concern the equilibrium of the discrete model, not its discretisation error. "
+        "`studies/depth` of tisim compares the force with independent solvers by depth, and "
+        "`docs/explanation/simulation.md` states the accuracy of each kind of scene."
     )
 
 
@@ -223,14 +226,17 @@ def _cost(facts: Facts) -> Iterator[str]:
     yield "## Cost"
     cost = facts.cost
     if cost is None:
-        yield "The store's ledger states no times."
+        yield "The ledger of the store has no times."
         return
     needed = solves(facts)
     if cost.solves != needed:
-        yield f"The ledger lists {cost.solves} solves, the store has {needed}: below are the listed ones."
+        yield (
+            f"The ledger lists {cost.solves} solves, the store has {needed}; the times are those of the "
+            "listed ones."
+        )
     yield (
         f"{cost.solves} solves took {cost.core_seconds:.1f} core-seconds ({duration(cost.core_seconds)}), "
-        f"{cost.core_seconds / cost.solves:.2f} a solve; "
+        f"{cost.core_seconds / cost.solves:.2f} per solve; "
         f"the longest {cost.longest:.1f} s of wall time (`provenance/ledger.jsonl` in the store)."
     )
 
@@ -245,7 +251,7 @@ def _load(facts: Facts) -> Iterator[str]:
         "Positions and forces are in m and N; `docs/reference/dataset-format.md` of tisim explains "
         "every array. "
         "`sha256sum -c SHA256SUMS` in the store's folder checks every file; "
-        f"`python -m factory.verify {name}` the physics too."
+        f"`python -m factory.verify {name}` checks the physics too."
     )
 
 
@@ -263,7 +269,7 @@ def _licence(facts: Facts) -> Iterator[str]:
         f"  note    = {{Dataset, uuid {attributes['uuid']}, "
         f"fingerprint {attributes['fingerprint'][:16]}}}\n}}\n```"
     )
-    yield "To cite the programs that made it: `CITATION.cff` of tisim."
+    yield "`CITATION.cff` of tisim states how to cite the programs."
 
 
 def _title(facts: Facts) -> str:

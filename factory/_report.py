@@ -153,12 +153,12 @@ def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Ta
     table.add_row("depth", f"{protocol.depth_mm:g} mm, a frame each {protocol.frame_spacing_mm:g} mm")
     if protocol.course:
         table.add_row("course", _course_text(plan))
-    table.add_row("nodes", f"about {expected.nodes} a poke (each has a mesh of its own)")
+    table.add_row("nodes", f"about {expected.nodes} per poke (each has its own mesh)")
     source = "measured so far" if expected.measured else "typical of a 2-core machine"
     table.add_row(
         "expected time",
         f"about {duration(expected.seconds)} with {workers} workers "
-        f"({expected.poke_seconds:.0f} s a poke, {source})",
+        f"({expected.poke_seconds:.0f} s per poke, {source})",
     )
     table.add_row("expected size", f"about {size_text(expected.size)}, twice that while it is built")
     derived = derived_levels(plan)

@@ -93,12 +93,12 @@ def _overview(summary: Summary) -> Table:
     table.add_row("shapes", ", ".join(summary.shapes))
     if summary.done:
         nodes = np.array([poke.nodes for poke in summary.done])
-        table.add_row("nodes a mesh", f"{nodes.min()} to {nodes.max()}, mean {nodes.mean():.0f}")
+        table.add_row("nodes per mesh", f"{nodes.min()} to {nodes.max()}, mean {nodes.mean():.0f}")
         table.add_row("frames", f"{sum(len(poke.depth) for poke in summary.done)}")
     walls = [entry["wall_seconds"] for entry in summary.ledger.values() if not entry.get("error")]
     if walls:
-        table.add_row("time a poke", f"mean {np.mean(walls):.1f} s, longest {max(walls):.1f} s")
-        table.add_row("time in all", f"{duration(sum(walls))} of worker time")
+        table.add_row("time per poke", f"mean {np.mean(walls):.1f} s, longest {max(walls):.1f} s")
+        table.add_row("total time", f"{duration(sum(walls))} of worker time")
     return table
 
 
@@ -109,7 +109,7 @@ def _reached(summary: Summary) -> Table:
     from factory._paper import PAPER, pokes_a_level
 
     table = Table(title="Depths and forces reached, mean +- sd (the paper's below)")
-    heads = ("deepest [mm]", "largest force [N]", "depth a frame [mm]", "force a frame [N]")
+    heads = ("deepest [mm]", "largest force [N]", "depth per frame [mm]", "force per frame [N]")
     for head in ("material level", "pokes", *heads):
         table.add_column(head, justify="right")
     for name in summary.levels:
@@ -131,7 +131,7 @@ def _mean_sd(pairs: Sequence[tuple[float, float]]) -> list[str]:
 def _causes(summary: Summary) -> Table:
     from rich.table import Table
 
-    table = Table(title="What ended the pokes")
+    table = Table(title="Reasons why pokes ended")
     for head in ("status", "pokes", "deepest, mean [mm]", "for example"):
         table.add_column(head)
     for status, count in Counter(poke.status for poke in summary.done).most_common():

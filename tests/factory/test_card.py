@@ -113,7 +113,7 @@ def test_what_the_page_says_is_in_the_store(page: str, quick_store: Path) -> Non
     for text in (
         attributes["uuid"],
         attributes["fingerprint"],
-        f"12 simulated pokes with {store['depth'].shape[0]} states",
+        f"12 simulated pokes with {store['depth'].shape[0]} equilibrium states",
         "2 shapes x 3 material levels x 2 contact points = 12 pokes",
         f"{nodes.min()} to {nodes.max()} nodes (mean {nodes.mean():.0f})",
         f"below {attributes['solver_tolerance']:g} of the load",
