@@ -144,20 +144,18 @@ def _judge(
     at_least = min(at_least, share.value)
     against = []
     if not inside_bounds(model, explanation):
-        against.append("an amplitude is at the end of what makes sense")
+        against.append("an amplitude is at its bound")
     if share.value < rules.least_share:
-        against.append(
-            f"it takes less than {100.0 * rules.least_share:.0f} % of what noise leaves to explain"
-        )
+        against.append(f"it explains less than {100.0 * rules.least_share:.0f} % of the misfit beyond noise")
     elif at_least < rules.least_share_low:
         against.append(
-            f"over {shares.groups.over} its share is not sure to be"
+            f"over {shares.groups.over} its share is not reliably"
             f" {100.0 * rules.least_share_low:.0f} % or more"
         )
     if within_smooth_error(model, baseline, noise, rules):
         part = relative_rms(model, baseline) or 0.0
         size = f"{100.0 * part:.2g} % of full scale" if part > 0.0 else "no larger than the estimated noise"
-        against.append(f"the departure is {size}, which a smooth error that nobody stated may have")
+        against.append(f"the misfit is {size}, which a smooth unstated error may have")
     against += _held_out(held_out, explanation, at_least, rules)
     others = [
         shares.drawn(m)
@@ -194,9 +192,7 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
             )
     if held_out.skill < rules.least_skill:
         least = f"{100.0 * rules.least_skill:.0f} %"
-        found.append(
-            f"it predicts less than {least} of what noise leaves to explain in held-out measurements"
-        )
+        found.append(f"it predicts less than {least} of the misfit beyond noise in held-out measurements")
     for c, values in zip(explanation.candidates, np.array(held_out.amplitudes).T, strict=True):
         value, sd = explanation.fit.amplitude(c)
         allowed = max(rules.amplitude_tolerance * abs(value), rules.amplitude_tolerance_sds * sd)
@@ -204,7 +200,7 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
             found.append(f"the amplitude of {c.effect} changes with the part that is left out")
     if held_out.within and at_least < rules.least_share_within_test:
         found.append(
-            f"measurements could be held out from within the tests only, where its share must be sure to be"
+            f"measurements could be held out only from within the tests, where its share must reliably be"
             f" {100.0 * rules.least_share_within_test:.0f} %"
         )
     return found

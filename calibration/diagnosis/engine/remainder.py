@@ -80,14 +80,17 @@ def about_remainder(left: Remainder) -> str:
     if left.rms == 0.0 or left.negligible:
         return ""
     return {
-        "everywhere": "what is left is alike in all of them: test in another mode, at another rate or on"
-        " another rig, to tell the form of the model from the rig",
-        "within a material": "what is left is alike within each material: test one of them in another mode,"
+        "everywhere": "the remaining misfit repeats in all of them: test in another mode, at another rate"
+        " or on"
+        " another rig, to separate the form of the model from the rig",
+        "within a material": "the remaining misfit repeats within each material: test one of them in"
+        " another mode,"
         " since the form of its law may be at fault",
-        "within a specimen": "what is left is alike within a specimen: turn it, or test another specimen of"
+        "within a specimen": "the remaining misfit repeats within a specimen: turn it, or test another"
+        " specimen of"
         " the same batch",
-        "nowhere": "what is left differs from test to test: repeat tests, so that their scatter is known",
-        "not known": "repeat a test, so that it is known whether what is left repeats",
+        "nowhere": "the remaining misfit differs from test to test: repeat tests, to measure their scatter",
+        "not known": "repeat a test, to find out whether the remaining misfit repeats",
     }[left.repeats]
 
 

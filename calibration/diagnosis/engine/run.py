@@ -26,7 +26,7 @@ from calibration.progress import OnMessage
 # Nuisances and the mesh's error are taken at an explanation again as long as it moves by more than this
 # fraction of its standard deviation: effects next to a clamp act a third too strongly on the search's mesh.
 UPDATES, SETTLED = 4, 0.25
-SMALL = "the departure is so small that a smooth error which nobody stated may be all of it"
+SMALL = "the misfit is so small that it may be a smooth unstated error"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -244,7 +244,7 @@ def _no_cause(model: MeasurementModel, finding: Finding) -> str:
         left = finding.explanations[0].lack_of_fit if finding.explanations else finding.lack_of_fit
         if left.worst == SPECIMENS:
             return (
-                "see whether each measurement is filed under its own specimen and material: moduli within a"
+                "check that each measurement is assigned to its own specimen and material: moduli within a"
                 " material differ by more than its specimens do"
             )
         return ""
@@ -278,7 +278,7 @@ def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]
     for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
         effect = model.effects[c.effect]
         if a in effect.physical_limits and not effect.switch:
-            found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is as far as it goes")
+            found.append(f"{c.label}: {effect.in_file(a):.3g} {effect.parameter} is at its physical limit")
     return found
 
 
@@ -293,7 +293,7 @@ def _other_scopes(model: MeasurementModel, finding: Finding, rules: Rules) -> li
                 f"{name} {1e-3 * shear:.4g} kPa" for name, shear in model.shear_moduli(e.fit.state.u).items()
             )
             found.append(
-                f"the data do not tell {chosen.fit.label} from {e.fit.label}, where it would be"
+                f"the data cannot separate {chosen.fit.label} from {e.fit.label}, which would be"
                 f" {_amplitudes(model, e)} with shear moduli of {moduli}"
             )
     return found

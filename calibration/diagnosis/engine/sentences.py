@@ -28,7 +28,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         them = "it" if len(chosen.candidates) == 1 else "them"
         return (
             f"Found: {named} ({short}). With {them} the simulation agrees with the measurements to within"
-            f" their noise{_skill(diagnosis.held_out, 'it takes ')}."
+            f" their noise{_skill(diagnosis.held_out, 'it explains ')}."
         )
     if finding.verdict == "partly explained":
         return _partly(diagnosis, chosen)
@@ -38,20 +38,22 @@ def sentence(diagnosis: Diagnosis) -> str:
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
         takes = _takes(diagnosis, common)
         other = (
-            "Something else is wrong beside it" if _most(diagnosis, common) else "The larger part is another"
+            "There is another, smaller cause"
+            if _most(diagnosis, common)
+            else "There is another, larger cause"
         )
         return (
-            f"Found in part: {first} ({' + '.join(common)}{takes}). {other}, and these data cannot say which:"
-            f" {rest}."
+            f"Found in part: {first} ({' + '.join(common)}{takes}). {other}, which these data cannot"
+            f" identify: {rest}."
         )
     others = "; or ".join(" + ".join(names) for names in sets[1:])
-    return f"Something is wrong, but these data cannot say which: most likely {named} ({short}); or {others}."
+    return f"There is a cause, but these data cannot identify it: most likely {named} ({short}); or {others}."
 
 
 def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
     """The share of one cause, in the middle of a sentence."""
     own = [s for c, s in diagnosis.shares.items() if c.effect in names]
-    return f", {percent(own[0])} of what noise leaves to explain" if len(own) == 1 else ""
+    return f", {percent(own[0])} of the misfit beyond noise" if len(own) == 1 else ""
 
 
 def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
@@ -63,7 +65,7 @@ def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
 def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
     sets = diagnosis.finding.equivalent
     share = "" if diagnosis.share is None else percent(diagnosis.share)
-    takes = f"which takes {share} of what noise leaves to explain{_skill(diagnosis.held_out)}."
+    takes = f"which explains {share} of the misfit beyond noise{_skill(diagnosis.held_out)}."
     common = diagnosis.finding.certain
     if len(sets) == 1:
         text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
@@ -73,17 +75,17 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
         rest = [" + ".join(n for n in s if n not in common) for s in sets]
         text = (
             f"Partly explained: {first} ({' + '.join(common)}), together with {_or(rest)}, which these data"
-            f" cannot tell apart; with {rest[0]} it takes {takes.removeprefix('which takes ')}"
+            f" cannot separate; with {rest[0]} it explains {takes.removeprefix('which explains ')}"
         )
     else:
         others = _or([" + ".join(s) for s in sets[1:]])
         text = (
-            f"Partly explained, by one of several causes that these data cannot tell apart: most likely"
+            f"Partly explained, by one of several causes that these data cannot separate: most likely"
             f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
     left, doubt = diagnosis.remainder, diagnosis.finding.doubt
     if doubt:
-        return f"{text} What remains is no more than noise, but it is not called found, since {doubt}."
+        return f"{text} Only noise remains, but the cause is not called found, since {doubt}."
     return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
 
 
@@ -95,24 +97,24 @@ def _or(names: Sequence[str]) -> str:
 def _unexplained(diagnosis: Diagnosis) -> str:
     text = (
         "The measurements differ from the simulation by more than noise, and no cause in the library can be"
-        " named for it."
+        " named."
     )
     nearest = diagnosis.nearest
     if nearest is None:
-        return f"{text} Look at the residuals."
+        return f"{text} Inspect the residuals."
     names = " + ".join(nearest.explanation.names)
     skill = _skill(nearest.held_out)
     why = f" It is not named, because {'; and '.join(nearest.against)}." if nearest.against else ""
     return (
-        f"{text} Nearest comes {names}, which would take {percent(nearest.share)} of what noise leaves to"
-        f" explain{skill}.{why}"
+        f"{text} The nearest is {names}, which would explain {percent(nearest.share)} of the misfit beyond"
+        f" noise{skill}.{why}"
     )
 
 
 def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
     """How much is left, where it lives, and whether it repeats."""
     if left.rms == 0.0:
-        return "What remains is no more than noise."
+        return "Only noise remains."
     size = f"{unit[1] * left.rms:.3g} {unit[0]}"
     if left.of_full_scale is not None:
         size += f" rms, {100.0 * left.of_full_scale:.2g} % of full scale"
@@ -123,14 +125,14 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
         parts.append(f"more than half of it in {_few(left.records)}")
     where = f" ({'; '.join(parts)})" if parts else ""
     again = {
-        "everywhere": "is alike in all of them",
-        "within a material": "is alike within each material",
-        "within a specimen": "is alike within a specimen, not from one to the next",
+        "everywhere": "repeats in all of them",
+        "within a material": "repeats within each material",
+        "within a specimen": "repeats within a specimen, but not between specimens",
         "nowhere": "differs from test to test",
-        "not known": "cannot be said to repeat, since no test was done twice",
+        "not known": "may or may not repeat, since no test was repeated",
     }[left.repeats]
-    small = " That is too little to matter in practice." if left.negligible else ""
-    return f"What remains, {size}{where}, {again}.{small}"
+    small = " This is negligible in practice." if left.negligible else ""
+    return f"The remaining misfit, {size}{where}, {again}.{small}"
 
 
 def percent(share: Interval) -> str:
@@ -149,12 +151,12 @@ def _skill(held_out: HeldOut | None, takes: str = "") -> str:
     if held_out is None or not held_out.held_out or not math.isfinite(held_out.skill):
         return ""
     if held_out.skill <= 0.0:
-        return f", and {takes}nothing on measurements that its fit has not seen"
-    whole = " of what noise leaves to explain" if takes else ""
+        return f", and {takes}nothing in held-out measurements"
+    whole = " of the misfit beyond noise" if takes else ""
     part = f"{100.0 * min(held_out.skill, 1.0):.0f} %{whole}"
     worse = len(held_out.worse)
     but = f" (though {worse} of {len(held_out.parts)} parts no better)" if worse else ""
-    return f", and {takes}{part} on measurements that its fit has not seen{but}"
+    return f", and {takes}{part} in held-out measurements{but}"
 
 
 def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:

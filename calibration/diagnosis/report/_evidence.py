@@ -77,12 +77,15 @@ def draw_evidence(finding: Finding) -> Picture:
     figure.legend(loc="outside upper left", ncols=3, fontsize=8, frameon=False)
     left_out = len(everything) - len(shown)
     caption = (
-        f"{headline(finding)}. How much of the departure each cause explains: bars in standard"
-        " deviations (root of the improvement of chi-square less twice the logarithm of the number of places"
-        " to choose from, which is written at their ends), each effect at the place where it explains most."
-        " Grey bars were screened to first order, coloured ones fitted in the simulator. Left of the lines is"
-        " what noise alone gives the best of all causes tried."
-        + (" Right: what the best explains and this cause does not." if finding.equivalent else "")
+        f"{headline(finding)}. Part of the misfit that each cause explains, in standard deviations: root"
+        " of the"
+        " improvement of chi-square minus twice the logarithm of the number of candidate positions, which is"
+        " written at the ends of the bars. Each effect is at its best position. Grey bars were screened"
+        " to first"
+        " order, coloured ones fitted in the simulator. Noise alone gives the best of all causes the"
+        " range left"
+        " of the lines."
+        + (" Right: misfit that the best cause explains and this one does not." if finding.equivalent else "")
         + (f" {left_out} weaker ones are not drawn." if left_out else "")
     )
     return picture(figure, "evidence", caption)
@@ -109,7 +112,7 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
             lw=1.1,
             ls=line,
             zorder=3,
-            label=f"noise alone goes beyond in {chance:.0%} of experiments",
+            label=f"noise alone exceeds this in {chance:.0%} of experiments",
         )
     for y, b in zip(rows, shown, strict=True):
         axes.text(
@@ -123,13 +126,13 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
         tick.set_fontsize(tick.get_fontsize() if tick.get_text().count("\n") < 2 else 6.0)
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xlim(0.0, 1.12 * max(float(drawn.max(initial=0.0)), float(np.sqrt(noise.threshold(RARE)))))
-    axes.set_title("Is anything there?", fontsize=10, loc="left", fontweight="bold")
+    axes.set_title("Evidence", fontsize=10, loc="left", fontweight="bold")
     axes.set_xlabel("explained / standard deviations", fontsize=9)
 
 
 def _behind(axes: Any, shown: Sequence[Bar]) -> None:
     plain(axes).tick_params(labelleft=False, left=False)
-    axes.axvspan(0.0, RIVAL, color=BAND, lw=0, zorder=0, label=f"within {RIVAL:g}: cannot be told apart")
+    axes.axvspan(0.0, RIVAL, color=BAND, lw=0, zorder=0, label=f"within {RIVAL:g}: cannot be separated")
     axes.axvline(RIVAL, color=INK, lw=1.1, ls="--", zorder=3)
     reach = 30.0
     for y, b in enumerate(shown):

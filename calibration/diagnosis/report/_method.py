@@ -24,8 +24,8 @@ def false_alarms(diagnosis: Diagnosis) -> str:
         return f"{limits} No cause explained enough to be fitted in the simulator."
     gain = max(finding.baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty for e in single)
     return (
-        f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, the choice of"
-        f" its place taken off: the chance that noise alone does so is {tiny(finding.p_value)}."
+        f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, after the"
+        f" penalty for the choice of its position; the p-value is {tiny(finding.p_value)}."
     )
 
 
@@ -39,23 +39,23 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
         f"Against the baseline {_failing(base, kind)} (all tests together: p {p_text(base.p_value, draws)})."
     )
     if not finding.explanations or finding.p_value > RARE:
-        return f"{text} No effect of the library improves χ² by more than noise alone would."
+        return f"{text} No effect in the library improves χ² by more than noise alone would."
     best = finding.explanations[0]
     if finding.doubt:
-        return f"{text} With {best.fit.label} no more than noise is left, but {finding.doubt}."
+        return f"{text} With {best.fit.label} only noise remains, but {finding.doubt}."
     return (
-        f"{text} The best that the library offers ({best.fit.label}) improves χ² by"
-        f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but what it leaves is not noise either:"
+        f"{text} The best explanation in the library ({best.fit.label}) improves χ² by"
+        f" {significant(finding.baseline.chi2 - best.fit.chi2)}, but its residuals are not noise either:"
         f" {_failing(best.lack_of_fit, kind)} (all tests together: p"
-        f" {p_text(best.lack_of_fit.p_value, draws)}). So it is not"
-        f" {'all of the cause' if finding.verdict == 'partly explained' else 'named as the cause'}."
+        f" {p_text(best.lack_of_fit.p_value, draws)}). It is therefore not"
+        f" {'the whole cause' if finding.verdict == 'partly explained' else 'named as the cause'}."
     )
 
 
 def _failing(found: LackOfFit, kind: str) -> str:
     """The tests of residuals that fail; the one nearest to it where none does alone."""
     worst = [n for n, p in found.each.items() if p < SUSPECT] or [found.worst]
-    return f"more than noise is found in the {listed([pattern(n, kind) for n in worst])}"
+    return f"the residuals exceed noise in the {listed([pattern(n, kind) for n in worst])}"
 
 
 def troubles(diagnosis: Diagnosis) -> list[str]:
@@ -79,10 +79,13 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
     effects = {c.effect for c in candidates}
     resampled = (
         [
-            "Shares: of the explainable misfit, which is χ² less what noise alone would leave of it;"
-            f" intervals of 95 % by a bootstrap over {diagnosis.resampled}, never over points; causes that"
-            " are correlated part it by Shapley's value. Held-out skill: the part of the squared error beyond"
-            " noise that the extension takes away on measurements that its fit has not seen."
+            "Shares are fractions of the explainable misfit, which is χ² minus the χ² of noise alone."
+            " Their 95 %"
+            f" intervals come from a bootstrap over {diagnosis.resampled}, never over points. Correlated"
+            " causes"
+            " divide it by Shapley's value. Held-out skill is the fraction of the squared error beyond"
+            " noise that"
+            " the extension removes in measurements that its fit has not used."
         ]
         if diagnosis.resampled
         else []
@@ -91,14 +94,16 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
         f"Noise: {model.points} measured values, whitened by their covariance, nuisances included."
         f" {noise}".strip(),
         f"Null distribution: {draws} draws of that noise, fitted to first order with the baseline's free"
-        f" coordinates ({len(model.names)}), in place of textbook values of χ². A chance below"
-        f" {significant(1.0 / (draws + 1), 2)} cannot be counted so: it is given as a bound, and for the best"
-        " cause extrapolated from the draws' tail.",
-        f"Screening: {len(effects)} effects at {len(candidates)} places, each an amplitude in the simulator,"
-        f" to first order; {len(finding.explanations)} sets of causes were then fitted in the simulator"
-        " itself. How many were tried is accounted for in the chance above.",
-        f"Confidence: {min(1000, draws)} replicates of what the best explanation predicts with new noise, all"
-        " explanations fitted anew to first order: how often the same set of effects comes first.",
+        f" coordinates ({len(model.names)}), in place of tabulated values of χ². A p-value below"
+        f" {significant(1.0 / (draws + 1), 2)} cannot be counted: it is given as a bound, and for the best"
+        " cause extrapolated from the tail of the draws.",
+        f"Screening: {len(effects)} effects at {len(candidates)} candidate positions, each an amplitude"
+        " in the simulator,"
+        f" to first order; {len(finding.explanations)} sets of causes were then fitted in the simulator."
+        " The p-value above accounts for the number of candidates.",
+        f"Confidence: {min(1000, draws)} replicates of the best explanation with new noise, with all"
+        " explanations"
+        " refitted to first order: the fraction in which the same set of effects ranks first.",
         *resampled,
         f"This diagnosis took {significant(diagnosis.seconds)} s.",
     ]

@@ -16,20 +16,20 @@ Rows = list[list[Cell]]
 
 BUDGET = (
     "cause",
-    "what it is",
-    "where",
+    "description",
+    "scope",
     "amplitude ± sd",
-    "share of what is to explain",
+    "share of the misfit",
     "belongs to",
     "evidence",
-    "what would settle it",
+    "to confirm",
 )
 FOLDS = ("left out", "baseline", "extended", "noise alone", "skill")
 UNCHANGED = 1e-3  # of the baseline's error: a part predicted so alike is not changed
-ALTERNATIVES = ("set of causes", "what it is", "against the best", "belongs to")
+ALTERNATIVES = ("set of causes", "description", "compared with the best", "belongs to")
 FITS = ("", "baseline", "extended", "change")
-TESTS = ("test of what is left", "baseline", "best explanation")
-INVISIBLE = ("effect", "what it is", "amplitude needed for 5 sd", "what to do instead")
+TESTS = ("test of the residuals", "baseline", "best explanation")
+INVISIBLE = ("effect", "description", "amplitude visible at 5 sd", "alternative experiment")
 
 
 def budget_rows(diagnosis: Diagnosis, data: dict[str, Any]) -> Rows:
@@ -54,12 +54,12 @@ def budget_rows(diagnosis: Diagnosis, data: dict[str, Any]) -> Rows:
     rows.append(
         [
             Cell(text="not modelled"),
-            Cell(text="what the causes above leave beside noise" if rows else "what the baseline leaves"),
+            Cell(text="remaining misfit beyond noise" if rows else "misfit beyond noise"),
             Cell(text=place),
             Cell(text=f"{significant(per_si * left.rms, 2)} {unit} rms", value=per_si * left.rms),
             Cell(text=part),
             Cell(text="not known" if real else NOTHING),
-            Cell(text=_REPEATS[left.repeats] if real else "within the noise that was assumed"),
+            Cell(text=_REPEATS[left.repeats] if real else "within the assumed noise"),
             Cell(text=(about_remainder(left) if real else "") or NOTHING),
         ]
     )
@@ -67,11 +67,11 @@ def budget_rows(diagnosis: Diagnosis, data: dict[str, Any]) -> Rows:
 
 
 _REPEATS = {
-    "everywhere": "alike in all tests: the form of the model, or the rig",
-    "within a material": "alike within each material",
-    "within a specimen": "alike within a specimen only: its own fault",
+    "everywhere": "repeats in all tests: the form of the model, or the rig",
+    "within a material": "repeats within each material",
+    "within a specimen": "repeats within a specimen only: a fault of the specimen",
     "nowhere": "differs from test to test",
-    "not known": "no test was done twice, so that it cannot be said to repeat",
+    "not known": "not known whether it repeats: no test was repeated",
 }
 
 
@@ -216,18 +216,20 @@ def _held_out_rows(gain: dict[str, Any] | None, draws: int) -> Rows:
             continue
         if key.endswith("_before") and before is not None:
             stem = key.removesuffix("_before")
-            rows.append(_fit_row(stem, before, gain[f"{stem}_after"], draws, of="what was held out"))
+            rows.append(_fit_row(stem, before, gain[f"{stem}_after"], draws, of="the held-out data"))
         if key.endswith("_noise") and before is not None:
-            row = _fit_row(key.removesuffix("_noise"), before, None, draws, of="the noise alone in it")
+            row = _fit_row(
+                key.removesuffix("_noise"), before, None, draws, of="the noise in the held-out data"
+            )
             rows.append([row[0], Cell(text=""), row[1], Cell(text="")])
     if gain["log_likelihood"] is not None:
         better = Cell(text=f"{gain['log_likelihood']:+.1f}", value=gain["log_likelihood"])
-        rows.append([Cell(text="log-likelihood of what was held out"), Cell(text=""), Cell(text=""), better])
+        rows.append([Cell(text="log-likelihood of the held-out data"), Cell(text=""), Cell(text=""), better])
     return rows
 
 
 def _fit_row(key: str, before: float, after: float | None, draws: int, *, of: str = "") -> list[Cell]:
-    spoken = {"reduced_chi2": "reduced χ²", "p_value": "chance that noise alone departs as much"}
+    spoken = {"reduced_chi2": "reduced χ²", "p_value": "p-value of the lack of fit"}
     name, unit = quantity_and_unit(key)
     part, unit = (1e-3, "kPa") if unit == "Pa" else (1.0, unit)
     head = spoken.get(key, name) + (f" of {of}" if of else "") + (f" / {unit}" if unit else "")
@@ -253,10 +255,10 @@ def gain_sentence(data: dict[str, Any]) -> str:
     kept = f"{100 * gain['information_kept']:.0f} %"
     if gain["log_likelihood"] is None:
         why = gain["note"] or "no fold leaves enough of the effect in training"
-        return f"Nothing was held out: {why} (at best {kept} of what is known of it)."
+        return f"Nothing was held out: {why} (at best {kept} of the information on it)."
     return (
-        f"Held out: {gain['held_out']}. Each time the fit saw all but one of these groups and predicted that"
-        f" one; it kept at least {kept} of what is known of the effect. {gain['note']}".strip()
+        f"Held out: {gain['held_out']}. Each of these groups was predicted by a fit to all others, which have"
+        f" at least {kept} of the information on the effect. {gain['note']}".strip()
     )
 
 
@@ -280,7 +282,7 @@ def test_rows(diagnosis: Diagnosis) -> Rows:
         for n in finding.lack_of_fit.each
     ]
     whole = [cell(None if d is None else d.p_value) for d in both]
-    return [*rows, [Cell(text="all tests together, their number accounted for", mark="chosen"), *whole]]
+    return [*rows, [Cell(text="all tests together, corrected for their number", mark="chosen"), *whole]]
 
 
 def invisible_rows(diagnosis: Diagnosis) -> Rows:

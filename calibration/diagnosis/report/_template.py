@@ -30,11 +30,11 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 {{ part }}
 {% endfor %}
 {% if budget %}
-<h2>Where the departure comes from</h2>
+<h2>Sources of the misfit</h2>
 {{ table(budget_headings, budget) }}
 {% endif %}
 {% if alternatives | length > 1 %}
-<h3>These data cannot tell apart</h3>
+<h3>Equivalent explanations</h3>
 {{ table(alternative_headings, alternatives) }}
 {% endif %}
 {% if next_experiment %}
@@ -50,11 +50,11 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 {% endfor %}
 {{ table(fit_headings, fits) }}
 {% if extended %}
-<p class="note">What a modulus changes by is what the baseline's calibration had absorbed of the cause.
+<p class="note">The change of a modulus is the part of the cause that the baseline's fit had absorbed.
 {{ gain }}</p>
 {% endif %}
 {% if folds %}
-<h3>Predicted, each from all others{{ "" if extended else ", with the nearest explanation" }}</h3>
+<h3>Predictions of each part from all others{{ "" if extended else ", with the nearest explanation" }}</h3>
 {{ table(fold_headings, folds) }}
 {% endif %}
 {% for p in residuals %}
@@ -63,7 +63,7 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 </section>
 {% if verdict in ("unexplained", "partly explained") %}
 <section id="lack-of-fit">
-<h2>{{ "What nothing in the library explains" if verdict == "unexplained" else "What is left" }}</h2>
+<h2>{{ "Unexplained misfit" if verdict == "unexplained" else "Remaining misfit" }}</h2>
 <p>{{ lack_of_fit }}</p>
 {{ table(test_headings, tests) }}
 </section>
@@ -74,14 +74,13 @@ body { overflow-wrap: anywhere; } th, td { overflow-wrap: normal; max-width: 26r
 <p class="note">{{ false_alarms }}</p>
 </section>
 <section id="invisible">
-<h2>What this design cannot see</h2>
+<h2>Effects not visible in this design</h2>
 {% if invisible %}
-<p>These would go unnoticed here, or be taken for something else: what is plausible of them is less than what
-these measurements would need to show it at 5 standard deviations.</p>
+<p>These effects would remain undetected, or be mistaken for others: their plausible amplitudes are below
+those that these measurements would show at 5 standard deviations.</p>
 {{ table(invisible_headings, invisible) }}
 {% else %}
-<p>Nothing of the library: each effect would show at 5 standard deviations where it is as large as is
-plausible.</p>
+<p>None: each effect in the library would be visible at 5 standard deviations with a plausible amplitude.</p>
 {% endif %}
 </section>
 {% if notes %}
@@ -91,7 +90,7 @@ plausible.</p>
 </section>
 {% endif %}
 <section id="method">
-<h2>How the numbers were made</h2>
+<h2>Method</h2>
 {% for m in method %}
 <p class="note">{{ m }}</p>
 {% endfor %}

@@ -9,52 +9,52 @@ from calibration.measurements._baseline import SPECIMENS
 from calibration.measurements._effect import EffectModel, Owner
 from calibration.pages import significant
 
-SUSPECT = 0.005  # a chance below is no accident
+SUSPECT = 0.005  # p-value below which a test counts as failed
 
 MEANING: dict[Owner, str] = {
     "specimen": "a property of the specimen: it may enter a simulated dataset",
     "rig": "a fault of the rig: it corrects the calibration, and must not enter a simulated dataset",
     "camera": "a fault of the camera: it corrects the calibration, and must not enter a simulated dataset",
-    "simulator": "a fault of the simulator: cure it there; it must not enter a simulated dataset",
+    "simulator": "a fault of the simulator: correct it there; it must not enter a simulated dataset",
 }
 
 UNREAD = (
-    "a fault of the {}: this calibration allows for it, later ones do not (rig.yaml is a record); it must not"
-    " enter a simulated dataset"
+    "a fault of the {}: this calibration corrects for it, later ones do not (rig.yaml is a record); it must"
+    " not enter a simulated dataset"
 )
 
 HEADLINE = {
-    "none": "No cause to name",
+    "none": "No cause",
     "found": "Cause found",
-    "ambiguous": "Several causes would explain this",
-    "partly explained": "Explained in part",
-    "unexplained": "Departure without a known cause",
+    "ambiguous": "Several equivalent explanations",
+    "partly explained": "Partly explained",
+    "unexplained": "Unexplained misfit",
 }
 
 _PATTERNS = {
-    EVERYTHING: "size of all residuals together",
+    EVERYTHING: "sum of squares of all residuals",
     SPECIMENS: "moduli that differ between specimens of one material by more than a lab's scatter",
 }
 _OF_KIND = {
     "outlines": {
-        "trial edges": "bends of single edges that all photographs of a trial share",
-        "trial bends": "bends of the whole beam that all photographs of a trial share",
-        "support bends": "bends that beams of one length and support share",
-        "drifts": "bends that grow with the logarithm of time",
+        "trial edges": "smooth residuals of single edges, common to all photographs of a trial",
+        "trial bends": "smooth residuals of the whole beam, common to all photographs of a trial",
+        "support bends": "smooth residuals common to beams of one length and support",
+        "drifts": "smooth residuals that grow with the logarithm of time",
     },
     "homogeneous": {
-        "trial bends": "smooth bends of a test's curve",
-        "mode bends": "smooth bends that tests of one mode and material share",
+        "trial bends": "smooth residuals of a test's curve",
+        "mode bends": "smooth residuals common to tests of one mode and material",
         "loops": "differences between loading and unloading",
         "drifts": "drifts of a test in time",
         "cycles": "shifts from one stroke to the next",
         "jumps": "steps within a test",
     },
     "indentation": {
-        "trial bends": "smooth bends of a test's curve",
-        "phase bends": "smooth bends of single phases",
+        "trial bends": "smooth residuals of a test's curve",
+        "phase bends": "smooth residuals of single phases",
         "drifts": "drifts of a test in time",
-        "shared bends": "smooth bends that tests of a specimen share",
+        "shared bends": "smooth residuals common to tests of a specimen",
     },
 }
 _OF_KIND["compression"] = _OF_KIND["homogeneous"]
@@ -69,7 +69,7 @@ def pattern(name: str, kind: str) -> str:
 def headline(finding: Finding) -> str:
     """The verdict in a few words."""
     if finding.verdict == "ambiguous" and finding.certain:
-        return "A cause found, and one more that cannot be told"
+        return "One cause found, another not identified"
     return HEADLINE[finding.verdict]
 
 

@@ -133,9 +133,9 @@ def test_what_takes_most_is_named_though_more_than_noise_is_left() -> None:
     assert found.remainder.rms > 0.0
     assert found.model_error is not None
     assert found.model_error.shear_modulus_relative_sd["S0"] > 0.0
-    assert found.sentence().startswith("Partly explained: there is bend (bend), which takes ")
-    assert "on measurements that its fit has not seen" in found.sentence()
-    assert "alike in all of them" in found.next_experiment
+    assert found.sentence().startswith("Partly explained: there is bend (bend), which explains ")
+    assert "in held-out measurements" in found.sentence()
+    assert "repeats in all of them" in found.next_experiment
 
 
 def test_rivals_that_take_as_much_are_named_with_it() -> None:
@@ -146,7 +146,7 @@ def test_rivals_that_take_as_much_are_named_with_it() -> None:
     )
     assert found.finding.verdict == "partly explained"
     assert set(found.finding.equivalent) == {("bend",), ("twin",)}
-    assert "cannot tell apart" in found.sentence()
+    assert "cannot separate" in found.sentence()
     assert set(found.equally_large) < {("bend",), ("twin",)}
 
 
@@ -157,7 +157,7 @@ def test_what_takes_little_is_not_named_but_said() -> None:
     assert data["causes"] == []
     assert data["nearest"]["not_named_because"]
     assert data["nearest"]["share"]["value"] < 0.5
-    assert "Nearest comes" in found.sentence()
+    assert "The nearest is" in found.sentence()
     assert "It is not named, because " in found.sentence()
     assert found.next_experiment
 
@@ -201,7 +201,7 @@ def test_what_predicts_too_little_is_not_named() -> None:
     found = diagnose(model, rules=Rules(least_skill=named.held_out.skill + 0.05), gain=False)
     assert found.finding.verdict == "unexplained"
     assert found.nearest is not None
-    assert any("noise leaves to explain in held-out" in reason for reason in found.nearest.against)
+    assert any("misfit beyond noise in held-out" in reason for reason in found.nearest.against)
     assert found.nearest.explanation.names == ("bend",)
 
 
@@ -237,14 +237,14 @@ def test_the_page_has_a_budget_of_the_departure(tmp_path: Path) -> None:
     model, found = partly()
     (page,) = [p for p in write_report(found, model, tmp_path, title="made") if p.suffix == ".html"]
     text = " ".join(page.read_text(encoding="utf-8").split())
-    assert "Explained in part" in text
-    assert text.index("Where the departure comes from") < text.index("How the numbers were made")
+    assert "Partly explained" in text
+    assert text.index("Sources of the misfit") < text.index("<h2>Method</h2>")
     assert found.share is not None
     assert percent(found.share) in text
     assert "not modelled" in text
-    assert "alike in all tests: the form of the model, or the rig" in text
+    assert "repeats in all tests: the form of the model, or the rig" in text
     assert text.count("<td>0</td>") + text.count("<td>1</td>") + text.count("<td>2</td>") == 3  # the folds
-    assert "What is left" in text
+    assert "Remaining misfit" in text
 
 
 # -- noise --

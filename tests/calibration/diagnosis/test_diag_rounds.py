@@ -48,7 +48,7 @@ def test_a_departure_that_a_smooth_error_may_make_is_not_named_though_a_cause_ex
     assert small.to_json()["causes"] == []
     assert small.nearest is not None
     assert small.nearest.explanation.names == ("bend",)
-    assert "which a smooth error that nobody stated may have" in small.sentence()
+    assert "which a smooth unstated error may have" in small.sentence()
 
 
 def rounds_concluded(monkeypatch: pytest.MonkeyPatch, further: str) -> list[bool]:

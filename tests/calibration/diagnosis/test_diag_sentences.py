@@ -13,7 +13,7 @@ from calibration.measurements._effect import Candidate
 
 
 @pytest.mark.parametrize(
-    ("grip", "rest"), [(0.6, "Something else is wrong beside it"), (0.2, "The larger part is another")]
+    ("grip", "rest"), [(0.6, "There is another, smaller cause"), (0.2, "There is another, larger cause")]
 )
 def test_a_cause_that_is_certain_is_said_with_its_weight(grip: float, rest: str) -> None:
     shares = {"grip": grip, "void": 0.9 - grip}
@@ -27,6 +27,6 @@ def test_a_cause_that_is_certain_is_said_with_its_weight(grip: float, rest: str)
     )
     part = f"{100 * grip:.0f} % [{100 * grip - 10:.0f}, {100 * grip + 10:.0f}]"
     assert sentence(diagnosis) == (
-        f"Found in part: there is a grip (grip, {part} of what noise leaves to explain)."
-        f" {rest}, and these data cannot say which: void or tilt."
+        f"Found in part: there is a grip (grip, {part} of the misfit beyond noise)."
+        f" {rest}, which these data cannot identify: void or tilt."
     )

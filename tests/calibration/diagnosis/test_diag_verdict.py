@@ -96,8 +96,7 @@ def test_found() -> None:
     assert data["next_experiment"] == "to confirm: measure bend"
     assert re.fullmatch(
         r"Found: there is bend \(bend\)\. With it the simulation agrees with the measurements to within"
-        r" their noise, and it takes \d+ % of what noise leaves to explain on measurements that its fit has"
-        r" not seen\.",
+        r" their noise, and it explains \d+ % of the misfit beyond noise in held-out measurements\.",
         diagnosis.sentence(),
     )
 
@@ -120,7 +119,7 @@ def test_three_causes() -> None:
 def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
     most = 10.0 / sigmas(library()["bend"], FakeModel())
     near = effect("bend", bounds=(-most, most))
-    for ends, noted in (((), []), ((most,), [f"bend: {1e3 * most:.3g} size_mm is as far as it goes"])):
+    for ends, noted in (((), []), ((most,), [f"bend: {1e3 * most:.3g} size_mm is at its physical limit"])):
         found = diagnose(
             FakeModel(
                 hidden=hidden("bend", 11.0),
@@ -128,7 +127,7 @@ def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
                 effects={"bend": replace(near, physical_limits=ends)},
             )
         )
-        assert [n for n in found.notes if "as far as" in n] == noted
+        assert [n for n in found.notes if "physical limit" in n] == noted
 
 
 def test_where_else_a_cause_may_sit_is_a_note() -> None:
@@ -138,11 +137,11 @@ def test_where_else_a_cause_may_sit_is_a_note() -> None:
     model = FakeModel(shapes=one, scoped=("bend",), hidden=20.0 * one["bend"], drawn=noise(2))
     found = diagnose(model)
     assert found.finding.verdict == "found"
-    (note,) = [n for n in found.notes if "do not tell" in n]
-    assert note.startswith("the data do not tell bend from bend of S0, where it would be ")
+    (note,) = [n for n in found.notes if "cannot separate" in n]
+    assert note.startswith("the data cannot separate bend from bend of S0, which would be ")
     assert "size_mm with shear moduli of S0 " in note
     apart = diagnose(FakeModel(scoped=("bend",), hidden=hidden("bend", 12.0), drawn=noise(2)))
-    assert not [n for n in apart.notes if "do not tell" in n]
+    assert not [n for n in apart.notes if "cannot separate" in n]
 
 
 def test_reduced_chi_square_is_over_the_degrees_of_freedom() -> None:

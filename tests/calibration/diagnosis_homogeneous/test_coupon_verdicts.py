@@ -127,7 +127,7 @@ def test_specimens_of_one_material_that_differ_too_much_are_unexplained(times: f
     found = diagnose(coupon_model(experiment(*trials)))
     finding = found.finding
     assert finding.verdict == verdict
-    assert ("filed under its own specimen" in found.next_experiment) == (verdict == "unexplained")
+    assert ("assigned to its own specimen" in found.next_experiment) == (verdict == "unexplained")
     seen = {name for name, p in finding.lack_of_fit.each.items() if p < 0.005}
     assert seen == ({"specimens"} if verdict == "unexplained" else set())
 

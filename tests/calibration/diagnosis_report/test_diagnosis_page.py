@@ -118,7 +118,7 @@ def test_what_a_cause_belongs_to_is_said() -> None:
     made, model = diagnosis("ambiguous")
     words = _page(made, model).text
     assert "a property of the specimen: it may enter a simulated dataset" in words
-    assert "These data cannot tell apart" in words
+    assert "Equivalent explanations" in words
     assert made.finding.equivalent == (("bend",), ("twin",))
     assert "turn it over: bend, twin part there by" in words
 
@@ -126,9 +126,9 @@ def test_what_a_cause_belongs_to_is_said() -> None:
 def test_unexplained_shows_the_test_that_fails_and_names_nothing() -> None:
     made, model = diagnosis("unexplained")
     page = _page(made, model)
-    assert "more than noise is found in the size of all residuals together and odd bends" in page.text
+    assert "the residuals exceed noise in the sum of squares of all residuals and odd bends" in page.text
     assert page.raw.index('id="lack-of-fit"') < page.raw.index('id="evidence"')
-    assert "chance that noise alone departs as much ≤ 0.00025" in page.text
+    assert "p-value of the lack of fit ≤ 0.00025" in page.text
     assert "Found" not in page.text
 
 
