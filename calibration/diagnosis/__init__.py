@@ -1,4 +1,4 @@
-"""What a simulation gets wrong, and why: effects nested in the simulator, searched for, named or not named.
+"""Diagnosis of misfit between simulation and measurement: search for the effects that the simulation lacks.
 
 >>> from pathlib import Path
 >>> from calibration.diagnosis import diagnose, model_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from calibration.measurements._model import MeasurementModel
     from calibration.measurements.outlines.simulators import SIMULATORS
 
-# imported when asked for, so that a command's help needs no simulator
+# imported on first access, so that a command's help needs no simulator
 _HOME = {
     "Candidate": "calibration.measurements._effect",
     "Diagnosis": "calibration.diagnosis.engine.verdict",

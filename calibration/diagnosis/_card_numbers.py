@@ -1,4 +1,4 @@
-"""The numbers on an extended card: moduli with their uncertainty, covariances in file units, ranges."""
+"""Numbers of an extended material card: moduli with uncertainty, covariances in file units, ranges."""
 
 from __future__ import annotations
 
@@ -17,8 +17,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Modulus:
-    """A material's shear modulus [Pa] and its relative sd; weights (n,) of the fit's coordinates u in its
-    logarithm."""
+    """Shear modulus of a material.
+
+    Attributes
+    ----------
+    value : shear modulus G [Pa].
+    relative_sd : formal standard deviation of ln G.
+    weights : derivatives of ln G by the coordinates u of the fit, shape (n,).
+    """
 
     value: float
     relative_sd: float
@@ -26,13 +32,15 @@ class Modulus:
 
     @property
     def direction(self) -> Array:
-        """The change of u (n,) by which its logarithm rises by 1."""
+        """Smallest change of u that increases ln G by 1, shape (n,)."""
         return np.asarray(self.weights / (self.weights @ self.weights))
 
 
 def moduli(diagnosis: Diagnosis) -> dict[str, Modulus]:
-    """Of each material that was diagnosed. ValueError where the coordinates of the fit do not give the moduli
-    that the diagnosis reports."""
+    """Shear modulus of each diagnosed material.
+
+    ValueError if the coordinates of the fit do not give the moduli that the diagnosis reports.
+    """
     u = diagnosis.fit.state.u
     n = len(u)
     covariance = diagnosis.fit.covariance()[:n, :n]
@@ -49,7 +57,7 @@ def moduli(diagnosis: Diagnosis) -> dict[str, Modulus]:
 
 
 def file_covariance(diagnosis: Diagnosis) -> tuple[Array, list[str]]:
-    """Covariance of the named effects' amplitudes in file units, (c, c), and what each is."""
+    """Covariance of the named effects' amplitudes in file units, shape (c, c), and their labels."""
     fit = diagnosis.fit
     units = np.array([diagnosis.effects[c.effect].per_unit for c in fit.candidates])
     n = len(fit.state.u)
@@ -58,7 +66,7 @@ def file_covariance(diagnosis: Diagnosis) -> tuple[Array, list[str]]:
 
 
 def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str, float]:
-    """Of an effect's amplitude with the material's shear modulus and with the other named effects."""
+    """Correlations of an effect's amplitude with ln G of the material and with the other named effects."""
     fit = diagnosis.fit
     n = len(fit.state.u)
     row = fit.covariance()[n + index]
@@ -71,7 +79,7 @@ def correlations(index: int, modulus: Modulus, diagnosis: Diagnosis) -> dict[str
 
 
 def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[str, Any]:
-    """What a material is without the effects: a prediction's yardstick."""
+    """Card entry of the material without the effects, as a reference for predictions."""
     numbers, fit = diagnosis.baseline, diagnosis.finding.baseline
     n = len(fit.state.u)
     covariance = fit.covariance()[:n, :n] * max(numbers.reduced_chi2, 1.0)
@@ -87,10 +95,9 @@ def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[st
 
 
 def model_error(fit: Fit, direction: Array) -> float:
-    """What a fit leaves beyond noise, over what a change of the moduli would do: the relative error of the
-    moduli that has the same whitened squares.
+    """Relative error of the moduli with the same whitened sum of squares as the misfit in excess of noise.
 
-    direction : change of u (n,) by which the logarithms of the moduli rise by 1.
+    direction : change of u (n,) that increases ln G by 1. Returns 0 if the residuals do not depend on it.
     """
     used = np.linalg.norm(fit.jacobian, axis=0) > 0.0
     excess = fit.chi2 - (len(fit.z) - np.count_nonzero(used))
@@ -100,13 +107,13 @@ def model_error(fit: Fit, direction: Array) -> float:
 
 
 def valid_range(candidate: Candidate, diagnosis: Diagnosis) -> dict[str, list[float]]:
-    """Between what the effect was measured, by the quantity's name in files."""
+    """Measured ranges of an effect, by the quantity's name in files."""
     ranges = diagnosis.subject.ranges.get(candidate, {})
     return {name: [rounded(low), rounded(high)] for name, (low, high) in ranges.items()}
 
 
 def gain(diagnosis: Diagnosis) -> dict[str, float | str | None] | None:
-    """What the extension buys on held-out data, as `diagnosis.json` has it."""
+    """Held-out scores as in `diagnosis.json`, without the folds; None if there are none."""
     found = diagnosis.to_json()["gain"]
     if found is None:
         return None
@@ -115,7 +122,7 @@ def gain(diagnosis: Diagnosis) -> dict[str, float | str | None] | None:
 
 
 def rounded(x: float) -> float:
-    """To six digits, as cards hold numbers."""
+    """Round to six significant digits, as in cards."""
     return float(f"{x:.6g}")
 
 

@@ -1,4 +1,4 @@
-"""Effects that are parts of a material: which of them become a card's viscosity, softening and fibres."""
+"""Effects that become parts of a material card: viscosity, softening, fibres and law."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from tisim.parts import Prony
 
 
 def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedOn]:
-    """Parts and law of a material by the effects of the chosen explanation that state them, in its order.
+    """Parts and law of a material, by the effects of the chosen explanation that define them, in its order.
 
-    A material has one part of each field. Two relaxation spectra are one: what they relax adds up. Of other
-    two effects that ask for the same field, the first has it.
+    A material has one part per field. Two relaxation spectra are added. If two other effects define the same
+    field, the first one is used.
     """
     found: dict[Candidate, HandedOn] = {}
     taken: dict[str, Candidate] = {}
@@ -27,7 +27,7 @@ def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedO
             first = taken[part.field]
             whole = _together(found[first], part)
             if whole is not None:
-                # the first entry carries the sum, so that moduli and parts count once
+                # the first entry has the sum, so that moduli and parts count once
                 found[first] = whole
                 part = replace(part, part=None, modulus_ratio=1.0, shared=True)
             else:
@@ -40,8 +40,10 @@ def handed_on(material: str, diagnosis: Diagnosis) -> Mapping[Candidate, HandedO
 
 
 def _together(a: HandedOn, b: HandedOn) -> HandedOn | None:
-    """Two Prony series as one, over the modulus of the fit: R = R_a + R_b - 1. None for other parts, and
-    where nothing is left in the long run."""
+    """Sum of two Prony series, R = R_a + R_b - 1 relative to the modulus of the fit.
+
+    None for other parts, or if the long-time modulus of the sum is not positive.
+    """
     if not (isinstance(a.part, Prony) and isinstance(b.part, Prony)):
         return None
     left = a.modulus_ratio + b.modulus_ratio - 1.0
@@ -58,13 +60,13 @@ def _together(a: HandedOn, b: HandedOn) -> HandedOn | None:
 
 
 def becomes(part: HandedOn | None) -> dict[str, Any]:
-    """What an effect's entry in a card says of its part."""
+    """Entry `becomes` of an effect in a card: the field that it defines; {} if it defines none."""
     return {} if part is None or not (part.made or part.shared) else {"becomes": part.field}
 
 
 def law_of(
     handed: Mapping[Candidate, HandedOn], shear: float, bulk: float
 ) -> tuple[str, Mapping[str, float]] | None:
-    """The law that an effect asks for with these small-strain moduli [Pa], and its parameters."""
+    """Law that an effect defines and its parameters for these small-strain moduli [Pa]; None if none does."""
     found = next((h.law for h in handed.values() if h.law is not None), None)
     return None if found is None else found(shear, bulk)

@@ -1,4 +1,4 @@
-"""rig.yaml: what a diagnosis found in rig, camera or simulator, as it stands in the file."""
+"""Format of rig.yaml: effects of rig, camera or simulator found by a diagnosis."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from calibration.measurements._effect import EffectModel
 from calibration.measurements.outlines._effect import OutlineEffect
 
 FORMAT = 1
-DIGITS = 1e-5  # what six digits, as files hold numbers, may move one by
+DIGITS = 1e-5  # relative rounding error of numbers with six digits, as in files
 
 Corrects = Literal["outlines", "nothing"]
 _NO_DATASET = "It belongs to no material: it must not enter a dataset, and factory.build refuses it."
@@ -31,8 +31,11 @@ USES: dict[Corrects, str] = {
 
 
 def corrects(effects: Iterable[EffectModel]) -> Corrects:
-    """What a rig's file with these effects corrects: a fit knows how effects on photographed beams enter its
-    scenes and pictures; those of bars, coupons, pressed cylinders and pokes only their diagnosis knows."""
+    """Measurements that a rig file with these effects corrects.
+
+    A calibration of photographed beams applies the effects to its scenes and images. Effects in cantilever
+    release, homogeneous, compression and indentation tests are used by their diagnosis only.
+    """
     return "outlines" if all(isinstance(e, OutlineEffect) for e in effects) else "nothing"
 
 
@@ -48,8 +51,17 @@ class Amplitude(Strict):
 
 
 class RigEffect(Strict):
-    """scope: "all", or the material, specimen or trial that it was found in. rivals: what the data could not
-    tell it from. valid_range: of what was measured."""
+    """An effect found by a diagnosis.
+
+    Attributes
+    ----------
+    effect : name of the effect.
+    belongs_to : rig, camera or simulator.
+    scope : "all", or the material, specimen or trial that it was found in.
+    parameters : its amplitude by name.
+    valid_range : measured ranges by the quantity's name.
+    rivals : alternative sets of effects that the data cannot exclude.
+    """
 
     effect: Text
     belongs_to: Literal["rig", "camera", "simulator"]
@@ -81,15 +93,25 @@ class RigEffect(Strict):
 
 
 class Covariance(Strict):
-    """Of the effects' parameters, in their order and units; names: for readers."""
+    """Covariance of the effects' parameters, in their order and units; `names` are for readers."""
 
     names: tuple[Text, ...]
     matrix: tuple[tuple[float, ...], ...]
 
 
 class RigFile(Strict):
-    """corrects: what later calibrations can use it for; a file without it is of photographed beams, or older
-    than it. gain: on data that the fit had not seen."""
+    """Content of rig.yaml for photographed beams.
+
+    Attributes
+    ----------
+    experiment, experiment_sha256 : name and SHA-256 of the experiment that was diagnosed.
+    base_law : law of the baseline.
+    corrects : measurements that it corrects; older files lack it.
+    use : what the file is for, in a sentence.
+    effects : effects that were found.
+    covariance : of their parameters.
+    gain : held-out scores; None if there are none.
+    """
 
     format: Literal[1]
     experiment: str
@@ -104,7 +126,7 @@ class RigFile(Strict):
     @model_validator(mode="before")
     @classmethod
     def _no_record(cls, data: Any) -> Any:
-        """Before its effects are looked at: some have the names of a beam's."""
+        """Reject records of other measurements before their effects are validated (some names are equal)."""
         if isinstance(data, dict) and data.get("corrects") == "nothing":
             raise say(
                 "corrects",

@@ -1,7 +1,8 @@
-"""Extended cards: what a diagnosis found, in the form that `factory.build` and `calibration.fit` read.
+"""Extended material cards: results of a diagnosis in the format of `factory.build` and `calibration.fit`.
 
-One MATERIAL.yaml a material, as `calibration.fit` writes it, with the specimen's effects; and rig.yaml, where
-rig, camera or simulator are at fault. It says itself whether `calibration.fit` reads it, or nothing does.
+One MATERIAL.yaml per material, as written by `calibration.fit`, with the effects of the specimen; and
+rig.yaml, if effects of rig, camera or simulator were found. Its key `use` states whether `calibration.fit`
+can read it.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ RIG = "rig.yaml"
 
 
 def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> list[Path]:
-    """Write folder/MATERIAL.yaml for each material that was diagnosed, and folder/rig.yaml where something
-    beside the specimens is at fault (one of an earlier diagnosis is removed). The paths written.
+    """Write folder/MATERIAL.yaml for each diagnosed material, and folder/rig.yaml if rig effects are named.
 
-    Without a named cause the cards are of the baseline. InputError where a material is called rig.
+    A rig.yaml of an earlier diagnosis is removed. Without a named cause the cards are of the baseline.
+    Returns the paths written. InputError if a material is named "rig".
     """
     if Path(RIG).stem in (diagnosis.extended or diagnosis.baseline).shear_modulus_Pa:
         raise InputError(f"material {Path(RIG).stem}: expected another name, since {RIG} is the rig's card")
@@ -116,8 +117,11 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
 def _law(
     name: str, ratio: float, bulk: float, shear: float, diagnosis: Diagnosis
 ) -> tuple[str, dict[str, float | tuple[float, ...]]]:
-    """The law of a material with its parameters: the baseline's at these moduli [Pa], or the one that an
-    effect has put in its place, its moduli times `ratio`."""
+    """Law of a material and its parameters.
+
+    The baseline's law with these moduli [Pa]; if an effect replaces it, the effect's law with all parameters
+    in Pa multiplied by `ratio`.
+    """
     if name not in diagnosis.subject.other_laws:
         law = diagnosis.subject.law
         return law, laws.get(law).from_moduli(shear, bulk)
@@ -154,7 +158,7 @@ def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> d
 
 
 def _entry(index: int, diagnosis: Diagnosis) -> dict[str, Any]:
-    """What material cards and the rig's card say alike of an effect of the chosen explanation."""
+    """Entries of an effect that are common to material cards and rig.yaml."""
     candidate = diagnosis.fit.candidates[index]
     amplitudes = diagnosis.causes()[index]["parameters"]
     return {

@@ -1,7 +1,7 @@
-"""diagnosis.json read back, format 2 (docs/explanation/diagnosis.md) and format 1.
+"""Reader of diagnosis.json, formats 1 and 2 (docs/explanation/diagnosis.md).
 
-Names of the file that hold a unit (`rms_kPa`, `rms_kPa_before`) become `rms` and `unit` here. What format 1
-did not write is None, or empty.
+Keys of the file that contain a unit (`rms_kPa`, `rms_kPa_before`) become `rms`, `rms_before` and `unit`.
+Entries that format 1 does not have are None or empty.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _RMS = "rms_"
 
 
 class _Told(Strict):
-    """A part of the file in which null says that there is no such value."""
+    """A section of the file in which null is equivalent to a missing key."""
 
     @model_validator(mode="before")
     @classmethod
@@ -30,7 +30,7 @@ class _Told(Strict):
 
 
 class _Measured(_Told):
-    """A part of the file whose keys rms_UNIT, rms_UNIT_before, ... hold a unit."""
+    """A section of the file whose keys rms_UNIT, rms_UNIT_before, ... contain a unit."""
 
     unit: str = ""
 
@@ -50,15 +50,17 @@ class _Measured(_Told):
 
 
 class Amplitude(Strict):
-    """In the unit that its name ends with."""
+    """Value and standard deviation of a parameter, in the unit that its name ends with."""
 
     value: float
     sd: Annotated[float, Field(ge=0.0)]
 
 
 class Share(_Told):
-    """Of the explainable misfit, with its 95 % interval; low and high are None where nothing could be
-    resampled. By chance a share may lie beyond 0 and 1."""
+    """Fraction of the explainable misfit with its 95 % interval.
+
+    low and high are None if there is no bootstrap. By chance the values may lie outside 0 to 1.
+    """
 
     value: float
     low: float | None = None
@@ -66,8 +68,17 @@ class Share(_Told):
 
 
 class Cause(_Told):
-    """scope: "all", or the material, specimen or trial that it is in. kind: its form, where it has
-    several."""
+    """A cause of the explanation.
+
+    Attributes
+    ----------
+    effect : name of the effect.
+    parameters : amplitude, and position if it has one, by name.
+    scope : "all", or the material, specimen, trial or other group that it is in.
+    confidence : probability that the explanation is ranked first under new noise.
+    share : fraction of the explainable misfit that it removes.
+    kind : variant of the effect in words; "" if it has one only.
+    """
 
     effect: str
     parameters: dict[str, Amplitude]
@@ -78,7 +89,7 @@ class Cause(_Told):
 
 
 class FitNumbers(_Measured):
-    """A fit in numbers; rms in `unit`."""
+    """Summary of a fit; rms in `unit`."""
 
     reduced_chi2: float
     p_value: float
@@ -87,7 +98,7 @@ class FitNumbers(_Measured):
 
 
 class Fold(_Measured):
-    """A part that was left out, and predicted from the rest."""
+    """Prediction errors of one held-out fold; rms in `unit`."""
 
     left_out: str
     rms_before: float
@@ -97,7 +108,7 @@ class Fold(_Measured):
 
 
 class Gain(_Measured):
-    """On held-out data; None where nothing was held out."""
+    """Held-out scores; rms in `unit`. Scores are None if nothing was held out."""
 
     held_out: str
     rms_before: float | None = None
@@ -111,7 +122,7 @@ class Gain(_Measured):
 
 
 class Nearest(_Told):
-    """What comes nearest where nothing is named, and why it is not."""
+    """Nearest explanation if none is named, and the reasons why it is not named."""
 
     causes: tuple[Cause, ...]
     share: Share
@@ -120,7 +131,7 @@ class Nearest(_Told):
 
 
 class RemainderNumbers(_Measured):
-    """What is left beside noise; see `calibration.diagnosis.engine.remainder.Remainder`."""
+    """Unexplained misfit; see `calibration.diagnosis.engine.remainder.Remainder`."""
 
     rms: float
     of_full_scale: float | None = None
@@ -132,7 +143,7 @@ class RemainderNumbers(_Measured):
 
 
 class ModelErrorNumbers(_Measured):
-    """The remainder as an error of the model; see `calibration.diagnosis.engine.model_error.ModelError`."""
+    """Model error; see `calibration.diagnosis.engine.model_error.ModelError`."""
 
     rms: float
     of_full_scale: float | None = None
@@ -140,9 +151,17 @@ class ModelErrorNumbers(_Measured):
 
 
 class NoiseNumbers(_Told):
-    """What is known of the noise. layers: repeat, order and specimen as parts of full scale, where repeats
-    show them. records: of each that could be looked at, what was assumed and what its scatter shows at
-    most, in names that end with the unit."""
+    """What is known about the noise.
+
+    Attributes
+    ----------
+    source : "stated" by the lab or taken from the "data".
+    known : True if the noise is stated or determined by repeats.
+    repeats : names of the tests with repeats.
+    layers : scatter of repeat, order and specimen relative to full scale, as far as repeats determine it.
+    records : assumed noise and the upper bound from the scatter of each record that could be examined, in
+        keys that end with the unit.
+    """
 
     source: Literal["stated", "data"]
     known: bool
@@ -152,8 +171,15 @@ class NoiseNumbers(_Told):
 
 
 class Invisible(_Told):
-    """threshold: amplitude, in `parameter`, that would show at 5 standard deviations; None where none
-    does."""
+    """An effect that the design cannot detect.
+
+    Attributes
+    ----------
+    effect : name of the effect.
+    parameter : name of its amplitude, which ends with the unit.
+    threshold : amplitude of 5 standard deviations; None if no amplitude is detectable.
+    instead : recommended measure on the bench.
+    """
 
     effect: str
     parameter: str
@@ -210,18 +236,18 @@ class DiagnosisFile(_Told):
 
     @property
     def certain(self) -> tuple[str, ...]:
-        """Effects that every alternative has: what the data do tell, where they cannot tell all of it."""
+        """Effects common to all alternatives, which the data therefore determine."""
         named = dict.fromkeys(c.effect for c in self.causes)
         return tuple(n for n in named if all(n in names for names in self.alternatives))
 
     @property
     def shear_moduli(self) -> Mapping[str, float]:
-        """By material [Pa], beside the named causes."""
+        """Shear modulus by material [Pa], with the named causes if there are any."""
         return (self.extended or self.baseline).shear_modulus_Pa
 
 
 def read_diagnosis(path: str | Path) -> DiagnosisFile:
-    """Read diagnosis.json, or that of a diagnosis' folder. InputError names file, key and expectation."""
+    """Read diagnosis.json, or the one in a folder. InputError names the file, the key and the expectation."""
     found = Path(path)
     file = found / "diagnosis.json" if found.is_dir() else found
     try:

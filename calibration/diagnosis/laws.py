@@ -1,10 +1,10 @@
-"""A diagnosis in two rounds: the usual causes beside the simplest law, then all causes beside the best law.
+"""Diagnosis in two rounds: usual causes with the simplest law, then all causes with the best law.
 
-Where the first round leaves the data unexplained, laws are compared by how well they predict what their fit
-has not seen. The best one enters the second round as a cause of its own (the effect whose `richer` is set),
-so that what else is wrong is asked beside it; causes that are rare, or free in their form (`further`), enter
-with it. They are asked, too, where the first round needs several causes, and taken if fewer explain the data,
-or as many clearly better.
+If the first round does not explain the data, laws are compared by their predictions of held-out measurements.
+The best one enters the second round as a cause of its own (the effect whose `richer` is set), so that other
+causes are tested together with it; causes that are rare or flexible in form (`further`) are added as well.
+The second round also takes place if the first needs several causes. It then replaces the first if fewer
+causes explain the data about as well, or as many clearly better.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ Make = Callable[..., MeasurementModel]
 
 @dataclass(frozen=True, kw_only=True)
 class LawScore:
-    """A law as baseline.
+    """Scores of a law as baseline.
 
     Attributes
     ----------
-    law, terms, label : which.
-    constants : free ones, of all materials together, without moduli of specimens.
-    chi2 : of its fit to everything.
-    held_out : chi-square of the measurements, each predicted from the others.
-    rms : of these predictions, in SI.
+    law, terms, label : name, number of terms, and label for people.
+    constants : number of free constants of all materials together, without moduli of specimens.
+    chi2 : chi-square of its fit to all measurements.
+    held_out : chi-square of the measurements, each fold predicted from the others.
+    rms : rms error of these predictions [SI].
     """
 
     law: str
@@ -63,12 +63,14 @@ class LawScore:
 
 @dataclass(frozen=True, kw_only=True)
 class LawChoice:
-    """Laws that were compared, the simplest first.
+    """Result of a comparison of laws.
 
     Attributes
     ----------
-    folds : what was left out. points : measurements that were predicted.
-    missing : laws without an answer, or without a fit that converges, with the reason.
+    scores : scores of the laws, the simplest first.
+    folds : name of the set of folds.
+    points : number of measurements that were predicted.
+    missing : laws that could not be compared, with the reason.
     """
 
     scores: tuple[LawScore, ...]
@@ -82,8 +84,11 @@ class LawChoice:
 
     @property
     def best(self) -> LawScore:
-        """The simplest law of which no richer one takes away WORTH of the held-out misfit, and more of it
-        than noise would."""
+        """The law chosen by ascending number of constants.
+
+        A richer law replaces the current choice if it reduces the held-out chi-square by more than the
+        fraction `WORTH` and by more than `SURE` standard deviations of that of noise, sqrt(2 points).
+        """
         chosen, noise = self.scores[0], SURE * np.sqrt(2.0 * self.points)
         for s in sorted(self.scores[1:], key=lambda s: s.constants):
             if s.held_out < chosen.held_out - max(WORTH * chosen.held_out, noise):
@@ -91,7 +96,7 @@ class LawChoice:
         return chosen
 
     def sentence(self) -> str:
-        """What was compared, and what choosing was worth."""
+        """The comparison and the benefit of the chosen law in a sentence."""
         each = ", ".join(f"{s.label} {s.held_out:.4g}" for s in self.scores)
         worth = 1.0 - self.best.held_out / self.simplest.held_out
         return (
@@ -102,7 +107,7 @@ class LawChoice:
 
 
 def law_of(text: str) -> Law:
-    """Name and terms of "ogden:2" or "neo-hookean". InputError where no law of that name is known."""
+    """Parse "ogden:2" or "neo-hookean" to name and number of terms. InputError if no such law is known."""
     name, _, terms = text.partition(":")
     try:
         number = int(terms) if terms else 1
@@ -121,18 +126,18 @@ def diagnose_with_law(
     noise: Source = "stated",
     on_progress: OnMessage = lambda _: None,
 ) -> tuple[Diagnosis, MeasurementModel]:
-    """A diagnosis, and the model that it was made with.
+    """Diagnose in two rounds; returns the diagnosis and the model of the round that it is from.
 
     Parameters
     ----------
-    make : the model, of its options law, terms and richer (without them the simplest law), and further.
-    rules, gain, noise : see `engine.run.diagnose`.
-    law : "auto", or a name with terms ("ogden:2"), which is then the baseline's in both rounds.
+    make : builds the model from the options law, terms, richer (by default the simplest law) and further.
+    law : "auto", or a law with its terms ("ogden:2") that is the baseline in both rounds.
+    rules, gain, noise, on_progress : see `engine.run.diagnose`.
 
     Raises
     ------
     InputError : the law is unknown, or the kind of measurement has one law only.
-    ValueError : the baseline has no answer anywhere.
+    ValueError : the baseline has no solution anywhere.
     """
     options: dict[str, object] = {}
     if law != AUTO:
@@ -157,9 +162,12 @@ def diagnose_with_law(
 
 
 def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
-    """A cause that these records cannot tell from what is in no catalogue explains in part at most; and so do
-    several in one and the same test, of several: so many follow any smooth curve, and nothing but the points
-    that they were fitted to speaks for them."""
+    """Downgrade an explanation that these records cannot confirm to "partly explained".
+
+    This concerns causes that the records cannot distinguish from an effect missing in the catalogue
+    (`EffectModel.conclusive`), and several causes that all act in a single test out of several: together they
+    can follow any smooth curve, and no other test confirms them.
+    """
     if found.chosen is None or found.finding.verdict not in EXPLAINED:
         return found
     doubts, said = [], []
@@ -183,7 +191,10 @@ def _no_more_than_shown(found: Diagnosis, model: MeasurementModel) -> Diagnosis:
 
 
 def _in_one_test(found: Diagnosis, model: MeasurementModel) -> str:
-    """The one test, of several, that several causes are in, where nothing else explains the data; "" else."""
+    """Name of the single test, out of several, in which all of several named causes act; "" otherwise.
+
+    It applies to the verdict "found" only.
+    """
     chosen, tests = found.chosen, [test_of(r) for r in model.records]
     if chosen is None or len(chosen.names) < 2 or found.finding.verdict != "found":
         return ""
@@ -192,7 +203,7 @@ def _in_one_test(found: Diagnosis, model: MeasurementModel) -> str:
 
 
 def _causes(found: Finding) -> int:
-    """How many are named together."""
+    """Number of causes that are named together."""
     return 0 if found.chosen is None else len(found.chosen.candidates)
 
 
@@ -227,8 +238,10 @@ def _explains(found: Diagnosis) -> int:
 
 
 def _simpler(again: Finding, found: Finding, rules: Rules) -> bool:
-    """True if fewer causes explain the data about as well, or as many clearly better; constants that they
-    bring count in the score."""
+    """True if the second round explains the data as well with fewer causes, or clearly better with as many.
+
+    Scores include the penalty for constants that the causes introduce.
+    """
     if again.chosen is None or found.chosen is None or again.verdict not in EXPLAINED:
         return False
     better = found.chosen.score - again.chosen.score
@@ -237,9 +250,9 @@ def _simpler(again: Finding, found: Finding, rules: Rules) -> bool:
 
 
 def choose_law(model: MeasurementModel, *, on_progress: OnMessage = lambda _: None) -> LawChoice:
-    """Compare a model's laws as baselines, without effects, by measurements that their fits have not seen.
+    """Compare a model's laws as baselines, without effects, by cross-validation.
 
-    ValueError where the simplest has no answer.
+    ValueError if the simplest law has no solution.
     """
     scores: list[LawScore] = []
     missing: list[str] = []
@@ -275,7 +288,11 @@ def choose_law(model: MeasurementModel, *, on_progress: OnMessage = lambda _: No
 
 @dataclass(frozen=True, kw_only=True)
 class _Compared:
-    """A law as the baseline of some measurements. squares : of the predictions' errors, in SI."""
+    """As `LawScore` for a subset of the measurements.
+
+    squares : sum of squared prediction errors [SI]. points : number of predicted measurements. folds : name
+    of the set of folds.
+    """
 
     constants: int
     chi2: float
@@ -286,7 +303,7 @@ class _Compared:
 
 
 def _compared(own: MeasurementModel) -> _Compared:
-    """ValueError where there is no answer."""
+    """Fit all measurements and cross-validate. ValueError if there is no solution."""
     whole = _near_enough(own, State(u=own.start()))
     folds = own.folds()
     name = PREFERRED if PREFERRED in folds else next(iter(folds))
@@ -306,7 +323,9 @@ def _compared(own: MeasurementModel) -> _Compared:
 
 
 def _near_enough(model: MeasurementModel, start: State) -> Fit:
-    """A fit that is sharp enough to compare laws: where a law misses by much, the usual tolerance asks for
-    many steps along constants that nearly hide each other."""
+    """Fit to a tolerance that is sufficient to compare laws.
+
+    If a law misfits strongly, the usual tolerance would take many steps along nearly collinear constants.
+    """
     z = model.residuals([start])[0]
     return fit(model, start, max_steps=STEPS, tolerance=max(TOLERANCE, SHARP * float(z @ z)))

@@ -1,4 +1,4 @@
-"""The model that a diagnosis searches: measurements of one kind, with the catalogue's effects."""
+"""Construction of the model that a diagnosis searches: measurements of one kind with effects."""
 
 from __future__ import annotations
 
@@ -24,20 +24,21 @@ def model_of(
     further: bool = True,
     **baseline: Any,
 ) -> MeasurementModel:
-    """The model of an experiment's measurements with all effects of the catalogue.
+    """Build the model of an experiment's measurements with the effects of the catalogue.
 
     Parameters
     ----------
-    kind : of measurement; may be left out where the experiment has one only.
-    without : effects taken out of the catalogue.
-    simulator : of outlines, a name of `calibration.measurements.outlines.simulators.SIMULATORS`.
-    workers : processes; None for all cores.
-    further : with effects that are looked for only where the others do not explain the data.
-    baseline : law, terms and richer of kinds whose baseline has a choice of laws.
+    kind : kind of measurement; may be omitted if the experiment has one only.
+    without : names of effects to leave out.
+    simulator : simulator of outlines, a name of `calibration.measurements.outlines.simulators.SIMULATORS`.
+    workers : number of processes; None for all cores.
+    further : include effects that are searched for only if the others do not explain the data.
+    baseline : options law, terms and richer of kinds whose baseline has a choice of laws.
 
     Raises
     ------
-    InputError : the kind is unknown, absent or not named, or another name is unknown.
+    InputError : the kind is unknown, absent or not named, another name is unknown, or the kind of measurement
+        does not take an option.
     """
     chosen = kind_of(experiment, kind)
     effects = effects_of(chosen.name)

@@ -1,4 +1,4 @@
-"""A rig of which a diagnosis knows what it does wrong, so that later calibrations on it are corrected."""
+"""A rig with known errors from a diagnosis, by which later calibrations on it are corrected."""
 
 from __future__ import annotations
 
@@ -23,10 +23,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Rig:
-    """Effects of rig and camera where they were found, with amplitudes [SI] and their covariance.
+    """Effects of rig, camera or simulator; a `calibration.measurements.outlines.setup.Setup`.
 
-    A `calibration.measurements.outlines.setup.Setup`. digest: sha256 of the file; found_on: of
-    the experiment that it was found on. remarks: what the reader of a corrected calibration must know.
+    Attributes
+    ----------
+    candidates : effects with the scopes in which they were found.
+    amplitudes : their amplitudes [SI], c values.
+    covariance : covariance of the amplitudes [SI], (c, c).
+    digest : SHA-256 of the file.
+    found_on : SHA-256 of the experiment that was diagnosed.
+    remarks : sentences that a reader of a corrected calibration must know.
     """
 
     candidates: tuple[Candidate, ...]
@@ -61,7 +67,7 @@ class Rig:
         sds = np.sqrt(np.diag(self.covariance))
         scale = np.where(sds > 0.0, sds, 1.0)
         correlation = np.array(self.covariance) / np.outer(scale, scale)
-        # effects that are nearly one make it singular: a trifle more on its diagonal does not matter
+        # nearly aliased effects make it singular: a small increase of its diagonal has no practical effect
         root = scale[:, None] * np.linalg.cholesky(correlation + 2e-4 * np.eye(len(sds)))
         found = []
         for c, direction, sd in zip(self.candidates, root.T, sds, strict=True):
@@ -73,7 +79,7 @@ class Rig:
         return found
 
     def on(self, experiment: Experiment) -> Rig:
-        """The same with remarks on what it means for an experiment."""
+        """The same rig, with remarks that concern its use for an experiment."""
         beams = [t for t in experiment.trials if isinstance(t, BeamTrial)]
         remarks = [
             f"{c.label} reaches no beam of this experiment"
@@ -85,8 +91,11 @@ class Rig:
         return replace(self, remarks=tuple(remarks))
 
     def _inside(self, trial: BeamTrial) -> Sequence[tuple[OutlineEffect, float, Situation]]:
-        """What reaches a trial, in the catalogue's order. No effect of a rig differs from one photograph of a
-        trial to the next (`RigFile` refuses those that do), so that the time is of no matter."""
+        """Effects that act in a trial with amplitudes other than 0, in the catalogue's order.
+
+        Effects of a rig are equal in all photographs of a trial (`RigFile` rejects others), so that the time
+        in the situation is arbitrary.
+        """
         situation = Situation(trial=trial, time=1.0)
         order = list(EFFECTS)
         pairs = sorted(
@@ -97,8 +106,14 @@ class Rig:
 
 
 def read_rig(path: Path) -> Rig:
-    """Of a file on photographed beams. InputError, in one sentence, names the key where it cannot be used, as
-    in a record of other measurements; OSError as it comes."""
+    """Read rig.yaml of photographed beams.
+
+    Raises
+    ------
+    InputError : the file cannot be used, for example because it is a record of other measurements. The
+        sentence names the key.
+    OSError : the file cannot be read.
+    """
     content = path.read_bytes()
     file = parse(content, path, RigFile)
     effects = [EFFECTS[e.effect] for e in file.effects]
@@ -119,5 +134,5 @@ def _shown(candidate: Candidate, amplitude: float) -> str:
 
 
 def _inside(candidate: Candidate, amplitude: float) -> float:
-    """Beyond its bounds an effect has no scene: a compliance is not negative."""
+    """Amplitude clipped to the bounds of its effect, beyond which there is no scene (compliance below 0)."""
     return float(np.clip(amplitude, *EFFECTS[candidate.effect].bounds))

@@ -1,6 +1,6 @@
-"""The catalogue of effects: each described once for all kinds of measurement.
+"""The catalogue of effects, each described once for all kinds of measurement.
 
-How an effect acts in a kind of measurement stands in `calibration.diagnosis.effects`.
+`calibration.diagnosis.effects` models their action in each kind of measurement.
 """
 
 from calibration.diagnosis.catalogue._registry import (

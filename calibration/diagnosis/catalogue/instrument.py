@@ -1,4 +1,4 @@
-"""What cameras, clocks and load cells show wrongly."""
+"""Effects of instruments: errors of cameras, clocks and load cells."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the material does beyond the baseline's law."""
+"""Effects of the material beyond the baseline's law."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ RATE_DEPENDENCE = Effect(
     with_material=True,
 )
 
-# of the modulus at 1 s, the fraction that goes with each decade of time
+# per_decade: decrease per decade of time, as a fraction of the modulus at 1 s
 CREEP = Effect(
     name="creep",
     parameter="per_decade",
@@ -135,8 +135,8 @@ CREEP = Effect(
     with_material=True,
 )
 
-# of the modulus before it relaxes, the fraction that goes with the relaxation time that is named beside it;
-# where none is named (log-time relaxation, indentation), the fraction that goes with each decade
+# fraction_of_modulus: fraction of the instantaneous modulus that relaxes with the stated relaxation time; if
+# none is stated (logarithmic relaxation in indentation), the fraction per decade
 RELAXATION = Effect(
     name="relaxation",
     parameter="fraction_of_modulus",

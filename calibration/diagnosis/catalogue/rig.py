@@ -1,4 +1,4 @@
-"""How the rig holds and loads a specimen otherwise than stated."""
+"""Effects of the rig: deviations of supports and loads from the stated ones."""
 
 from __future__ import annotations
 

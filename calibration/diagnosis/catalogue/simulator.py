@@ -1,4 +1,4 @@
-"""What the simulator itself does wrong."""
+"""Effects of the simulator: discretisation and solver errors."""
 
 from __future__ import annotations
 

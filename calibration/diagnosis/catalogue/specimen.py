@@ -1,4 +1,4 @@
-"""How a specimen differs from what was stated: its form, its make, what sticks to it."""
+"""Effects of the specimen: deviations from the stated geometry, manufacture and surface."""
 
 from __future__ import annotations
 

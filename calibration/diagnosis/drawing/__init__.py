@@ -1,7 +1,4 @@
-"""Figures of a diagnosis: what all kinds of measurement share, and the figures of each kind.
-
-`figures_of(model, diagnosis)` draws them; a kind of measurement registers its own by `figures_of.register`.
-"""
+"""Figures of a diagnosis for all kinds of measurement: interface, bars, curves and panels."""
 
 from calibration.diagnosis.drawing import homogeneous, indentation, outlines, release
 from calibration.diagnosis.drawing._bars import AFTER, BEFORE, paired_bars

@@ -1,4 +1,4 @@
-"""Errors before and after, in pairs of bars."""
+"""Errors of the baseline and of the extension as pairs of bars."""
 
 from __future__ import annotations
 
@@ -23,9 +23,16 @@ def paired_bars(
     noise: float | None = None,
     held_out: tuple[str, float, float] | None = None,
 ) -> matplotlib.figure.Figure:
-    """A pair of bars a name; quantity: what they measure, with its unit. after: None where there is no
-    extension. noise: what the measurement's own error makes. held_out: (what was held out, before, after),
-    set apart below the others."""
+    """Draw one pair of horizontal bars per name.
+
+    Parameters
+    ----------
+    names : labels of the pairs.
+    before, after : values of the baseline and of the extension; `after` is None if there is no extension.
+    quantity : axis label with the unit.
+    noise : value that noise alone gives, drawn as a dashed line.
+    held_out : (name of the set of folds, before, after), drawn below the other pairs.
+    """
     rows = np.arange(len(names), dtype=float)
     shown = [label(n) for n in names]
     lower, upper = list(before), list(after) if after is not None else None

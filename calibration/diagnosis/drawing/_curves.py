@@ -1,4 +1,4 @@
-"""Measured curves before and after the extension: what of them is drawn, and what it is called."""
+"""Measured curves with predictions of baseline and extension: selection for figures, and labels."""
 
 from __future__ import annotations
 
@@ -15,14 +15,21 @@ from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
-MOST = 24  # trials of one picture of bars
+MOST = 24  # largest number of trials in a figure of bars
 NAMED, PARTIAL = "extended", "nearest of the library, not named"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnCurve:
-    """What is left of a trial's curve: measured less simulated, (k,), by the baseline and by the extension
-    (None where there is none), and each point's own standard deviation, all in one SI unit."""
+    """Residuals of a trial's curve in one SI unit.
+
+    Attributes
+    ----------
+    name : name of the trial.
+    left_before : measured minus simulated with the baseline, shape (k,).
+    left_after : the same with the extension; None if there is no extension.
+    sd : standard deviation of each point, shape (k,).
+    """
 
     name: str
     left_before: Array
@@ -34,7 +41,7 @@ class DrawnCurve:
         return self.left_after is not None
 
     def left(self, which: str) -> Array:
-        """which: "before" or "after"."""
+        """Residuals of "before" (baseline) or "after" (extension)."""
         return np.asarray(getattr(self, f"left_{which}"))
 
     def rms(self, which: str) -> float:
@@ -42,7 +49,7 @@ class DrawnCurve:
 
     @property
     def size(self) -> float:
-        """Its departure from the baseline, in standard deviations."""
+        """rms residual of the baseline in standard deviations."""
         return float(np.sqrt(np.mean((self.left_before / self.sd) ** 2)))
 
 
@@ -51,8 +58,11 @@ def rms_of_all(curves: Sequence[DrawnCurve], which: str) -> float:
 
 
 def shown_explanation(diagnosis: Diagnosis) -> Explanation | None:
-    """What stands for the extension: the chosen explanation; where nothing is named, what explains most of an
-    unexplained departure."""
+    """Explanation that is drawn as the extension.
+
+    It is the chosen explanation, else the nearest one, else the best one if the data are unexplained and the
+    p-value of the best cause is below 0.01. None otherwise.
+    """
     finding = diagnosis.finding
     if diagnosis.chosen is not None:
         return diagnosis.chosen
@@ -68,18 +78,18 @@ Evaluated = TypeVar("Evaluated")
 def before_and_after(
     diagnosis: Diagnosis, evaluate: Callable[[State], Sequence[Evaluated]]
 ) -> list[tuple[Evaluated, Evaluated | None]]:
-    """What a model predicts of each record by the baseline and by the extension (`shown_explanation`).
+    """Predictions of each record by the baseline and by the extension (`shown_explanation`).
 
     Parameters
     ----------
     diagnosis : Diagnosis
     evaluate : callable
-        Predictions at a state, one a record.
+        Predictions at a state, one per record.
 
     Returns
     -------
     list of tuple
-        One pair a record; the second is None, for all records alike, where nothing stands for the extension.
+        One pair per record; the second entry is None in all pairs if there is no extension to show.
     """
     before = evaluate(diagnosis.finding.baseline.state)
     shown = shown_explanation(diagnosis)
@@ -89,7 +99,7 @@ def before_and_after(
 
 
 def legend_of(diagnosis: Diagnosis) -> str:
-    """What the lines after are called; empty where there are none."""
+    """Legend of the extension's curves; "" if there are none."""
     shown = shown_explanation(diagnosis)
     if shown is None:
         return ""
@@ -101,13 +111,13 @@ Drawn = TypeVar("Drawn", bound=DrawnCurve)
 
 
 def most_telling(curves: Sequence[Drawn], most: int = MOST) -> tuple[list[Drawn], int]:
-    """Those that are drawn, in the file's order, and how many depart too little for that."""
+    """The `most` curves with the largest residuals, in their original order, and the number of others."""
     largest = sorted(curves, key=lambda d: -d.size)[:most]
     return [d for d in curves if d in largest], len(curves) - len(largest)
 
 
 def missing(count: int) -> str:
-    """What a caption says of them."""
+    """Sentence for a caption on trials that are not drawn; "" if there are none."""
     if count == 1:
         return " 1 trial that departs less is not drawn."
     return f" {count} trials that depart less are not drawn." if count else ""

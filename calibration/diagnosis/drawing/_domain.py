@@ -17,11 +17,16 @@ Section = Literal["shapes", "residuals"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Figure:
-    """A picture of the page.
+    """A figure of the page.
 
-    name: of its file, without the ending; what does not fit a file name is replaced. caption: plain text.
-    section: "shapes" where measured stands against simulated, "residuals" where what is left is shown before
-    and after the extension. view: the same to turn around, below it.
+    Attributes
+    ----------
+    name : file name without extension; characters that are invalid in file names are replaced.
+    caption : plain text.
+    figure : the figure itself.
+    section : "shapes" for measured against simulated data, "residuals" for residuals before and after the
+        extension.
+    view : interactive 3D view that is shown below the figure; None if there is none.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Names out of files as matplotlib can draw them."""
+"""Names from files as labels for matplotlib."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ from functools import cache
 
 from matplotlib.font_manager import FontProperties, findfont, get_font
 
-LONGEST = 44
-LINE = 54  # where a label may go on in a second line
+LONGEST = 44  # largest number of characters of a label
+LINE = 54  # number of characters after which a label of several causes continues on a new line
 
 
 def label(text: str, longest: int = LONGEST) -> str:
-    """Text that is drawn as it stands: no mathematics between dollars, one line, shortened in its middle,
-    characters that the font lacks as a box drawn by it."""
+    """Text that matplotlib draws literally, in one line.
+
+    Dollar signs are escaped, characters that the font lacks are replaced by a white square, and text over
+    `longest` characters is shortened in its middle.
+    """
     known = _drawable()
     shown = "".join(c if ord(c) in known else "\N{WHITE SQUARE}" for c in " ".join(text.split()))
     if len(shown) > longest:
@@ -22,7 +25,7 @@ def label(text: str, longest: int = LONGEST) -> str:
 
 
 def label_of_causes(text: str, longest: int = LINE) -> str:
-    """The same of several causes, "a + b + c": as many on a line as there is room for."""
+    """Label of several causes, "a + b + c", broken into lines of about `longest` characters."""
     lines: list[str] = []
     for part in text.split(" + "):
         if lines and len(lines[-1]) + len(" + ") + len(part) <= longest:

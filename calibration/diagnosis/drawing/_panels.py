@@ -1,4 +1,4 @@
-"""Pictures of curves, one panel a trial, and of what is left of them, one pair of bars a trial."""
+"""Figures of curves with one panel per trial, and of their residuals with one pair of bars per trial."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def per_trial(
     handles: Sequence[Line2D],
     section: Section = "shapes",
 ) -> Figure:
-    """A picture of one panel a trial, of the `PANELS` trials that depart most.
+    """Draw one panel for each of the `PANELS` trials with the largest residuals.
 
     Parameters
     ----------
@@ -45,9 +45,9 @@ def per_trial(
         Draws a curve into its panel's axes.
     name, section : see `Figure`.
     caption : str
-        A sentence on trials without a panel is added.
+        A sentence on trials without a panel is appended.
     handles : sequence of Line2D
-        Of the legend above the panels (`legend_handles`).
+        Handles of the legend above the panels (`legend_handles`).
     """
     shown, unshown = most_telling(curves, PANELS[section])
     figure, each = panels(len(shown))
@@ -58,7 +58,7 @@ def per_trial(
 
 
 def panels(count: int) -> tuple[Any, list[Any]]:
-    """A figure, and the axes of each trial's panel."""
+    """A figure and its axes, one per panel."""
     columns = min(count, COLUMNS)
     rows = -(-count // columns)
     figure = paper(11.0, 0.6 + (2.5 if count > COLUMNS else 3.4) * rows)
@@ -69,7 +69,7 @@ def panels(count: int) -> tuple[Any, list[Any]]:
 
 
 def dots(axes: Any, x: Any, y: Any, colour: str, *, hollow: bool) -> None:
-    """Measured points."""
+    """Draw measured points."""
     face = "none" if hollow else colour
     axes.plot(x, y, "o", ms=2.6, mew=0.6, mfc=face, mec=colour, zorder=3)
 
@@ -82,15 +82,15 @@ def measured_and_simulated(
     after: Array | None,
     branches: Iterable[tuple[NDArray[np.bool_], bool]],
 ) -> None:
-    """Dots of the measured curve and lines of the simulated ones, branch by branch.
+    """Draw dots for the measured curve and lines for the simulated ones, branch by branch.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
     x, measured, before, after : ndarray, shape (k,)
-        In the units of the axes; after is None where there is no extension.
+        Values in the units of the axes; `after` is None if there is no extension.
     branches : iterable of (ndarray of bool, shape (k,), bool)
-        Points that a line joins, and whether their dots are hollow.
+        Points that are joined by a line, and True if their dots are hollow.
     """
     for mine, hollow in branches:
         dots(axes, x[mine], measured[mine], INK, hollow=hollow)
@@ -104,7 +104,7 @@ def titled(
 ) -> None:
     """Title a panel with its trial's name, a note, and the rms of its residuals; label its axes.
 
-    unit: of the rms, and how many of it are one SI unit.
+    unit : unit of the rms, and its number per SI unit.
     """
     plain(axes)
     shown, per_si = unit
@@ -117,9 +117,10 @@ def titled(
 
 
 def legend_handles(curves: Sequence[DrawnCurve], after: str, *, measured: bool = True) -> list[Line2D]:
-    """Dots of the measured curve and lines of the simulated ones.
+    """Legend handles of the measured dots and the simulated lines.
 
-    after: see `legend_of`. measured: False leaves out the dots, where they are not all of one colour.
+    after : label of the extension (`legend_of`). measured : False leaves out the dots, for figures in which
+    they differ in colour.
     """
     handles = [Line2D([], [], color=BEFORE, lw=2, label="baseline")]
     if measured:
@@ -139,9 +140,14 @@ def draw_rms(
     noise: float,
     dashed: str,
 ) -> Figure:
-    """rms of what is left of each trial's curve and of all, before and after, and held out.
+    """Draw the rms residual of each trial's curve and of all, before and after, and held out.
 
-    quantity: of the curve; unit: as in `titled`. noise [SI]: drawn as a dashed line, and what that is.
+    Parameters
+    ----------
+    quantity : quantity of the curves.
+    unit : as in `titled`.
+    noise : rms of noise [SI], drawn as a dashed line.
+    dashed : description of the dashed line for the caption.
     """
     shown, unshown = most_telling(curves)
     name, per_si = unit

@@ -1,1 +1,1 @@
-"""How each effect acts in each kind of measurement."""
+"""Models of the effects in each kind of measurement."""

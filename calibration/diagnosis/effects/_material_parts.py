@@ -1,9 +1,8 @@
-"""Effects of a material as its parts (`tisim.parts`) or its law: relaxation as a Prony series, losses as
-softening, stiffness in one direction as fibres.
+"""Conversion of material effects to the simulator's constitutive models: viscosity, softening, fibres, laws.
 
-An effect is a phenomenon of one kind of measurement (a stress that grows by so much a decade of the rate);
-a part is what the simulator has (a relaxation spectrum). The part is the one that shows the phenomenon over
-the times, or energies, that the measurement saw; beyond them it stays as it is there, and the card says so.
+An effect describes a phenomenon in one kind of measurement (a stress that grows by a fraction per decade of
+the strain rate); the simulator has constitutive models (`tisim.parts`: a relaxation spectrum). The model is
+fitted to the effect over the range of times, or energies, of the measurement; the card states that range.
 """
 
 from __future__ import annotations
@@ -22,21 +21,21 @@ from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 Array = NDArray[np.float64]
 Curve = Callable[[Array], Array]
 
-A_DECADE = 2  # relaxation times: closer ones cannot be told apart
-GRID = 60  # times, or energies, at which a part is compared with the effect
-NEGLIGIBLE = 1e-9  # fractions below this are no term
-ALIKE = 0.02  # of what is compared: a larger departure of the part from the effect is said
-SMALL_ENERGY = 1e-3  # m of a softening that follows the largest energy alone, over that energy
+A_DECADE = 2  # relaxation times per decade: closer ones cannot be separated
+GRID = 60  # number of times, or energies, at which the model is compared with the effect
+NEGLIGIBLE = 1e-9  # terms with fractions below this are dropped
+ALIKE = 0.02  # relative difference of model and effect above which a remark is made
+SMALL_ENERGY = 1e-3  # m over the largest energy, for a softening that depends on the largest energy alone
 LONG_TIME = "the long-time modulus"
 
 
 def viscosity_of(relaxed: Curve, *, first: float, last: float) -> HandedOn:
-    """A Prony series of two terms a decade.
+    """Fit a Prony series of two terms per decade to a relaxation function (non-negative least squares).
 
     Parameters
     ----------
-    relaxed : relaxation function at times (n,) [s] after a step, over the modulus of the fit.
-    first, last : between which the measurement saw it [s].
+    relaxed : relaxation function at times (n,) [s] after a step, relative to the modulus of the fit.
+    first, last : range of times that the measurement covers [s].
     """
     decades = max(np.log10(last / first), 1.0 / A_DECADE)
     times = first * 10.0 ** (np.arange(round(A_DECADE * decades) + 1) / A_DECADE)
@@ -48,15 +47,15 @@ def viscosity_of(relaxed: Curve, *, first: float, last: float) -> HandedOn:
 
 
 def one_time(fraction: float, time: float, *, first: float, last: float) -> HandedOn:
-    """A Prony series of one term: a fraction of the instantaneous modulus relaxes with a time [s].
+    """A Prony series of one term: a fraction of the instantaneous modulus, with its relaxation time [s].
 
-    first, last : between which the measurement saw it [s].
+    first, last : range of times that the measurement covers [s].
     """
     return _prony(1.0 - fraction, np.array([fraction]), np.array([time]), first=first, last=last, off=0.0)
 
 
 def branches(fractions: Array, times: Array, *, reference: float, first: float, last: float) -> HandedOn:
-    """A Prony series whose fractions are parts of the storage modulus at 1 / reference [rad/s]."""
+    """A Prony series whose fractions are relative to the storage modulus at 1 / `reference` [rad/s]."""
     slow = (times / reference) ** 2
     left = 1.0 - float(np.sum(fractions * slow / (1.0 + slow)))
     found = _prony(left, fractions, times, first=first, last=last, off=0.0)
@@ -65,7 +64,11 @@ def branches(fractions: Array, times: Array, *, reference: float, first: float, 
 
 
 def _prony(left: float, strengths: Array, times: Array, *, first: float, last: float, off: float) -> HandedOn:
-    """left, strengths : long-time modulus and terms over the modulus of the fit."""
+    """Build the Prony series, with remarks.
+
+    left, strengths : long-time modulus and terms relative to the modulus of the fit. off : largest difference
+    from the effect, relative to that modulus.
+    """
     if not left > 0.0:
         return HandedOn(
             field="viscosity",
@@ -96,13 +99,13 @@ def _prony(left: float, strengths: Array, times: Array, *, first: float, last: f
 
 
 def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -> HandedOn:
-    """Ogden and Roxburgh's softening, nearest to a fraction of the stress that is lost below the largest
-    energy so far.
+    """Fit the Ogden-Roxburgh softening to the fraction of stress lost below the largest energy so far.
 
     Parameters
     ----------
-    lost : fraction at energies (n,) over the largest so far.
-    energy : the largest that the measurement saw [J/m3].
+    lost : fraction of the stress that is lost, at energies (n,) relative to the largest energy so far.
+    energy : largest energy density of the measurement [J/m3].
+    remarks : sentences to put before those made here.
     """
     ratio = np.linspace(0.0, 1.0, GRID)
     wanted = lost(ratio)
@@ -113,7 +116,7 @@ def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -
     def left(x: Array) -> Array:
         return np.asarray(of(x) - wanted)
 
-    # ln r from 0 (r = 1), ln beta from a softening that sets in at once to a straight line
+    # ln r >= 0 (r >= 1); ln beta from an immediate softening (-3) to one that is linear in the energy (3)
     start = np.array([np.log(1.0 / max(float(wanted.max()), 1e-3)), 0.0])
     found = least_squares(
         left,
@@ -137,7 +140,10 @@ def softening_of(lost: Curve, *, energy: float, remarks: tuple[str, ...] = ()) -
 
 
 def fibres_along_the_load(k1: float) -> HandedOn:
-    """One family of fibres along axis 1, in which coupons are loaded; k1 [Pa]."""
+    """One family of fibres along axis 1, the loading direction of homogeneous tests; k1 [Pa].
+
+    No fibres if k1 is negative.
+    """
     if k1 < 0.0:
         return HandedOn(
             field="fibres",
@@ -156,7 +162,7 @@ def fibres_along_the_load(k1: float) -> HandedOn:
 
 
 def stiffening(found: Occurrence) -> HandedOn:
-    """Yeoh's law with one constant more, c2 over c1."""
+    """Yeoh law whose second constant, relative to the first, is the amplitude; none if it is negative."""
     if found.amplitude < 0.0:
         text = "no law: one that softens with strain has no least energy"
         return HandedOn(field="law", remarks=(text,))
@@ -164,13 +170,13 @@ def stiffening(found: Occurrence) -> HandedOn:
 
 
 def mooney_rivlin(found: Occurrence) -> HandedOn:
-    """A fraction of the modulus is the second invariant's."""
+    """Mooney-Rivlin law: the amplitude is the fraction C01 / (C10 + C01) of the second invariant."""
     c = found.amplitude
     return _law("mooney-rivlin", lambda g, k: {"c10": 0.5 * g * (1.0 - c), "c01": 0.5 * g * c, "bulk": k})
 
 
 def eight_chain(found: Occurrence) -> HandedOn:
-    """Chains lock at a stretch of which the amplitude is one over the square."""
+    """Eight-chain law with the locking stretch amplitude^(-1/2); none unless 0 < amplitude < 1."""
     if not 0.0 < found.amplitude < 1.0:
         text = "no law: the chains would lock at rest"
         return HandedOn(field="law", remarks=(text,))
@@ -182,7 +188,10 @@ def _law(name: str, parameters: Callable[[float, float], dict[str, float]]) -> H
 
 
 def seen(times: list[Array]) -> tuple[float, float]:
-    """Shortest and longest times that records with these clocks (k,) show [s]."""
+    """Shortest and longest time [s] that records with these sampling times (k,) resolve.
+
+    They are the smallest sampling interval, at least 1e-6 of the longest record, and the longest record.
+    """
     first = min(float(np.diff(t).min()) for t in times)
     last = max(float(np.ptp(t)) for t in times)
     return max(first, 1e-6 * last), last

@@ -1,4 +1,4 @@
-"""How each effect acts on compressed cylinders: those of homogeneous tests, of platens and of load cells."""
+"""Effects in uniaxial compression of cylinders: those of homogeneous tests, platens and load cells."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from calibration.measurements.homogeneous._record import Record
 Array = NDArray[np.float64]
 
 # -- platen-bonding --
-# The platens hold the end faces: the force is that of a free cylinder times (bonded over free) to the power
-# of the amplitude, both simulated (`tisim.Press`), so that 0 slides freely and 1 sticks all over.
+# The end faces are restrained by the platens: the force is that of a cylinder with free platens times the
+# bonded-to-free force ratio to the power of the amplitude; both are simulated (`tisim.Press`). Amplitude 0 is
+# free sliding, 1 is bonded.
 #
-# Between the two this stands in for Coulomb friction: at small strain the ring that slips does not grow
-# with the load, since pressure and shear grow together, so that the amplitude is nearly constant along a
-# record.
+# Values in between approximate Coulomb friction: at small strain the slipping ring does not grow with the
+# load, since pressure and shear are proportional, so that the amplitude is nearly constant along a record.
 
 
 MOST_BONDED = (
-    1.1  # a little beyond bonded: what is bonded is not at a bound, and simulated stresses have an error
+    1.1  # slightly above 1: bonded platens are then not at a bound, and simulated stresses have an error
 )
 
 PLATEN_BONDING = CompressionEffect(
@@ -42,16 +42,16 @@ PLATEN_BONDING = CompressionEffect(
 
 
 # -- platen-slip --
-# Coulomb friction: where all of an end face slips, the pressure grows exponentially inwards (slab method);
-# where friction is enough to hold, the face sticks. The logarithm of the force over a free cylinder's goes
-# over from the one to the other, l = l_stuck (1 - exp(-l_slip / l_stuck)).
+# Coulomb friction: if the whole end face slips, the pressure grows exponentially inwards (slab method); if
+# friction suffices, the face sticks. The logarithm l of the force relative to free platens interpolates
+# between the two, l = l_stuck (1 - exp(-l_slip / l_stuck)).
 
 
 PLATEN_SLIP = CompressionEffect(
     effect=catalogue.PLATEN_SLIP,
     step=1e-3,
     bounds=(0.0, 2.0),
-    physical_limits=(2.0,),  # nothing slips any more
+    physical_limits=(2.0,),  # no slip from here on
     prior_scale=0.3,
     rubs=True,
     further=True,
@@ -60,9 +60,9 @@ PLATEN_SLIP = CompressionEffect(
 
 
 # -- platen-tilt --
-# An end face and its platen are not parallel: one edge touches first, the rest of the face later. Columns
-# of the cylinder are pressed side by side, each from where the platen meets it: a foundation of springs,
-# which leaves out that neighbours hold each other.
+# An end face and its platen are not parallel: one edge touches first, the rest of the face later. Columns of
+# the cylinder are compressed independently, each from its own contact on (Winkler foundation): shear between
+# neighbouring columns is neglected.
 
 
 PLATEN_TILT = CompressionEffect(
@@ -76,8 +76,7 @@ PLATEN_TILT = CompressionEffect(
 
 
 # -- stress-offset --
-# The zero of the load cell is off, by the same all through a record: the stress that is read is too high by
-# the amplitude [Pa].
+# Constant zero error of the load cell in a record: the measured stress is too high by the amplitude [Pa].
 
 
 def _reads_stress_offset(stress: Array, amplitude: float) -> Array:
@@ -95,8 +94,8 @@ STRESS_OFFSET = CompressionEffect(
 
 
 # -- force-gain --
-# The load cell shows a multiple of the force: in all records alike nothing separates this from the modulus.
-# One load cell reads all records.
+# Gain error of the load cell. One load cell measures all records, and a gain common to all records is an
+# alias of the modulus.
 
 
 def _reads_force_gain(stress: Array, amplitude: float) -> Array:
@@ -114,12 +113,11 @@ FORCE_GAIN = CompressionEffect(
 
 
 # -- machine-compliance --
-# As in homogeneous tests; but the height of a cylinder is known, and with it how far a rig would move. A load
-# cell gives way by a twentieth to half a millimetre at the load that it is made for; with the frame and the
-# fixtures of a light bench that is a millimetre or so.
+# As in homogeneous tests, but with bounds from the height of a standard cylinder. A load cell deflects by
+# 0.05 to 0.5 mm at its rated load; with the frame and fixtures of a light bench the total is about 1 mm.
 
 
-MOST_OF_RIG = 1.5e-3  # [m] at the largest load
+MOST_OF_RIG = 1.5e-3  # largest displacement of the rig [m], at the largest stress
 
 
 def _bounds_machine_compliance(records: Sequence[Record]) -> tuple[float, float]:
@@ -130,7 +128,7 @@ def _bounds_machine_compliance(records: Sequence[Record]) -> tuple[float, float]
 MACHINE_COMPLIANCE = replace(homogeneous.MACHINE_COMPLIANCE, bounds_in=_bounds_machine_compliance)
 
 EFFECTS: dict[str, HomogeneousEffect] = {
-    # platens that hold are simulated here; and repeats of one sample are compressed along one axis
+    # bonding is simulated here instead of friction; repeats of one sample are compressed along one axis
     **{n: e for n, e in homogeneous.EFFECTS.items() if n != catalogue.PLATEN_FRICTION.name},
     catalogue.ANISOTROPY.name: replace(homogeneous.ANISOTROPY, scopes=("material", "specimen")),
     catalogue.MACHINE_COMPLIANCE.name: MACHINE_COMPLIANCE,

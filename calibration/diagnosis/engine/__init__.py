@@ -1,1 +1,1 @@
-"""The search for causes: fit, screen, confirm in the simulator, judge against noise."""
+"""The search for causes: fit the baseline, screen candidates, confirm in the simulator, test for noise."""

@@ -1,4 +1,4 @@
-"""Choose an experiment that separates equivalent explanations, by the distance of their predictions."""
+"""Choice of the next experiment: the one whose predictions differ most between equivalent explanations."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """An experiment, with its separation of the chosen explanation from each of the others.
+    """An experiment, and how far it would separate the chosen explanation from each of the others.
 
     Attributes
     ----------
-    separations : increase of chi-square for each other explanation; inf if it has no equilibrium in this
-        experiment, which would be visible at once.
+    name : name of the experiment.
+    sentence : the experiment, for people.
+    separations : expected increase of chi-square for each other explanation; inf if that has no solution in
+        the experiment, which would be noticed at once.
     enough : separation from which on two explanations count as separated.
     """
 
@@ -33,21 +35,21 @@ class Advice:
 
     @property
     def separation(self) -> float:
-        """Separation from the closest explanation with an equilibrium; 0 if there is none."""
+        """Separation from the nearest explanation that has a solution; 0 if none has."""
         return min((s for s in self.separations if np.isfinite(s)), default=0.0)
 
     @property
     def separated(self) -> float:
-        """Number of explanations separated from the chosen one; partial separations count as fractions."""
+        """Number of explanations that it separates from the chosen one; partial separations as fractions."""
         return sum(min(s / self.enough, 1.0) for s in self.separations)
 
 
 def advise(model: MeasurementModel, explanations: Sequence[Explanation]) -> list[Advice]:
-    """All experiments of a model, in order of their value.
+    """All experiments of a model, the recommended one first.
 
-    If `model.separates` is "all", experiments are ordered by the separation from the closest explanation, up
-    to `enough`; if it is "most", by the number of separated explanations, since no experiment may separate
-    all. Of equal experiments the cheapest comes first (the order of `model.experiments`).
+    If `model.separates` is "all", they are ranked by the separation from the nearest explanation, up to
+    `model.enough`. If it is "most", they are ranked by the number of separated explanations, since possibly
+    no experiment separates all. Ties are in the order of `model.experiments`, cheapest first.
     """
     first, others = explanations[0], explanations[1:]
     found = []
@@ -65,7 +67,7 @@ def advise(model: MeasurementModel, explanations: Sequence[Explanation]) -> list
 
 
 def advice(model: MeasurementModel, explanations: Sequence[Explanation]) -> str:
-    """Sentence on the best experiment; "" if the model has none."""
+    """The recommended experiment in a sentence; "" if the model has no experiments."""
     if not model.experiments:
         return ""
     best = advise(model, explanations)[0]
@@ -73,10 +75,10 @@ def advice(model: MeasurementModel, explanations: Sequence[Explanation]) -> str:
 
 
 def gauged(sds: Mapping[str, float], first: Explanation, others: Sequence[Explanation]) -> list[float]:
-    """Separations of the first explanation from the others by a direct measurement of amplitudes.
+    """Separation of the first explanation from each other one by a direct measurement of amplitudes.
 
-    A separation is the squared difference of the amplitudes over the sum of their variances and that of the
-    gauge; `sds` has the gauge's standard deviations [SI] by effect.
+    It is the sum over effects of the squared difference of the amplitudes, divided by the sum of the
+    variances of the gauge and of both amplitudes. `sds` are the gauge's standard deviations by effect [SI].
     """
     return [_gauged(sds, first, other) for other in others]
 
@@ -94,11 +96,13 @@ def _gauged(sds: Mapping[str, float], one: Explanation, other: Explanation) -> f
 
 
 def measured(new: MeasurementModel | None, first: Explanation, others: Sequence[Explanation]) -> list[float]:
-    """Separations of the first explanation from the others by new measurements.
+    """Separation of the first explanation from each other one by new measurements.
 
-    A separation is the increase of the least squared distance between the predictions of the two, over the
-    free coordinates of the other, which are fitted to old and new data together. `new` is the model of the
-    new measurements as the first explanation predicts them; None if they cannot be made.
+    It is the increase of the minimum squared distance between the predictions of the two, over the other's
+    free parameters, if the new measurements are added to the old ones.
+
+    new : model of the new measurements, with the first explanation's predictions as data; None if they cannot
+    be made, which gives separations of 0.
     """
     if new is None:
         return [0.0] * len(others)
@@ -124,7 +128,7 @@ def _left(values: Array, jacobian: Array) -> float:
 
 
 def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
-    """Sentence on the best experiment, if all explanations are to be separated."""
+    """The recommended experiment in a sentence, if all explanations are to be separated."""
     names = ", ".join(_told_apart(explanations))
     if best.separation < 1.0:
         return f"no experiment of the catalogue parts {names}"
@@ -134,7 +138,7 @@ def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
 
 
 def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
-    """Sentence on the best experiment, if it may separate the chosen cause from some others only."""
+    """The recommended experiment in a sentence, if it may separate the chosen cause from some others only."""
     first, *others = _told_apart(explanations)
     parted = [n for n, s in zip(others, best.separations, strict=True) if s >= 1.0]
     if not parted:
@@ -149,7 +153,7 @@ def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
 
 
 def _told_apart(explanations: Sequence[Explanation]) -> list[str]:
-    """Names of each explanation, without the causes common to all."""
+    """Names of each explanation's effects, without those common to all."""
     common = set.intersection(*(set(e.names) for e in explanations))
     return [" + ".join([n for n in e.names if n not in common] or e.names) for e in explanations]
 

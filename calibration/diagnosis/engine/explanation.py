@@ -1,4 +1,4 @@
-"""Explanations: sets of causes fitted in the simulator, with their score and remaining lack of fit."""
+"""Sets of causes fitted in the simulator: score, test for lack of fit, comparison of alternatives."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class Explanation:
 
     Attributes
     ----------
-    cost : penalty added to chi-square for the number of amplitudes (Bayes' information criterion) and for the
-        choice among alternatives (twice the logarithm of their number).
-    constants_cost : the part of `cost` for constants that causes have beside their amplitudes (those of a
-        law).
+    fit : fit of the baseline's coordinates and the causes' amplitudes.
+    cost : penalty added to chi-square: ln m per amplitude or further constant (Bayesian information
+        criterion, m residuals), plus the multiplicity penalties.
+    constants_cost : contribution to `cost` of further constants that causes introduce (parameters of a law).
     lack_of_fit : test of the residuals of the fit.
     """
 
@@ -48,7 +48,7 @@ class Explanation:
 
     @property
     def multiplicity_penalty(self) -> float:
-        """Penalty for the choice among alternatives, in chi-square."""
+        """Sum of the candidates' multiplicity penalties (`screening.multiplicity_penalty`)."""
         return sum(multiplicity_penalty(c) for c in self.candidates)
 
     @property
@@ -63,9 +63,10 @@ def explain(
     amplitudes: Sequence[float],
     null: Null,
 ) -> Explanation | None:
-    """Fit a set of causes, from another fit and initial amplitudes [SI].
+    """Fit a set of causes, starting from another fit and initial amplitudes [SI].
 
-    None if the simulator has no equilibrium with them. Converged fits are cached in `Null.explained`.
+    Returns None if the simulator finds no solution from any of the starts. A converged fit of the same causes
+    is reused (`Null.explained`).
     """
     causes = frozenset(candidates)
     if causes in null.explained:
@@ -104,15 +105,14 @@ def equivalent_explanations(
     first: Mapping[Names, float] | None = None,
     first_fraction: float = 1.0,
 ) -> tuple[Names, ...]:
-    """Distinct sets of effects that explain the data as well as the best one, best first.
+    """Distinct sets of effects that the data cannot separate from the best one, best first.
 
-    These are the sets whose score is within `tolerance` of the best, and those that rank first in at least
-    `first_fraction` of the replicates; `first` has that fraction by set. A set that only adds to a better
-    one is left out.
+    A set is included if its score is within `tolerance` of the best, or if its probability of being ranked
+    first (`first`) is at least `first_fraction`. A superset of a better set is left out.
 
-    If several causes are named, the constants of a richer law in place of some of them do not count in the
-    score: they make a set less simple, which is no evidence against it, and several causes are not simple
-    either.
+    If the best explanation has several effects, `constants_cost` is not counted for sets of as many effects
+    or fewer: constants of a richer law make a set less simple, which is no evidence against it, and several
+    causes are not simple either.
     """
     ordered = sorted(explanations, key=lambda e: e.score)
     found: list[Names] = []
@@ -128,9 +128,10 @@ def equivalent_explanations(
 
 
 def ranked_first(explanations: Sequence[Explanation], null: Null) -> dict[Names, float]:
-    """Probability that each set of effects would rank first with other noise, if the best one were true.
+    """Probability that each set of effects is ranked first under new noise, if the best explanation is true.
 
-    Each explanation is refitted, to first order, to the prediction of the best one plus random noise.
+    Each explanation is refitted, to first order, to the prediction of the best one plus drawn noise (the
+    first 1000 draws of `null`).
     """
     ordered = sorted(explanations, key=lambda e: e.score)
     draws = null.noise[:1000]

@@ -1,4 +1,4 @@
-"""Gauss-Newton fit of the baseline's coordinates and the amplitudes of effects, in the simulator."""
+"""Gauss-Newton fit of the baseline's coordinates and effects' amplitudes with the full simulator."""
 
 from __future__ import annotations
 
@@ -26,7 +26,14 @@ MOST = 5  # largest number of steps, relative to `max_steps`
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fit:
-    """Result of a fit: the state that minimises |z|^2, derivatives, convergence status and its message."""
+    """A least-squares fit.
+
+    Attributes
+    ----------
+    linear : whitened residuals and their derivatives at the final state.
+    converged : True if the convergence criterion was met.
+    message : reason if it was not; "" otherwise.
+    """
 
     linear: Linearisation
     converged: bool
@@ -50,11 +57,11 @@ class Fit:
 
     @property
     def jacobian(self) -> Array:
-        """Jacobian of z (m, n + c): columns of u, then of the amplitudes."""
+        """Derivatives of z by u, then by the amplitudes, shape (m, n + c)."""
         return np.column_stack([self.linear.by_u, self.linear.columns])
 
     def covariance(self) -> Array:
-        """Covariance of u and the amplitudes, (n + c, n + c)."""
+        """Covariance of u and the amplitudes, shape (n + c, n + c)."""
         size = np.linalg.norm(self.jacobian, axis=0)
         size[size == 0.0] = 1.0  # columns differ by orders of magnitude: one scale before the rank is judged
         scaled = self.jacobian / size
@@ -78,11 +85,16 @@ def fit(
     max_steps: int = 10,
     tolerance: float = TOLERANCE,
 ) -> Fit:
-    """Minimise the sum of squared residuals over u and the amplitudes of `candidates`, from `start`.
+    """Minimise chi-square z @ z over u and the amplitudes of `candidates`, starting at `start`.
 
-    A step that does not lower chi-square is halved up to five times, then damped. `max_steps` limits the
-    steps that lower it by less than a tenth. The fit has converged if the predicted decrease is below
-    `tolerance`. ValueError if the start has no equilibrium.
+    A step that does not lower chi-square is halved up to 5 times, then replaced by damped steps. The fit has
+    converged if the predicted reduction of a step is below `tolerance`, or if no shortened step lowers
+    chi-square and the predicted reduction is below 20 `TOLERANCE`. Only steps that reduce chi-square by less
+    than a tenth count towards `max_steps`.
+
+    Raises
+    ------
+    ValueError : the simulator has no solution at the start.
     """
     wanted = tuple(candidates)
     state = _inside(model, np.r_[start.u, [start.amplitudes.get(c, 0.0) for c in wanted]], wanted)
@@ -119,7 +131,10 @@ def _step(
     wanted: tuple[Candidate, ...],
     damping: float = 0.0,
 ) -> tuple[Array, float]:
-    """Gauss-Newton step and its predicted decrease of chi-square; coordinates at a bound stay inside."""
+    """Gauss-Newton step, limited to `LONGEST`, and the reduction of chi-square predicted for the full step.
+
+    Parameters at a bound that the step would push beyond it are held, and so are amplitudes of switches.
+    """
     n = len(linear.state.u)
     low, high = _bounds(model, wanted)
     here, gradient = _point(linear.state, wanted), jacobian.T @ linear.z
@@ -142,7 +157,7 @@ def _step(
 
 
 def _least_squares(columns: Array, z: Array, damping: float) -> Array:
-    """Damped least-squares solution for columns (m, n) of unit length and z (m,)."""
+    """Coefficients (n,) of unit-length columns (m, n) fitted to z (m,), with Tikhonov damping if not 0."""
     if damping == 0.0:
         return np.asarray(np.linalg.lstsq(columns, z, rcond=1e-6)[0])
     rows = np.sqrt(damping) * np.eye(columns.shape[1])
@@ -152,14 +167,14 @@ def _least_squares(columns: Array, z: Array, damping: float) -> Array:
 
 
 def _point(state: State, wanted: tuple[Candidate, ...]) -> Array:
-    """Coordinates u, followed by the amplitudes."""
+    """Coordinates u followed by the amplitudes, shape (n + c,)."""
     return np.concatenate([state.u, [state.amplitudes[c] for c in wanted]])
 
 
 def _bounds(model: MeasurementModel, wanted: tuple[Candidate, ...]) -> tuple[Array, Array]:
-    """Bounds of u and the amplitudes, shape (n + c,) each.
+    """Lower and upper bounds of u, then of the amplitudes, shape (n + c,) each.
 
-    The upper bound of a coordinate is reduced by one step, so that a finite difference stays within bounds.
+    Upper bounds of u are reduced by `coordinate_step`, so that a forward difference stays within the bounds.
     """
     own = [model.effects[c.effect].bounds for c in wanted]
     low, high = np.vstack([model.baseline.bounds, np.reshape(own, (-1, 2))]).T
@@ -170,7 +185,10 @@ def _bounds(model: MeasurementModel, wanted: tuple[Candidate, ...]) -> tuple[Arr
 def _damped(
     model: MeasurementModel, linear: Linearisation, jacobian: Array, wanted: tuple[Candidate, ...]
 ) -> State | None:
-    """State after the first damped step that lowers chi-square; None if none does."""
+    """State after the first damped step that lowers chi-square by more than 0.1 `TOLERANCE`.
+
+    None if none does, or if the predicted reduction falls below `TOLERANCE`.
+    """
     now = float(linear.z @ linear.z)
     for damping in DAMPINGS:
         move, promise = _step(model, linear, jacobian, wanted, damping)
@@ -192,7 +210,10 @@ def _moved(
 def _shortened(
     model: MeasurementModel, state: State, move: Array, wanted: tuple[Candidate, ...], below: float
 ) -> State | None:
-    """State after the longest fraction of the move with chi-square below `below`; None if there is none."""
+    """State after the largest of the fractions 1, 1/2, ..., 1/32 of the step with chi-square < `below`.
+
+    None if there is none.
+    """
     for part in 0.5 ** np.arange(6):
         trial = _moved(model, state, move, wanted, part)
         z = model.residuals([trial])[0]
@@ -203,7 +224,7 @@ def _shortened(
 
 
 def _inside(model: MeasurementModel, point: Array, wanted: tuple[Candidate, ...]) -> State:
-    """State of coordinates u and amplitudes, clipped to their bounds."""
+    """State of coordinates u and amplitudes (`_point`), clipped to their bounds."""
     found = np.clip(point, *_bounds(model, wanted))
     n = len(found) - len(wanted)
     return State(u=found[:n], amplitudes=dict(zip(wanted, found[n:].tolist(), strict=True)))

@@ -1,4 +1,4 @@
-"""Cross-validation: improvement of predictions by an extension, on measurements that its fit has not used."""
+"""Cross-validation: improvement of predictions of held-out measurements by an extension of the baseline."""
 
 from __future__ import annotations
 
@@ -33,20 +33,18 @@ class HeldOut:
 
     Attributes
     ----------
-    held_out : name of the set of folds; "" if none keeps the effects identifiable.
-    kept : least fraction of the information on an amplitude in a training set; for a cause without an
-        amplitude, least fraction of the baseline's squared error in a fold that the training set can
-        predict.
-    rms_before, rms_after, rms_noise : rms of the held-out residuals by the baseline and by the extension, and
-        that of the noise [SI].
+    held_out : name of the set of folds; "" if nothing was held out.
+    kept : least fraction of an amplitude's information that a training set keeps. For a switch, which has no
+        estimated amplitude, see `_certain`.
+    rms_before, rms_after : rms of the held-out residuals of the baseline and of the extension [SI].
+    rms_noise : rms of noise alone [SI].
     log_likelihood : improvement of the log-likelihood of the held-out measurements.
     folds : number of folds.
-    note : reason why nothing was held out.
+    note : why nothing was held out, or which folds were not predicted.
     parts : prediction of each fold.
-    amplitudes : amplitudes of the extension, fitted without each fold, shape (folds, c) [SI].
-    acts : True for each fold in which an effect is visible.
-    within : True if single records are divided between folds: errors common to a record are then in the
-        training part too.
+    amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
+    acts : True for each fold in which some effect, at its fitted amplitude, is visible.
+    within : True if folds divide single records, so that errors common to a record are in the training set.
     """
 
     held_out: str
@@ -64,27 +62,27 @@ class HeldOut:
 
     @property
     def skill(self) -> float:
-        """Skill over all folds; NaN if nothing was held out, or if the baseline leaves only noise."""
+        """Skill of all folds together; NaN if nothing was held out or the baseline is within noise."""
         return skill(self.rms_before, self.rms_after, self.rms_noise) if self.held_out else math.nan
 
     @property
     def helps_everywhere(self) -> bool:
-        """True if the extension predicts every fold in which it acts better than the baseline does."""
+        """True if the extension helps (`Prediction.helps`) in every fold in which it acts."""
         return bool(self.parts) and not self.worse
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Folds in which the extension acts without a better prediction.
+        """Names of the folds in which the extension acts but does not help.
 
-        An effect that is visible in no single fold (a law with constants of its own) acts in all.
+        An effect that is visible in no single fold (a law with further constants) counts as acting in all.
         """
         return tuple(p.name for p, own in zip(self.parts, self._acting, strict=True) if own and not p.helps)
 
     def helps_mostly(self, *, least_skill: float, sure: float, draws: int, seed: int) -> bool:
-        """True if two conditions hold at the level `sure`.
+        """True if the extension improves significantly many folds and has enough skill over all folds.
 
-        The number of better predicted parts exceeds chance (sign test), and the skill over all parts is at
-        least `least_skill` when the parts are resampled.
+        The number of improved folds passes a one-sided sign test at the confidence level `sure`, and the
+        quantile 1 - `sure` of the skill over bootstrap replicates of the folds is at least `least_skill`.
         """
         acting = sum(self._acting)
         better = acting - len(self.worse)
@@ -107,9 +105,9 @@ class HeldOut:
 def held_out_improvement(
     model: MeasurementModel, baseline: Fit, chosen: Fit, *, known: Predictions | None = None
 ) -> HeldOut:
-    """Fit baseline and extension to all measurements but one fold and predict that fold, for each fold.
+    """Predict each fold of the set that `_choice` selects, with baseline and extension fitted to all others.
 
-    `_choice` selects the set of folds. `known` caches the baseline's predictions of folds; it is extended.
+    `known` is a cache of the baseline's predictions, to which new ones are added.
     """
     known = {} if known is None else known
     choice = _choice(model, baseline, chosen)
@@ -154,7 +152,7 @@ def held_out_improvement(
 
 
 def _within(model: MeasurementModel, folds: Sequence[Rows]) -> bool:
-    """True if some record is in several folds."""
+    """True if some record has rows in several folds."""
     used = model.noise.used
     return any(
         sum(bool((fold & used & (model.row_record == k)).any()) for fold in folds) > 1
@@ -178,7 +176,15 @@ def _nothing(kept: float, note: str) -> HeldOut:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Choice:
-    """Folds to predict, and the least information on an amplitude in their training sets; empty if none."""
+    """Folds that are predicted.
+
+    Attributes
+    ----------
+    name : name of the set of folds.
+    folds : names and rows of its folds; empty if no set is admissible.
+    kept : least fraction of an amplitude's information that a training set keeps.
+    note : folds of the set that are not predicted, for people.
+    """
 
     name: str = ""
     folds: Sequence[tuple[str, Rows]] = ()
@@ -187,13 +193,13 @@ class _Choice:
 
 
 def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
-    """Select a set of folds, by the first of these rules that applies.
+    """Select the set of folds to predict, by the first of these criteria that a set meets.
 
-    1. The first set whose training sets all keep at least KEPT of the information.
-    2. The set that keeps most, if that is at least FALLBACK.
-    3. The first set with two or more folds in which the effect is visible and whose training sets keep KEPT.
-       The other folds are not predicted, since that would be an extrapolation.
-    4. The first set whose training sets all determine the amplitudes to SEEN standard deviations.
+    1. Every training set keeps at least `KEPT` of the information (first such set).
+    2. Every training set keeps at least `FALLBACK` (the set that keeps most).
+    3. At least two folds in which all effects are visible keep `KEPT`; only these are predicted, since the
+       others would be extrapolations (first such set).
+    4. Every amplitude is at least `SEEN` standard deviations in every training set (first such set).
     """
     sets = []
     for name, folds in model.folds().items():
@@ -229,7 +235,7 @@ def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
 def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], baseline: Fit, chosen: Fit) -> Array:
     """Least fraction of any amplitude's information that remains without each fold, shape (folds,).
 
-    A cause without an amplitude (`switch`) has the fraction of `_certain` instead.
+    The amplitude of a switch is not estimated; the fraction of `_certain` is used for it.
     """
     switches = np.array([model.effects[c.effect].switch for c in chosen.candidates])
     n = len(chosen.state.u)
@@ -246,10 +252,10 @@ def _kept(model: MeasurementModel, folds: Sequence[tuple[str, Rows]], baseline: 
 
 
 def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
-    """Fraction of the baseline's squared error in the rows `left` that the other rows can predict.
+    """Fraction of a fold's misfit that the other rows predict with certainty: 1 - V / S, not below 0.
 
-    It is 1 - (variance of the prediction) / (squared error of the baseline). The variance is multiplied by
-    the reduced chi-square if that is above 1 (Birge's ratio).
+    V is the variance of the fold's prediction from all other rows, times the reduced chi-square of the
+    extension if that exceeds 1 (Birge ratio). S is the baseline's sum of squares in the fold.
     """
     jacobian = chosen.jacobian[:, estimated]
     size = np.linalg.norm(jacobian, axis=0)
@@ -262,13 +268,13 @@ def _certain(baseline: Fit, chosen: Fit, left: Rows, estimated: Rows) -> float:
 
 
 def _visible(model: MeasurementModel, fold: Rows, chosen: Fit) -> Rows:
-    """True for each amplitude (c,) that is visible in a fold alone, with its fitted value."""
+    """True for each amplitude of at least `VISIBLE` standard deviations in this fold alone, shape (c,)."""
     values = np.array([chosen.state.amplitudes[c] for c in chosen.candidates])
     return np.asarray(values**2 * _information(chosen, model.rows(fold)) >= VISIBLE**2)
 
 
 def _information(chosen: Fit, rows: Rows) -> Array:
-    """Inverse variance of each amplitude, from some of the rows."""
+    """Inverse variance of each amplitude from these rows, all other parameters being free, shape (c,)."""
     n = len(chosen.state.u)
     jacobian = chosen.jacobian[rows]
     others, own = jacobian[:, :n], jacobian[:, n:]
@@ -289,8 +295,10 @@ def _information(chosen: Fit, rows: Rows) -> Array:
 class _Fold:
     """A fold predicted from all other measurements.
 
-    `state` is fitted to the others, except for coordinates that only the fold determines. `chi2`, `rms` [SI]
-    and number of `points` refer to the measurements of the fold, without the prior.
+    Attributes
+    ----------
+    state : fitted to the other measurements; coordinates that these do not constrain are fitted to the fold.
+    chi2, rms, points : chi-square, rms residual [SI] and number of the fold's measurements, without prior.
     """
 
     state: State
@@ -312,9 +320,9 @@ def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple
 
 
 def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full: Fit) -> State:
-    """Start of a fit to the others: one Gauss-Newton step from the fit to all, with its Jacobian.
+    """Start for the fit to the other measurements: a first-order step from the fit to all measurements.
 
-    If the step does not lower chi-square, the start is the state of the fit to all.
+    It reuses the Jacobian of that fit, and returns its state if the step does not lower chi-square.
     """
     there = full.state
     jacobian, z = full.jacobian[~model.rows(fold)], full.z[~model.rows(fold)]
@@ -332,11 +340,10 @@ def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full:
 
 
 def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:
-    """Fit the coordinates that only the fold determines (modulus of a material that was left out, release
-    time).
+    """Fit the coordinates that only the fold constrains to it (`unseen`, shape (n,)).
 
-    The other coordinates and the amplitudes stay as trained. If they moved too, they would absorb part of the
-    fold's misfit.
+    Examples are the modulus of a material that was left out, or a release time. All other coordinates and the
+    amplitudes stay as trained: if free, they would absorb misfit that the unseen coordinates explain.
     """
     if not unseen.any():
         return trained

@@ -1,8 +1,9 @@
-"""Model error of a card: error bars that include the remaining misfit.
+"""Error bars of a material card that account for the unexplained misfit.
 
-Standard deviations of a fit hold for noise alone. If a law misfits, its modulus depends on the choice of the
-measurements. The spread over specimens, tests or parts of records shows this dependence; it is at least the
-formal standard deviation times the root of the reduced chi-square (Birge, Phys. Rev. 40, 1932).
+Formal standard deviations of a fit account for noise alone. If a law misfits, its modulus depends on the data
+it is fitted to. The relative standard deviation is therefore taken from the bootstrap over specimens, tests
+or segments of records, with a lower bound: the formal value times the square root of the reduced chi-square
+(Birge ratio; Phys. Rev. 40, 1932).
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ from calibration.measurements._model import MeasurementModel
 
 @dataclass(frozen=True, kw_only=True)
 class ModelError:
-    """The remaining misfit of a fit as an error of its model.
+    """Model error estimated from the unexplained misfit of a fit.
 
     Attributes
     ----------
-    rms : rms of the misfit beyond noise [SI].
-    of_full_scale : the same, relative to the largest value of each record; None if records have none.
-    shear_modulus_relative_sd : relative standard deviation by material, including the model error.
+    rms : root mean square misfit in excess of noise [SI].
+    of_full_scale : the same relative to each record's largest value; None if records have no full scale.
+    shear_modulus_relative_sd : relative standard deviation by material, model error included.
     """
 
     rms: float
@@ -35,7 +36,7 @@ class ModelError:
     shear_modulus_relative_sd: Mapping[str, float]
 
     def to_json(self, unit: tuple[str, float]) -> dict[str, Any]:
-        """Entry of a JSON file; `unit` is the name of the rms unit in files, and its number per SI unit."""
+        """Content for diagnosis.json. unit : of rms residuals in files, and its number per SI unit."""
         return {
             f"rms_{unit[0]}": unit[1] * self.rms,
             "of_full_scale": self.of_full_scale,
@@ -46,7 +47,10 @@ class ModelError:
 def model_error_of(
     model: MeasurementModel, fit: Fit, left: Remainder, shares: Shares, reduced_chi2: float
 ) -> ModelError:
-    """Model error of a fit with the remaining misfit `left` and its reduced chi-square."""
+    """Model error of a fit with unexplained misfit `left` and this chi-square per degree of freedom.
+
+    The bootstrap spread is half the distance between the quantiles 0.159 and 0.841 of ln G.
+    """
     n = len(fit.state.u)
     covariance = fit.covariance()[:n, :n]
     moves = shares.moves(fit)[:, :n]

@@ -1,8 +1,8 @@
-"""Multi-cause search: two or three causes, while the remaining misfit exceeds noise.
+"""Multi-cause search: pairs and triples of causes, as long as further causes improve the fit significantly.
 
-All pairs and triples of candidates are compared to first order, and the best are confirmed in the simulator.
-A triple is named only if all three causes are needed. Sets in which another effect replaces one of the three
-and fits as well are named too.
+All pairs, and all triples, of candidates are compared to first order; the best of them are confirmed in the
+simulator. A triple is accepted only if each of its three causes is significant. Effects that can replace one
+of the three are confirmed as well, so that they can be named as alternatives.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ NOISE = 6.0  # standard deviations of chi-square within which only noise may be 
 
 
 def worth_fitting(baseline: Fit, now: float, promised: float, rules: Rules) -> bool:
-    """True if causes with this predicted improvement of chi-square could be named.
+    """True if causes with this first-order reduction of the chi-square `now` could be named.
 
-    They may leave only noise, or take a further share of at least `Rules.further_share`. Others would not be
-    named, however well they fit.
+    With `ONCE_MORE` times the reduction they must leave no more than noise, or remove the additional fraction
+    of the misfit that one more cause has to (`Rules.further_share`).
     """
     freedom = len(baseline.z) - len(baseline.state.u)
     reach = ONCE_MORE * promised
@@ -63,10 +63,10 @@ def with_second(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Pairs of causes, if a second one beside the best improves chi-square by more than noise would.
+    """Search for pairs of causes if a second cause improves the best explanation significantly.
 
-    `columns` are those of the candidates at the baseline. If they show no improvement, nothing is
-    relinearised.
+    columns : derivatives by the amplitudes at the baseline, shape (m, c). If these indicate no second cause,
+    the model is not linearised again at the best explanation.
     """
     # another position of an effect that has one cannot be added to it: the scene holds one
     placed = {c.effect for c in best.candidates if c.position is not None}
@@ -111,7 +111,7 @@ def _beside(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """The best cause with each of the most promising further effects, confirmed in the simulator."""
+    """Confirm pairs of the best explanation and each of the effects with the largest further improvement."""
     found = []
     for k in _best_of_each(beside, improvement, rules.max_pairs):
         other = beside.candidates[k]
@@ -135,7 +135,7 @@ def hiding_each_other(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Pairs that improve chi-square by more than noise would, although neither cause does so alone."""
+    """Pairs of causes that improve chi-square significantly together although neither does alone."""
     found = _pairs(model, baseline, screened, linear.columns, linear.z, null, rules, on_progress)
     tries = 0.5 * np.count_nonzero(screened.sizes) ** 2
     return [e for e in found if tries * chi2.sf(baseline.chi2 - e.fit.chi2, 2) < rules.false_alarm_rate]
@@ -153,9 +153,9 @@ def _pairs(
     *,
     baseline: Fit | None = None,
 ) -> list[Explanation]:
-    """The most promising pairs for the residuals `target`, confirmed in the simulator.
+    """Confirm the pairs with the largest first-order improvement for the residuals `target`.
 
-    With a `baseline`, only pairs that are worth fitting.
+    If a baseline is given, pairs that could not be named (`worth_fitting`) are skipped.
     """
     found = []
     pairs = best_pairs(screened, target, count=rules.max_pairs)
@@ -172,7 +172,7 @@ def _pairs(
 
 
 def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[float], float]:
-    """Amplitudes of columns (m, k) for residuals (m,), and the remaining sum of squares, to first order."""
+    """Least-squares amplitudes of columns (m, k) for residuals (m,), and the sum of squares that remains."""
     left = columns - screened.free @ (screened.free.T @ columns)
     there = target - screened.free @ (screened.free.T @ target)
     guess = -np.linalg.lstsq(left, target, rcond=None)[0]
@@ -180,9 +180,9 @@ def _linear_fit(screened: Screen, columns: Array, target: Array) -> tuple[list[f
 
 
 def inside_bounds(model: MeasurementModel, found: Explanation) -> bool:
-    """True if no amplitude is at a bound, except at a physical limit.
+    """True if no amplitude is at a bound, physical limits excepted.
 
-    An amplitude of zero is no cause; one at another bound is not plausible.
+    A cause with amplitude 0 is absent; one at another bound is implausible.
     """
     return not any(
         x in effect.bounds and x not in effect.physical_limits
@@ -198,11 +198,11 @@ def with_third(
     rules: Rules,
     on_progress: OnMessage,
 ) -> list[Explanation]:
-    """Sets of three causes, all of which are needed.
+    """Search for sets of three significant causes.
 
-    A third cause is added to the best pairs if it improves chi-square by more than noise would, and the most
-    promising other triples are tried. Then each of the three is replaced by others, so that no equivalent
-    explanation is missed.
+    A third cause is added to the best pairs if it improves chi-square significantly, and triples compared to
+    first order are confirmed. Then each cause of the best triple is replaced by others, so that equivalent
+    explanations are found.
     """
     threes = _Triples(model, baseline, null, rules, on_progress)
     beside: list[Names] = []
@@ -218,7 +218,7 @@ def with_third(
 
 
 class _Triples:
-    """Search of triples; `found` holds the sets of which all three causes are needed."""
+    """Search for three causes; `found` are the explanations in which each of the three is significant."""
 
     def __init__(
         self, model: MeasurementModel, baseline: Fit, null: Null, rules: Rules, on_progress: OnMessage
@@ -229,7 +229,7 @@ class _Triples:
         self._tried: set[frozenset[Candidate]] = set()
 
     def add_to(self, pair: Explanation) -> None:
-        """Add a third cause to a pair, if one improves chi-square by more than noise would."""
+        """Confirm triples near a pair, if a third cause improves chi-square significantly."""
         self.on_progress(f"looking for a third cause beside {pair.fit.label}")
         linear = self._linear(pair)
         beside = screen(linear, self.model.effects, held=pair.fit)
@@ -255,7 +255,10 @@ class _Triples:
                 self._confirm(pair, {linear.candidates[k]: g for k, g in zip(three, guess, strict=True)})
 
     def replace_in(self, three: Explanation) -> bool:
-        """Replace each of three causes by others, or itself in another scope; True if the score improves."""
+        """Confirm triples with one cause replaced by another effect, position or scope.
+
+        Returns True if one of them has a better score than `three`.
+        """
         self.on_progress(f"looking for equivalents of {three.fit.label}")
         count, best = len(three.candidates), three.score
         linear = self._linear(three)
@@ -283,7 +286,7 @@ class _Triples:
         return min(e.score for e in self.found) < best
 
     def _linear(self, held: Explanation) -> Linearisation:
-        """Linearisation with the columns of its causes, followed by all others."""
+        """Linearisation at an explanation: columns of its causes, then of all other candidates."""
         others = tuple(c for c in self.model.candidates if c not in held.candidates)
         return self.model.linearise(held.fit.state, (*held.candidates, *others))
 
@@ -297,19 +300,19 @@ class _Triples:
             self.found.append(three)
 
     def _all_needed(self, three: Explanation) -> bool:
-        """True if the fit would be worse by more than noise without any one of the causes."""
+        """True if each amplitude is significant at the level `Rules.extra_cause_rate` (Wald test)."""
         least = chi2.isf(self.rules.extra_cause_rate, 1)
         parts = [three.fit.amplitude(c) for c in three.candidates]
         return all(value**2 >= least * sd**2 for value, sd in parts)
 
 
 def _values(found: Explanation) -> Array:
-    """Amplitudes of the causes, in their order."""
+    """Amplitudes of an explanation, in the order of its candidates, shape (c,)."""
     return np.array([found.fit.state.amplitudes[c] for c in found.candidates])
 
 
 def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
-    """Indices of the candidates with the largest predicted improvement, one per effect."""
+    """Indices of the candidates with the largest positive promise, one for each of up to `count` effects."""
     found: dict[str, int] = {}
     for k in np.argsort(-promises):
         if promises[k] > 0.0 and len(found) < count:
@@ -318,9 +321,9 @@ def _best_of_each(screened: Screen, promises: Array, count: int) -> list[int]:
 
 
 def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int]]:
-    """Pairs of candidates, by index, with the largest predicted improvement of chi-square.
+    """Pairs of candidates (by index) with the largest penalised improvement of chi-square, best first.
 
-    The effects of a pair differ; each pair of names occurs once, with its best candidates; best first.
+    The two candidates are of different effects; of each pair of effects the best pair of candidates is taken.
     """
     score = screened.directions.T @ z
     cosine = screened.directions.T @ screened.directions
@@ -349,9 +352,9 @@ def best_pairs(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int
 
 
 def best_triples(screened: Screen, z: Array, *, count: int) -> list[tuple[int, int, int]]:
-    """Triples of candidates, by index, as in `best_pairs`.
+    """Triples of candidates (by index) with the largest penalised improvement of chi-square, best first.
 
-    All are compared: the first is projected out, and the other two are treated as a pair.
+    As `best_pairs`; all triples are compared, with the first candidate projected out of the other two.
     """
     used = np.flatnonzero(screened.sizes > 0.0)
     directions = screened.directions[:, used]

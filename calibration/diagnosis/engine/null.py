@@ -1,4 +1,4 @@
-"""Null distributions for a design, by parametric bootstrap of whitened noise."""
+"""Null distributions of test statistics for a design, by parametric bootstrap of whitened noise."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ ROUNDING = 1e-7  # relative length of a column, without the fitted part, that is
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LackOfFit:
-    """Test of residuals against noise.
+    """Result of the lack-of-fit test.
 
     Attributes
     ----------
     p_value : p-value of all tests together.
-    each : p-value of each test, by name.
+    each : p-value of each test by its name.
     worst : name of the test with the smallest p-value.
     """
 
@@ -47,12 +47,13 @@ class Null:
     Parameters
     ----------
     size : number m of residuals.
-    basis : discrepancy basis, sets of columns (m, k) by name (`MeasurementModel.discrepancy_basis`).
+    basis : discrepancy basis: sets of columns (m, k) by name (`MeasurementModel.discrepancy_basis`).
 
     Attributes
     ----------
-    explained : cache of fits to these residuals, by set of causes (`explain`). A second round, and the
-        shares of single causes, need many of them again.
+    noise : standard normal draws, shape (DRAWS, m).
+    explained : cache of converged fits to these residuals by their sets of causes (`explain`). A second round
+        and the explained fractions of single causes need many of them again.
     """
 
     def __init__(self, size: int, basis: Mapping[str, Array], *, seed: int = 0) -> None:
@@ -64,11 +65,11 @@ class Null:
     def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).
 
-        The tests are the sum of squares of all residuals, and that in each set of the basis. Their smallest
-        p-value is compared with its own distribution, which accounts for the number of tests and their
-        correlation. If it is below the range of the draws, it is multiplied by the number of tests (each sum
-        of squares has a chi-square distribution). Differences between the moduli of specimens are a set of
-        their own, and projected out of the others.
+        The statistics are the sum of squares of z and that of its projection onto each set of the basis. The
+        smallest p-value is referred to its own null distribution, which accounts for the number of tests and
+        their correlation. If it is below the resolution of the draws, the chi-square distribution with a
+        Bonferroni correction is used instead. Differences between the moduli of specimens are a set of their
+        own and are projected out of all others.
         """
         free = basis_of(jacobian)
         scatter = self.basis.get(SPECIMENS)
@@ -103,7 +104,7 @@ class Null:
         return LackOfFit(p_value=float(min(1.0, p)), each=each, worst=worst)
 
     def max_improvement(self, screened: Screen) -> MaxImprovement:
-        """Null distribution of the best penalised improvement of chi-square (`Screen.penalised`)."""
+        """Null distribution of the largest penalised improvement over all candidates (`Screen.penalised`)."""
         best = np.zeros(DRAWS)
         for part in np.array_split(np.arange(DRAWS), 8):  # in parts, to limit memory
             best[part] = screened.penalised(self.noise[part]).max(axis=1, initial=0.0)
@@ -112,15 +113,20 @@ class Null:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MaxImprovement:
-    """Sorted draws of the best candidate's penalised improvement of chi-square by noise alone."""
+    """Null distribution of the largest penalised improvement of chi-square.
+
+    Attributes
+    ----------
+    drawn : sorted draws, shape (DRAWS,).
+    """
 
     drawn: Array
 
     def p_value(self, improvement: float) -> float:
-        """Probability that noise alone gives the best of all candidates this improvement.
+        """Probability that noise alone gives the best of all candidates at least this improvement.
 
-        Beyond the range of the draws, the tail is that of the maximum of independent squared normals, whose
-        number matches the 1 % quantile of the draws.
+        If fewer than about 20 draws exceed it, the tail is that of the maximum of k independent chi-square
+        variables with one degree of freedom, where k matches the upper 1 % quantile of the draws.
         """
         counted = (len(self.drawn) - np.searchsorted(self.drawn, improvement) + 1) / (len(self.drawn) + 1)
         if counted > 20.0 / len(self.drawn):
@@ -129,11 +135,11 @@ class MaxImprovement:
         return float(min(20.0 / len(self.drawn), tries * chi2.sf(improvement, 1)))
 
     def threshold(self, p_value: float) -> float:
-        """Improvement that noise alone exceeds with this probability."""
+        """Improvement that noise alone exceeds with probability `p_value`."""
         return float(np.quantile(self.drawn, 1.0 - p_value))
 
 
 def _exceeding(values: Array, order: Array) -> Array:
-    """Fraction of the sorted draws that reach each value, at least 1 / (number + 1)."""
+    """Fraction of the sorted draws that are at least each value: (count + 1) / (draws + 1), never 0."""
     above = len(order) - np.searchsorted(order, values, side="left")
     return np.asarray((above + 1) / (len(order) + 1))

@@ -1,16 +1,16 @@
-"""Verdicts if every explanation leaves more than noise: partly explained, or unexplained.
+"""Partial explanations: causes that may be named although every explanation leaves more than noise.
 
-Real experiments rarely pass a test for "only noise is left". The smallest set of causes that takes most of
-the explainable misfit is then named, if
+Real measurements rarely pass a test that only noise is left. The smallest set of causes that removes most of
+the explainable misfit is then named if
 
-1. its share is at least two fifths, and at least a tenth in 95 % of the replicates over specimens, tests or
-   parts of records;
-2. it predicts every part of the measurements that its fit has not used better than the baseline does (of
-   many parts more than chance would), and all of them together with a skill of at least two fifths;
-3. its amplitudes do not depend on the part that is left out, and are inside their bounds;
-4. no other set of as many causes takes as much in the replicates; otherwise all of these sets are named.
+1. it removes at least two fifths of the misfit, and at least a tenth in 95 % of the bootstrap replicates over
+   specimens, tests or segments of records;
+2. it predicts every held-out fold better than the baseline does, or significantly many of them, and its
+   held-out skill over all folds is at least two fifths;
+3. its amplitudes do not depend on the fold that is left out, and are not at a bound, physical limits aside.
 
-`rules.py` has the levels.
+Other sets of as many causes or fewer that remove about as much misfit are named as alternatives. Thresholds
+are in `rules.py`.
 """
 
 from __future__ import annotations
@@ -36,16 +36,17 @@ EACH = 2  # sets of each number of causes that are tried
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Assessed:
-    """An explanation with its share, held-out improvement, and the reasons against naming it.
+    """An explanation assessed as a partial explanation.
 
     Attributes
     ----------
-    share : fraction of the explainable misfit.
-    at_least : lower bound of the share, at `Rules.replicate_level`.
-    alternatives : other sets of names that take as much, with their shares.
-    held_out : held-out improvement; None if it was not measured.
-    against : reasons why it is not named, as clauses; empty if it may be named.
-    confidence : fraction of the replicates in which no other set of as many causes takes more.
+    share : fraction of the explainable misfit that it removes.
+    at_least : fraction that it removes in at least `Rules.replicate_level` of the replicates; -inf with a
+        single group.
+    alternatives : other sets of effects that remove about as much, with their fractions.
+    held_out : held-out scores; None if not computed.
+    against : reasons why it is not named, a clause each; () if it may be named.
+    confidence : fraction of the replicates in which no other set of as many causes removes more.
     """
 
     explanation: Explanation
@@ -67,11 +68,18 @@ def assess(
     *,
     on_progress: OnMessage = lambda _: None,
 ) -> Assessed | None:
-    """Find the explanation that may be named, or else the one that comes nearest, with the reasons `against`
-    it.
+    """Find an explanation that may be named as a partial explanation.
 
-    `explanations` are those confirmed in the simulator by a search whose verdict is "unexplained". None if
-    there are none.
+    Parameters
+    ----------
+    baseline : fit of the baseline.
+    explanations : those confirmed in the simulator by a search with the verdict "unexplained".
+    shares : bootstrap of the explained fractions.
+
+    Returns
+    -------
+    The first explanation that may be named among the `Rules.tries` that are tried. If there is none, the one
+    that was tried first, with reasons in `against`. None if there are no explanations or no misfit.
     """
     if not explanations or not shares.baseline.value > 0.0:
         return None
@@ -92,13 +100,16 @@ def assess(
 
 
 def within_smooth_error(model: MeasurementModel, baseline: Fit, noise: NoiseKnown, rules: Rules) -> bool:
-    """True if the baseline's misfit may be a smooth unstated error; False if the noise is known."""
+    """True if the baseline's misfit is within an unstated smooth error (`Rules.smooth_error_fraction`).
+
+    False if the noise is known or records have no full scale.
+    """
     part = None if noise.known else relative_rms(model, baseline)
     return part is not None and part < rules.smooth_error_fraction
 
 
 def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tuple[Explanation, Misfit]]:
-    """The best `EACH` sets of names for each number of causes, by remaining misfit."""
+    """For each number of causes the `EACH` sets of effects that remove most, ordered by what they leave."""
     best: dict[int, list[Names]] = {}
     kept = []
     for e, m in sorted(found, key=lambda pair: pair[1].value):
@@ -110,10 +121,11 @@ def _best_of_each_number(found: Sequence[tuple[Explanation, Misfit]]) -> list[tu
 
 
 def _dominant(left: Sequence[tuple[Explanation, Misfit]], shares: Shares, rules: Rules) -> int:
-    """Index of the next set to try: the best of the smallest number of causes to which one more adds little.
+    """Index of the explanation to try next.
 
-    It is called again without rejected sets, since the share of a rejected set of few causes is no reason
-    against a larger set.
+    It is the best one with the smallest number of causes to which further causes each add less than
+    `Rules.further_share`. It is determined again after a rejection, without the rejected explanation, which
+    is no argument against a set of more causes.
     """
     best: dict[int, int] = {}
     for k, (e, _) in enumerate(left):

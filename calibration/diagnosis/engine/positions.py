@@ -1,8 +1,8 @@
-"""Position of a cause along the specimen, refined between the screened positions.
+"""Optimisation of the position of a cause along the specimen, between the screened positions.
 
-An effect with a position (a void) is screened at a few positions, on which its signature depends: a large
-effect fitted at a distance of 3 mm leaves a hundred of chi-square, which no other effect explains. The
-position of a cause that explains much is therefore optimised, by parabolas through three fits.
+An effect with a position (a void) is screened at a few positions. Its signature depends on the position: a
+large void fitted 3 mm away from its position leaves a chi-square of about 100 that nothing else explains. The
+position of a significant cause is therefore optimised by parabolic interpolation of chi-square.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ ENDS = (0.02, 0.98)
 
 
 def at_best_position(model: MeasurementModel, explanation: Explanation, null: Null) -> Explanation:
-    """The explanation with its causes at the positions of least chi-square, if they have a position."""
+    """Minimise chi-square over the causes' positions, one cause after the other, in two step sizes.
+
+    Returns the explanation itself if no cause has a position.
+    """
     found = explanation
     for number, cause in enumerate(explanation.candidates):
         if cause.position is None:
@@ -36,7 +39,7 @@ def at_best_position(model: MeasurementModel, explanation: Explanation, null: Nu
 def _improved(
     model: MeasurementModel, found: Explanation, number: int, step: float, null: Null
 ) -> Explanation:
-    """Best of the position, one step to either side, and the vertex of the parabola through these."""
+    """The best of four positions: the current one, one step to each side, and the vertex of the parabola."""
     here = found.candidates[number].position
     assert here is not None
     tried = {here: found}

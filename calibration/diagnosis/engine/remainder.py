@@ -1,8 +1,8 @@
-"""Remaining misfit of an explanation: its size, its location, and whether it repeats.
+"""Unexplained misfit of a fit: its size, its location along the records, and its repeatability.
 
-A remainder that repeats only within a specimen is a fault of that specimen. One that repeats in all
-specimens belongs to the form of the model or to the rig. One that does not repeat is noise (as in gauge
-repeatability studies).
+Misfit that repeats only within a specimen is attributed to that specimen; misfit that repeats in all
+specimens to the form of the model or to the rig; misfit that does not repeat is noise (as in gauge
+repeatability and reproducibility studies).
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ MOST = 0.5  # fraction of the sum of squares in a third of the range, or in few 
 
 @dataclass(frozen=True, kw_only=True)
 class Remainder:
-    """Remaining misfit beyond noise.
+    """Unexplained misfit in excess of noise.
 
     Attributes
     ----------
-    rms : rms beyond the noise [SI]; 0 if there is none.
-    of_full_scale : the same, relative to each record's largest value; None if records have no scale.
-    repeats : level at which it repeats.
-    cosines : mean cosine between records, by level; levels without two records are left out.
-    records : names of the records with most of it, if these are few.
-    place : quantity and range in which most of it lies; "" if that is not known.
-    negligible : True if it is below `Rules.negligible_fraction`.
+    rms : root mean square in excess of noise [SI]; 0 if there is none.
+    of_full_scale : the same relative to each record's largest value; None if records have no full scale.
+    repeats : widest level at which the residuals repeat.
+    cosines : mean cosine between the residuals of two records, by level; levels without a pair are absent.
+    records : names of the records that contain most of it; () if these are not a minority of the records.
+    place : quantity and range along the records that contain most of it; "" if not known.
+    negligible : True if `of_full_scale` is below `Rules.negligible_fraction`.
     """
 
     rms: float
@@ -52,9 +52,15 @@ class Remainder:
 
 
 def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Remainder:
-    """Remaining misfit of a fit; `negligible` is a fraction of full scale.
+    """Unexplained misfit of a fit.
 
-    ValueError if the state of the fit has no equilibrium.
+    Parameters
+    ----------
+    negligible : fraction of full scale below which the misfit is negligible in practice.
+
+    Raises
+    ------
+    ValueError : the simulator has no solution at the fitted state.
     """
     left = [np.asarray(x) for x in model.registered(fit.state)]
     rms = beyond(model.distance_rms(fit.state), model.noise_rms())
@@ -76,7 +82,7 @@ def remainder_of(model: MeasurementModel, fit: Fit, *, negligible: float) -> Rem
 
 
 def about_remainder(left: Remainder) -> str:
-    """Sentence on what to measure next; "" if the remainder is negligible."""
+    """Recommended next measurement to clarify the unexplained misfit; "" if it is zero or negligible."""
     if left.rms == 0.0 or left.negligible:
         return ""
     return {
@@ -95,12 +101,15 @@ def about_remainder(left: Remainder) -> str:
 
 
 def beyond(rms: float, noise: float) -> float:
-    """Part of an rms beyond the noise, (rms^2 - noise^2)^(1/2); 0 if noise is larger."""
+    """Root mean square in excess of noise: sqrt(max(rms^2 - noise^2, 0))."""
     return float(np.sqrt(max(rms**2 - noise**2, 0.0)))
 
 
 def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
-    """Rms beyond the noise, relative to each record's largest value; None if records have no scale."""
+    """Root mean square in excess of noise, each record relative to its largest value.
+
+    None if records have no full scale.
+    """
     scale = model.full_scale()
     if scale is None:
         return None
@@ -116,7 +125,7 @@ def relative_rms(model: MeasurementModel, fit: Fit) -> float | None:
 
 
 def _binned(values: Array) -> Array | None:
-    """Means in `BINS` equal parts of a record; None if it has too few points."""
+    """Means of the finite residuals in `BINS` equal parts of a record; None if there are too few of them."""
     own = values[np.isfinite(values)]
     if own.size < BINS:
         return None
@@ -124,7 +133,7 @@ def _binned(values: Array) -> Array | None:
 
 
 def _cosines(records: Sequence[Any], left: Sequence[Array]) -> dict[str, float]:
-    """Mean cosine between the remainders of two records of one kind of test, by level."""
+    """Mean cosine between the residuals of two records of the same test mode, by level (`_level`)."""
     found: dict[str, list[float]] = {}
     curves = [_binned(x) for x in left]
     for a, b in combinations(range(len(records)), 2):
@@ -160,7 +169,7 @@ def _repeats(cosines: dict[str, float], model: MeasurementModel) -> Repeats:
 
 
 def _holders(records: Sequence[Any], squares: Array) -> tuple[str, ...]:
-    """Smallest set of records with MOST of the sum of squares, if it is less than half of all."""
+    """Names of the fewest records with `MOST` of the sum of squares; () if they are over half of all."""
     total = float(squares.sum())
     if not total > 0.0 or len(records) < 2:
         return ()
@@ -170,7 +179,7 @@ def _holders(records: Sequence[Any], squares: Array) -> tuple[str, ...]:
 
 
 def _place(model: MeasurementModel, left: Sequence[Array]) -> str:
-    """The third of the range of a driven quantity with at least MOST of the sum of squares, as text."""
+    """The third of the range of the driven quantity that contains at least `MOST` of the sum of squares."""
     along = [model.along(k) for k in range(len(model.records))]
     pairs = [(a, x) for a, x in zip(along, left, strict=True) if a is not None]
     if not pairs:

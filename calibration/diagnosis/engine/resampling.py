@@ -1,8 +1,8 @@
-"""The spread of a fit over specimens, tests or stretches of a record: bootstrap by groups, never over points.
+"""Cluster bootstrap of a fit over specimens, tests or segments of records, never over single points.
 
-What a model lacks is the same for all points of a record, so that points are no independent witnesses of it;
-groups of them are resampled as they are (cluster bootstrap). Each replicate is fitted to first order around
-the fit, from sums over the groups, which costs no simulation.
+Errors of a model are correlated between the points of a record, so the points are not independent; whole
+groups of them are resampled (cluster bootstrap). Each replicate is fitted to first order around the fit, from
+sums over the groups, without any simulation.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ RIDGE = 1e-9  # of a coordinate's own information, so that one that no drawn gro
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Groups:
-    """What is resampled.
+    """Groups of residuals that are resampled together.
 
     Attributes
     ----------
-    over : in words.
-    of_row : the group of each row of residuals, shape (m,); -1 for rows of the prior, which always count.
-    names : of the groups.
+    over : what the groups are, for people ("specimens", "tests", "fifths of each record").
+    of_row : group of each row of residuals, shape (m,); -1 for rows of the prior, which are never dropped.
+    names : names of the groups.
     """
 
     over: str
@@ -43,7 +43,10 @@ class Groups:
         return len(self.names)
 
     def draws(self, count: int, seed: int) -> Array:
-        """How often each group is drawn, shape (count, groups); those of one group only are left out."""
+        """Multiplicity of each group in each replicate, shape (b, groups), b <= count.
+
+        Replicates of one single group are dropped, unless there is one group only.
+        """
         drawn = np.random.default_rng(seed).multinomial(
             self.count, np.full(self.count, 1.0 / self.count), size=count
         )
@@ -52,7 +55,10 @@ class Groups:
 
 
 def groups_of(model: MeasurementModel) -> Groups:
-    """Specimens, or tests where these are few; stretches of the records (fifths) where tests are few too."""
+    """Specimens if there are `ENOUGH` of them, else tests if there are `ENOUGH`, else fifths of each record.
+
+    Tests, whatever their number, if errors are correlated from row to row.
+    """
     record = model.row_record[model.noise.used]
     prior = np.full(len(model.baseline.prior), -1)
     tests = [test_of(r) for r in model.records]
@@ -78,7 +84,7 @@ def groups_of(model: MeasurementModel) -> Groups:
 
 
 def test_of(record: object) -> str:
-    """The test that a record is of."""
+    """Label of the test that a record belongs to; the record's name if it has no label."""
     groups = getattr(record, "groups", {})
     return str(groups.get("trial", getattr(record, "name", "")))
 
@@ -89,9 +95,9 @@ class Replicates:
 
     Attributes
     ----------
-    chi2 : of each, shape (b,).
-    expected : what noise of unit variance would leave of it, shape (b,).
-    moves : of the coordinates and amplitudes, shape (b, n).
+    chi2 : chi-square of each replicate, shape (b,).
+    expected : its expectation under noise of unit variance, shape (b,).
+    moves : change of the coordinates and amplitudes from the fit, shape (b, n).
     """
 
     chi2: Array
@@ -100,7 +106,7 @@ class Replicates:
 
 
 class Resampled:
-    """A fit, ready to be repeated on resampled groups. expected: chi-square that noise alone would leave."""
+    """A fit that can be repeated, to first order, on resampled groups."""
 
     def __init__(self, fit: Fit, groups: Groups) -> None:
         self._z, self._jacobian, self._of_row = fit.z, fit.jacobian, groups.of_row
@@ -108,7 +114,7 @@ class Resampled:
 
     @cached_property
     def _sums(self) -> tuple[Array, Array, Array, Array]:
-        """Of each group, the prior last: J^T J, J^T z, z^T z, number of rows."""
+        """J^T J, J^T z, z^T z and number of rows of each group, the prior last."""
         places = [self._of_row == g for g in (*range(self._count), -1)]
         grams = np.array([self._jacobian[p].T @ self._jacobian[p] for p in places])
         slopes = np.array([self._jacobian[p].T @ self._z[p] for p in places])
@@ -116,11 +122,11 @@ class Resampled:
         return grams, slopes, squares, np.array([float(np.count_nonzero(p)) for p in places])
 
     def replicates(self, drawn: Array) -> Replicates:
-        """drawn : how often each group counts, shape (b, groups).
+        """Fit each replicate; `drawn` is the multiplicity of each group, shape (b, groups).
 
-        Coordinates that one group alone tells of (its modulus, its deviation) are eliminated in each group,
-        once for each number of times that it is drawn: what is solved in each replicate is as small as what
-        the groups share.
+        Coordinates that one group alone constrains (its modulus, its deviation) are eliminated in that group,
+        once for each multiplicity that occurs. The system solved for each replicate contains the shared
+        coordinates only.
         """
         grams, slopes, squares, rows = self._sums
         n = grams.shape[1]
@@ -161,8 +167,10 @@ class Resampled:
 
 
 def _owners(grams: Array) -> NDArray[np.intp]:
-    """The only group that tells of each coordinate, shape (n,); -1 where several do, or where the prior (the
-    last of the grams) couples it to others."""
+    """Index of the only group that constrains each coordinate, shape (n,).
+
+    -1 if none or several do, or if the prior (the last of the Gram matrices) couples it to other coordinates.
+    """
     involved = np.einsum("gii->gi", grams[:-1]) > 0.0
     coupled = np.count_nonzero(grams[-1] - np.diag(np.diag(grams[-1])), axis=0) > 0
     return np.where((involved.sum(axis=0) == 1) & ~coupled, involved.argmax(axis=0), -1)
@@ -170,14 +178,19 @@ def _owners(grams: Array) -> NDArray[np.intp]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Eliminated:
-    """A group drawn some times, without its own coordinates.
+    """Contribution of a group, drawn w times, to the shared system after its own coordinates are eliminated.
+
+    The s shared coordinates remain; l own coordinates are eliminated. The normal matrix weights rows by w,
+    the expected chi-square by w^2.
 
     Attributes
     ----------
-    whole, slope : what is left of J^T J (s, s) and of J^T z (s,) for the shared coordinates.
-    twice : the same of the squared weights' J^T J, (s, s). taken : what the own ones take of it.
-    chi2 : that the own coordinates take.
-    alone, beside : minus their moves (l,) where the shared stay, and by each of these (l, s).
+    whole, slope : Schur complements of w J^T J, shape (s, s), and of w J^T z, shape (s,).
+    twice : the corresponding matrix of w^2 J^T J, shape (s, s).
+    taken : expected chi-square that the own coordinates absorb (trace).
+    chi2 : reduction of chi-square by the own coordinates alone.
+    alone : minus the change of the own coordinates at fixed shared ones, shape (l,).
+    beside : minus its derivatives by the shared coordinates, shape (l, s).
     """
 
     whole: Array
@@ -198,7 +211,7 @@ def _eliminated(
     shared: NDArray[np.intp],
     times: float,
 ) -> _Eliminated:
-    """Block elimination of a group's own coordinates, the prior's part of them included."""
+    """Eliminate a group's own coordinates by blocks, including the prior's contribution to them."""
     ll, ls, ss = np.ix_(own, own), np.ix_(own, shared), np.ix_(shared, shared)
     inner = np.linalg.inv(times * gram[ll] + prior[ll] + RIDGE * np.eye(own.size))
     across = times * gram[ls]

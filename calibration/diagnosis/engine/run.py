@@ -1,4 +1,4 @@
-"""A diagnosis from beginning to end: search, refine what was found, predict held-out data, advise."""
+"""A complete diagnosis: search, refinement of the explanation, held-out predictions, advice."""
 
 from __future__ import annotations
 
@@ -31,11 +31,15 @@ SMALL = "the misfit is so small that it may be a smooth unstated error"
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Searched:
-    """A search that is not concluded yet: neither predictions nor advice, which cost more than it did.
+    """A completed search before `concluded`, without held-out predictions and advice, which are costlier.
 
     Attributes
     ----------
-    noise : what is known of it. begun : on the monotonic clock [s].
+    model : measurements with effects that were searched.
+    finding : result of the search.
+    noise : what is known about the noise.
+    rules : significance levels and limits that were used.
+    begun : start of the search on the monotonic clock [s].
     """
 
     model: MeasurementModel
@@ -53,19 +57,19 @@ def diagnose(
     noise: Source = "stated",
     on_progress: OnMessage = lambda _: None,
 ) -> Diagnosis:
-    """Search for what the baseline lacks, and reach a verdict.
+    """Search for the effects that the baseline lacks, and reach a verdict.
 
     Parameters
     ----------
     model : measurements of one kind, with effects.
-    rules : of the search.
-    gain : predict held-out data too. An explanation that leaves more than noise is always tried on them.
-    noise : "stated" or "data": what it is taken from where the data contradict what the lab states.
+    rules : significance levels and limits; None for the defaults.
+    gain : predict held-out data as well. Explanations that leave more than noise are always tested on them.
+    noise : source of the noise level if the data contradict the stated one: "stated" or "data".
     on_progress : called with a sentence at each step.
 
     Raises
     ------
-    ValueError : the baseline has no answer anywhere.
+    ValueError : the baseline has no solution anywhere.
     """
     found = searched(model, rules=rules, noise=noise, on_progress=on_progress)
     return concluded(found, gain=gain, on_progress=on_progress)
@@ -79,7 +83,11 @@ def searched(
     before: Searched | None = None,
     on_progress: OnMessage = lambda _: None,
 ) -> Searched:
-    """The first part of `diagnose`. before : see `search`."""
+    """First stage of `diagnose`: noise and search.
+
+    before : search of the same measurements with a smaller catalogue, whose converged fits are reused. A
+    misfit within an unstated smooth error (`within_smooth_error`) is not attributed to any cause.
+    """
     begun = time.monotonic()
     rules = rules or Rules()
     known = model.with_noise_of_data() if noise == "data" else model.noise_known()
@@ -95,7 +103,7 @@ def searched(
 
 
 def concluded(found: Searched, *, gain: bool = True, on_progress: OnMessage = lambda _: None) -> Diagnosis:
-    """The second part of `diagnose`."""
+    """Second stage of `diagnose`: partial explanations, refinement, held-out predictions and advice."""
     model, finding, known, rules = found.model, found.finding, found.noise, found.rules
     baseline = finding.baseline
     before = _numbers(model, baseline, finding.lack_of_fit.p_value)
@@ -171,7 +179,7 @@ def _shares(model: MeasurementModel, baseline: Fit, rules: Rules, noise: NoiseKn
 def _in_degrees(
     model: MeasurementModel, finding: Finding, noise: NoiseKnown, rules: Rules, on_progress: OnMessage
 ) -> tuple[Finding, Assessed | None]:
-    """The finding with what explains it in part, where that may be named; and what comes nearest."""
+    """The finding, "partly explained" if that applies, and the assessed explanation (`partly.assess`)."""
     shares = _shares(model, finding.baseline, rules, noise)
     nearest = assess(
         model,
@@ -195,8 +203,11 @@ def _in_degrees(
 
 
 def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[Explanation, Fit, Null]:
-    """The chosen explanation and the baseline, fitted with nuisances and discretisation errors taken where
-    the explanation is; they compare with each other only, not with what the search found."""
+    """Refit the chosen explanation and the baseline with nuisances estimated at the explanation.
+
+    The two fits are comparable with each other but not with those of the search, whose nuisances and
+    discretisation errors differ.
+    """
     chosen = finding.chosen
     assert chosen is not None
     again, null = chosen, finding.null
@@ -273,7 +284,7 @@ def _notes(
 
 
 def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]:
-    """Causes at a physical limit."""
+    """Sentences on causes whose amplitude is at a physical limit."""
     found = []
     for c, a in chosen.fit.state.amplitudes.items() if chosen is not None else ():
         effect = model.effects[c.effect]
@@ -283,7 +294,7 @@ def _at_limits(model: MeasurementModel, chosen: Explanation | None) -> list[str]
 
 
 def _other_scopes(model: MeasurementModel, finding: Finding, rules: Rules) -> list[str]:
-    """Equivalent scopes and positions of the same causes, with their amplitudes and moduli."""
+    """Sentences on equivalent scopes and positions of the same causes, with their amplitudes and moduli."""
     chosen = finding.chosen
     found: list[str] = []
     for e in finding.explanations[1:] if chosen is not None else ():

@@ -1,4 +1,4 @@
-"""Screening: what each candidate would explain to first order, with all that is free projected out."""
+"""Screening: first-order improvement by each candidate, with all free coordinates projected out."""
 
 from __future__ import annotations
 
@@ -14,21 +14,23 @@ from calibration.measurements._state import Linearisation
 
 Array = NDArray[np.float64]
 
-# Fraction of a column's length that must be left after projection. Finite differences of two exact aliases
-# (weight and stiffness) leave less; an effect seen by so little would need hundreds of sigmas anyway.
+# Fraction of a column's length that must remain after projection. Finite differences of two exact aliases
+# (weight and stiffness) leave less; an effect that is so nearly aliased would need hundreds of sigmas anyway.
 ALIAS_TOLERANCE = 5e-3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Screen:
-    """Candidates' columns with u, and the effects that a fit has already, projected out.
+    """Candidates' columns, with u and the effects of a given fit projected out.
 
     Attributes
     ----------
-    directions : projected columns of unit length, shape (m, c); zero where the data cannot see the candidate.
-    sizes : lengths of the projected columns, shape (c,): an amplitude of 1/size is one standard deviation.
-    upwards : amplitudes that may only be positive, shape (c,).
-    free : orthonormal basis of what was projected out, shape (m, n).
+    candidates : candidates of the columns.
+    directions : projected columns normalised to unit length, shape (m, c); zero for undetectable candidates.
+    sizes : lengths of the projected columns, shape (c,), 0 for undetectable candidates. One standard
+        deviation of an amplitude is 1/size.
+    upwards : True for amplitudes that may only be positive, shape (c,).
+    free : orthonormal basis of the subspace that was projected out, shape (m, rank).
     """
 
     candidates: tuple[Candidate, ...]
@@ -38,13 +40,15 @@ class Screen:
     free: Array
 
     def improvements(self, z: Array) -> Array:
-        """Improvement of chi-square by each candidate, to first order: (c,) for z (m,), (batch, c) for
-        (batch, m)."""
-        along = z @ self.directions  # an amplitude is minus this over the size
+        """Reduction of chi-square by each candidate alone, to first order.
+
+        Shape (c,) for z of shape (m,), shape (batch, c) for (batch, m).
+        """
+        along = z @ self.directions  # the amplitude is -along / size
         return np.asarray(np.where(self.upwards & (along > 0.0), 0.0, along) ** 2)
 
     def penalised(self, z: Array) -> Array:
-        """These improvements less each candidate's multiplicity penalty. Shapes as `improvements`."""
+        """Improvements minus each candidate's multiplicity penalty. Shapes as `improvements`."""
         return np.asarray(self.improvements(z) - np.array([multiplicity_penalty(c) for c in self.candidates]))
 
     def amplitudes(self, z: Array) -> Array:
@@ -54,13 +58,15 @@ class Screen:
 
 
 def multiplicity_penalty(candidate: Candidate) -> float:
-    """Chi-square that the choice of its scope, position and variant among alternatives costs."""
+    """Penalty in chi-square for the choice of scope, position and variant: 2 ln(number of alternatives)."""
     return float(2.0 * np.log(candidate.alternatives))
 
 
 def screen(linear: Linearisation, effects: Mapping[str, EffectModel], *, held: Fit | None = None) -> Screen:
-    """Project u, and the columns of the effects that the fit `held` has, out of all candidates. Effects that
-    the fit has may go either way."""
+    """Project u and the columns of the causes in the fit `held` out of the columns of all candidates.
+
+    Amplitudes of effects that the fit has already may change in either direction.
+    """
     fixed = linear.by_u if held is None else np.column_stack([linear.by_u, held.linear.columns])
     there = set() if held is None else {c.effect for c in held.candidates}
     upwards = np.array(
@@ -69,7 +75,7 @@ def screen(linear: Linearisation, effects: Mapping[str, EffectModel], *, held: F
     free = basis_of(fixed)
     raw = linear.columns
     left = raw - free @ (free.T @ raw)
-    left -= free @ (free.T @ left)  # once more: the first pass leaves rounding of what was large
+    left -= free @ (free.T @ left)  # reorthogonalise: the first pass leaves rounding errors of large columns
     sizes, whole = np.linalg.norm(left, axis=0), np.linalg.norm(raw, axis=0)
     seen = sizes > (linear.alias_tolerance or ALIAS_TOLERANCE) * np.where(whole > 0, whole, 1.0)
     sizes = np.where(seen, sizes, 0.0)
@@ -84,7 +90,7 @@ def screen(linear: Linearisation, effects: Mapping[str, EffectModel], *, held: F
 
 
 def basis_of(columns: Array) -> Array:
-    """Orthonormal basis of the columns' span, (m, rank)."""
+    """Orthonormal basis of the span of the columns, shape (m, rank)."""
     size = np.linalg.norm(columns, axis=0)
     used = columns[:, size > 0] / size[size > 0]
     if not used.size:

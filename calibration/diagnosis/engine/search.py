@@ -42,16 +42,17 @@ class Finding:
     ----------
     verdict : none, found, ambiguous (several equivalent explanations), partly explained (`partly.py`; a
         search alone calls that unexplained) or unexplained.
-    baseline : its fit.
+    baseline : fit of the baseline.
     lack_of_fit : test of the baseline's residuals.
     p_value : probability that noise alone gives the best candidate its improvement.
     screened : all candidates at the baseline.
+    null : noise draws that all tests share.
     explanations : all that were confirmed in the simulator, best first.
     equivalent : sets of effects that the data cannot separate, the chosen one first.
-    confidence : probability that the chosen set would be ranked first again with other noise; of one that
-        explains in part, the part of the replicates in which no other set of as many causes takes more.
-    dominant : what is named where the data are explained in part.
-    doubt : why what explains the data wholly is called partly explained, or is not named.
+    confidence : probability that the chosen set is ranked first under new noise; for a partial explanation,
+        fraction of the bootstrap replicates in which no other set of as many causes removes more misfit.
+    dominant : the explanation that is named if the data are partly explained.
+    doubt : reason why an explanation that leaves only noise is downgraded to partly explained or not named.
     """
 
     verdict: Verdict
@@ -68,14 +69,14 @@ class Finding:
 
     @property
     def chosen(self) -> Explanation | None:
-        """What the verdict names first; None where it names nothing."""
+        """Explanation that the verdict names first; None if it names none."""
         if self.verdict == "partly explained":
             return self.dominant
         return self.explanations[0] if self.verdict in ("found", "ambiguous") else None
 
     @property
     def certain(self) -> Names:
-        """Effects that every set of equivalent ones has: what these data do tell."""
+        """Effects common to all equivalent sets, which the data therefore determine."""
         first = self.equivalent[0] if self.equivalent else ()
         return tuple(name for name in first if all(name in names for names in self.equivalent))
 
@@ -87,9 +88,18 @@ def search(
     before: Finding | None = None,
     on_progress: OnMessage = lambda _: None,
 ) -> Finding:
-    """Look for what a model lacks. ValueError where the baseline has no answer anywhere.
+    """Search for the effects that a model lacks.
 
-    before : of the same measurements with a smaller library, whose fits are not made again.
+    Parameters
+    ----------
+    model : measurements of one kind, with effects.
+    rules : significance levels and limits; None for the defaults.
+    before : result for the same measurements with a smaller catalogue, whose converged fits are reused.
+    on_progress : called with a sentence at each step.
+
+    Raises
+    ------
+    ValueError : the baseline has no solution anywhere.
     """
     rules = rules or Rules()
     on_progress("fitting the baseline")
@@ -168,7 +178,7 @@ def search(
 
 
 def fit_baseline(model: MeasurementModel) -> Fit:
-    """The fit of the baseline, with nuisances taken where it ends, as sharp as a calibration: `AS_FITTED`."""
+    """Fit the baseline to the tolerance `AS_FITTED`, with nuisances estimated at its end."""
     start = State(u=model.start())
     model.update_nuisances(start, rough=True)
     found = fit(model, start)
@@ -183,12 +193,12 @@ def fit_baseline(model: MeasurementModel) -> Fit:
 
 
 def _same(before: Fit, now: Fit) -> bool:
-    """True if two baselines have the same residuals of the same coordinates."""
+    """True if two baseline fits have equal Jacobians and residuals of equal shape."""
     return before.z.shape == now.z.shape and np.array_equal(before.jacobian, now.jacobian)
 
 
 def _unpositioned(explanations: Sequence[Explanation], where: Collection[Candidate]) -> list[Explanation]:
-    """Those with a cause that has not been moved to its best position, best first."""
+    """Explanations with a cause whose position has not been optimised, best first."""
     some = [e for e in explanations if any(c.position is not None and c not in where for c in e.candidates)]
     return sorted(some, key=lambda e: e.score)
 
@@ -200,8 +210,10 @@ def _positioned(
     null: Null,
     on_progress: OnMessage,
 ) -> tuple[list[Explanation], dict[Candidate, Candidate]]:
-    """All explanations, best first, causes of some of them moved to their best positions; and what moved
-    where."""
+    """Optimise the positions of causes in the explanations `some`.
+
+    Returns all explanations, best first, and a map from each cause to the cause at its best position.
+    """
     found: list[Explanation] = []
     moved: dict[Candidate, Candidate] = {}
     for e in explanations:
@@ -218,9 +230,12 @@ def _positioned(
 def _shortlist(
     screened: Screen, effects: Mapping[str, EffectModel], z: Array, count: int, *, at_least: float
 ) -> list[int]:
-    """Candidates to fit, best first: of each effect the best one, and one more that comes near it; of those
-    whose fit costs simulations none that falls so far short of the best that non-linearity could not make up
-    for it."""
+    """Indices of candidates to fit, best first.
+
+    At most two candidates of each effect are taken, the second if its expected improvement is within 8 of the
+    first. Candidates whose fit requires simulations are skipped if they fall so far short of the best that
+    non-linearity cannot compensate.
+    """
     expected = screened.penalised(z)
     hopeless = min(HOPELESS * expected.max(initial=0.0), expected.max(initial=0.0) - 40.0)
     found: list[int] = []

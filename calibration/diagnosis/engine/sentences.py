@@ -1,4 +1,4 @@
-"""A verdict in sentences for people who have not read the documentation."""
+"""The verdict in sentences, for readers who have not read the documentation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict."""
+    """The verdict, in one or several sentences."""
     finding = diagnosis.finding
     if finding.verdict == "none":
         return "The simulation agrees with the measurements to within their noise: no cause to name."
@@ -51,13 +51,13 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 
 def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
-    """The share of one cause, in the middle of a sentence."""
+    """Clause with the explained fraction of one cause; "" if `names` are several candidates."""
     own = [s for c, s in diagnosis.shares.items() if c.effect in names]
     return f", {percent(own[0])} of the misfit beyond noise" if len(own) == 1 else ""
 
 
 def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
-    """True if these causes take more than the others that are named beside them."""
+    """True if these causes remove at least half of what all named causes remove."""
     own = sum(s.value for c, s in diagnosis.shares.items() if c.effect in names)
     return 2.0 * own >= sum(s.value for s in diagnosis.shares.values())
 
@@ -112,7 +112,7 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 
 
 def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
-    """How much is left, where it lives, and whether it repeats."""
+    """Size, location and repeatability of the unexplained misfit; `unit` is that of `Diagnosis.unit`."""
     if left.rms == 0.0:
         return "Only noise remains."
     size = f"{unit[1] * left.rms:.3g} {unit[0]}"
@@ -136,7 +136,7 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
 
 
 def percent(share: Interval) -> str:
-    """A share with its interval, as it is read."""
+    """Explained fraction in percent, clipped to 0 to 100, with its interval if that is finite."""
 
     def part(x: float) -> str:
         return f"{100.0 * min(max(x, 0.0), 1.0):.0f}"
@@ -147,7 +147,7 @@ def percent(share: Interval) -> str:
 
 
 def _skill(held_out: HeldOut | None, takes: str = "") -> str:
-    """The held-out skill, at the end of a sentence that says what is taken, or that goes on with `takes`."""
+    """Final clause of a sentence with the held-out skill, introduced by `takes`; "" if there is no skill."""
     if held_out is None or not held_out.held_out or not math.isfinite(held_out.skill):
         return ""
     if held_out.skill <= 0.0:

@@ -1,10 +1,11 @@
-"""Which part of the explainable misfit an explanation takes, and each of its causes, with intervals.
+"""Fraction of the explainable misfit removed by an explanation and by each of its causes, with intervals.
 
 With a noise estimate of nu degrees of freedom, lambda = chi2 (nu - 2) / nu - (N - n) estimates the systematic
 misfit of a fit of n coordinates to N points without bias, since E[1/s^2] = nu / ((nu - 2) sigma^2) (after
-Haefner and Cumming, Adv. Neural Inf. Process. Syst. 21, 2008). The share of an explanation is 1 -
-lambda_explained / lambda_baseline. Causes that are correlated part it by Shapley's value (in regression: LMG;
-Groemping, J. Stat. Softw. 17, 2006), which adds up whatever the order.
+Haefner and Cumming, Adv. Neural Inf. Process. Syst. 21, 2008). The explained fraction ("share") of an
+explanation is 1 - lambda_explained / lambda_baseline. It is divided among correlated causes by their Shapley
+values (in regression: LMG; Groemping, J. Stat. Softw. 17, 2006), which sum to the total independently of the
+order of the causes.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ INTERVAL = (0.025, 0.975)
 
 @dataclass(frozen=True, kw_only=True)
 class Interval:
-    """A share with its 95 % interval."""
+    """Explained fraction with its 95 % bootstrap interval; infinite bounds if there is none."""
 
     value: float
     low: float
@@ -40,20 +41,28 @@ class Interval:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Misfit:
-    """The systematic misfit of a fit, in units of the noise's variance: lambda, and of replicates (b,)."""
+    """Systematic misfit lambda of a fit, in units of the noise variance.
+
+    Attributes
+    ----------
+    value : of the fit.
+    drawn : of the bootstrap replicates, shape (b,).
+    """
 
     value: float
     drawn: Array
 
 
 class Shares:
-    """Shares of fits of one experiment, over the same resampled groups.
+    """Explained fractions of several fits of one experiment, from the same bootstrap replicates.
 
     Parameters
     ----------
-    baseline : its fit.
-    noise_dof : nu of the noise estimate; inf where the noise is known.
-    noise_scale : the noise over what residuals were whitened by.
+    model : the measurements.
+    baseline : fit of the baseline.
+    draws, seed : number of bootstrap replicates, and seed.
+    noise_dof : degrees of freedom nu of the noise estimate; inf if the noise is known.
+    noise_scale : ratio of the noise to the standard deviation that residuals were whitened by.
     """
 
     def __init__(
@@ -82,15 +91,15 @@ class Shares:
         )
 
     def moves(self, fit: Fit) -> Array:
-        """Of coordinates and amplitudes, over the replicates, shape (b, n)."""
+        """Change of coordinates and amplitudes from the fit in each replicate, shape (b, n)."""
         return Resampled(fit, self.groups).replicates(self._drawn).moves
 
     def share(self, explained: Misfit) -> Interval:
-        """Of the baseline's misfit, that an explanation takes."""
+        """Fraction of the baseline's misfit that an explanation with misfit `explained` removes."""
         return self._interval(1.0 - explained.value / self.baseline.value, self.drawn(explained))
 
     def drawn(self, explained: Misfit) -> Array:
-        """The share in each replicate; 0 where it has nothing to explain."""
+        """Explained fraction in each replicate, shape (b,); 0 if the baseline leaves no misfit there."""
         base = self.baseline.drawn
         some = base > 0.0
         return np.where(some, 1.0 - explained.drawn / np.where(some, base, 1.0), 0.0)
@@ -104,8 +113,11 @@ class Shares:
     def of_causes(
         self, model: MeasurementModel, start: Fit, chosen: Explanation, null: Null
     ) -> dict[Candidate, Interval]:
-        """Shapley's value of each cause. Subsets are fitted in the simulator, from the baseline `start`; one
-        without an answer there counts as the baseline."""
+        """Shapley value of each cause.
+
+        Subsets of the causes are fitted in the simulator, starting from the baseline `start`. A subset
+        without a solution counts as the baseline.
+        """
         causes = chosen.candidates
         parts: dict[frozenset[Candidate], Misfit] = {
             frozenset(): self.baseline,

@@ -1,10 +1,11 @@
-"""Held-out skill: which part of the error that is not noise an extension takes away.
+"""Held-out skill: fraction of the baseline's prediction error beyond noise that an extension removes.
 
     skill = (rms_before^2 - rms_after^2) / (rms_before^2 - rms_noise^2)
 
-on measurements that no amplitude was fitted to: 0 where the extension predicts them no better than the
-baseline does, 1 where it predicts them as well as noise allows, below 0 where it is worse than nothing. It is
-the forecaster's skill score (Murphy, Mon. Weather Rev. 116, 1988) with the noise for a perfect forecast.
+on measurements that no amplitude was fitted to. It is 0 if the extension predicts them no better than the
+baseline, 1 if it predicts them to within noise, and negative if it predicts them worse than the baseline. It
+is the skill score of forecast verification (Murphy, Mon. Weather Rev. 116, 1988) with the noise as the error
+of a perfect forecast.
 """
 
 from __future__ import annotations
@@ -15,22 +16,24 @@ from dataclasses import dataclass
 
 
 def skill(before: float, after: float, noise: float) -> float:
-    """Of root mean squares in one unit: by the baseline, by the extension, of noise alone. NaN where the
-    baseline predicts as well as noise allows: there is nothing to gain."""
+    """Skill from the rms errors of the baseline and the extension and the rms of noise, in one unit.
+
+    NaN if the baseline predicts to within noise.
+    """
     explainable = before**2 - noise**2
     return (before**2 - after**2) / explainable if explainable > 0.0 else math.nan
 
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """One part of the measurements, predicted from others.
+    """Prediction errors of one held-out fold.
 
     Attributes
     ----------
-    name : of the part that was left out.
-    points : measured points in it.
-    rms_before, rms_after, rms_noise : of measured less predicted, by the baseline, by the extension, and of
-        noise alone [SI].
+    name : name of the fold.
+    points : number of measured points in it.
+    rms_before, rms_after : rms of measured minus predicted by the baseline and by the extension [SI].
+    rms_noise : rms of noise alone [SI].
     """
 
     name: str
@@ -45,12 +48,12 @@ class Prediction:
 
     @property
     def helps(self) -> bool:
-        """True if the extension predicts it better than the baseline, or as well as noise allows."""
+        """True if the extension predicts the fold better than the baseline does, or to within noise."""
         return self.rms_after < self.rms_before or self.rms_after <= self.rms_noise
 
 
 def together(parts: Iterable[Prediction], name: str = "all") -> Prediction:
-    """Predictions of several parts as one, weighted by their points. ValueError where there is none."""
+    """Combine the predictions of several folds, weighted by points. ValueError if there are no points."""
     whole = list(parts)
     points = sum(p.points for p in whole)
     if points == 0:

@@ -1,4 +1,4 @@
-"""A diagnosis: its numbers, its file (`diagnosis.json`), and one sentence."""
+"""Result of a diagnosis: its numbers, its file (`diagnosis.json`) and its verdict in a sentence."""
 
 from __future__ import annotations
 
@@ -35,8 +35,10 @@ class Undetectable:
 
     Attributes
     ----------
-    threshold : 5 standard deviations of its amplitude, in the file's unit; inf where no amplitude shows.
-    remedy : what to do about it.
+    effect : its name.
+    parameter : name of its amplitude in files, which ends with the unit.
+    threshold : 5 standard deviations of its amplitude in the file's unit; inf if no amplitude is detectable.
+    remedy : recommended measure on the bench.
     """
 
     effect: str
@@ -47,14 +49,14 @@ class Undetectable:
 
 @dataclass(frozen=True, kw_only=True)
 class Numbers:
-    """A fit in numbers.
+    """Summary of a fit.
 
     Attributes
     ----------
-    reduced_chi2 : over the degrees of freedom.
-    p_value : of the test for lack of fit.
-    rms : of the residuals, in the unit of the diagnosis.
-    shear_modulus_Pa : by material.
+    reduced_chi2 : chi-square per degree of freedom.
+    p_value : p-value of the test for lack of fit.
+    rms : root mean square of the residuals, in the unit of the diagnosis.
+    shear_modulus_Pa : shear modulus by material [Pa].
     """
 
     reduced_chi2: float
@@ -73,20 +75,20 @@ class Numbers:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Subject:
-    """What was diagnosed, as cards need it.
+    """Data of the model and the reported fit that material cards need.
 
     Attributes
     ----------
-    kind : of measurement.
-    unit : of rms residuals in files ("mm", "kPa", "N"), and how many of them one SI unit is.
-    law, bulk_ratio : of the baseline; K/G that it holds.
-    modulus_weights : derivatives of the logarithm of each material's shear modulus by the baseline's
-        coordinates, shape (n,).
-    ranges : between what each named candidate was measured, by the quantity's name in files.
-    materials : that each named candidate concerns.
-    other_laws : of each material in which an effect replaces the baseline's law, that law and its parameters
-        at the fitted modulus.
-    handed_on : the part of each material that each named candidate is, where it is one.
+    kind : kind of measurement.
+    unit : unit of rms residuals in files ("mm", "kPa", "N"), and its number per SI unit.
+    law : material law of the baseline.
+    bulk_ratio : fixed ratio K/G of the baseline.
+    modulus_weights : derivatives of ln G of each material by the baseline's coordinates, shape (n,).
+    ranges : measured range for each named candidate, by the quantity's name in files.
+    materials : materials that each named candidate concerns.
+    other_laws : law and its parameters at the fitted modulus, for each material in which an effect replaces
+        the baseline's law.
+    handed_on : for each named candidate, its contribution to the constitutive model of each material.
     """
 
     kind: str
@@ -101,7 +103,7 @@ class Subject:
 
     @classmethod
     def of(cls, model: MeasurementModel, fit: Fit) -> Subject:
-        """Of a model, and the fit that is reported."""
+        """Collect the data from a model and the fit that is reported."""
         base = model.baseline
         return cls(
             kind=model.kind,
@@ -123,18 +125,30 @@ class Subject:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Diagnosis:
-    """All that is known of an experiment.
+    """Result of a diagnosis.
 
     Attributes
     ----------
-    chosen : the explanation that is named, refined; it, extended and held_out are None where none is.
-    share : of the explainable misfit, that it takes. shares : of each of its causes (they add up to it).
-    resampled : over what their intervals are.
-    nearest : where the data are unexplained, what comes nearest.
-    equally_large : if partly explained, other sets of effects that take as much, with their shares.
-    remainder : what is left; None where the baseline leaves only noise.
-    model_error : the remainder as an error of the model, where more than noise is left.
-    noise : what is known of it.
+    finding : result of the search.
+    chosen : the explanation that is named, refined; None if none is named.
+    effects : effects of the model by name.
+    baseline : numbers of the baseline's fit in the search.
+    extended : numbers of the refined fit with the named causes; None if none is named.
+    held_out : held-out scores of the named explanation; None if none is named or they were not computed.
+    subject : data of the model and the reported fit.
+    next_experiment : recommended next experiment or check; "" if there is none.
+    undetectable : effects that this design cannot detect.
+    notes : remarks on noise, model, fits and alternatives, a sentence each.
+    seconds : wall time [s].
+    share : fraction of the explainable misfit that the chosen explanation removes.
+    shares : Shapley values of its causes, which add up to `share`.
+    resampled : groups that the bootstrap intervals are over, in words; "" if there is no bootstrap.
+    nearest : if the data are unexplained, the explanation that comes nearest.
+    equally_large : if the data are partly explained, alternative sets of effects with their explained
+        fractions.
+    remainder : unexplained misfit; None if the baseline leaves only noise.
+    model_error : the unexplained misfit as a model error; None unless more than noise is left.
+    noise : what is known about the noise.
     """
 
     finding: Finding
@@ -159,16 +173,16 @@ class Diagnosis:
 
     @property
     def unit(self) -> tuple[str, float]:
-        """Of rms residuals in files, and how many of them one SI unit is."""
+        """Unit of rms residuals in files, and its number per SI unit."""
         return self.subject.unit
 
     @property
     def fit(self) -> Fit:
-        """With the named causes; the baseline's where none is named."""
+        """Fit with the named causes; the baseline's fit if none is named."""
         return self.finding.baseline if self.chosen is None else self.chosen.fit
 
     def causes(self) -> list[dict[str, Any]]:
-        """One entry for each effect of the chosen explanation."""
+        """One entry of diagnosis.json for each cause of the chosen explanation."""
         if self.chosen is None:
             return []
         found = _causes(self.chosen, self.effects, self.finding.confidence)
@@ -219,7 +233,7 @@ class Diagnosis:
         }
 
     def sentence(self) -> str:
-        """The verdict for people."""
+        """The verdict in sentences (`sentences.sentence`)."""
         return sentence(self)
 
 
@@ -291,7 +305,10 @@ def _causes(chosen: Explanation, effects: dict[str, Any], confidence: float) -> 
 
 
 def undetectable(model: MeasurementModel, finding: Finding) -> tuple[Undetectable, ...]:
-    """Effects of which all measurements together would need more than is plausible to show 5 sigma."""
+    """Effects that would need an amplitude above `prior_scale` to reach 5 standard deviations.
+
+    If an effect has candidates in scope "all", these decide; effects without candidates are left out.
+    """
     found = []
     for name, effect in model.effects.items():
         sizes = [
@@ -319,7 +336,7 @@ def _of(finding: Finding, name: str) -> list[Any]:
 
 
 def reduced(fit: Fit) -> float:
-    """Chi-square over its degrees of freedom: rows of residuals less the rank of the Jacobian."""
+    """Reduced chi-square: chi-square / (rows of residuals - rank of the Jacobian)."""
     size = np.linalg.norm(fit.jacobian, axis=0)
     used = fit.jacobian[:, size > 0.0] / size[size > 0.0]
     rank = int(np.linalg.matrix_rank(used)) if used.size else 0

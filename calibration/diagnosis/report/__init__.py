@@ -1,4 +1,4 @@
-"""The page of a diagnosis: the verdict, the evidence, the held-out improvement, and what to measure next."""
+"""Report page of a diagnosis: verdict, evidence, improvement by the extension, recommended experiment."""
 
 from calibration.diagnosis.report.page import write_report
 

@@ -1,4 +1,4 @@
-"""Evidence, cause by cause: what each explains against what noise would, and how far it trails."""
+"""Evidence for each cause: its improvement of chi-square against noise, and its distance from the best."""
 
 from __future__ import annotations
 
@@ -22,11 +22,15 @@ _MOST = 40  # bars
 
 @dataclass(frozen=True, kw_only=True)
 class Bar:
-    """A cause, or several at once, at the place where it explains most.
+    """A cause, or a set of causes, at the position and scope where it explains most.
 
-    gain: improvement of chi-square over the baseline, less what the choice of places is worth. behind: how
-    much worse than the best its chi-square is, amplitudes and choices of places counted; None where it was
-    only screened. named: in the verdict.
+    Attributes
+    ----------
+    name : label of the cause.
+    gain : improvement of chi-square over the baseline minus the multiplicity penalty, at least 0.
+    behind : difference of its score from the best; None if it was only screened.
+    named : True if the verdict names it.
+    converged : True if its fit converged.
     """
 
     name: str
@@ -37,8 +41,10 @@ class Bar:
 
 
 def bars(finding: Finding) -> list[Bar]:
-    """One bar an effect and one a pair that was confirmed, the strongest first: those confirmed in the
-    simulator with what they gain there, the others with what they gain to first order."""
+    """One bar per effect and one per confirmed set of effects, the largest improvement first.
+
+    Improvements of confirmed explanations are from the simulator, all others to first order.
+    """
     found: dict[tuple[str, ...], Bar] = {}
     best = finding.explanations[0].score if finding.explanations else 0.0
     for e in sorted(finding.explanations, key=lambda e: e.score):
@@ -63,7 +69,7 @@ def _confirmed(e: Explanation, finding: Finding, best: float) -> Bar:
 
 
 def draw_evidence(finding: Finding) -> Picture:
-    """Left, whether there is anything to name; right, whether one cause alone stands out."""
+    """Bars of the improvements (left) and, if causes are named, distances from the best one (right)."""
     everything = bars(finding)
     shown = everything[:_MOST]
     confirmed = [b for b in shown if b.behind is not None]

@@ -1,4 +1,4 @@
-"""How the numbers of a diagnosis were made, and what went wrong on the way, in sentences."""
+"""Sentences on the methods of a diagnosis, and on fits that failed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def false_alarms(diagnosis: Diagnosis) -> str:
 
 
 def lack_of_fit(diagnosis: Diagnosis) -> str:
-    """Which test of the residuals fails worst, at the baseline and with the best of the library taken out."""
+    """Sentences on the lack of fit of the baseline and of the best explanation."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)
     base = finding.lack_of_fit
@@ -53,14 +53,13 @@ def lack_of_fit(diagnosis: Diagnosis) -> str:
 
 
 def _failing(found: LackOfFit, kind: str) -> str:
-    """The tests of residuals that fail; the one nearest to it where none does alone."""
+    """Clause with the tests of the residuals that fail; if none does, the one with the smallest p-value."""
     worst = [n for n, p in found.each.items() if p < SUSPECT] or [found.worst]
     return f"the residuals exceed noise in the {listed([pattern(n, kind) for n in worst])}"
 
 
 def troubles(diagnosis: Diagnosis) -> list[str]:
-    """Fits without which the verdict does not stand, and that did not converge; all others are in its
-    notes."""
+    """Sentences on fits that the verdict depends on and that did not converge; others are in the notes."""
     finding = diagnosis.finding
     found = []
     if not finding.baseline.converged:
@@ -72,7 +71,7 @@ def troubles(diagnosis: Diagnosis) -> list[str]:
 
 
 def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[str]:
-    """Noise model, bootstrap, screening, confirmation, time."""
+    """Paragraphs on noise model, null distribution, screening, confidence, bootstrap and computing time."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)
     candidates = finding.screened.candidates

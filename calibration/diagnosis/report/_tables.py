@@ -1,4 +1,4 @@
-"""Tables of the page: each figure as people read it, with the value that `diagnosis.json` has beside it."""
+"""Tables of the page: formatted numbers together with their values in `diagnosis.json`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ INVISIBLE = ("effect", "description", "amplitude visible at 5 sd", "alternative 
 
 
 def budget_rows(diagnosis: Diagnosis, data: dict[str, Any]) -> Rows:
-    """One row a cause (named, or nearest), then what is not modelled; no rows where all is well."""
+    """One row per cause (named or nearest), then one for the unexplained misfit; no rows if there is none."""
     causes = sorted(data["causes"], key=lambda c: -(c["share"] or {"value": 0.0})["value"])
     rows = [_cause_row(diagnosis, c, data, named=True) for c in causes]
     nearest = data["nearest"]
@@ -83,7 +83,7 @@ def _one_less(share: dict[str, float | None]) -> str:
 def _cause_row(
     diagnosis: Diagnosis, cause: dict[str, Any], data: dict[str, Any], *, named: bool
 ) -> list[Cell]:
-    """Several parameters of one cause stand in one cell each under the other."""
+    """Row of one cause; several parameters of it are joined in one cell by semicolons."""
     effect = diagnosis.effects[cause["effect"]]
     told_apart = not named or cause["effect"] in diagnosis.finding.certain
     values = [(_amplitude(n, p["value"], p["sd"]), p["value"]) for n, p in cause["parameters"].items()]
@@ -122,7 +122,7 @@ def _share(share: dict[str, float | None]) -> str:
 
 
 def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None, *, in_all_sets: bool) -> str:
-    """in_all_sets: whether every set of causes that fits as well has it."""
+    """Clauses on confidence and held-out skill. in_all_sets : the cause is in all equivalent sets."""
     parts = []
     if in_all_sets:
         parts.append("in every set of causes that fits as well")
@@ -137,8 +137,7 @@ def _evidence(cause: dict[str, Any], gain: dict[str, Any] | None, *, in_all_sets
 
 
 def fold_rows(data: dict[str, Any], unit: str) -> Rows:
-    """What was left out, part by part, predicted from the rest. Parts that the causes do not change are
-    counted in a last row."""
+    """One row per held-out fold; folds that the causes do not change are counted in a last row."""
     gain = data["gain"] or (data["nearest"] or {}).get("gain")
     rows: Rows = []
     same = 0
@@ -162,12 +161,12 @@ def fold_rows(data: dict[str, Any], unit: str) -> Rows:
 
 
 def _confidence(part: float) -> str:
-    """In percent; a thousand replicates cannot say that it is certain."""
+    """In percent, at most "> 99.9 %", the resolution of a thousand replicates."""
     return "> 99.9 %" if part > 0.999 else f"{100.0 * part:.3g} %"
 
 
 def alternative_rows(diagnosis: Diagnosis) -> Rows:
-    """The sets of effects that cannot be data apart, the chosen one first."""
+    """Equivalent sets of effects, the chosen one first."""
     finding = diagnosis.finding
     best = finding.explanations[0].score if finding.explanations else 0.0
     rows = []
@@ -194,7 +193,7 @@ def alternative_rows(diagnosis: Diagnosis) -> Rows:
 
 
 def fit_rows(data: dict[str, Any], draws: int) -> Rows:
-    """Baseline beside extended, whatever numbers the two have; below, what was held out."""
+    """Numbers of the baseline and the extended fit, then held-out scores."""
     before, after = data["baseline"], data["extended"]
     rows = []
     for key, value in before.items():
@@ -248,7 +247,7 @@ def _fit_row(key: str, before: float, after: float | None, draws: int, *, of: st
 
 
 def gain_sentence(data: dict[str, Any]) -> str:
-    """How the extension was tried on measurements that its fit has not seen."""
+    """Sentences on the held-out folds; "" if there are no held-out scores of a named explanation."""
     gain = data["gain"]
     if gain is None:
         return ""
@@ -263,7 +262,7 @@ def gain_sentence(data: dict[str, Any]) -> str:
 
 
 def test_rows(diagnosis: Diagnosis) -> Rows:
-    """Chance of each test of the residuals, at the baseline and with the best explanation."""
+    """p-value of each test of the residuals, for the baseline and for the best explanation."""
     finding = diagnosis.finding
     draws = len(finding.null.noise)
     best = finding.explanations[0].lack_of_fit if finding.explanations else None

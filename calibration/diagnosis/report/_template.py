@@ -1,4 +1,4 @@
-"""The page's HTML, for jinja2."""
+"""Jinja2 template of the page."""
 
 PAGE = """\
 {% extends "frame" %}

@@ -1,4 +1,4 @@
-"""Parameters' names and units for people, read from the names that files give them."""
+"""Names and units of parameters for people, parsed from their names in files."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ _UNITS = {
 
 
 def quantity_and_unit(parameter: str) -> tuple[str, str]:
-    """`curvature_per_m` is a curvature in 1/m, `rad_per_Nm` has a unit and no name of its own, `c2_over_c1`
-    a name and no unit: (name, unit), either may be empty."""
+    """Split a parameter's name in files into (name, unit); either may be empty.
+
+    `curvature_per_m` is a curvature in 1/m, `rad_per_Nm` has a unit but no name, `c2_over_c1` a name but no
+    unit.
+    """
     head, per, below = parameter.rpartition("per_")
     if per and (not head or head.endswith("_")):
         name, above = quantity_and_unit(head.rstrip("_")) if head else ("", "")

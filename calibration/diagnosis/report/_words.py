@@ -1,4 +1,4 @@
-"""What a diagnosis says, in words for people."""
+"""Wording of verdicts, tests and p-values on the page of a diagnosis."""
 
 from __future__ import annotations
 
@@ -61,20 +61,19 @@ _OF_KIND["compression"] = _OF_KIND["homogeneous"]
 
 
 def pattern(name: str, kind: str) -> str:
-    """A set of patterns for people, in the words of a kind of measurement; what that kind calls it where it
-    is not known here."""
+    """Description of a set of the discrepancy basis for a kind of measurement; its name if it has none."""
     return _PATTERNS.get(name) or _OF_KIND.get(kind, {}).get(name, name)
 
 
 def headline(finding: Finding) -> str:
-    """The verdict in a few words."""
+    """Title of the verdict."""
     if finding.verdict == "ambiguous" and finding.certain:
         return "One cause found, another not identified"
     return HEADLINE[finding.verdict]
 
 
 def meaning(effect: EffectModel) -> str:
-    """What it means that an effect belongs where it does."""
+    """Consequence of the effect's owner (specimen, rig, camera or simulator) for calibration and datasets."""
     if effect.belongs_to in ("rig", "camera") and corrects([effect]) == "nothing":
         return UNREAD.format(effect.belongs_to)
     return MEANING[effect.belongs_to]
@@ -93,5 +92,5 @@ def p_text(p: float, draws: int) -> str:
 
 
 def tiny(p: float) -> str:
-    """A chance that may be extrapolated far below what was drawn."""
+    """A p-value that may be extrapolated far below the resolution of the draws."""
     return significant(p, 2) if p >= 1e-4 else (f"{p:.0e}" if p > 0.0 else "below 1e-300")

@@ -1,4 +1,4 @@
-"""report.html: one page that needs nothing beside it, and its pictures once more as files."""
+"""report.html, a self-contained page, and its figures as separate files."""
 
 from __future__ import annotations
 
@@ -20,10 +20,12 @@ LONGEST = 60  # letters of a picture's file name
 
 
 def write_report(diagnosis: Diagnosis, model: MeasurementModel, folder: Path, *, title: str) -> list[Path]:
-    """Write `folder/report.html` and its pictures (`folder/*.png`); their paths, the page first.
+    """Write `folder/report.html` and its figures (`folder/*.png`); returns the paths, the page first.
 
-    model: the one that was diagnosed, its nuisances taken at the baseline; what type it has decides whose
-    pictures are shown (see `figures_of`). title: of the page, any text.
+    Parameters
+    ----------
+    model : the model that was diagnosed, which draws the figures (`MeasurementModel.pictures`).
+    title : title of the page, any text.
     """
     evidence = draw_evidence(diagnosis.finding)
     extra: list[str] = []
@@ -49,7 +51,7 @@ def render(
     title: str,
     extra: list[str],
 ) -> str:
-    """The page as HTML. extra: what went wrong with the pictures."""
+    """The page as HTML. extra : sentences on figures that are missing."""
     data = diagnosis.to_json()
     finding = diagnosis.finding
     return template(PAGE).render(
@@ -87,7 +89,7 @@ def render(
 
 
 def _pictures(figures: list[Figure], taken: set[str]) -> list[tuple[Figure, Picture]]:
-    """As PNG, each under a file name of its own."""
+    """Figures as PNG under unique file names; `taken` are names in lower case that are used already."""
     found = []
     for f in figures:
         name = f.name[:LONGEST]

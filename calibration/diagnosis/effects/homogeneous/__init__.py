@@ -1,4 +1,4 @@
-"""How each effect acts on homogeneous material tests: on the stretch, or on the stress."""
+"""Effects in homogeneous material tests: changes of the stretch or of the stress."""
 
 from __future__ import annotations
 

@@ -1,3 +1,3 @@
-"""When a coupon is taken for compressed."""
+"""Criterion for compression in homogeneous material tests."""
 
-PRESSED = 0.97  # stretch below which platens press
+PRESSED = 0.97  # a uniaxial test that reaches a smaller stretch is a compression test

@@ -1,4 +1,4 @@
-"""How effects act on homogeneous material tests: the energy that the material stores."""
+"""Effects in homogeneous material tests: strain energy of the material."""
 
 from __future__ import annotations
 
@@ -23,22 +23,24 @@ from calibration.measurements.homogeneous.kinematics import first_excess, stress
 Array = NDArray[np.float64]
 
 # -- anisotropy --
-# The material is stiffer along the direction that is pulled: W gets a term G k/8 (I4 - 1)^2, I4 the squared
-# stretch of that direction. The amplitude k is the excess of stress there, in shear moduli a unit of
-# strain.
+# The material is stiffer in the loading direction: W has an additional term G k/8 (I4 - 1)^2, where I4 is the
+# squared stretch of that direction. The amplitude k is the additional stress at small strain, divided by G
+# and the strain.
 
 
 def _extra_anisotropy(s: Array, amplitude: float, record: Record) -> Array:
     if record.mode == "simple-shear":
         return np.zeros(s.size)
-    # equibiaxial: the stress is the mean over two directions, of which one has it
+    # equibiaxial: the stress is the mean over two directions, one of which is stiffer
     axes = 2.0 if record.mode == "equibiaxial" else 1.0
     return np.asarray(0.5 * amplitude * s * (s**2 - 1.0) / axes)
 
 
 def _identifiable_anisotropy(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Two modes of a material, or a specimen of the same mode to compare with that was not cut alike. Fibres
-    in the one specimen of a mode, and none in those of other modes, are no anisotropy of the material."""
+    """True if the candidate reaches several modes of a material, or if another record has a mode in common.
+
+    Anisotropy in the only record of a mode, and in no other, is not a property of the material.
+    """
     for material in {r.material for r in reached}:
         mine = [r for r in reached if r.material == material]
         others = [r for r in everything if r.material == material and r not in mine]
@@ -65,8 +67,8 @@ ANISOTROPY = HomogeneousEffect(
 
 
 # -- strain-stiffening --
-# The material stiffens with strain: W gets a term G/2 a (I1 - 3)^2 beside the baseline's (Yeoh's law in
-# `tisim`, which refuses a < 0: its energy would have no least value).
+# Strain stiffening: W has an additional term G/2 a (I1 - 3)^2 (Yeoh law in `tisim`, which rejects a < 0
+# because the energy would be unbounded below).
 
 
 def _extra_strain_stiffening(s: Array, amplitude: float, record: Record) -> Array:
@@ -85,7 +87,7 @@ STRAIN_STIFFENING = HomogeneousEffect(
 
 
 # -- second-invariant --
-# The energy depends on the second invariant too (Mooney-Rivlin): the share C01 / (C10 + C01).
+# The energy depends on the second invariant (Mooney-Rivlin): amplitude C01 / (C10 + C01).
 
 
 def _extra_second_invariant(s: Array, amplitude: float, record: Record) -> Array:
@@ -103,24 +105,26 @@ SECOND_INVARIANT = HomogeneousEffect(
 
 
 # -- limited-extensibility --
-# Chains run out of length (eight Langevin chains: Arruda and Boyce, J. Mech. Phys. Solids 41, 1993;
-# `tisim`'s law `eight-chain`): the amplitude is one over the squared locking stretch; the small-strain
-# modulus stays.
+# Limited chain extensibility (eight Langevin chains: Arruda and Boyce, J. Mech. Phys. Solids 41, 1993; law
+# `eight-chain` of `tisim`): the amplitude is one over the squared locking stretch; the small-strain modulus
+# is kept.
 #
-# Past ENDS of the chains' length the force goes on in a straight line, as in that law: a search may step
-# there.
+# Beyond LONGEST_CHAIN of the chains' length the force is continued linearly, as in that law, since a search
+# may step there.
 
 
 LONGEST_CHAIN = 0.995
 
-_NEWTON_STEPS = 5  # of Newton's method, from a Pade form that is right to 5 %
+_NEWTON_STEPS = 5  # Newton iterations, starting from a Pade approximation with an error of up to 5 %
 
-_SHORT_CHAIN = 1e-4  # part of its length up to which a chain is Gaussian to rounding errors
+_SHORT_CHAIN = 1e-4  # relative length below which a chain is Gaussian to rounding errors
 
 
 def _stiffening(x: Array) -> Array:
-    """Force of a chain at the part x of its length, over that of a Gaussian one (1 for short ones): the
-    inverse Langevin function over 3 x."""
+    """Force of a chain at the fraction x of its length, relative to a Gaussian chain: L^-1(x) / (3 x).
+
+    L is the Langevin function; the ratio is 1 for short chains.
+    """
     inside = np.clip(x, _SHORT_CHAIN, LONGEST_CHAIN)
     b = inside * (3.0 - inside**2) / (1.0 - inside**2)
     for _ in range(_NEWTON_STEPS):
@@ -131,7 +135,7 @@ def _stiffening(x: Array) -> Array:
 
 
 def _langevin(b: Array) -> tuple[Array, Array]:
-    """coth b - 1/b, and its slope."""
+    """Langevin function coth b - 1/b and its derivative."""
     e = np.exp(-2.0 * b)
     return (1.0 + e) / (1.0 - e) - 1.0 / b, 1.0 / b**2 - 4.0 * e / (1.0 - e) ** 2
 
@@ -153,13 +157,13 @@ LIMITED_EXTENSIBILITY = HomogeneousEffect(
 
 
 # -- law-form --
-# Another law than the baseline's describes the material: the energy is (1 - a) W + a W', of one small-strain
-# modulus, and W' alone where it is named. Constants of W' are coordinates of the fit beside it. W' is the law
-# that predicts best what its fit has not seen (`calibration.diagnosis.laws`).
+# A law other than the baseline's describes the material: the energy is (1 - a) W + a W', with one
+# small-strain modulus, and W' alone if the effect is named. The constants of W' are further coordinates of
+# the fit. W' is the law with the best held-out predictions (`calibration.diagnosis.laws`).
 
 
 def _several_modes(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Each material in two modes of loading, of which pulling and pressing are two."""
+    """True if each material is reached in two loading modes; tension and compression count as two."""
     del everything
     for material in {r.material for r in reached}:
         mine = [r for r in reached if r.material == material]
@@ -184,8 +188,8 @@ LAW_FORM = HomogeneousEffect(
 
 
 # -- tension-compression-asymmetry --
-# In compression the material is stiffer (softer, where negative) than in tension: its stress there is this
-# part higher, as of one of two moduli.
+# The material is stiffer (softer if negative) in compression than in tension: its stress in compression is
+# higher by this fraction (bimodular material).
 
 
 def _factor_asymmetry(s: Array, amplitude: float, record: Record) -> Array:
@@ -194,7 +198,7 @@ def _factor_asymmetry(s: Array, amplitude: float, record: Record) -> Array:
 
 
 def _both_signs(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Compression, and something else of the same material."""
+    """True if the same material has compression tests and others."""
     for r in reached:
         others = [q for q in everything if q.material == r.material]
         pressed = [q.mode == "uniaxial" and float(q.stretch.min()) < PRESSED for q in others]

@@ -1,4 +1,4 @@
-"""How effects act on homogeneous material tests: what depends on time, or on what was before."""
+"""Effects in homogeneous material tests: dependence on time and loading history."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from calibration.measurements.homogeneous.kinematics import first_excess, stress
 Array = NDArray[np.float64]
 
 # -- rate-dependence --
-# The material is stiffer when it is strained faster: its stress is a power of the rate, which grows by this
-# part a decade at 0.01 per second.
+# Rate stiffening: the stress is a power of the strain rate that increases by a factor of e^amplitude per
+# decade, relative to that at 0.01 1/s.
 
 
-REFERENCE_RATE = 0.01  # [1/s]: the shear modulus is that of this rate
+REFERENCE_RATE = 0.01  # strain rate at which the shear modulus holds [1/s]
 
-DISTINCT_RATES = 1.5  # quotient of two rates from which they differ
+DISTINCT_RATES = 1.5  # ratio of two rates above which they count as different
 
 
 def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array:
@@ -38,7 +38,7 @@ def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array
 
 
 def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Two rates in one material."""
+    """True if a material is tested at two different rates."""
     del everything
     for material in {r.material for r in reached}:
         rates = np.concatenate([r.rate for r in reached if r.material == material])
@@ -48,13 +48,16 @@ def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequenc
     return False
 
 
-SHOWN = 0.1  # of a ramp's time: what relaxes faster has relaxed all along it
+SHOWN = 0.1  # shortest resolved relaxation time, relative to the duration of a ramp
 
 
 def _viscosity_rate_dependence(found: Occurrence) -> HandedOn:
-    """A relaxation function that falls evenly in the logarithm of time, at the height and with the slope at
-    which the records, each along its own course, come nearest to the stress that the effect gives them: a
-    ramp remembers its beginning, so that the slope is not quite the amplitude."""
+    """Prony series of a relaxation function that is linear in the logarithm of time.
+
+    Its height and slope are fitted (least squares) such that hereditary integrals over the records' strain
+    histories reproduce the stress of the effect. The slope differs from the amplitude, since the stress in a
+    ramp depends on the whole ramp.
+    """
     records: list[Record] = [r for r in found.records if np.isfinite(r.rate).any()]
     last = max(float(np.ptp(r.time)) for r in records)
     first = min(SHOWN * min(float(np.ptp(r.stretch) / np.nanmax(r.rate)) for r in records), 0.5 * last)
@@ -89,7 +92,8 @@ RATE_DEPENDENCE = HomogeneousEffect(
 
 
 # -- hysteresis --
-# On the way back the stress lies below that of the way out: by this part once all energy is given back.
+# Hysteresis: in unloading the stress is lower than in loading, by this fraction when the specimen is fully
+# unloaded.
 
 
 def _factor_hysteresis(s: Array, amplitude: float, record: Record) -> Array:
@@ -99,13 +103,13 @@ def _factor_hysteresis(s: Array, amplitude: float, record: Record) -> Array:
 
 
 def _identifiable_hysteresis(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some unloading."""
+    """True if a record has an unloading."""
     del everything
     return any(r.unloads for r in reached)
 
 
 def _largest_energy(found: Occurrence) -> float:
-    """Of a neo-Hookean solid in the records [J/m3]."""
+    """Largest energy density in the records for a neo-Hookean solid [J/m3]."""
     return 0.5 * found.shear_modulus * max(float(r.peak.max()) for r in found.records)
 
 
@@ -124,7 +128,7 @@ HYSTERESIS = HomogeneousEffect(
     effect=catalogue.HYSTERESIS,
     step=1e-3,
     bounds=(0.0, 1.0),
-    physical_limits=(1.0,),  # nothing is given back
+    physical_limits=(1.0,),  # the stress vanishes at full unloading
     prior_scale=0.5,
     factor=_factor_hysteresis,
     identifiable=_identifiable_hysteresis,
@@ -133,11 +137,11 @@ HYSTERESIS = HomogeneousEffect(
 
 
 # -- mullins --
-# Once strained, the material is softer below the largest strain that it has seen: by this part at rest, by
-# nothing at that strain. The pseudo-elastic softening of Ogden and Roxburgh, Proc. R. Soc. Lond. A 455
-# (1999): 1 - erf((W_m - W) / m) / r with W_m the largest energy so far, here of a Neo-Hookean solid, and
-# with m = W_m, so that the amplitude is erf(1) / r. One record seldom tells m, by which the amplitude
-# changes a little.
+# Mullins effect: in reloading the material is softer below the largest strain so far, by this fraction at
+# zero strain and not at all at the largest strain. Pseudo-elastic softening of Ogden and Roxburgh, Proc. R.
+# Soc. Lond. A 455 (1999): 1 - erf((W_m - W) / m) / r, where W_m is the largest energy so far, here of a
+# neo-Hookean solid, and m = W_m, so that the amplitude is erf(1) / r. A single record rarely determines m, on
+# which the amplitude depends weakly.
 
 
 def _factor_mullins(s: Array, amplitude: float, record: Record) -> Array:
@@ -151,7 +155,7 @@ def _factor_mullins(s: Array, amplitude: float, record: Record) -> Array:
 
 
 def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some second loading."""
+    """True if a record has a second loading."""
     del everything
     return any(r.reloaded for r in reached)
 
@@ -166,7 +170,7 @@ MULLINS = HomogeneousEffect(
     effect=catalogue.MULLINS,
     step=1e-3,
     bounds=(0.0, 1.0),
-    physical_limits=(1.0,),  # softened to nothing at rest
+    physical_limits=(1.0,),  # the stiffness vanishes at zero strain
     prior_scale=0.5,
     factor=_factor_mullins,
     identifiable=_identifiable_mullins,
@@ -175,7 +179,8 @@ MULLINS = HomogeneousEffect(
 
 
 # -- permanent-set --
-# Having been strained, the material keeps this part of its largest strain: unloaded it comes to rest there.
+# Permanent set: after the first reversal the elastic stretch is s + a (s - s_max), so that the specimen keeps
+# a / (1 + a) of its largest strain when it is unloaded.
 
 
 def _shift_permanent_set(s: Array, amplitude: float, record: Record) -> Array:
@@ -199,16 +204,16 @@ PERMANENT_SET = HomogeneousEffect(
 
 
 # -- relaxation --
-# The stress relaxes with one time: of the modulus before it does, this fraction goes with it. Over the course
-# of the record, as a linear solid remembers the stress of the neo-Hookean one (Boltzmann's superposition);
-# the shear modulus of the baseline is that of a quick strain.
+# Relaxation with one time constant: this fraction of the instantaneous modulus relaxes. Linear
+# viscoelasticity (Boltzmann superposition) is applied to the neo-Hookean stress over the record's history;
+# the baseline's shear modulus is the instantaneous one.
 
 
 def _extra_relaxation(s: Array, amplitude: float, record: Record, time: float) -> Array:
     elastic = stress_of(record.mode, s, 0.5)
     steps = np.diff(record.time, prepend=record.time[0])
     kept = np.exp(-steps / time)
-    # over a step the elastic stress is a straight line in time
+    # the elastic stress is linear in time within a step
     gained = np.where(steps > 0.0, -np.expm1(-steps / time) * time / np.where(steps > 0.0, steps, 1.0), 1.0)
     remembered = elastic.copy()
     for k in range(1, elastic.shape[-1]):
@@ -218,7 +223,7 @@ def _extra_relaxation(s: Array, amplitude: float, record: Record, time: float) -
 
 
 def _times_of(records: Sequence[Record]) -> tuple[float | None, ...]:
-    """One a decade, from a hundredth of the longest record to its length."""
+    """Relaxation times, one per decade, from about a hundredth of the longest record to its duration."""
     longest = max((float(np.ptp(r.time)) for r in records if np.isfinite(r.time).all()), default=0.0)
     if longest <= 0.0:
         return (1.0,)

@@ -1,4 +1,4 @@
-"""How effects act on homogeneous material tests: grips, platens, the machine, and the order of tests."""
+"""Effects in homogeneous material tests: grips, platens, testing machine and order of tests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from calibration.measurements.homogeneous.kinematics import slab_factor
 Array = NDArray[np.float64]
 
 # -- strain-offset --
-# The zero of the strain is off: the specimen was slack, or preloaded, when its stretch was called 1.
+# Zero error of the strain: the specimen was slack, or preloaded, at the recorded stretch 1.
 
 
 def _shift_strain_offset(s: Array, amplitude: float, record: Record) -> Array:
@@ -35,9 +35,9 @@ STRAIN_OFFSET = HomogeneousEffect(
 
 
 # -- machine-compliance --
-# The rig gives way: part of the stretch that is written down is its own, in proportion to the stress. A stiff
-# frame gives way by 0.001 to 0.02 strains/MPa; one that takes MOST_OF_RIG of the specimen's length at the
-# largest stress would be seen to.
+# Machine compliance: the recorded stretch includes a deflection of the rig proportional to the stress. A
+# stiff frame has 0.001 to 0.02 strain/MPa. The bound is a deflection of MOST_OF_RIG of the specimen's length
+# at the largest stress of the least stressed record, which would be visible.
 
 
 MOST_OF_RIG = 0.25
@@ -60,10 +60,9 @@ MACHINE_COMPLIANCE = HomogeneousEffect(
 
 
 # -- platen-friction --
-# Platens hold a compressed cylinder by friction (slab method: the pressure grows exponentially inwards):
-# its stress is 2 (e^x - 1 - x) / x^2 times higher with x = 3 a s^(-3/2), where a is the coefficient of
-# friction times diameter over three times the height at rest, and s the stretch. For small a that is 1 + a
-# s^(-3/2).
+# Platen friction in compression of a cylinder (slab method: the pressure grows exponentially inwards): the
+# stress is multiplied by 2 (e^x - 1 - x) / x^2 with x = 3 a s^(-3/2), where a is the coefficient of friction
+# times the diameter over three times the height at rest, and s the stretch; 1 + a s^(-3/2) for small a.
 
 
 def _factor_platen_friction(s: Array, amplitude: float, record: Record) -> Array:
@@ -84,8 +83,8 @@ PLATEN_FRICTION = HomogeneousEffect(
 
 
 # -- gauge-length --
-# The strain of a pulled strip is taken from its grips: ends that are wider, or that slip, stretch less
-# (more), and its middle stretches by this part more (less) than the record says.
+# The strain in tension is measured between the grips: the middle of the specimen stretches by this fraction
+# more (less) than recorded, since the ends are wider (or slip).
 
 
 def _shift_gauge_length(s: Array, amplitude: float, record: Record) -> Array:
@@ -94,7 +93,7 @@ def _shift_gauge_length(s: Array, amplitude: float, record: Record) -> Array:
 
 
 def _compared(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some other record of the same material."""
+    """True if there is another record of the same material that the candidate does not reach."""
     return any(r.material == q.material and r not in reached for q in reached for r in everything)
 
 
@@ -112,12 +111,12 @@ GAUGE_LENGTH = HomogeneousEffect(
 
 
 # -- set-between-tests --
-# What is loaded again and again keeps part of its strain: it starts each test shorter (longer, where it was
-# pulled) by this part than the test before, while its strain is still counted from the first length. Its own
-# strain is the larger (smaller) one.
+# Permanent set under repeated loading: at the start of each test the specimen is shorter (in tension longer)
+# by this fraction than before the previous one, while strain is still relative to the original length. The
+# actual strain is therefore larger (smaller).
 
 
-REPEATS = 3  # tests alike: with two, one that is odd would look like what goes on from test to test
+REPEATS = 3  # least number of equal tests: with two, one outlier would look like a trend
 
 
 def _shift_set_between_tests(s: Array, amplitude: float, record: Record) -> Array:
@@ -126,7 +125,7 @@ def _shift_set_between_tests(s: Array, amplitude: float, record: Record) -> Arra
 
 
 def _repeated(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some test that was repeated often enough."""
+    """True if a test that the candidate reaches is a repeat, of at least `REPEATS` equal tests."""
     del everything
     return any(r.alike >= REPEATS and r.earlier > 0 for r in reached)
 
@@ -143,8 +142,8 @@ SET_BETWEEN_TESTS = HomogeneousEffect(
 
 
 # -- test-order --
-# The stress grows, or falls, by the same part from each test to the next at all strains: what heals, dries or
-# wears between them, or a load cell that wanders.
+# The stress changes by the same fraction of the first test from each test to the next, at all strains:
+# healing, drying or wear between the tests, or drift of the load cell.
 
 
 def _factor_test_order(s: Array, amplitude: float, record: Record) -> Array:

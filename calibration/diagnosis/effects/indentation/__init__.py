@@ -1,4 +1,4 @@
-"""How each effect acts on indentation: on the scene, on the depth, or on the force."""
+"""Effects in indentation tests: changes of the scene, the depth or the force."""
 
 from __future__ import annotations
 

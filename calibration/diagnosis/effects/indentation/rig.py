@@ -1,4 +1,4 @@
-"""How effects act on indentation: the indenter and its sensors."""
+"""Effects in indentation tests: indenter and sensors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tisim import Mesh, Poke
 Array = NDArray[np.float64]
 
 # -- friction --
-# The coefficient of friction is lower (or higher) than believed: the surface slides along the indenter's tip.
+# The coefficient of friction is lower (or higher) than assumed: the surface slips along the indenter's tip.
 
 
 NO_FRICTION, LITTLE_FRICTION = -BELIEVED, -0.5
@@ -34,11 +34,11 @@ FRICTION = IndentationEffect(
     bounds=(-BELIEVED, 0.4),
     physical_limits=(-BELIEVED,),
     prior_scale=BELIEVED,
-    start_fraction=1.0,  # most of what it does it does near its bound
+    start_fraction=1.0,  # the effect is strongest near the bound
     scene=_scene_friction,
-    # from 0.4 on hardly anything slides
+    # from 0.4 on there is hardly any slip
     nodes=(NO_FRICTION, LITTLE_FRICTION, -0.35, 0.0, 0.4),
-    # without friction no force is lost in unloading, with a little friction it is
+    # frictionless contact dissipates nothing in unloading, contact with a little friction does
     variants=lambda _: (LITTLE_FRICTION, NO_FRICTION),
     variant_label=lambda variant: "some slip" if variant == LITTLE_FRICTION else "free slip",
     chords=True,
@@ -50,8 +50,8 @@ FRICTION = IndentationEffect(
 
 
 # -- rod-angle --
-# The indenter's axis is inclined by another angle than believed: in the plane of its travel (x and z where it
-# is upright), or across.
+# The inclination of the indenter's axis differs from the assumed one: in the plane of its travel (x-z if it
+# is upright), or perpendicular to that plane.
 
 
 ALONG, ACROSS = 0.0, 1.0
@@ -74,7 +74,7 @@ def _scene_rod_angle(poke: Poke, mesh: Mesh | None, amplitude: float, variant: f
 
 
 def _variants_rod_angle(records: Sequence[Record]) -> tuple[float | None, ...]:
-    """Across the plane only where some record has forces across the indenter."""
+    """The direction across the plane is included only if a record has forces across the indenter."""
     return (ALONG, ACROSS) if any(r.across is not None for r in records) else (ALONG,)
 
 
@@ -99,7 +99,7 @@ ROD_ANGLE = IndentationEffect(
 
 
 # -- depth-offset --
-# The zero of the depth is off: the surface was touched earlier, or later, than the record says.
+# Zero error of the depth: first contact was earlier or later than recorded.
 
 
 def _shift_depth_offset(amplitude: float, record: Record) -> float:
@@ -118,7 +118,7 @@ DEPTH_OFFSET = IndentationEffect(
 
 
 # -- force-gain --
-# The load cell shows a multiple of the force: in all records alike it cannot be separated from the modulus.
+# Gain error of the load cell; a gain common to all records of a material is an alias of the modulus.
 
 
 def _force_gain(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
@@ -127,7 +127,7 @@ def _force_gain(force: Array, amplitude: float, record: Record, variant: float |
 
 
 def _identifiable_force_gain(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Another record of the same material that it does not reach."""
+    """True if there is another record of the same material that the candidate does not reach."""
     names = {r.name for r in reached}
     materials = {r.material for r in reached}
     return any(r.material in materials and r.name not in names for r in everything)
@@ -147,7 +147,7 @@ FORCE_GAIN = IndentationEffect(
 
 
 # -- force-offset --
-# The zero of the force is off, by the same all through a record.
+# Constant zero error of the force in a record.
 
 
 def _force_offset(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
@@ -167,7 +167,7 @@ FORCE_OFFSET = IndentationEffect(
 
 
 # -- force-drift --
-# The zero of the force wanders in proportion to time (warming load cell).
+# The zero of the force drifts linearly in time (warming load cell).
 
 
 def _force_drift(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:

@@ -1,4 +1,4 @@
-"""How effects act on indentation: the block and its material."""
+"""Effects in indentation tests: block and material."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from tisim import Mesh, Poke
 Array = NDArray[np.float64]
 
 # -- relaxation --
-# The force falls during a hold, and rises with the speed: linear viscoelasticity beside the elastic force.
+# Linear viscoelasticity: the force falls during a hold, and rises with the speed.
 #
 # F(t) = Fe(t) - amplitude int h(t - s) dFe(s), where Fe is the elastic force and h(t) = log10(1 + t / 1 s),
-# the same fraction a decade; in other variants h(t) = 1 - exp(-t / tau), one relaxation time tau.
+# an equal fraction per decade; in other variants h(t) = 1 - exp(-t / tau) with one relaxation time tau.
 
 
-TIMES_A_DECADE = 4  # relaxation times tried
+TIMES_A_DECADE = 4  # relaxation times tried per decade
 
-LOG_ONSET = 1.0  # of the logarithm [s]
+LOG_ONSET = 1.0  # time scale in the logarithm [s]
 
 
 def _force_relaxation(force: Array, amplitude: float, record: Record, variant: float | None) -> Array:
-    """At least zero: an indenter that the surface does not hold leaves it."""
+    """Relaxed force, not below zero, since contact is lost without adhesion."""
     rise = np.diff(force, prepend=0.0)
     return np.maximum(force - amplitude * (_faded(record, variant) @ rise), 0.0)
 
 
 @lru_cache(maxsize=512)
 def _faded(record: Record, variant: float | None) -> Array:
-    """(k, k): mean of h over each change's interval, as seen at each time."""
+    """Matrix (k, k) whose row i has the mean of h(t_i - s) over the interval of each force increment."""
     end = record.time
     gap = np.diff(end)
     start = np.r_[end[0] - (gap[0] if gap.size else 1.0), end[:-1]]
@@ -49,7 +49,7 @@ def _faded(record: Record, variant: float | None) -> Array:
 
 
 def _integral(t: Array, variant: float | None) -> Array:
-    """Of h from 0 to t."""
+    """Integral of h from 0 to t."""
     if variant is None:
         x = t / LOG_ONSET
         return np.asarray(LOG_ONSET * ((1.0 + x) * np.log1p(x) - x) / np.log(10.0))
@@ -57,7 +57,7 @@ def _integral(t: Array, variant: float | None) -> Array:
 
 
 def _variants_relaxation(records: Sequence[Record]) -> tuple[float | None, ...]:
-    """The logarithm, and times from a few samples to the longest record."""
+    """None for the logarithm, and relaxation times from two samples to the duration of the longest record."""
     longest = max(float(np.ptp(r.time)) for r in records)
     shortest = min(float(np.median(np.diff(r.time))) for r in records if r.points > 1)
     low = int(np.floor(TIMES_A_DECADE * np.log10(2.0 * shortest)))
@@ -66,7 +66,7 @@ def _variants_relaxation(records: Sequence[Record]) -> tuple[float | None, ...]:
 
 
 def _identifiable_relaxation(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """A hold, an unloading, or two rates in one material."""
+    """True if there is a hold, an unloading, or two different rates in one material."""
     del everything
     if any(r.unloads or (r.direction == 0).sum() > 2 for r in reached):
         return True
@@ -103,9 +103,9 @@ RELAXATION = IndentationEffect(
 
 
 # -- mullins --
-# After an indentation the material is softer down to the deepest depth so far: by the fraction `amplitude`
-# near the surface, falling to zero at that depth; or, in another variant, by the same fraction at all depths
-# of later loadings.
+# After an indentation the force is lower up to the largest depth so far: by the fraction `amplitude` near the
+# surface, decreasing to zero at that depth; or, in another variant, by the same fraction at all depths from
+# the second loading on.
 
 
 FADING_SOFTENING, EVEN_SOFTENING = 0.0, 1.0
@@ -121,14 +121,17 @@ def _force_mullins(force: Array, amplitude: float, record: Record, variant: floa
 
 
 def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some second loading."""
+    """True if a record has a second loading."""
     del everything
     return any(r.reloaded for r in reached)
 
 
 def _softening_mullins(found: Occurrence) -> HandedOn:
-    """Energies grow with the square of the depth (of a flat indenter at small strain); the largest is of a
-    strain of the depth over the indenter's radius, at most 1."""
+    """Softening of the material equivalent to that of the force.
+
+    Energy is proportional to the square of the depth (flat indenter at small strain). The largest energy is
+    1.5 G strain^2 with the strain taken as depth over indenter radius, at most 1.
+    """
     strain = max(min(float(r.peak.max()) / r.geometry.rod.radius, 1.0) for r in found.records)
 
     def lost(ratio: Array) -> Array:
@@ -159,18 +162,17 @@ MULLINS = IndentationEffect(
 
 
 # -- adhesion --
-# The surface sticks to the indenter: in unloading the force is smaller, and pulls before the indenter comes
-# free.
+# Adhesion: in unloading the force is smaller, and tensile before the indenter detaches.
 #
-# The pull grows from the turning point on within a tenth of the depth, and fades above the surface; in
-# another variant it acts near the surface only.
+# The adhesive force develops within a tenth of the largest depth after the reversal, and decays above the
+# surface; in another variant it acts near the surface only.
 
 
 EVERYWHERE, SHALLOW = 0.0, 1.0
 
-ADHESION_TURNS = 0.1  # fraction of the deepest depth within which the pull grows
+ADHESION_TURNS = 0.1  # fraction of the largest depth over which the adhesive force develops
 
-# In radii of the indenter: above the surface until it tears, and below it (shallow).
+# Decay lengths in indenter radii: above the surface, and below it (shallow variant).
 ADHESION_LIFT, ADHESION_DEPTH = 0.15, 0.3
 
 
@@ -188,7 +190,7 @@ def _pull(record: Record, variant: float | None) -> Array:
 
 
 def _identifiable_adhesion(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """Some unloading."""
+    """True if a record has an unloading."""
     del everything
     return any(r.unloads for r in reached)
 
@@ -208,11 +210,10 @@ ADHESION = IndentationEffect(
 
 
 # -- inclusion-debonded --
-# The inclusion does not hold the soft material around it: the block answers in part as if it were soft all
-# over.
+# The inclusion is debonded from the soft material: the force is in part that of a block without inclusion.
 #
-# The amplitude is that fraction; 1 is the block without its inclusion, which is softer than any loose one.
-# The force is taken to be linear in it: how a gap opens and closes is not simulated.
+# The amplitude is that fraction; 1 is the block without its inclusion, which is softer than a block with any
+# debonded one. The force is assumed to be linear in it: opening and closing of a gap are not simulated.
 
 
 def _scene_inclusion_debonded(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
@@ -234,7 +235,7 @@ INCLUSION_DEBONDED = IndentationEffect(
 
 
 # -- inclusion-misplaced --
-# The rigid inclusion lies elsewhere than believed: higher, or aside along x or y.
+# The position of the rigid inclusion differs from the assumed one, along x, y or z.
 
 
 X, Y, Z = 0.0, 1.0, 2.0
@@ -245,7 +246,10 @@ SHIFT = 1.5e-3  # [m]
 def _scene_inclusion_misplaced(
     poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None
 ) -> Poke:
-    """Meshed anew: its outline is met by other cells, which the mesh's error covers."""
+    """The block is meshed again, since the inclusion's outline lies in other cells.
+
+    The change by the mesh is covered by the discretisation error.
+    """
     del mesh
     inclusion = poke.block.inclusion
     assert inclusion is not None
@@ -255,7 +259,7 @@ def _scene_inclusion_misplaced(
 
 
 def _variants_inclusion_misplaced(records: Sequence[Record]) -> tuple[float | None, ...]:
-    """Sideways only where there are several contact points."""
+    """All three directions if there are several contact points, only z otherwise."""
     sites = {r.geometry.site for r in records if r.geometry.block.inclusion is not None}
     return (X, Y, Z) if len(sites) > 1 else (Z,)
 
@@ -276,14 +280,14 @@ INCLUSION_MISPLACED = IndentationEffect(
 
 
 # -- thickness --
-# The block is higher, or lower, than believed: its base is further from the rod, or nearer.
+# The block is thicker (positive) or thinner than assumed: its base is further from the indenter, or nearer.
 
 
-HEIGHT_STEP = 0.2  # of the height, between the simulated blocks
+HEIGHT_STEP = 0.2  # relative difference in height between the simulated blocks
 
 
 def _scene_thickness(poke: Poke, mesh: Mesh | None, amplitude: float, variant: float | None) -> Poke:
-    """On the same mesh, stretched: new elements would hide a small change."""
+    """The same mesh is stretched, since the error of a new mesh would hide a small change."""
     del variant
     part = 1.0 + amplitude
     size = poke.block.size

@@ -1,4 +1,4 @@
-"""How each effect acts on photographed beams: on the scene, or on its picture."""
+"""Effects in photographs of beams: changes of the scene or of its image."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Effects of the material on photographed beams: they change the scene's law, moduli or density."""
+"""Effects of the material in photographs of beams: changes of the scene's law, moduli or density."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tisim import Beam, laws
 Array = NDArray[np.float64]
 
 # -- density --
-# The specimen weighs more or less than the lab says: stiffness and weight enter by their ratio alone.
+# The density differs from the stated one by this fraction: only the ratio of stiffness to weight matters.
 
 
 def _bend_density(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -30,7 +30,7 @@ def _bend_density(beam: Beam, amplitude: float, _: Situation) -> Beam:
 
 DENSITY = OutlineEffect(
     effect=catalogue.DENSITY,
-    # the opposite of the baseline's own step in ln G: the two are one, and so must their differences be
+    # minus the baseline's step in ln G: the two are aliases, so their finite differences must agree
     step=-0.003,
     bounds=(-0.3, 0.3),
     prior_scale=0.05,
@@ -39,11 +39,11 @@ DENSITY = OutlineEffect(
 
 
 # -- strain-stiffening --
-# The material stiffens with strain: W gets a term mu/2 a (I1bar - 3)^2 beside the baseline's.
+# Strain stiffening: W has an additional term mu/2 a (I1bar - 3)^2.
 
 
 def _bend_strain_stiffening(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    known = beam.material.parameters["stiffening"]  # the baseline's law has it, at zero
+    known = beam.material.parameters["stiffening"]  # 0 in the baseline's law
     assert isinstance(known, float)
     parameters = {**beam.material.parameters, "stiffening": known + amplitude}
     return replace(beam, material=replace(beam.material, parameters=parameters))
@@ -60,7 +60,7 @@ STRAIN_STIFFENING = OutlineEffect(
 
 
 # -- compressibility --
-# The material gives way in volume: Poisson's ratio is lower than the baseline's by this much.
+# Compressibility: Poisson's ratio is lower than the baseline's by this amount.
 
 
 def _bend_compressibility(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -81,7 +81,7 @@ COMPRESSIBILITY = OutlineEffect(
 
 
 # -- creep --
-# The material creeps: its modulus falls by this part with each decade of time since release, from 1 s.
+# Creep: the modulus falls by this fraction of its value at 1 s per decade of time since release.
 
 
 def _bend_creep(beam: Beam, amplitude: float, situation: Situation) -> Beam:
@@ -92,8 +92,11 @@ def _bend_creep(beam: Beam, amplitude: float, situation: Situation) -> Beam:
 
 
 def _viscosity_creep(found: Occurrence) -> HandedOn:
-    """The modulus at each time taken for the relaxation function there: under a constant load the difference
-    is a fraction of (pi c / 2.3)^2 / 6 of it, for a fraction c a decade (0.3 % for 10 %)."""
+    """Prony series with the modulus at each time as the relaxation function.
+
+    Under a constant load the two differ by the fraction (pi c / 2.3)^2 / 6 for a creep of the fraction c per
+    decade (0.3 % for c = 10 %).
+    """
     times = [r.time for r in found.records if r.time > 0.0]
     first, last = min(times), max(times)
     if not last > first:

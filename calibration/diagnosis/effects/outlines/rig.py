@@ -1,4 +1,4 @@
-"""Effects of rig and camera on photographed beams: they change the scene's supports, or its picture."""
+"""Effects of rig and camera in photographs of beams: changes of the scene's supports or of its image."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tisim import Beam
 Array = NDArray[np.float64]
 
 # -- grip-length --
-# The grips hold deeper (positive) or shallower than their faces: the material is free that much inside.
+# The grips hold the beam this far behind (positive) or in front of their faces.
 
 
 def _bend_grip_length(beam: Beam, amplitude: float, situation: Situation) -> Beam:
@@ -28,7 +28,7 @@ def _bend_grip_length(beam: Beam, amplitude: float, situation: Situation) -> Bea
 
 
 def _image_grip_length(points: Array, amplitude: float, _: Situation) -> Array:
-    # the scene's x = 0 is where the material gets free, behind the face that the picture's x = 0 is
+    # x = 0 is the end of the grip in the scene, but the face of the grip in the image
     return points - np.array([amplitude, 0.0])
 
 
@@ -43,7 +43,7 @@ GRIP_LENGTH = OutlineEffect(
 
 
 # -- clamp-compliance --
-# The clamps yield: they turn in proportion to the bending moment that they carry.
+# Compliant clamps: they rotate in proportion to their bending moment.
 
 
 def _bend_clamp_compliance(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -65,7 +65,7 @@ CLAMP_COMPLIANCE = OutlineEffect(
 
 
 # -- clamp-tilt --
-# The clamp is mounted askew: its face is turned, the beam leaves it upwards (positive) or downwards.
+# Tilted clamp: its face is rotated, so that the beam leaves it upwards (positive) or downwards.
 
 
 def _bend_clamp_tilt(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -85,7 +85,7 @@ CLAMP_TILT = OutlineEffect(
 
 
 # -- gravity-tilt --
-# The whole rig leans in the plane of the picture: gravity is not along -z. Positive turns it towards +x.
+# The rig is tilted in the image plane: gravity is not along -z but rotated towards +x (positive).
 
 
 def _bend_gravity_tilt(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -104,7 +104,7 @@ GRAVITY_TILT = OutlineEffect(
 
 
 # -- free-length --
-# A cantilever has slipped out of its grip: its free length is longer (positive) than measured.
+# A cantilever has slipped in its grip: its free length is longer (positive) or shorter than measured.
 
 
 def _bend_free_length(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -122,7 +122,7 @@ FREE_LENGTH = OutlineEffect(
 
 
 # -- grip-squeeze --
-# The grip squeezes the section that it holds: lower by this part, and wider by the same.
+# The grip squeezes the section: its height is smaller, and its width larger, by this fraction.
 
 
 def _bend_grip_squeeze(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -144,11 +144,11 @@ GRIP_SQUEEZE = OutlineEffect(
 
 
 # -- clamp-gap --
-# The bridge is slack (positive: its clamps are nearer to each other than its free length) or stretched.
+# The bridge is slack (positive: its clamps are closer together than its free length) or stretched.
 
 
 def _bend_clamp_gap(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    # the clamps stay where they are seen; more material hangs between them
+    # the clamps keep their observed positions; the length of the beam between them changes
     dx, dz = beam.clamp_imperfections.far_shift
     return replace(
         beam,
@@ -168,7 +168,7 @@ CLAMP_GAP = OutlineEffect(
 
 
 # -- camera-roll --
-# The camera is rolled against the rig's horizontal, in all photographs alike: positive lifts large x.
+# The camera is rolled relative to the rig's horizontal, equally in all photographs: positive lifts large x.
 
 
 def _image_camera_roll(points: Array, amplitude: float, _: Situation) -> Array:
@@ -187,7 +187,7 @@ CAMERA_ROLL = OutlineEffect(
 
 
 # -- image-scale --
-# The scale of all photographs is off by this part: things look larger where positive.
+# Scale error of all photographs by this fraction: objects look larger if positive.
 
 
 def _image_scale(points: Array, amplitude: float, _: Situation) -> Array:
@@ -205,11 +205,11 @@ IMAGE_SCALE = OutlineEffect(
 
 
 # -- lens-distortion --
-# The lens distorts: points move away from the picture's middle by k r^2 of their distance r from it.
+# Radial lens distortion: points at distance r from the image centre move outwards by k r^3.
 
 
 def _image_lens_distortion(points: Array, amplitude: float, situation: Situation) -> Array:
-    # the middle of the picture is not in the file: the middle of the unbent beam stands for it
+    # the image centre is not in the file; it is approximated by the centre of the undeformed beam
     away = points - np.array([0.5 * situation.trial.free_length, 0.0])
     return points + away * amplitude * (away**2).sum(axis=1, keepdims=True)
 

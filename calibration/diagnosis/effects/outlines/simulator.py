@@ -1,4 +1,4 @@
-"""Faults of the simulator itself: a part of the way to the beams that it ought to have."""
+"""Errors of the simulator itself: interpolation between its beams and those of a better discretisation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from tisim import Beam
 Array = NDArray[np.float64]
 
 # -- locking --
-# The simulator's elements lock: this part of the way from its beams to those of a mixed element.
+# Locking elements. The amplitude interpolates linearly from the simulator's beams (0) to those of a mixed
+# element (1).
 
 
 def _instead_locking(beam: Beam) -> Beam:
@@ -36,7 +37,8 @@ LOCKING = OutlineEffect(
 
 
 # -- coarse-mesh --
-# The simulator's mesh is too coarse: this part of the way to a mesh three times finer.
+# Mesh too coarse. The amplitude interpolates linearly to a mesh with axial elements of a third of the size
+# and one more radial element.
 
 
 def _instead_coarse_mesh(beam: Beam) -> Beam:
@@ -57,7 +59,8 @@ COARSE_MESH = OutlineEffect(
 
 
 # -- not-at-equilibrium --
-# The simulator stops before equilibrium: this part of the way from where it stops to the equilibrium.
+# The simulator stops before equilibrium. The amplitude interpolates linearly from its final state to the
+# static equilibrium.
 
 
 def _instead_not_at_equilibrium(beam: Beam) -> Beam:

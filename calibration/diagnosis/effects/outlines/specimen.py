@@ -1,4 +1,4 @@
-"""Effects of the specimen on photographed beams: section, shape, and stiffness along and across it."""
+"""Effects of the specimen in photographs of beams: section, shape and stiffness distribution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tisim import Beam, Circle, Void
 Array = NDArray[np.float64]
 
 # -- radius --
-# The section is larger (positive) or smaller than stated, all along the beam; swelling looks the same.
+# The section is larger (positive) or smaller than stated, along the whole beam; swelling has the same effect.
 
 
 def _bend_radius(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -41,7 +41,7 @@ RADIUS = OutlineEffect(
 
 
 # -- taper --
-# The section grows (positive) or shrinks along the beam, linearly, about the middle of its free length.
+# Taper: the section grows (positive) or shrinks linearly along the beam, about the middle of its free length.
 
 
 def _bend_taper(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -60,7 +60,7 @@ TAPER = OutlineEffect(
 
 
 # -- stiffness-gradient-axial --
-# The modulus changes linearly along the beam (a mixture that settled), about its free length's middle.
+# The modulus varies linearly along the beam (a mixture that settled), about the middle of its free length.
 
 
 def _bend_stiffness_gradient_axial(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -78,7 +78,7 @@ STIFFNESS_GRADIENT_AXIAL = OutlineEffect(
 
 
 # -- stiffness-gradient-transverse --
-# The modulus changes linearly from the lower to the upper side (a filler that settled while curing).
+# The modulus varies linearly from the lower to the upper side (a filler that settled while curing).
 
 
 def _bend_stiffness_gradient_transverse(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -96,7 +96,7 @@ STIFFNESS_GRADIENT_TRANSVERSE = OutlineEffect(
 
 
 # -- residual-curvature --
-# The beam was bent in its mould: free of stress it is an arc, upwards where positive.
+# Residual curvature from casting: the stress-free beam is an arc, curved upwards if positive.
 
 
 def _bend_residual_curvature(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -115,17 +115,17 @@ RESIDUAL_CURVATURE = OutlineEffect(
 
 
 # -- void --
-# A bubble or a cut: over 15 mm of one beam part of its bending stiffness, and of its weight, is missing.
+# A bubble or a cut: over 15 mm of a beam, a fraction of its bending stiffness and of its weight is missing.
 #
-# The amplitude is that of a void with sharp ends. `tisim.Void` sets in over `edge`, since a mesh cannot
-# follow a jump; both bend the beam by the same angle where the flexibility that they add along it, the
-# integral of 1 / (1 - loss) - 1, is the same. That of a loss f over the length L is L f / (1 - f); that of
-# one of peak p, half a cosine over E at either end, is (L - E) (w^2 - 1) + 2 E (w - 1) with w = 1 / sqrt(1
-# - p).
+# The amplitude is that of a void with sharp ends. `tisim.Void` sets in gradually over `edge`, since a mesh
+# cannot represent a jump. The two bend the beam by the same angle if the added flexibility, the integral of
+# 1 / (1 - loss) - 1 along the beam, is equal. For a loss f over the length L it is L f / (1 - f); for a loss
+# of peak p with half a cosine over E at either end it is (L - E) (w^2 - 1) + 2 E (w - 1) with
+# w = 1 / sqrt(1 - p).
 
 
 def hole(loss: float, *, position: float) -> Void:
-    """The void that bends a beam as much as a loss with sharp ends."""
+    """Smooth void equivalent to a sharp-ended one of this loss (below 1) at this position [m]."""
     flat = Void(position=position, fraction=0.0)
     length, edge = flat.length, flat.edge
     core = length - edge
@@ -146,13 +146,13 @@ VOID = OutlineEffect(
     prior_scale=0.5,
     bend=_bend_void,
     positions=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7),
-    scopes=("material", "trial"),  # one beam's, or its batch's
+    scopes=("material", "trial"),  # in one beam, or in its batch
     in_all=False,
 )
 
 
 # -- skin --
-# A layer of 1 mm at the surface is stiffer than the core by this part; locking elements look the same.
+# A surface layer of 1 mm is stiffer than the core by this fraction; locking elements have the same effect.
 
 
 def _bend_skin(beam: Beam, amplitude: float, _: Situation) -> Beam:
@@ -169,7 +169,7 @@ SKIN = OutlineEffect(
 
 
 # -- added-mass --
-# Something hangs on the free end of one cantilever: a blob, a hook, a label.
+# Additional mass on the free end of one cantilever: a blob, a hook, a label.
 
 
 def _bend_added_mass(beam: Beam, amplitude: float, _: Situation) -> Beam:

@@ -1,4 +1,4 @@
-"""How each effect acts on a cantilever release: on the parameters of the reduced beam."""
+"""Effects in cantilever release tests: changes of the parameters of the reduced beam model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How effects act on a cantilever release: the material and the beam that is made of it."""
+"""Effects in cantilever release tests: material and beam."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from calibration.measurements.release._record import reference_time
 from tisim import Circle, Rectangle
 
 # -- creep --
-# The material creeps: of its modulus at 1 s this fraction goes with each decade of time, from a millisecond
-# to a quarter of an hour (two relaxation times a decade): the vibration loses energy by it too.
+# Creep: the relaxation modulus falls by this fraction of its value at 1 s per decade of time, from 1 ms to
+# 1000 s (two relaxation times per decade); it damps the vibration as well.
 
 
 BRANCHES_A_DECADE = 2
@@ -27,10 +27,10 @@ CREEP_TIMES = tuple(
 
 
 def _creep_branches(amplitude: float, reference: float) -> float:
-    """Each branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    """Fraction of each branch, relative to the storage modulus at the frequency 1 / `reference` [rad/s]."""
     times = np.array(CREEP_TIMES)
     slow = (times / reference) ** 2
-    sunk = float(np.sum(slow / (1.0 + slow) - np.exp(-1.0 / times)))  # from the vibration to 1 s
+    sunk = float(np.sum(slow / (1.0 + slow) - np.exp(-1.0 / times)))  # loss from the vibration's time to 1 s
     return amplitude / (BRANCHES_A_DECADE + amplitude * sunk)
 
 
@@ -65,11 +65,11 @@ CREEP = ReleaseEffect(
 
 
 # -- relaxation --
-# The material has one more relaxation time: this fraction of the modulus before it goes with it.
+# One further relaxation time, with this fraction of the modulus at times much shorter than it.
 
 
 def _relaxing_branch(amplitude: float, time: float, reference: float) -> float:
-    """The branch's fraction of the modulus in a vibration of angular frequency 1 / reference."""
+    """Fraction of the branch, relative to the storage modulus at the frequency 1 / `reference` [rad/s]."""
     return amplitude / (1.0 - amplitude / (1.0 + (time / reference) ** 2))
 
 
@@ -104,8 +104,8 @@ RELAXATION = ReleaseEffect(
 
 
 # -- strain-stiffening --
-# The material stiffens with strain (softens, where negative): W gets mu/2 a (I1 - 3)^2, in bending a term
-# in the cube of the curvature.
+# Strain stiffening (softening if negative): W has an additional term mu/2 a (I1 - 3)^2, which in bending is a
+# moment proportional to the cube of the curvature.
 
 
 def _alter_strain_stiffening(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -124,7 +124,7 @@ STRAIN_STIFFENING = ReleaseEffect(
 
 
 # -- residual-curvature --
-# Residual curvature from casting: free of stress the beam is an arc, upwards where positive.
+# Residual curvature from casting: the stress-free beam is an arc, curved upwards if positive.
 
 
 def _alter_residual_curvature(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -142,7 +142,7 @@ RESIDUAL_CURVATURE = ReleaseEffect(
 
 
 # -- stiffness-gradient-axial --
-# The beam is stiffer towards its free end (positive) or its clamp.
+# Axial stiffness gradient: the beam is stiffer towards its free end (positive) or its clamp (negative).
 
 
 def _alter_stiffness_gradient_axial(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -160,7 +160,8 @@ STIFFNESS_GRADIENT_AXIAL = ReleaseEffect(
 
 
 # -- density --
-# The beam weighs more or less than stated. Beside a hung mass that is known, its weight is identified.
+# The density differs from the stated one by this fraction. A known hung mass makes the beam's weight
+# identifiable.
 
 
 def _alter_density(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -177,7 +178,7 @@ DENSITY = ReleaseEffect(
 
 
 # -- section-scale --
-# The section is larger (or smaller) than measured in all directions, by this fraction.
+# The section's dimensions are larger (positive) or smaller than measured by this fraction.
 
 
 def _alter_section_scale(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:

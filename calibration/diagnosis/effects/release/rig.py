@@ -1,4 +1,4 @@
-"""How effects act on a cantilever release: clamp, load and cameras."""
+"""Effects in cantilever release tests: clamp, load and cameras."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._effect import ReleaseEffect, hung
 
 # -- clamp-compliance --
-# The clamp yields: it turns in proportion to the bending moment that it carries.
+# Compliant clamp: it rotates in proportion to its bending moment.
 
 
 def _alter_clamp_compliance(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -29,7 +29,7 @@ CLAMP_COMPLIANCE = ReleaseEffect(
 
 
 # -- clamp-sag --
-# The clamp yields: it sinks in proportion to the force that it carries.
+# Compliant clamp: it sinks in proportion to its force.
 
 
 def _alter_clamp_sag(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -47,7 +47,7 @@ CLAMP_SAG = ReleaseEffect(
 
 
 # -- grip-length --
-# The clamp holds deeper (positive) or shallower than its face: the beam is free that much inside.
+# The clamp holds the beam this far behind (positive) or in front of its face.
 
 
 def _alter_grip_length(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -66,7 +66,7 @@ GRIP_LENGTH = ReleaseEffect(
 
 
 # -- gravity-tilt --
-# The whole rig leans in the plane of the vibration: weights do not act as stated. Positive turns them to +x.
+# The rig is tilted in the plane of vibration: gravity is rotated, towards +x if positive.
 
 
 def _turned(v: Pair, angle: float) -> Pair:
@@ -90,7 +90,7 @@ GRAVITY_TILT = ReleaseEffect(
 
 
 # -- air-drag --
-# Something drags on the beam in proportion to its speed and mass (mass-proportional damping).
+# Mass-proportional damping: a drag force proportional to velocity and mass.
 
 
 def _alter_air_drag(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -108,7 +108,7 @@ AIR_DRAG = ReleaseEffect(
 
 
 # -- added-mass --
-# More (or less) mass hangs on the free end than stated, with its weight and its inertia.
+# The mass on the free end is larger (or smaller) than stated, in weight and inertia.
 
 
 def _alter_added_mass(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -129,7 +129,7 @@ ADDED_MASS = ReleaseEffect(
 
 
 # -- load-height --
-# The hung mass acts above (or below) the middle of the end face: its arm changes as the face turns.
+# The hung mass acts above (or below) the centre of the end face: its lever arm changes as the face rotates.
 
 
 def _alter_load_height(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -148,8 +148,8 @@ LOAD_HEIGHT = ReleaseEffect(
 
 
 # -- loose-load --
-# The hung mass is tied loosely: its weight acts, but this part of its inertia does not move with the beam
-# (on a string it swings behind).
+# Loosely attached mass: its weight acts, but this fraction of its inertia does not move with the beam (as if
+# it hangs on a string).
 
 
 def _alter_loose_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -170,8 +170,9 @@ LOOSE_LOAD = ReleaseEffect(
 
 
 # -- rubbing-load --
-# What hangs on the beam rubs where it is fixed (Coulomb): beside its damping the swing loses the same
-# amplitude in each quarter of a period, four of what friction holds a period, until it stops.
+# Coulomb friction at the attachment of the hung mass: in addition to viscous damping, the vibration loses the
+# same amplitude in each quarter period, four times the displacement that friction can hold in each period,
+# until it stops.
 
 
 def _alter_rubbing_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -191,8 +192,8 @@ RUBBING_LOAD = ReleaseEffect(
 
 
 # -- held-pose --
-# The beam is held above or below straight before it is let go, in the shape of its equilibrium: displacements
-# are counted from there, so that it comes down less (positive) or more.
+# Before release the beam is held below (positive) or above its straight position, in the shape of its
+# deflection at equilibrium. Displacements are relative to that position, so that they are smaller or larger.
 
 
 def _alter_held_pose(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -211,7 +212,7 @@ HELD_POSE = ReleaseEffect(
 
 
 # -- image-scale --
-# The cameras show displacements too large (positive) or too small.
+# Scale error of the cameras: displacements are too large (positive) or too small.
 
 
 def _alter_image_scale(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -230,7 +231,7 @@ IMAGE_SCALE = ReleaseEffect(
 
 
 # -- camera-roll --
-# The cameras' frame is turned about y against the beam's, in all trials alike.
+# The camera frame is rotated about y relative to the beam's frame.
 
 
 def _alter_camera_roll(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
@@ -249,7 +250,7 @@ CAMERA_ROLL = ReleaseEffect(
 
 
 # -- clock-rate --
-# The cameras' clock is slow (positive: more time has passed than they say) or fast.
+# The cameras' clock is slow (positive: more time has passed than recorded) or fast.
 
 
 def _alter_clock_rate(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
