@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from calibration.diagnosis._rig_file import RigFile
 from calibration.diagnosis.effects.outlines import EFFECTS
+from calibration.errors import InputError
 from calibration.experiment import parse
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.measurements._effect import Candidate, reaches
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Rig:
-    """Effects of rig, camera or simulator; a `calibration.measurements.outlines.setup.Setup`.
+    """Effects of rig or camera; a `calibration.measurements.outlines.setup.Setup`.
 
     Attributes
     ----------
@@ -88,7 +89,7 @@ class Rig:
         ]
         if experiment.digest == self.found_on:
             remarks.append("found on these very measurements, which the error bars thus count twice")
-        return replace(self, remarks=tuple(remarks))
+        return replace(self, remarks=(*self.remarks, *remarks))
 
     def _inside(self, trial: BeamTrial) -> Sequence[tuple[OutlineEffect, float, Situation]]:
         """Effects that act in a trial with amplitudes other than 0, in the catalogue's order.
@@ -110,22 +111,33 @@ def read_rig(path: Path) -> Rig:
 
     Raises
     ------
-    InputError : the file cannot be used, for example because it is a record of other measurements. The
-        sentence names the key.
+    InputError : the file cannot be used, for example because it is a record of other measurements or has
+        effects of a simulator only. The sentence names the key.
     OSError : the file cannot be read.
     """
     content = path.read_bytes()
     file = parse(content, path, RigFile)
-    effects = [EFFECTS[e.effect] for e in file.effects]
+    # a fault of the simulator that was diagnosed is not in the beams of the one that calibrates
+    kept = [k for k, f in enumerate(file.effects) if f.belongs_to != "simulator"]
+    if not kept:
+        names = ", ".join(f.effect for f in file.effects)
+        raise InputError(f"{path}: key effects: expected one of rig or camera, got {names} of a simulator")
+    used = [file.effects[k] for k in kept]
+    effects = [EFFECTS[f.effect] for f in used]
     units = np.array([e.per_unit for e in effects])
-    values = [f.parameters[e.parameter].value for f, e in zip(file.effects, effects, strict=True)]
-    covariance = np.array(file.covariance.matrix) / np.outer(units, units)
+    values = [f.parameters[e.parameter].value for f, e in zip(used, effects, strict=True)]
+    covariance = np.array(file.covariance.matrix)[np.ix_(kept, kept)] / np.outer(units, units)
     return Rig(
-        candidates=tuple(Candidate(effect=f.effect, at=f.scope) for f in file.effects),
+        candidates=tuple(Candidate(effect=f.effect, at=f.scope) for f in used),
         amplitudes=tuple(float(a) for a in values / units),
         covariance=tuple(tuple(float(x) for x in row) for row in covariance),
         digest=hashlib.sha256(content).hexdigest(),
         found_on=file.experiment_sha256,
+        remarks=tuple(
+            f"{f.effect} is a fault of the diagnosed simulator and corrects nothing here"
+            for f in file.effects
+            if f.belongs_to == "simulator"
+        ),
     )
 
 

@@ -95,7 +95,10 @@ class HeldOut:
             points @ np.array([getattr(p, f"rms_{which}") ** 2 for p in self.parts])
             for which in ("before", "after", "noise")
         )
-        return bool(np.quantile((before - after) / (before - noise), 1.0 - sure) >= least_skill)
+        # a replicate in which the baseline leaves no more than noise shows no skill
+        explainable = before - noise
+        skills = np.divide(before - after, explainable, out=np.full(draws, -1.0), where=explainable > 0.0)
+        return bool(np.quantile(skills, 1.0 - sure) >= least_skill)
 
     @property
     def _acting(self) -> tuple[bool, ...]:

@@ -179,6 +179,14 @@ def test_many_parts_may_hold_some_that_gain_nothing(skills: list[float], mostly:
     assert found.helps_mostly(least_skill=0.5, sure=0.95, draws=400, seed=0) == mostly
 
 
+def test_a_loss_beside_a_baseline_within_noise_is_no_skill() -> None:
+    """Most parts improve a little, three get much worse; the baseline's error is below the noise in all."""
+    found = held(*[0.9] * 16)
+    parts = [replace(p, rms_before=0.9, rms_after=5.0 if k < 3 else 0.89) for k, p in enumerate(found.parts)]
+    few = replace(found, parts=tuple(parts))
+    assert not few.helps_mostly(least_skill=0.5, sure=0.95, draws=400, seed=0)
+
+
 def test_where_no_family_keeps_half_the_best_is_taken() -> None:
     thirds = [np.arange(72) % 3 == k for k in range(3)]
     shapes = {"bend": column(lambda x: np.where(x < 0.5, 1.0, -1.0))}

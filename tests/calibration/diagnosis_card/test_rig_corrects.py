@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from card_cases import bench, diagnosis
@@ -36,7 +37,9 @@ def test_what_is_found_on_other_measurements_corrects_nothing(effects: Mapping[s
         assert corrects([e]) == "nothing", e.name
 
 
-@pytest.mark.parametrize("effect", faults(BEAMS), ids=lambda e: e.name)
+@pytest.mark.parametrize(
+    "effect", [e for e in faults(BEAMS) if e.belongs_to != "simulator"], ids=lambda e: e.name
+)
 @pytest.mark.parametrize("end", [0, 1])
 def test_what_is_found_on_photographed_beams_is_read(effect: Effect, end: int, tmp_path: Path) -> None:
     """At the bounds of the amplitude, to the six digits of the file."""
@@ -60,3 +63,18 @@ def test_a_record_is_refused_whatever_its_effects_are_called(tmp_path: Path) -> 
     # files from before this key existed
     path.write_text(text.replace("corrects: outlines\n", ""), encoding="utf-8")
     assert read_rig(path).amplitudes == pytest.approx((0.02,), rel=1e-5)
+
+
+def test_a_fault_of_a_simulator_corrects_nothing_and_says_so(tmp_path: Path) -> None:
+    """The amplitudes of rig and camera stay, with their covariance; a file without any is refused."""
+    locking, tilt = Candidate(effect="locking"), Candidate(effect="clamp-tilt")
+    made = diagnosis({locking: 0.5, tilt: 0.02})
+    *_, path = write_cards(tmp_path / "cards", made, bench(tmp_path / "bench"))
+    rig = read_rig(path)
+    assert [c.effect for c in rig.candidates] == ["clamp-tilt"]
+    assert rig.amplitudes == pytest.approx((0.02,), rel=1e-5)
+    assert np.shape(rig.covariance) == (1, 1)
+    assert "locking is a fault of the diagnosed simulator" in rig.on(bench(tmp_path / "other")).sentence
+    *_, path = write_cards(tmp_path / "alone", diagnosis({locking: 0.5}), bench(tmp_path / "third"))
+    with pytest.raises(InputError, match="key effects: expected one of rig or camera, got locking"):
+        read_rig(path)
