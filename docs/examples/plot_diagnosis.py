@@ -1,9 +1,9 @@
 """
-What a fit cannot say: a diagnosis
-==================================
+Diagnosis of a homogeneous test
+===============================
 
-The shipped coupons were pulled on a machine that yields. A fit finds moduli that are too low; the
-diagnosis names the machine.
+The shipped specimens were stretched by a machine with compliance. A fit gives moduli that are too low;
+the diagnosis names the machine's compliance.
 """
 
 import tempfile
@@ -18,7 +18,7 @@ diagnosis = calibration.diagnose(calibration.read_experiment(root / "datasets" /
 print(diagnosis.sentence)
 
 # %%
-# How much better the model is with the cause, on the fitted data and on data that it has not seen:
+# Chi-square per degree of freedom of the baseline, and of the model with the cause:
 folder = Path(tempfile.mkdtemp())
 diagnosis.write(folder)  # report.html, diagnosis.json, cards
 file = calibration.read_diagnosis(folder / "diagnosis.json")

@@ -1,9 +1,9 @@
 """
-A rigid sphere under the skin
-=============================
+A rigid sphere below the surface
+================================
 
-The same rod, pushed 6 mm into a plain block and into one with a rigid sphere below: the force tells that
-something hard is there before the rod touches it.
+The same indenter is pushed 6 mm into a plain block and into one with a rigid sphere. The force rises
+before the indenter reaches the sphere.
 """
 
 import matplotlib.pyplot as plt
@@ -26,5 +26,5 @@ results = tisim.simulate(pokes)
 figure, axes = plt.subplots(figsize=(5.5, 3.6), layout="constrained")
 for name, result in zip(blocks, results, strict=True):
     axes.plot(1e3 * result.load, result.rod_force[:, 2], "o-", label=f"{name}: {result.status}")
-axes.set(xlabel="depth [mm]", ylabel="force on the rod [N]")
+axes.set(xlabel="depth [mm]", ylabel="force on the indenter [N]")
 axes.legend(frameon=False)

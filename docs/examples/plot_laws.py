@@ -2,8 +2,8 @@
 One modulus, seven laws
 =======================
 
-All laws have the same shear modulus at small strain. How they differ shows beyond a stretch of 1.5: a
-calibration that never pulled that far cannot tell them apart.
+All laws have the same shear modulus at small strain. They differ beyond a stretch of 1.5: a calibration
+with smaller stretches cannot distinguish them.
 """
 
 import matplotlib.pyplot as plt

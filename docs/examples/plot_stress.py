@@ -1,8 +1,8 @@
 """
-Stress under a rod, to turn around
-==================================
+Stress under an indenter, in 3-D
+================================
 
-The same picture stands in a notebook; `tisim.show(poke, "poke.html")` writes it as a page.
+A notebook shows the same picture; `tisim.show(poke, "poke.html")` writes it as a page.
 """
 
 import matplotlib.pyplot as plt
@@ -21,5 +21,5 @@ figure.colorbar(drawn, label="von Mises stress [kPa]")
 axes.set(xlabel="x [mm]", ylabel="z [mm]", aspect="equal", xlim=(-20, 20), title="nodes of the middle plane")
 
 # %%
-# Coloured by displacement at first; the list below the picture has stress, strain energy and stretch.
+# The initial colour is displacement; the list below the picture has stress, strain energy and stretch.
 tisim.show(poke)

@@ -1,6 +1,6 @@
 """
-A poke in ParaView or PyVista
-=============================
+Indentation in ParaView or PyVista
+==================================
 
 A result is written as a VTU file of the whole body, with stress, strain and stretch at nodes and elements.
 """
@@ -17,12 +17,12 @@ poke = tisim.simulate(tisim.Poke(material=silicone, depth=0.006, refinement=0.5)
 file = tisim.write(poke, Path(tempfile.mkdtemp()) / "poke.vtu")
 
 # %%
-# `poke.pvd` in place of `poke.vtu` writes all frames, as ParaView plays them.
+# `poke.pvd` in place of `poke.vtu` writes all frames, which ParaView plays.
 body = pv.read(file)
 print(*body.point_data, sep="\n")
 
 # %%
-# The block, cut open under the rod.
+# The block, cut open under the indenter.
 half = body.clip(normal="y", origin=(0, 0, 0))
 half["von Mises stress [kPa]"] = 1e-3 * half.point_data["von_mises_stress_Pa"]
 plotter = pv.Plotter(window_size=(900, 500))
