@@ -1,18 +1,21 @@
 """Point clouds other than the dataset's grid, with the displacement interpolated from the surface meshes.
 
-Each poke of the dataset was simulated on a mesh of its own, whose surface is stored. Linear interpolation
-between its nodes gives the displacement anywhere on the block's top face: for testing on other clouds, and
-for training at points between those of the grid (recipe key `point_jitter`).
+Each poke of the dataset was simulated on a mesh of its own, whose surface is stored. Interpolation between
+its nodes gives the displacement anywhere on the block's top face: for testing on other clouds, and for
+training at points between those of the grid (recipe key `point_jitter`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, KDTree
 
+from learn.data._facets import eight_node_facets, facet_weights
 from learn.data.store import Store
 from learn.errors import InputError
 
@@ -78,7 +81,9 @@ def nearest_columns(store: Store, points: Floats) -> NDArray[np.int64]:
 
 
 class SurfaceField:
-    """Displacement anywhere on the top face, by linear interpolation of each poke's own surface mesh.
+    """Displacement anywhere on the top face, interpolated on each poke's own surface mesh.
+
+    In eight-node facets by their shape functions, as in the simulation; elsewhere linearly between the nodes.
 
     Parameters
     ----------
@@ -88,30 +93,59 @@ class SurfaceField:
 
     def __init__(self, store: Store, pokes: Iterable[int]) -> None:
         self.store = store
-        self._meshes: dict[int, tuple[Delaunay, NDArray[np.float32]]] = {}
+        self._meshes: dict[int, _TopFace] = {}
         for poke in pokes:
-            rest, _, moved = store.surface(int(poke))
+            rest, triangles, moved = store.surface(int(poke))
             top = np.abs(rest[:, 2] - store.points[0, 2]) < _TOP
             if top.sum() < 4:
                 raise InputError(f"{store.location}: the surface of poke {poke} has no nodes on the top face")
-            self._meshes[int(poke)] = Delaunay(rest[top, :2]), np.ascontiguousarray(moved[:, top])
+            number = np.where(top, np.cumsum(top) - 1, -1)
+            own = number[triangles[top[triangles].all(axis=1)]]
+            self._meshes[int(poke)] = _TopFace(
+                xy=rest[top, :2], facets=eight_node_facets(own), moved=np.ascontiguousarray(moved[:, top])
+            )
 
     def displacement(self, rows: NDArray[np.int64], points: Floats) -> NDArray[np.float32]:
         """Displacement [m] of points (n, 3) of the top face in these frames, shape (frames, n, 3)."""
         out = np.empty((len(rows), len(points), 3), dtype=np.float32)
         pokes = self.store.frame_poke[rows]
         for poke in np.unique(pokes):
-            mesh, moved = self._meshes[int(poke)]
-            simplex = mesh.find_simplex(points[:, :2])
-            if (simplex < 0).any():
+            mesh = self._meshes[int(poke)]
+            found = mesh.weights(points[:, :2])
+            if found is None:
                 raise InputError(
                     f"{self.store.location}: the surface of poke {poke} does not cover the grid's points"
                 )
-            transform = mesh.transform[simplex]
-            first = np.einsum("nij,nj->ni", transform[:, :2], points[:, :2] - transform[:, 2])
-            weight = np.column_stack([first, 1 - first.sum(axis=1)])
-            corners = mesh.simplices[simplex]
+            nodes, weights = found
             for k in np.flatnonzero(pokes == poke):
-                frame = moved[rows[k] - self.store.frame_start[poke]]
-                out[k] = np.einsum("nk,nkc->nc", weight, frame[corners])
+                frame = mesh.moved[rows[k] - self.store.frame_start[poke]]
+                out[k] = np.einsum("nk,nkc->nc", weights, frame[nodes])
         return out
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _TopFace:
+    """Nodes of a poke's top face: positions xy (m, 2), eight-node facets (q, 8), displacement (f, m, 3)."""
+
+    xy: Floats
+    facets: NDArray[np.int64]
+    moved: NDArray[np.float32]
+
+    @cached_property
+    def _triangles(self) -> Delaunay:
+        return Delaunay(self.xy)
+
+    def weights(self, points: Floats) -> tuple[NDArray[np.int64], Floats] | None:
+        """Nodes and weights (n, 8) of points (n, 2); None if a point is outside of the mesh."""
+        inside, nodes, weights = facet_weights(self.xy, self.facets, points)
+        rest = np.flatnonzero(~inside)
+        if rest.size:
+            mesh = self._triangles
+            simplex = mesh.find_simplex(points[rest])
+            if (simplex < 0).any():
+                return None
+            transform = mesh.transform[simplex]
+            first = np.einsum("nij,nj->ni", transform[:, :2], points[rest] - transform[:, 2])
+            weights[rest, :3] = np.column_stack([first, 1 - first.sum(axis=1)])
+            nodes[rest, :3] = mesh.simplices[simplex]
+        return nodes, weights

@@ -232,7 +232,7 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
     }
     if found.clouds:
         note = (
-            "Same weights on other point clouds (means over clouds of each size), against linear "
+            "Same weights on other point clouds (means over clouds of each size), against "
             "interpolation of the surface meshes; that interpolation alone is "
             f"{found.interpolation_mm:.4f} mm off the grid's stored values."
         )
