@@ -1,1 +1,1 @@
-"""One model a kind of measurement, for fits and diagnoses alike."""
+"""Models of measurements, one per kind of measurement, for fits and diagnoses."""

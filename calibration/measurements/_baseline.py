@@ -1,7 +1,7 @@
-"""The baseline of a model: free coordinates u, and the one material that they give each specimen.
+"""Baseline of a model: the free coordinates u, and the material of each specimen as a function of u.
 
-A diagnosis fits one shear modulus a specimen (`per_specimen`) at a held K/G; a fit of a law fits that law's
-own coordinates of `calibration.parameters`, one material for all its specimens (`of_law`).
+A diagnosis fits one shear modulus per specimen at a fixed K/G (`per_specimen`); a fit of a law fits the
+coordinates of that law (`calibration.parameters`), one material for all its specimens (`of_law`).
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from tisim import Material
 
 Array = NDArray[np.float64]
 
-SCATTER = 0.15  # sd of ln G from one specimen of a material to the next
-LARGEST = 0.20  # the same in a lab that moulds them badly: more is no scatter
-SPECIMENS = "specimens"  # the part of a discrepancy basis in which specimens of one material differ
-# squares of a part of the basis are taken less by this factor before they are compared with noise
+SCATTER = 0.15  # sd of ln G between specimens of one material
+LARGEST = 0.20  # the same with poor moulding: larger differences are not scatter
+SPECIMENS = "specimens"  # set of the discrepancy basis for differences between specimens of one material
+# factor on the squared projections onto a set of the basis before they are compared with noise
 ALLOWED: Mapping[str, float] = {SPECIMENS: (SCATTER / LARGEST) ** 2}
 REFERENCE = 1e5  # shear modulus at which a law's shape is evaluated, before it is scaled [Pa]
 
@@ -38,8 +38,14 @@ class OfSpecimen(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Extra:
-    """A further coordinate of a kind of measurement (a release time, a test's own deviation), with its normal
-    prior: centre and sd; bounds : it is clipped to these where it is used."""
+    """A further coordinate of a kind of measurement (a release time, a test's own deviation).
+
+    Attributes
+    ----------
+    name : of the coordinate.
+    sd, centre : standard deviation and mean of its normal prior.
+    bounds : the model clips the coordinate to this interval.
+    """
 
     name: str
     sd: float
@@ -49,17 +55,19 @@ class Extra:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Baseline:
-    """Coordinates u, in this order: ln(G / 1 Pa) of each specimen; of each material the law's coordinates
-    other than its modulus (without K/G, which is held); extras. Where `whole` is set (a fit of one law): of
-    each material all coordinates of its law, then extras.
+    """Layout, prior and material map of the coordinates u, shape (n,).
+
+    Order of u: ln(G / 1 Pa) of each specimen; for each material the coordinates of the law except its modulus
+    and K/G, which is fixed; extras. If `whole` is True (a fit of one law): for each material all coordinates
+    of its law; extras.
 
     Attributes
     ----------
-    specimens, owners : names, and the material of each.
+    specimens, owners : names of the specimens, and the material of each.
     law : the law in search coordinates.
-    bulk_ratio : K/G that is held.
+    bulk_ratio : fixed K/G; NaN if `whole`.
     extras : further coordinates.
-    whole : all of the law's coordinates are free, one set a material.
+    whole : True if all coordinates of the law are free, one set per material.
     """
 
     specimens: tuple[str, ...]
@@ -73,9 +81,9 @@ class Baseline:
     def per_specimen(
         cls, records: Sequence[OfSpecimen], *, law: str = "neo-hookean", terms: int = 1, bulk_ratio: float
     ) -> Baseline:
-        """One shear modulus a specimen; specimens of one material lie together within SCATTER.
+        """One shear modulus per specimen; ln G scatters with sd SCATTER between specimens of one material.
 
-        ValueError for an unknown law, or one whose first coordinate is no modulus.
+        ValueError for an unknown law, or one whose first coordinate is not a modulus.
         """
         form = parametrisation(law, terms=terms)
         first = form.coordinates[0]
@@ -86,13 +94,15 @@ class Baseline:
 
     @classmethod
     def of_law(cls, records: Sequence[OfSpecimen], law: Parametrisation) -> Baseline:
-        """A law's own coordinates, K/G among them, one material for all its specimens. records : trials will
-        do; one without a specimen is of one that has the material's name."""
+        """All coordinates of a law, including K/G, one material for all its specimens.
+
+        records : records or trials; one without a specimen counts as a specimen with the material's name.
+        """
         specimens, owners = _specimens(records)
         return cls(law=law, bulk_ratio=float("nan"), whole=True, specimens=specimens, owners=owners)
 
     def with_extras(self, extras: Sequence[Extra]) -> Baseline:
-        """The same with these further coordinates at the end."""
+        """Copy with these extras."""
         return replace(self, extras=tuple(extras))
 
     @cached_property
@@ -101,14 +111,14 @@ class Baseline:
 
     @cached_property
     def free(self) -> tuple[int, ...]:
-        """Coordinates of the law that are free for each material, by index."""
+        """Indices of the law's coordinates that are free for each material."""
         if self.whole:
             return tuple(range(len(self.law.coordinates)))
         return tuple(k for k, c in enumerate(self.law.coordinates) if k > 0 and c.name != "bulk_ratio")
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Of the coordinates, (n,)."""
+        """Names of the coordinates, (n,)."""
         own = tuple(self.law.coordinates[k].name for k in self.free)
         single = self.whole and len(self.materials) == 1
         shape = tuple(name if single else f"{m} {name}" for m in self.materials for name in own)
@@ -116,12 +126,12 @@ class Baseline:
 
     @cached_property
     def first_extra(self) -> int:
-        """Where the extras begin in u."""
+        """Index of the first extra in u."""
         return len(self.names) - len(self.extras)
 
     @cached_property
     def bounds(self) -> Array:
-        """Beyond which a coordinate changes nothing, shape (n, 2)."""
+        """Interval of each coordinate outside which it has no effect (it is clipped), shape (n, 2)."""
         found = np.tile([-np.inf, np.inf], (len(self.names), 1))
         if not self.whole:
             for m in self.materials:
@@ -132,39 +142,39 @@ class Baseline:
 
     @cached_property
     def held(self) -> int:
-        """How many rows of the prior hold specimens of one material together; they come first."""
+        """Number of prior rows for the scatter between specimens of one material; they come first."""
         return 0 if self.whole else len(scatter_rows(self.owners))
 
     @cached_property
     def prior(self) -> Array:
-        """Rows (k, n) of what is known beforehand, in its sd: prior @ u - centre ~ N(0, 1)."""
+        """Rows of the normal prior, shape (k, n): prior @ u - centre ~ N(0, 1)."""
         return self._priors[0]
 
     @cached_property
     def centre(self) -> Array:
-        """Shape (k,); see `prior`."""
+        """Right-hand side of the prior (`prior`), shape (k,)."""
         return self._priors[1]
 
     def prior_residuals(self, u: Array) -> Array:
-        """Shape (k,)."""
+        """prior @ u - centre, shape (k,)."""
         return np.asarray(self.prior @ u - self.centre)
 
     # -- materials --
 
     def shear_modulus(self, specimen: str, u: Array) -> float:
-        """[Pa]."""
+        """Small-strain shear modulus of a specimen [Pa]."""
         if self.whole:
             return self.law.moduli(self.law_coordinates(self._owner[specimen], u)).shear_modulus
         return float(np.exp(u[self.specimens.index(specimen)]))
 
     def shear_moduli(self, u: Array) -> dict[str, float]:
-        """Of each material [Pa]: the geometric mean over its specimens."""
+        """Shear modulus of each material [Pa]: the geometric mean over its specimens."""
         if self.whole:
             return {m: self.law.moduli(self.law_coordinates(m, u)).shear_modulus for m in self.materials}
         return mean_moduli(self.owners, u[: len(self.owners)])
 
     def modulus_weights(self, material: str, u: Array) -> Array:
-        """Derivatives of the logarithm of a material's shear modulus by u, shape (n,)."""
+        """Derivatives of ln G of a material by u, shape (n,)."""
         weights = np.zeros(len(self.names))
         if not self.whole:
             mine = [k for k, owner in enumerate(self.owners) if owner == material]
@@ -178,26 +188,26 @@ class Baseline:
         return weights
 
     def law_coordinates(self, material: str, u: Array) -> Array:
-        """Coordinates of `law` of a material; its modulus is REFERENCE where specimens have their own."""
+        """Coordinates of `law` for a material; the modulus is REFERENCE unless `whole`."""
         begin = self._begin(material)
         if self.whole:
             return np.asarray(u[begin : begin + len(self.free)])
         found = self.law.start(shear=REFERENCE)
         found[0] = np.log(REFERENCE)
         low, high = self.law.bounds[list(self.free)].T if self.free else (-np.inf, np.inf)
-        # at an end of its range a constant stays, and the others go on
+        # a constant beyond its range is clipped, and the others stay free
         found[list(self.free)] = np.clip(u[begin : begin + len(self.free)], low, high)
         return found
 
     def material(self, specimen: str, u: Array, *, density: float = 1000.0) -> Material:
-        """What a specimen is made of; density [kg/m3]."""
+        """Material of a specimen. density : [kg/m3]."""
         own = self.law_coordinates(self._owner[specimen], u)
         if not self.whole:
             own = self.scaled(own, self.shear_modulus(specimen, u))
         return self.law.material(own, density=density)
 
     def scaled(self, own: Array, shear_modulus: float) -> Array:
-        """The law's coordinates with K/G as it is held and a small-strain shear modulus [Pa]."""
+        """The law's coordinates with the fixed K/G, scaled to a small-strain shear modulus [Pa]."""
         found = own.copy()
         for k, c in enumerate(self.law.coordinates):
             if c.name == "bulk_ratio":
@@ -206,7 +216,7 @@ class Baseline:
         return np.where(moduli, found + np.log(shear_modulus / self.law.moduli(found).shear_modulus), found)
 
     def start(self, shear_moduli: Mapping[str, float]) -> Array:
-        """u with these shear moduli [Pa] of specimens, everything else where a search begins."""
+        """Start of a search, u (n,), from the specimens' shear moduli [Pa]; others at their start values."""
         if self.whole:
             parts = []
             for m in self.materials:
@@ -221,8 +231,11 @@ class Baseline:
         return np.concatenate([*parts, [e.centre for e in self.extras]])
 
     def informed_by(self, record: OfSpecimen, *, whole_material: bool) -> NDArray[np.bool_]:
-        """Coordinates (n,) that a record constrains, without extras: its specimen's modulus and its
-        material's law. whole_material : the moduli of all specimens of its material, which lie together."""
+        """Mask (n,) of the coordinates that a record constrains, without extras.
+
+        These are the modulus of its specimen and the law of its material; with `whole_material` the moduli of
+        all specimens of its material, which the prior couples.
+        """
         found = np.zeros(len(self.names), dtype=bool)
         if not self.whole:
             for k, (s, owner) in enumerate(zip(self.specimens, self.owners, strict=True)):
@@ -238,7 +251,7 @@ class Baseline:
         return dict(zip(self.specimens, self.owners, strict=True))
 
     def _begin(self, material: str) -> int:
-        """Where a material's coordinates of the law begin."""
+        """Index in u of the first coordinate of a material's law."""
         first = 0 if self.whole else len(self.specimens)
         return first + len(self.free) * self.materials.index(material)
 
@@ -272,8 +285,11 @@ def _specimens(records: Sequence[OfSpecimen]) -> tuple[tuple[str, ...], tuple[st
 
 
 def scatter_rows(materials: Sequence[str]) -> Array:
-    """Prior rows (k, n) that hold the specimens of one material together, in sd of their scatter; materials :
-    of the n specimens. One row fewer than each material has specimens: their mean is free."""
+    """Prior rows (k, n) for the scatter of ln G between specimens of one material, in units of SCATTER.
+
+    materials : the material of each of the n specimens. The rows are Helmert contrasts, one fewer per
+    material than it has specimens: the mean of a material is free.
+    """
     rows = []
     for m in dict.fromkeys(materials):
         mine = [k for k, owner in enumerate(materials) if owner == m]
@@ -285,13 +301,16 @@ def scatter_rows(materials: Sequence[str]) -> Array:
 
 
 def scatter_basis(size: int, first: int, held: int) -> Mapping[str, Array]:
-    """The part of a discrepancy basis in which specimens of one material differ: columns (size, held), where
-    the rows of `scatter_rows` are those from `first`. None where no material has two specimens."""
+    """Set of a discrepancy basis for differences between specimens of one material.
+
+    Its columns (size, held) are unit vectors of the `held` rows of `scatter_rows`, which begin at row
+    `first`. Empty if no material has two specimens.
+    """
     return {SPECIMENS: np.eye(size)[:, first : first + held]} if held else {}
 
 
 def mean_moduli(materials: Sequence[str], u: Array) -> dict[str, float]:
-    """Of each material [Pa]: the geometric mean over its specimens, whose ln(G / 1 Pa) are u (n,)."""
+    """Shear modulus of each material [Pa]: the geometric mean over its specimens; u (n,) are ln(G / 1 Pa)."""
     found: dict[str, list[float]] = {}
     for m, value in zip(materials, u, strict=True):
         found.setdefault(m, []).append(float(value))

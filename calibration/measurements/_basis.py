@@ -1,4 +1,4 @@
-"""Discrepancy basis: what a lack of fit might look like that no effect of the catalogue makes."""
+"""Discrepancy basis: columns that represent a lack of fit which no effect of the catalogue causes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,12 @@ Array = NDArray[np.float64]
 
 
 class Columns:
-    """Sets of columns (rows, k) by name, over the rows of all records. points : rows of each record."""
+    """Named sets of columns (rows, k) over the rows of all records.
+
+    Parameters
+    ----------
+    points : number of rows of each record.
+    """
 
     def __init__(self, points: Sequence[int]) -> None:
         starts = np.cumsum([0, *points])
@@ -21,8 +26,10 @@ class Columns:
         self._sets: dict[str, list[Array]] = {}
 
     def add(self, name: str, parts: Sequence[tuple[int, Array]]) -> None:
-        """Add a column to a set: values of some records (by number), zero elsewhere; none where all are
-        zero."""
+        """Add a column to a set: values of some records (by index), zero elsewhere.
+
+        A column of zeros is not added.
+        """
         column = np.zeros(self._size)
         for k, values in parts:
             column[self._rows[k]] = values
@@ -34,8 +41,10 @@ class Columns:
 
 
 def legendre(x: Array, degree: int, span: tuple[float, float] | None = None) -> Array:
-    """Legendre polynomial along x (k,), between -1 and 1 over its span and constant beyond it; zero on a span
-    without length, but for degree 0."""
+    """Legendre polynomial of x (k,), with `span` (default: the range of x) mapped to [-1, 1].
+
+    It is constant beyond the span. On a span of zero length it is evaluated at 0.
+    """
     low, high = span or (float(x.min(initial=np.inf)), float(x.max(initial=-np.inf)))
     unit = np.zeros(x.size) if not high > low else 2.0 * (np.clip(x, low, high) - low) / (high - low) - 1.0
     return np.asarray(np.polynomial.legendre.legval(unit, np.eye(degree + 1)[degree]))

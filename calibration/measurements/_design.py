@@ -1,4 +1,4 @@
-"""What a lab can do next: other tests of the same specimens, and direct measurements."""
+"""Experiments that a lab can do next: other tests of the same specimens, and direct measurements."""
 
 from __future__ import annotations
 
@@ -20,7 +20,11 @@ TrialT = TypeVar("TrialT")
 class Test(Generic[RecordT, TrialT]):
     """Another test of each specimen.
 
-    sentence: what to do. trials: the new ones of a specimen, of its records; none where it cannot be done.
+    Attributes
+    ----------
+    name : of the test.
+    sentence : instruction for the lab.
+    trials : function from a specimen's records to its new trials; empty if the test cannot be done.
     """
 
     name: str
@@ -28,14 +32,21 @@ class Test(Generic[RecordT, TrialT]):
     trials: Callable[[Sequence[RecordT]], Sequence[TrialT]]
 
     def of_each(self, records: Sequence[RecordT]) -> list[TrialT]:
-        """The new trials of all specimens that these records are of."""
+        """New trials of all specimens of these records."""
         specimens = dict.fromkeys(r.specimen for r in records)
         return [t for s in specimens for t in self.trials([r for r in records if r.specimen == s])]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gauge:
-    """A direct measurement: standard deviation [SI] with which it tells an effect's amplitude, by effect."""
+    """A direct measurement of effects.
+
+    Attributes
+    ----------
+    name : of the measurement.
+    sentence : instruction for the lab.
+    sds : standard deviation of the measured amplitude [SI], by effect.
+    """
 
     name: str
     sentence: str

@@ -1,4 +1,4 @@
-"""What can be wrong with a simulation: effects, how each acts in a kind of measurement, candidates."""
+"""Effects that a simulation can lack, their models in a kind of measurement, and candidates for diagnosis."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ Owner = Literal["specimen", "rig", "camera", "simulator"]
 
 
 class Grouped(Protocol):
-    """A record as candidates see it. groups: the label of the record at each level (material, specimen,
-    trial, ...), as `EffectModel.scopes` names them."""
+    """A record with the labels that scope candidates.
+
+    groups : label of the record at each level (material, specimen, trial, ...) of `EffectModel.scopes`.
+    """
 
     @property
     def groups(self) -> Mapping[str, str]: ...
@@ -21,17 +23,18 @@ class Grouped(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Effect:
-    """A physical cause, as the catalogue describes it for all kinds of measurement.
+    """A physical cause of misfit, as the catalogue describes it for all kinds of measurement.
 
     Attributes
     ----------
-    name : as verdicts, files and reports write it.
+    name : name in verdicts, files and reports.
     parameter : name of the amplitude in files; it ends with its unit.
-    per_unit : file units in one SI unit.
-    belongs_to : specimen, rig, camera or simulator. Only what belongs to a specimen may enter a dataset.
-    sentence : the cause, for people.
-    remedy : what to do about it on the bench.
-    with_material : it goes with the material into any body (other effects of a specimen belong to its form).
+    per_unit : number of file units per SI unit.
+    belongs_to : specimen, rig, camera or simulator. Only effects of a specimen may enter a dataset.
+    sentence : description of the cause.
+    remedy : action in the lab that removes it.
+    with_material : True if it is a property of the material, for any body; other effects of a specimen belong
+        to its shape.
     """
 
     name: str
@@ -49,14 +52,14 @@ class Effect:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Occurrence:
-    """An effect as it was found in a material, for `EffectModel.hands_on`.
+    """An effect found in a material, argument of `EffectModel.hands_on`.
 
     Attributes
     ----------
-    amplitude : [SI].
-    variant : which of its forms.
-    shear_modulus : of the material, as fitted beside it [Pa].
-    records : that it was found in.
+    amplitude : fitted amplitude [SI].
+    variant : variant of the effect; None if it has one only.
+    shear_modulus : shear modulus of the material, fitted together with the effect [Pa].
+    records : records in which it was found.
     """
 
     amplitude: float
@@ -67,17 +70,17 @@ class Occurrence:
 
 @dataclass(frozen=True, kw_only=True)
 class HandedOn:
-    """What an effect is of a material: one of its parts (`tisim.parts`), or another law.
+    """An effect as a constitutive part of a material (`tisim.parts`), or as another law.
 
     Attributes
     ----------
-    field : of `tisim.Material` (viscosity, softening, fibres, law).
-    part : None where the effect makes none; `remarks` say why.
-    law : small-strain shear and bulk moduli [Pa] to the name of a law and its parameters.
-    modulus_ratio : the modulus that goes with the part over the modulus that was fitted beside the effect.
-    states : which modulus that is, for people.
-    remarks : what the measurement did not see, and what differs from the effect, a sentence each.
-    shared : it is in the part of another effect.
+    field : field of `tisim.Material` (viscosity, softening, fibres, law).
+    part : the part; None if the effect defines none (`remarks` state why).
+    law : function from the small-strain shear and bulk moduli [Pa] to the name of a law and its parameters.
+    modulus_ratio : modulus that belongs to the part, relative to the modulus fitted with the effect.
+    states : name of that modulus, for reports.
+    remarks : sentences on the limits of the measurement and on differences from the effect.
+    shared : True if the part of another effect includes it.
     """
 
     field: Literal["viscosity", "softening", "fibres", "law"]
@@ -90,18 +93,18 @@ class HandedOn:
 
     @property
     def made(self) -> bool:
-        """True if the material has it."""
+        """True if it defines a part or a law."""
         return self.part is not None or self.law is not None
 
 
 def everywhere(record: Any) -> bool:
-    """`applies_to` of an effect that any record can have."""
+    """`applies_to` of an effect that every record can have."""
     del record
     return True
 
 
 def always(reached: Sequence[Any], everything: Sequence[Any]) -> bool:
-    """`identifiable` of an effect that any protocol shows."""
+    """`identifiable` of an effect that every protocol identifies."""
     del reached, everything
     return True
 
@@ -113,35 +116,35 @@ def one_variant(records: Sequence[Any]) -> tuple[float | None, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class EffectModel:
-    """An effect in one kind of measurement, nested by one amplitude; zero means that it is absent.
+    """Model of an effect in one kind of measurement, with one amplitude; amplitude 0 means absent.
 
-    Each kind has a subclass with the hooks by which an amplitude enters its forward map.
+    Each kind has a subclass with the functions by which the amplitude enters its forward map.
 
     Attributes
     ----------
-    effect : its entry in the catalogue.
-    step : of a finite difference [SI].
-    bounds : where the amplitude makes sense [SI].
-    prior_scale : what a careful lab may still have overlooked [SI]. Where the data would need more than that
-        to show the effect, they cannot see it.
-    physical_limits : bounds where the physics itself ends (a surface that slides freely) [SI]: an amplitude
-        may stop there.
-    start_fraction : fraction of the way to its bounds that a fit may start at.
-    scopes : levels of `Grouped.groups` in which it may sit besides all records, the wider first.
-    in_all : whether all records may share it.
-    positions : fractions of the specimen's length where it may sit.
-    applies_to : whether a record can have it.
-    identifiable : whether the records that a candidate reaches, among all, let its amplitude be seen at all;
-        a candidate that no protocol shows has no column.
-    variants : forms of the effect (a time constant, a direction), from the records that it applies to.
-    variant_label : a variant in words.
-    conclusive : whether the records that a candidate reaches, among all, can tell it from anything else that
-        is smooth along them; where they cannot, it is named as part of an explanation only.
-    switch : it is there or not: where it is named its amplitude is the upper bound.
-    further : it is looked for only where no other cause explains the data: it is rarer than they are, or so
-        free in its form that it would stand in for them.
-    action : what to do about it with this kind of measurement, where that is not the catalogue's remedy.
-    hands_on : the part of the material that it is, for extended cards; None for an effect that is none.
+    effect : entry in the catalogue.
+    step : finite-difference step [SI].
+    bounds : admissible interval of the amplitude [SI].
+    prior_scale : amplitude that a careful lab may still overlook [SI]. The data cannot detect the effect if
+        its detection needs a larger amplitude.
+    physical_limits : bounds that are limits of the physics (a surface that slides freely) [SI]; an estimate
+        may lie on them.
+    start_fraction : largest start value of a fit, as a fraction of the bounds.
+    scopes : levels of `Grouped.groups` to which it may be restricted, the widest first.
+    in_all : True if all records may share it.
+    positions : candidate positions along the specimen, as fractions of its length.
+    applies_to : function that is True for a record that can have the effect.
+    identifiable : function of (records of a candidate, all records) that is True if they constrain the
+        amplitude at all; a candidate for which it is False has no column.
+    variants : function from the records that it applies to, to the variants (a time constant, a direction).
+    variant_label : text of a variant.
+    conclusive : function of (records of a candidate, all records) that is True if they separate the effect
+        from other smooth misfit; otherwise it is named only as part of an explanation.
+    switch : True for an effect that is present or absent: its amplitude is then the upper bound.
+    further : True for an effect that is searched for only if no other cause explains the data, since it is
+        rarer, or so flexible that it would replace them.
+    action : remedy with this kind of measurement; "" for the catalogue's remedy.
+    hands_on : function to the material part of the effect, for extended cards; None if it has none.
     """
 
     effect: Effect
@@ -197,11 +200,11 @@ class EffectModel:
         return self.effect.in_file(amplitude)
 
     def acts_on(self, record: Any) -> bool:
-        """True if a record can have it."""
+        """True if a record can have the effect."""
         return self.applies_to(record)
 
     def labels(self, record: Grouped) -> tuple[str, ...]:
-        """Scopes of a record in which it may be named."""
+        """Labels of a record at the levels of `scopes`."""
         return tuple(record.groups[level] for level in self.scopes)
 
 
@@ -211,11 +214,11 @@ class Candidate:
 
     Attributes
     ----------
-    effect : its name.
+    effect : name of the effect.
     at : "all", or the label of a group of records.
-    position : where in the specimen, as a fraction of its length; None for an effect without a position.
-    alternatives : among how many of its sort this scope, position and variant was one choice.
-    variant, variant_name : which form of the effect, as a number and in words; None and "" where it has one.
+    position : position in the specimen, as a fraction of its length; None for an effect without a position.
+    alternatives : number of combinations of scope (at this level), position and variant that it is one of.
+    variant, variant_name : variant of the effect as a number and as text; None and "" if it has one only.
     """
 
     effect: str
@@ -233,13 +236,16 @@ class Candidate:
 
     @property
     def form(self) -> tuple[str, float | None, float | None]:
-        """What all scopes of it share: effect, position, variant."""
+        """Effect, position and variant: equal for all scopes."""
         return self.effect, self.position, self.variant
 
 
 def candidates_of(records: Sequence[Grouped], effects: Mapping[str, EffectModel]) -> tuple[Candidate, ...]:
-    """Each effect, at each position and in each variant, in all records that it applies to and in each group
-    of its scopes, where these differ."""
+    """Candidates of each effect, for each position, scope and variant.
+
+    The scopes are all records that the effect applies to and each group of its levels; a group with the same
+    records as an earlier one is left out.
+    """
     found: list[Candidate] = []
     for model in effects.values():
         touched = [r for r in records if model.acts_on(r)]
@@ -264,8 +270,7 @@ def candidates_of(records: Sequence[Grouped], effects: Mapping[str, EffectModel]
 
 
 def _scopes(touched: Sequence[Grouped], model: EffectModel) -> list[tuple[str, int]]:
-    """Labels of the groups that it may sit in, and how many there are at their level. A group of the same
-    records as one before adds nothing."""
+    """Labels of the groups that an effect may be restricted to, and the number of groups at their level."""
     found: list[tuple[str, int]] = []
     known: list[tuple[int, ...]] = []
     if model.in_all:
@@ -283,5 +288,5 @@ def _scopes(touched: Sequence[Grouped], model: EffectModel) -> list[tuple[str, i
 
 
 def reaches(candidate: Candidate, record: Any, model: EffectModel) -> bool:
-    """True if a candidate is in a record."""
+    """True if a candidate applies to a record."""
     return model.acts_on(record) and (candidate.at == "all" or candidate.at in model.labels(record))

@@ -1,4 +1,4 @@
-"""Cross-validation folds: rows that may be left out together, to be predicted from the others."""
+"""Cross-validation folds: groups of rows that are held out together and predicted from the others."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 
 Rows = NDArray[np.bool_]
 
-PARTS = 5  # of a record, for folds where there is nothing else to leave out
+PARTS = 5  # number of consecutive parts of a record, for folds if there is nothing else to hold out
 
 
 def fifths(points: int) -> list[str]:
-    """The fifth of its record that each of its points is in."""
+    """Fold label of each point of a record: the fifth of the record that it is in."""
     parts = np.array_split(np.arange(points), PARTS)
     return [f"part {n + 1} of each record" for n, part in enumerate(parts) for _ in part]
 
 
 def folds_of(labels: Mapping[str, Sequence[str]]) -> dict[str, list[tuple[str, Rows]]]:
-    """Sets of folds from labels of all rows, by name and in the same order: the rows (rows,) of each label.
+    """Sets of folds by name, in the same order; a fold is a label with its mask of rows, shape (rows,).
 
-    A set of one fold, and a set that parts the rows as one before does, is left out.
+    A set of one fold, and a set with the same partition of the rows as an earlier one, is left out.
     """
     found: dict[str, list[tuple[str, Rows]]] = {}
     known: list[set[bytes]] = []

@@ -1,4 +1,4 @@
-"""Effects nested in a simulator: candidates, residuals, derivatives, of all kinds of measurement."""
+"""Forward model with effects: candidates, residuals and derivatives, for all kinds of measurement."""
 
 from __future__ import annotations
 
@@ -20,17 +20,20 @@ Rows = NDArray[np.bool_]
 
 
 class ForwardModel(ABC):
-    """Records of one kind, simulated with effects in them, against what was measured.
+    """Misfit of records of one kind, simulated with effects.
 
     Attributes
     ----------
-    coordinate_step : of a coordinate u, in a finite difference.
+    coordinate_step : finite-difference step of a coordinate u.
     alias_tolerance : see `Linearisation`.
-    no_answer : what a ValueError says of a state without an answer.
-    records : in the order of the rows, as far as rows belong to one record each.
+    no_answer : message of the ValueError for a state at which the simulation has no solution.
+    records : records in the order of the rows, as far as rows belong to one record each.
     row_record : index of the record of each row, shape (rows,).
-    effects : by name. candidates : of all effects. visible : whether the records identify a candidate at all.
-    baseline : what u stands for. noise : of all rows, with the nuisances as taken last.
+    effects : models of the effects by name.
+    candidates : candidates of all effects.
+    visible : True for each candidate that the records identify.
+    baseline : definition of the coordinates u.
+    noise : noise of all rows, with the nuisances of the last update.
     """
 
     coordinate_step: ClassVar[float] = 1e-4
@@ -47,23 +50,25 @@ class ForwardModel(ABC):
 
     @abstractmethod
     def _misfit(self, states: Sequence[State]) -> Array:
-        """Simulated less measured [SI], shape (batch, rows); NaN where a state has no answer. Rows that the
-        noise does not use need not be right."""
+        """Simulated minus measured [SI], shape (batch, rows); NaN for a state without a solution.
+
+        Rows that the noise does not use may hold any value.
+        """
 
     # -- residuals and derivatives --
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the coordinates u, (n,)."""
+        """Names of the coordinates u, (n,)."""
         return self.baseline.names
 
     @property
     def points(self) -> int:
-        """Rows of residuals that are measurements; rows of the prior follow them."""
+        """Number of residuals that are measurements; the rows of the prior follow them."""
         return self.noise.points
 
     def residuals(self, states: Sequence[State]) -> Array:
-        """Whitened residuals (batch, m), prior rows last; NaN where a state has no answer."""
+        """Whitened residuals (batch, m), prior rows last; NaN for a state without a solution."""
         found = np.full((len(states), self.points + len(self.baseline.prior)), np.nan)
         for row, state, misfit in zip(found, states, self._misfit(states), strict=True):
             if np.isfinite(misfit[self.noise.used]).all():
@@ -73,8 +78,8 @@ class ForwardModel(ABC):
     def linearise(self, state: State, candidates: Sequence[Candidate]) -> Linearisation:
         """Whitened residuals and their derivatives at a state, by finite differences in one batch.
 
-        Candidates of one form share a difference, of which each has the rows of the records that it reaches.
-        A candidate without an answer one step on has zeros there. ValueError where the state has no answer.
+        Candidates of one form share a finite difference; each uses the rows of the records it applies to.
+        A column is zero where the perturbed state has no solution. ValueError if the state has no solution.
         """
         misfit, by_u, columns = self._differences(state, candidates)
         prior = self.baseline.prior
@@ -88,8 +93,10 @@ class ForwardModel(ABC):
         )
 
     def sensitivities(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array]:
-        """Simulated less measured (rows,), and its derivatives (rows, n + c) by u and by amplitudes [SI];
-        rows that the noise does not use need not be right. ValueError where the state has no answer."""
+        """Simulated minus measured (rows,), and its derivatives (rows, n + c) by u and by amplitudes [SI].
+
+        Rows that the noise does not use may hold any value. ValueError if the state has no solution.
+        """
         misfit, by_u, columns = self._differences(state, candidates)
         return misfit, np.column_stack([by_u, columns])
 
@@ -112,7 +119,7 @@ class ForwardModel(ABC):
                         sides.append((-self.coordinate_step, back))
                     step, change = sides[1]
                     if not np.isfinite(change[own & self.noise.used]).all():
-                        continue  # neither side has an answer
+                        continue  # neither side has a solution
                 by_u[:, k] = np.where(own, (change - base) / step, 0.0)
         columns = np.zeros((len(base), len(candidates)))
         for row, (_, step, members) in zip(rows[1 + len(moved) :], probes, strict=True):
@@ -122,8 +129,10 @@ class ForwardModel(ABC):
         return base, by_u, columns
 
     def _beside(self, state: State) -> list[tuple[State, Mapping[int, Rows]]]:
-        """States one step on. Coordinates that no record depends on in common move together. With each state,
-        the rows (rows,) that each of its coordinates changes."""
+        """States for the finite differences by u, each with the rows (rows,) that each coordinate changes.
+
+        Coordinates that no record has in common are perturbed together.
+        """
         depends = np.array([self._depends_on(r) for r in self.records])
         together: list[tuple[Rows, list[int]]] = []  # records that are changed, and by which coordinates
         for k, own in enumerate(depends.T):
@@ -142,18 +151,19 @@ class ForwardModel(ABC):
         return found
 
     def _depends_on(self, record: Any) -> Rows:
-        """Coordinates u that the simulation of a record depends on, shape (n,): of its specimen and of its
-        material, and all extras."""
+        """Mask (n,) of the coordinates u on which the simulation of a record depends.
+
+        These are the coordinates of its specimen and material, and all extras.
+        """
         found = self.baseline.informed_by(record, whole_material=False)
         found[self.baseline.first_extra :] = True
         return found
 
     def _probes(self, state: State, candidates: Sequence[Candidate]) -> list[tuple[State, float, list[int]]]:
-        """States with one effect a step on, the step, and the candidates (by index) that it is a difference
-        for."""
+        """States with one perturbed effect, the step, and the candidates (by index) that share it."""
         groups: dict[object, list[int]] = {}
         for k, c in enumerate(candidates):
-            # one of an older experiment may reach no record of this one
+            # a candidate of an older experiment may apply to no record of this one
             if self.visible.get(c, True) and self.reached(c).any():
                 groups.setdefault((c.form, self._step(c, state)), []).append(k)
         found = []
@@ -166,7 +176,7 @@ class ForwardModel(ABC):
         return found
 
     def _step(self, candidate: Candidate, state: State) -> float:
-        """Of a finite difference [SI], away from the bound that the effect is at."""
+        """Finite-difference step of an amplitude [SI]; negative if a positive step leaves the bounds."""
         effect = self.effects[candidate.effect]
         now = max((a for c, a in state.amplitudes.items() if c.form == candidate.form), default=0.0)
         return effect.step if now + effect.step <= effect.bounds[1] else -effect.step
@@ -182,7 +192,7 @@ class ForwardModel(ABC):
         self.visible = self._visible(self.records)
 
     def _visible(self, records: Sequence[Any]) -> dict[Candidate, bool]:
-        """Which candidates these records can show."""
+        """True for each candidate that these records identify."""
         found = {}
         for c in self.candidates:
             model = self.effects[c.effect]
@@ -191,12 +201,12 @@ class ForwardModel(ABC):
         return found
 
     def reached(self, candidate: Candidate) -> Rows:
-        """Which records a candidate is in, shape (records,)."""
+        """True for each record that a candidate applies to, shape (records,)."""
         model = self.effects[candidate.effect]
         return np.array([reaches(candidate, r, model) for r in self.records], dtype=bool)
 
     def acting(self, state: State, record: Any) -> dict[tuple[str, float | None, float | None], float]:
-        """Effects in a record by their form, with the sum of their amplitudes there [SI]."""
+        """Amplitudes of the effects in a record, summed by form [SI]."""
         found: dict[tuple[str, float | None, float | None], float] = {}
         for c, a in state.amplitudes.items():
             if self.visible.get(c, True) and reaches(c, record, self.effects[c.effect]):

@@ -1,4 +1,4 @@
-"""Least squares over all coordinates of a model's baseline at once, the law's within their bounds."""
+"""Joint least squares over all coordinates of a model's baseline, with bounds on those of the law."""
 
 from __future__ import annotations
 
@@ -11,19 +11,18 @@ from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
-STEPS, TRIES = 40, 8  # Gauss-Newton steps, and dampings tried for each
-GAIN = 0.1  # [chi-square]: a step that gains less ends the search
+STEPS, TRIES = 40, 8  # Gauss-Newton steps, and damping values tried per step
+GAIN = 0.1  # smallest decrease of chi-square of a step; a smaller one ends the search
 DAMPING, MORE, LESS = 1e-3, 10.0, 0.1
-EDGE = 1e-9  # that bounds of a step are wider, so that there is room at a bound
+EDGE = 1e-9  # by which the bounds of a step are widened, so that the interval is not empty at a bound
 
 
 def joint_fit(model: MeasurementModel, start: Array) -> Array:
-    """Coordinates u (n,) of least chi-square near a start, nuisances as the model has them: damped
-    Gauss-Newton steps, each the least squares within the bounds of the law.
+    """Minimise chi-square from a start by damped Gauss-Newton steps within the bounds of the law; return u.
 
-    Extras are moved with the law's coordinates, not profiled: along a vibration, a modulus and the time of
-    the release are too much alike for the one to wait for the other. ValueError where the start has no
-    answer.
+    The nuisances of the model stay fixed. Extras are fitted jointly with the law's coordinates, not profiled:
+    in a free vibration, the modulus and the release time are too strongly correlated for alternating steps.
+    ValueError if the start has no solution.
     """
     n = len(start)
     low, high = np.full(n, -np.inf), np.full(n, np.inf)

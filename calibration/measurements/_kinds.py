@@ -1,10 +1,10 @@
-"""Kinds of measurement: which an experiment holds, and the model of each.
+"""Registry of the kinds of measurement, and selection of the kind and the model for an experiment.
 
 A new kind is one file with a `MeasurementModel`, and one registration::
 
     register(Kind(name="torsion", holds=lambda experiment: ..., load=lambda: TorsionModel))
 
-A kind that a fit follows over time says so by `over_time`, once more imported when needed::
+A kind that supports fits of time-dependent parts has `over_time`, which is also imported when needed::
 
     register(Kind(..., compares=lambda experiment: ..., over_time=lambda: OVER_TIME))
 """
@@ -29,18 +29,17 @@ class Kind:
 
     Attributes
     ----------
-    name : on the command line and in reports.
-    holds : whether an experiment has any of it.
-    load : its model's class, imported when needed. It is called with an experiment, `effects`, and those of
-        the options of `build` that `takes` names.
-    refines : a kind whose trials these are too; `claims` decides which of the two is meant where none is
-        named.
-    takes : options that its model has: workers, simulator; law, terms and richer (of the baseline).
-    old_name : that it had in earlier versions, still understood.
-    compares : trials of one material that a fit compares by this kind's model; no trial for a kind that only
-        diagnoses.
-    over_time : what it follows of materials with parts beside their law, imported when needed; None where it
-        follows none.
+    name : name on the command line and in reports.
+    holds : function that is True for an experiment with trials of this kind.
+    load : function that imports and returns the model class, which is called with an experiment, `effects`,
+        and those options of `build` that `takes` names.
+    refines : name of a kind to which the same trials belong; if no kind is named, this one is selected if
+        `claims` is True for the experiment, else the other.
+    takes : options of its model: workers, simulator; law, terms and richer (of the baseline).
+    old_name : name in earlier versions, still accepted.
+    compares : function from an experiment of one material to the trials that a fit compares with this kind's
+        model; empty for a kind that is only diagnosed.
+    over_time : function that imports its support of viscosity, softening and fibres; None if it has none.
     """
 
     name: str
@@ -58,28 +57,30 @@ _KINDS: dict[str, Kind] = {}
 
 
 def register(kind: Kind) -> None:
-    """Make a kind known. ValueError where its name is taken."""
+    """Register a kind; ValueError if its name is taken."""
     if kind.name in _KINDS:
         raise ValueError(f"kind of measurement {kind.name}: it is registered already")
     _KINDS[kind.name] = kind
 
 
 def unregister(name: str) -> None:
-    """Forget a kind."""
+    """Remove a kind from the registry."""
     del _KINDS[name]
 
 
 def kinds() -> tuple[str, ...]:
-    """Names of all kinds."""
+    """Names of all registered kinds."""
     return tuple(_KINDS)
 
 
 def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
-    """The kind that is named; where none is, the one that the experiment holds.
+    """The kind of this name; without a name, the kind of the experiment's trials.
 
     Raises
     ------
-    InputError : the name is unknown, the experiment has none of it, or it has several and none is named.
+    InputError
+        If the name is unknown, the experiment has no trials of the kind, or it has several kinds and none is
+        named.
     """
     there = [n for n, k in _KINDS.items() if k.holds(experiment)]
     if name is not None:
@@ -101,7 +102,7 @@ def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
 
 
 def compared(experiment: Experiment) -> list[tuple[Kind, Experiment]]:
-    """Kinds that a fit of an experiment of one material compares, each with its trials alone."""
+    """Kinds that a fit of an experiment of one material compares, each with an experiment of its trials."""
     found = []
     for kind in _KINDS.values():
         trials = tuple(kind.compares(experiment))
@@ -113,8 +114,10 @@ def compared(experiment: Experiment) -> list[tuple[Kind, Experiment]]:
 def build(
     kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
 ) -> MeasurementModel:
-    """The model of an experiment's measurements of a kind. options : see `Kind.takes`; those that
-    the kind does not take are left out."""
+    """Build the model of an experiment's measurements of a kind.
+
+    options : see `Kind.takes`; options that the kind does not take are ignored.
+    """
     own = {n: v for n, v in options.items() if n in kind.takes}
     return kind.load()(experiment, effects=effects, **own)
 

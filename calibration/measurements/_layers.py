@@ -1,7 +1,7 @@
-"""Noise in layers, from repeats: from point to point, from one test to the next, from specimen to specimen.
+"""Variance components of repeated tests: scatter between repeats, trend in their order, between specimens.
 
-Repeats are not exchangeable: a specimen that stiffens or recovers from test to test differs by the order of
-the tests. That trend is taken out first, and told; what is left is the scatter of repeats.
+Repeats are not exchangeable: a specimen that stiffens or recovers from test to test depends on the order of
+the tests. A linear trend in the order is removed first and reported; the rest is the repeatability scatter.
 """
 
 from __future__ import annotations
@@ -17,21 +17,22 @@ from calibration.measurements._basis import legendre
 
 Array = NDArray[np.float64]
 
-REPEATS = 4  # of one test: a trend in their order takes two
-GRID = 24  # places along the records, where they are compared
-BEND = 4  # highest degree of a record's own deviation
-_NORMAL = 1.4826  # standard deviations in a median absolute deviation
+REPEATS = 4  # least number of repeats of one test: mean and trend take two degrees of freedom
+GRID = 24  # points along the records at which they are compared
+BEND = 4  # highest polynomial degree of a record's own deviation
+_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Curve:
-    """One record's misfit along what drives it, over its full scale.
+    """Misfit of one record along its driven quantity.
 
     Attributes
     ----------
     name, material, specimen : of the record.
-    test : what repeats have in common; None of a record that is no repeat of another.
-    x, misfit : shape (k,), in the order of the record.
+    test : key that repeats of one test share; None for a record that is not a repeat.
+    x : driven quantity, in the order of the record, shape (k,).
+    misfit : simulated minus measured [SI], shape (k,).
     scale : full scale [SI].
     """
 
@@ -46,15 +47,15 @@ class Curve:
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
-    """Standard deviations as parts of full scale; None where there is nothing to see them by.
+    """Standard deviations as fractions of full scale; None if there are no tests to estimate them.
 
     Attributes
     ----------
-    repeat : of one test from the next of the same specimen, the trend of their order taken out.
-    order : what the order of tests makes from the first to the last, rms along the record; with its sign, of
-        the misfit's mean.
-    specimen : of one specimen's mean from the next of its material.
-    repeats : names of the tests that show them.
+    repeat : standard deviation between repeats on one specimen, without the trend in their order.
+    order : change of the misfit from the first to the last repeat by that trend: rms along the record, with
+        the sign of its mean.
+    specimen : standard deviation between the means of specimens of one material in one test.
+    repeats : names of the records that `repeat` and `order` are estimated from.
     dof : degrees of freedom of `repeat`.
     """
 
@@ -86,7 +87,11 @@ class Layers:
 
 
 def layers_of(curves: Sequence[Curve]) -> Layers:
-    """From groups of at least REPEATS records of one test."""
+    """Estimate the variance components.
+
+    `repeat` and `order` use groups of at least REPEATS records of one test on one specimen; `specimen` uses
+    the means of all groups of one test and material.
+    """
     groups: dict[Hashable, list[Curve]] = {}
     for c in curves:
         if c.test is not None:
@@ -120,8 +125,10 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
 
 
 def _together(group: Sequence[Curve]) -> Array | None:
-    """Misfits (records, GRID) over full scale where all were measured; None where they have nothing in
-    common."""
+    """Misfits over full scale on a grid of their common range of x, shape (records, GRID).
+
+    None if they have no common range.
+    """
     low = max(float(c.x.min()) for c in group)
     high = min(float(c.x.max()) for c in group)
     if not high > low:
@@ -135,8 +142,11 @@ def _together(group: Sequence[Curve]) -> Array | None:
 
 
 def deviations(curves: Sequence[Curve], repeat: float) -> list[list[Array]]:
-    """One standard deviation of each bend of each record's own deviation [SI], whose mean square along the
-    record is that of `repeat`."""
+    """Nuisance columns [SI] for the own deviation of each record: Legendre polynomials of degree 0 to BEND.
+
+    Each is one standard deviation; together their variance, averaged over the range of x, is repeat**2 (times
+    scale**2).
+    """
     part = repeat / sqrt(BEND + 1.0)
     return [
         [c.scale * part * sqrt(2.0 * d + 1.0) * legendre(c.x, d) for d in range(BEND + 1)] for c in curves

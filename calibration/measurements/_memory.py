@@ -1,4 +1,4 @@
-"""Answers that are remembered by what they depend on."""
+"""A cache of results by key, with batched evaluation."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ AnswerT = TypeVar("AnswerT")
 
 
 class Memory(Generic[KeyT, AnswerT]):
-    """The last answers by their keys.
+    """Cache of results by key (first in, first out).
 
     Parameters
     ----------
-    size : how many are kept; the oldest are forgotten.
+    size : largest number of results; the oldest are dropped.
     """
 
     def __init__(self, size: int) -> None:
@@ -24,12 +24,12 @@ class Memory(Generic[KeyT, AnswerT]):
     def fetch(
         self, keys: Sequence[KeyT], answer: Callable[[Sequence[int]], Sequence[AnswerT]]
     ) -> list[AnswerT]:
-        """Answers of these keys, in their order.
+        """Results of these keys, in their order.
 
         Parameters
         ----------
-        answer : of those that are not known, by their index among the keys; a key that occurs twice is asked
-            for once, and nothing is asked for where all are known.
+        answer : function from indices into `keys` to the results of these keys; it is called once, with the
+            missing keys without duplicates, or not at all if none is missing.
         """
         first: dict[KeyT, int] = {}
         for k, key in enumerate(keys):

@@ -1,9 +1,8 @@
-"""The model of a kind of measurement: what all kinds do alike, once.
+"""Base class of the models of all kinds of measurement.
 
-A kind brings its records, its forward map (`_misfit`), the nuisances of its noise, what a lack of fit might
-look like, and the experiments that a lab can do next. Jacobians, whitening, candidates, folds and held-out
-scores come from here. `calibration.diagnosis.engine` searches these models for causes,
-`calibration.study` fits them.
+A kind defines its records, its forward map (`_misfit`), the nuisances of its noise, its discrepancy basis and
+the experiments that a lab can do next. Jacobians, whitening, candidates, folds and held-out scores are
+inherited. `calibration.diagnosis.engine` searches these models for causes, `calibration.study` fits them.
 """
 
 from __future__ import annotations
@@ -32,8 +31,14 @@ Rows = NDArray[np.bool_]
 
 
 class Record(Protocol):
-    """One trial, or one photograph of it. groups : its label at each level that effects may be scoped by.
-    ranges : between what it was measured, by a name with its unit in files."""
+    """One trial, or one photograph of it.
+
+    Attributes
+    ----------
+    name, material, specimen : of the trial.
+    groups : label at each level to which effects may be restricted.
+    ranges : measured range of each quantity (low, high), by its name in files, which includes the unit.
+    """
 
     @property
     def name(self) -> str: ...
@@ -53,14 +58,16 @@ class Record(Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Shown:
-    """A record as people look at it, point by point.
+    """A record for display, point by point.
 
     Attributes
     ----------
-    axis : what x is, with its unit. x : shape (p,), in that unit.
-    quantity : what is compared. unit : of it in files, and how many of them are one SI unit.
-    measured : shape (p,) [SI]; 0 where what is compared is a distance between simulated and measured.
-    of_rows : points by the record's rows, shape (p, rows); None where they are the same.
+    axis : label of x, with its unit.
+    x : abscissa in that unit, shape (p,).
+    quantity : name of the compared quantity.
+    unit : unit of the quantity in files, and the number of these units per SI unit.
+    measured : measured values [SI], shape (p,); 0 if distances between simulated and measured are compared.
+    of_rows : matrix from the record's rows to the points, shape (p, rows); None for the identity.
     """
 
     axis: str
@@ -71,25 +78,24 @@ class Shown:
     of_rows: Array | None = None
 
     def points(self, rows: Array) -> Array:
-        """Values of the record's rows, shape (rows,) or (rows, k), at the points."""
+        """Map values of the record's rows, shape (rows,) or (rows, k), to the points."""
         return rows if self.of_rows is None else np.asarray(self.of_rows @ rows)
 
 
 class MeasurementModel(ForwardModel):
-    """Measurements of one kind, for fit and diagnosis; its attributes are beside those of `ForwardModel`.
+    """Measurements of one kind, for fit and diagnosis; attributes in addition to those of `ForwardModel`.
 
     Attributes
     ----------
     kind : name of the kind of measurement.
-    unit : of `distance_rms` in files, and how many of them are one SI unit.
-    max_causes : that may be named together; more could stand in for a cause that is not in the catalogue.
-    compares_specimens : whether moduli that differ between specimens of a material count as a lack of fit.
-    experiments : what a lab can do next, the cheapest first.
-    enough : improvement of chi-square from which on two explanations are separated by an experiment.
-    separates : whether advice asks for an experiment that separates "all" explanations, or "most" of them.
-    laws : that may be its baseline's, the simplest first, with terms of a series law; none where the kind
-        knows one only.
-    noise_scale : the noise from point to point over what `noise` has (`NoiseKnown.scale`).
+    unit : unit of `distance_rms` in files, and the number of these units per SI unit.
+    max_causes : largest number of causes named together; more could replace a cause that the catalogue lacks.
+    compares_specimens : True if different moduli of specimens of one material count as a lack of fit.
+    experiments : experiments that a lab can do next, the cheapest first.
+    enough : smallest difference of chi-square for which an experiment separates two explanations.
+    separates : "all" or "most": the explanations that a recommended experiment must separate.
+    laws : (law, terms) that can be the baseline, the simplest first; empty if the kind has one law only.
+    noise_scale : ratio of the noise from point to point to that in `noise` (`NoiseKnown.scale`).
     """
 
     kind: ClassVar[str]
@@ -106,70 +112,82 @@ class MeasurementModel(ForwardModel):
 
     @abstractmethod
     def start(self) -> Array:
-        """Coordinates (n,) to begin the baseline's fit from. ValueError where there are none."""
+        """Start coordinates of the baseline's fit, shape (n,); ValueError if there are none."""
 
     @abstractmethod
     def _discrepancies(self) -> Mapping[str, Array]:
-        """Sets of columns (rows, k) [SI] by name: what a lack of fit might look like."""
+        """Discrepancy basis before whitening: sets of columns (rows, k) [SI] by name."""
 
     @abstractmethod
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        """Labels of all rows, for each set of folds, in order of preference."""
+        """Fold labels of all rows by set of folds, in order of preference."""
 
     def suggested_start(self) -> Array | None:
-        """Coordinates (n,) near which a fit has to begin, where a scan over moduli would not find it; None
-        where one does. ValueError where there are none."""
+        """Coordinates (n,) near which a fit must start if a scan over moduli would miss it; None otherwise.
+
+        ValueError if there are none.
+        """
         return None
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
-        """Take nuisances and discretisation errors at a state; linearisations from before are void. rough :
-        what is dear may be left out."""
+        """Update nuisances and discretisation errors at a state; earlier linearisations become invalid.
+
+        rough : True permits leaving out expensive parts.
+        """
         del state, rough
 
     def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
-        """Where a fit begins that takes these causes in beside those of a state: elsewhere where one changes
-        what the coordinates stand for."""
+        """Start of a fit that adds these candidates to a state.
+
+        It differs from the state if a candidate changes the meaning of the coordinates.
+        """
         del candidates
         return state
 
     def predicted_in(self, test: Any, state: State) -> Self | None:
-        """The same specimens in one of `experiments`, as a state predicts it; None where it cannot be."""
+        """Model of the same specimens in one of `experiments`, with the data that a state predicts.
+
+        None if the experiment cannot be done or predicted.
+        """
         del test, state
         return None
 
     def with_law(self, law: str, terms: int) -> Sequence[Self]:
-        """The same measurements with one of `laws` as baseline and no effects, in parts that share no
-        coordinate. ValueError where the law has no answer; OptionError of a kind that has one law only."""
+        """The same measurements with one of `laws` as baseline and no effects.
+
+        The models that are returned share no coordinate. ValueError for an unknown law; OptionError for a
+        kind that has one law only.
+        """
         raise OptionError("law", f"{law}:{terms}", f"{self.kind} has one law only, expected auto")
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
-        """The law, with its parameters, that an effect has put in the place of the baseline's; None where
-        none has."""
+        """Name and parameters of the law by which an effect replaces the baseline's; None if none does."""
         del material, state
         return None
 
     def brings(self, candidate: Candidate) -> int:
-        """Coordinates that matter only beside a candidate: they count as parameters of its own."""
+        """Number of coordinates that matter only with this candidate; they count as its parameters."""
         del candidate
         return 0
 
     def remarks(self) -> list[str]:
-        """What a reader of the verdict should know of the model, a sentence each."""
+        """Sentences on assumptions and limits of the model, for the verdict."""
         return []
 
     def shortcomings(self) -> list[str]:
-        """How the simulation falls short of what it should be where nuisances were taken last, a sentence
-        each, for readers of a fit."""
+        """Sentences on deficiencies of the simulation at the last update of nuisances, for a fit's report."""
         return []
 
     def noise_sentence(self) -> str:
-        """What the noise model consists of, for people."""
+        """Description of the noise model, for reports."""
         return ""
 
     def point_noise(self) -> list[PointNoise]:
-        """What each record shows of its noise from point to point: the scatter of the misfit about a smooth
-        curve, in the order of its rows. Nothing where errors are correlated from row to row, or the baseline
-        has no answer to begin from."""
+        """Noise of each record from point to point: scatter of the misfit at `start` about a smooth curve.
+
+        Empty if the rows are correlated. Records with fewer than FEWEST third differences, without scatter,
+        or without a solution at the start are left out. ValueError if there is no start.
+        """
         if self.noise.covariance is not None:
             return []
         misfit = self._misfit([State(u=self.start())])[0]
@@ -192,21 +210,30 @@ class MeasurementModel(ForwardModel):
         return found
 
     def states_noise(self, k: int) -> bool:
-        """True if the lab states the noise of a record, by its index."""
+        """True if the lab states the noise of record `k`."""
         return not getattr(self.records[k], "estimated", False)
 
     def repeated(self) -> tuple[str, ...]:
-        """Names of the tests whose repeats show how one differs from the next; () where none do."""
+        """Names of the tests from whose repeats this kind's own noise model has the scatter between tests.
+
+        () if there are none.
+        """
         return ()
 
     def repeat_of(self, k: int) -> Hashable | None:
-        """What a record, by its index, has in common with its repeats, beside material and specimen (mode,
-        range, rate, ...); None where no record of this kind counts as a repeat of another."""
+        """Key (mode, range, rate, ...) that record `k` shares with its repeats, beside material and specimen.
+
+        None if no record of this kind is a repeat of another.
+        """
         del k
         return None
 
     def noise_known(self) -> NoiseKnown:
-        """What is known of the noise, as it is used: what repeats show counts from here on."""
+        """Summary of the noise; adds the scatter between repeats to `noise` as nuisances.
+
+        The scatter (`layers_of`) is estimated and added if the kind has no repeats of its own, no nuisances
+        and no correlated rows.
+        """
         stated = all(self.states_noise(k) for k in range(len(self.records)))
         repeats, layers = self.repeated(), Layers()
         points = tuple(self.point_noise())
@@ -227,7 +254,7 @@ class MeasurementModel(ForwardModel):
         )
 
     def _curves(self) -> list[Curve]:
-        """The misfit where a fit begins, of each record that is driven; none where it is not known."""
+        """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity."""
         scale = self.full_scale()
         along = [self.along(k) for k in range(len(self.records))]
         if scale is None or any(a is None for a in along):
@@ -248,8 +275,7 @@ class MeasurementModel(ForwardModel):
         ]
 
     def with_noise_of_data(self) -> NoiseKnown:
-        """Take the noise of each record as the data show it, where that is not what the lab states; what is
-        known of it then."""
+        """Rescale the sd of records whose scatter contradicts the stated noise; return the noise summary."""
         known = self.noise_known()
         factors = {p.record: p.factor for p in known.points if p.contradicts}
         by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
@@ -259,19 +285,20 @@ class MeasurementModel(ForwardModel):
         return replace(known, source="data", dof=dof)
 
     def full_scale(self) -> Array | None:
-        """Largest measured value of each record [SI], shape (records,); None where what is compared has no
-        scale (distances between simulated and measured)."""
+        """Largest |measured value| of each record [SI], shape (records,).
+
+        None if that of any record is 0 (distances between simulated and measured are compared).
+        """
         found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
         return found if (found > 0.0).all() else None
 
     def along(self, k: int) -> tuple[str, Array] | None:
-        """What drives a record, by its index: its name for people, and its value at each of the record's
-        rows; None where rows are no points along anything."""
+        """Driven quantity of record `k`: its name, and its values at the rows; None if it has none."""
         del k
         return None
 
     def shown(self, k: int) -> Shown:
-        """A record, by index, as people look at it."""
+        """Record `k` for display."""
         rows = int(np.count_nonzero(self.row_record == k))
         return Shown(
             axis="row of the record",
@@ -284,7 +311,7 @@ class MeasurementModel(ForwardModel):
     # -- lack of fit, folds, scores --
 
     def discrepancy_basis(self) -> Mapping[str, Array]:
-        """Sets of whitened columns (m, k) by name: what a lack of fit might look like."""
+        """Discrepancy basis: sets of whitened columns (m, k) by name."""
         prior = len(self.baseline.prior)
         found = {
             name: np.vstack([self.noise.whiten(raw), np.zeros((prior, raw.shape[1]))])
@@ -295,22 +322,22 @@ class MeasurementModel(ForwardModel):
         return found
 
     def folds(self) -> Mapping[str, Sequence[tuple[str, Rows]]]:
-        """Sets of folds by name, in order of preference: rows (rows,) that are left out together."""
+        """Sets of folds by name, in order of preference; a fold is a label with its mask of rows (rows,)."""
         return folds_of(self._fold_labels())
 
     def rows(self, fold: Rows) -> Rows:
-        """Where a fold's measurements stand among the residuals, shape (m,)."""
+        """Mask of a fold's measurements in the residuals, shape (m,)."""
         prior = np.zeros(len(self.baseline.prior), dtype=bool)
         return np.concatenate([fold[self.noise.used], prior])
 
     def subset(self, fold: Rows, *, others: bool) -> Self:
-        """The measurements of a fold, or all others; nuisances stay as they were taken."""
+        """Model of the measurements of a fold, or of all others; nuisances stay as they are."""
         some = copy(self)
         some.noise = self.noise.subset(~fold if others else fold)
         return some
 
     def unconstrained(self, fold: Rows) -> Rows:
-        """Coordinates u that nothing outside of a fold constrains, shape (n,)."""
+        """Mask (n,) of the coordinates u that no measurement outside of a fold constrains."""
         left = self.noise.used & ~fold
         found = np.zeros(len(self.names), dtype=bool)
         for k in np.unique(self.row_record[left]):
@@ -318,12 +345,14 @@ class MeasurementModel(ForwardModel):
         return np.asarray(~found)
 
     def _constrains(self, record: Any) -> Rows:
-        """Coordinates u that a record constrains, shape (n,): its material's, those of all its specimens."""
+        """Mask (n,) of the coordinates u that a record constrains: all of its material's, without extras."""
         return self.baseline.informed_by(record, whole_material=True)
 
     def distance_rms(self, state: State) -> float:
-        """Root mean square of simulated less measured, the most likely nuisances removed [SI]. ValueError
-        where the state has no answer."""
+        """Root mean square of simulated minus measured [SI], after removal of the most likely nuisances.
+
+        ValueError if the state has no solution.
+        """
         misfit = self._misfit([state])[0]
         if not np.isfinite(misfit[self.noise.used]).all():
             raise ValueError(self.no_answer)
@@ -331,16 +360,18 @@ class MeasurementModel(ForwardModel):
         return float(np.sqrt(left @ left / self._measured_points()))
 
     def noise_rms(self) -> float:
-        """What `distance_rms` would be of the noise alone [SI]."""
+        """Expected `distance_rms` of the noise alone [SI]."""
         return self.noise_scale * float(np.sqrt(self.noise.removed_variance() / self._measured_points()))
 
     def _measured_points(self) -> int:
-        """Measured points behind the rows that are used."""
+        """Number of measured points of the rows that are used."""
         return self.points
 
     def registered(self, state: State) -> list[Array]:
-        """Simulated less measured, the most likely nuisances removed, of each record [SI]; NaN where nothing
-        is compared. ValueError where the state has no answer."""
+        """Simulated minus measured of each record [SI], after removal of the most likely nuisances.
+
+        NaN in rows that are not compared. ValueError if the state has no solution.
+        """
         misfit = self._misfit([state])[0]
         if not np.isfinite(misfit[self.noise.used]).all():
             raise ValueError(self.no_answer)
@@ -348,8 +379,10 @@ class MeasurementModel(ForwardModel):
         return [left[self.row_record == k] for k in range(len(self.records))]
 
     def nuisance_values(self, state: State) -> dict[str, float]:
-        """Most likely value of each nuisance that has a name [its sd]. ValueError where the state has no
-        answer."""
+        """Most likely value of each named nuisance, in its standard deviations.
+
+        ValueError if the state has no solution.
+        """
         misfit = self._misfit([state])[0]
         if not np.isfinite(misfit[self.noise.used]).all():
             raise ValueError(self.no_answer)
@@ -357,12 +390,14 @@ class MeasurementModel(ForwardModel):
         return {name: float(b) for name, b in zip(self.noise.names, values, strict=False) if name}
 
     def shear_moduli(self, u: Array) -> dict[str, float]:
-        """Of each material [Pa]: the geometric mean over its specimens."""
+        """Shear modulus of each material [Pa]: the geometric mean over its specimens."""
         return self.baseline.shear_moduli(u)
 
     def hands_on(self, candidate: Candidate, state: State) -> Mapping[str, HandedOn]:
-        """The part of the material that an effect is at a state, by material; none for other effects, and for
-        one that was found in a specimen or a trial alone."""
+        """Constitutive part that an effect represents at a state, by material.
+
+        Empty for effects that represent none, and for a candidate of a single specimen or trial.
+        """
         effect = self.effects[candidate.effect]
         if effect.hands_on is None or candidate not in state.amplitudes:
             return {}
@@ -382,7 +417,7 @@ class MeasurementModel(ForwardModel):
         return found
 
     def valid_range(self, candidate: Candidate) -> dict[str, tuple[float, float]]:
-        """Between what an effect was measured, by the quantity's name in files."""
+        """Measured ranges of a candidate's records (low, high), by the quantity's name in files."""
         found: dict[str, tuple[float, float]] = {}
         for r, hit in zip(self.records, self.reached(candidate), strict=True):
             for name, (low, high) in r.ranges.items() if hit else ():

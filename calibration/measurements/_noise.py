@@ -1,4 +1,4 @@
-"""The noise of measurements: the data's covariance, and nuisances that many rows share."""
+"""Noise model of measurements: covariance of the data, and nuisances that rows share."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Noise:
 
     Attributes
     ----------
-    sd : standard deviation of each row by itself [SI], shape (rows,); inf where nothing was measured.
-    covariance : C, shape (rows, rows), where rows are correlated; None for diag(sd**2).
-    columns : one standard deviation of each nuisance [SI], shape (rows, k).
-    names : of the nuisances, where they have names.
-    kept : rows that are compared, shape (rows,).
-    symmetric : whiten by (1 + A A^T)^(-1/2) with A = columns / sd, which costs rows times k^2, in place of
-        the triangular factor of the covariance, which costs rows^3: for long records with few nuisances.
+    sd : standard deviation of each row without nuisances [SI], shape (rows,); inf where nothing was measured.
+    covariance : C, shape (rows, rows), if rows are correlated; None for diag(sd**2).
+    columns : effect of one standard deviation of each nuisance [SI], shape (rows, k).
+    names : names of the nuisances, () if they have none; unnamed ones are "".
+    kept : mask of the rows that are compared, shape (rows,).
+    symmetric : whiten by (1 + A A^T)^(-1/2) with A = columns / sd, at a cost of O(rows k^2), in place of the
+        Cholesky factor of the covariance, O(rows^3): for long records with few nuisances. C is then diagonal.
     """
 
     sd: Array
@@ -38,13 +38,13 @@ class Noise:
 
     @classmethod
     def independent(cls, sd: Array, *, symmetric: bool = False) -> Noise:
-        """Rows that are independent, without nuisances; all are kept."""
+        """Noise of independent rows without nuisances; all rows are kept."""
         rows = len(sd)
         return cls(sd=sd, columns=np.zeros((rows, 0)), kept=np.ones(rows, dtype=bool), symmetric=symmetric)
 
     @classmethod
     def correlated(cls, covariance: Array) -> Noise:
-        """Correlated rows, without nuisances; all are kept."""
+        """Noise of correlated rows without nuisances; all rows are kept."""
         rows = len(covariance)
         return cls(
             sd=np.sqrt(np.diag(covariance)),
@@ -54,17 +54,17 @@ class Noise:
         )
 
     def with_nuisances(self, columns: Array | Sequence[Array], names: Sequence[str] = ()) -> Noise:
-        """The same with other nuisances: columns (rows, k), or k of shape (rows,)."""
+        """Copy with other nuisances: columns of shape (rows, k), or k columns of shape (rows,)."""
         whole = columns if isinstance(columns, np.ndarray) else np.column_stack([*columns])
         return replace(self, columns=whole, names=tuple(names))
 
     def subset(self, some: Rows) -> Noise:
-        """Of the rows that are kept, some, shape (rows,)."""
+        """Copy that keeps only `some` of the kept rows; mask of shape (rows,)."""
         return replace(self, kept=self.kept & some)
 
     @cached_property
     def used(self) -> Rows:
-        """Rows that are kept and were measured, shape (rows,); m of them."""
+        """Mask of the rows that are kept and were measured, shape (rows,); m of them."""
         return self.kept & np.isfinite(self.sd)
 
     @property
@@ -73,9 +73,9 @@ class Noise:
         return int(np.count_nonzero(self.used))
 
     def whiten(self, residuals: Array) -> Array:
-        """Residuals (rows,) or (rows, k) -> those used, uncorrelated and of unit variance, (m,) or (m, k).
+        """Whiten residuals (rows,) or (rows, k); return the rows used, shape (m,) or (m, k).
 
-        What is not finite counts as zero: a difference without an answer explains nothing.
+        Values that are not finite count as zero, so that a derivative without a solution explains nothing.
         """
         x = residuals[self.used]
         x = np.where(np.isfinite(x), x, 0.0)
@@ -91,17 +91,17 @@ class Noise:
         return np.asarray(solve_triangular(self._root, x, lower=True, check_finite=False))
 
     def estimate(self, residuals: Array) -> Array:
-        """Most likely nuisances b (k,) of residuals (rows,)."""
+        """Most likely nuisances b (k,) for residuals (rows,)."""
         return np.asarray(self._estimator @ residuals[self.used])
 
     def remove(self, residuals: Array) -> Array:
-        """Residuals (rows,) without the most likely nuisances."""
+        """Residuals (rows,) minus the most likely nuisances."""
         if not self.columns.shape[1]:
             return residuals
         return np.asarray(residuals - self.columns @ self.estimate(residuals))
 
     def removed_variance(self) -> float:
-        """Expected squared sum of what `remove` leaves of the noise alone, over the rows that are used."""
+        """Expected sum of squares of the noise after `remove`, over the rows that are used."""
         if self._plain:
             return float(np.sum(self.sd[self.used] ** 2))
         known = self.columns[self.used]

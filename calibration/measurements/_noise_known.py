@@ -1,7 +1,7 @@
-"""What is known of the noise: what the lab states, what the data show, and which of the two was used.
+"""Comparison of the noise stated by the lab with the scatter of the data.
 
-Without repeats a record shows its own scatter about a smooth curve, which is an upper bound of what differs
-from point to point, and nothing of an error that all of its points share.
+Without repeats, a record determines only its scatter about a smooth curve, which is an upper bound of the
+noise from point to point; it does not show an error that all of its points share.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ Array = NDArray[np.float64]
 
 Source = Literal["stated", "data"]
 
-FEWEST = 12  # points of a record that show their scatter
-FACTOR = 2.0  # between what is stated and what the data show, from which on they contradict each other
-_WEIGHTS = np.array([1.0, -3.0, 3.0, -1.0])  # a third difference: of a parabola it is zero
-_NORMAL = 1.4826  # standard deviations in a median absolute deviation
+FEWEST = 12  # least number of third differences for an estimate of a record's scatter
+FACTOR = 2.0  # ratio between stated and observed noise from which they contradict each other
+_WEIGHTS = np.array([1.0, -3.0, 3.0, -1.0])  # third difference: zero for a parabola
+_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointNoise:
-    """The noise of one record, point by point.
+    """Noise of one record from point to point.
 
     Attributes
     ----------
-    record : its name.
-    stated : whether the lab states it; otherwise it was guessed.
-    assumed : standard deviation of a point, the median over the record [SI].
-    shown : what the scatter of the record shows at most [SI].
-    points : that show it.
+    record : name of the record.
+    stated : True if the lab states the noise; otherwise it was assumed.
+    assumed : stated or assumed standard deviation of a point, median over the record [SI].
+    shown : upper bound of the standard deviation from the record's scatter [SI].
+    points : number of third differences that `shown` is estimated from.
     """
 
     record: str
@@ -47,28 +47,28 @@ class PointNoise:
 
     @property
     def factor(self) -> float:
-        """What is shown over what was assumed."""
+        """shown / assumed."""
         return self.shown / self.assumed
 
     @property
     def contradicts(self) -> bool:
-        """True if what the lab states is not what the data show."""
+        """True if the stated noise differs from the observed scatter by more than FACTOR."""
         return self.stated and not 1.0 / FACTOR <= self.factor <= FACTOR
 
 
 @dataclass(frozen=True, kw_only=True)
 class NoiseKnown:
-    """What is known of an experiment's noise.
+    """Summary of an experiment's noise.
 
     Attributes
     ----------
-    source : what was used: what the lab states (or, where it does not, the usual), or what the data show.
-    known : whether the lab states it, or repeats show it.
-    dof : degrees of freedom of its estimate; inf where it is taken as known.
-    points : what each record shows.
-    repeats : names of the tests that show how one differs from the next.
-    layers : what they show, where the kind of measurement does not model it.
-    unit : of rms residuals in files, and how many of them one SI unit is.
+    source : noise in use: "stated" by the lab (a default if it is not), or from the "data".
+    known : True if the lab states the noise of all records, or repeats determine it.
+    dof : degrees of freedom of the noise estimate; inf if it is taken as known.
+    points : noise of each record from point to point.
+    repeats : names of the tests whose repeats determine the scatter between tests.
+    layers : variance components from repeats, if the kind of measurement has no model of its own for them.
+    unit : unit of rms residuals in files, and the number of these units per SI unit.
     """
 
     source: Source = "stated"
@@ -81,9 +81,11 @@ class NoiseKnown:
 
     @property
     def scale(self) -> float:
-        """What the noise from point to point is at most, over what was assumed: below 1 where an error that
-        nobody stated was taken for larger than the scatter (areas and load cells have errors that all points
-        of a record share)."""
+        """Upper bound of the noise from point to point, relative to the assumed noise; at most 1.
+
+        It is below 1 if an assumed error exceeds the scatter (errors of areas and load cells are shared by
+        all points of a record). 1 if the lab states the noise of any record.
+        """
         unstated = [p for p in self.points if not p.stated]
         if not unstated or len(unstated) < len(self.points):
             return 1.0
@@ -91,7 +93,7 @@ class NoiseKnown:
         return sqrt(total / sum(p.points for p in unstated))
 
     def sentences(self) -> list[str]:
-        """For people: what is not known, what contradicts what."""
+        """Sentences for reports: contradictions with the data, scatter of repeats, unknown noise."""
         found = []
         name, per_si = self.unit
         for larger, text in ((False, "less"), (True, "more")):
@@ -140,9 +142,10 @@ STATED = NoiseKnown()
 
 
 def roughness(values: Array) -> tuple[float, int]:
-    """Standard deviation of white noise on smooth values (k,) in the order of their curve, from third
-    differences, robustly; an upper bound where the curve itself is not smooth. With it the number of
-    differences."""
+    """Standard deviation of white noise on a smooth curve of values (k,), and the number of differences used.
+
+    Robust estimate from the median absolute third difference; an upper bound if the curve is not smooth.
+    """
     if len(values) < len(_WEIGHTS):
         return 0.0, 0
     left = np.convolve(values, _WEIGHTS, mode="valid")
@@ -153,5 +156,5 @@ def roughness(values: Array) -> tuple[float, int]:
 
 
 def typical(values: Sequence[float]) -> float:
-    """Median; 0 of nothing."""
+    """Median; 0 for an empty sequence."""
     return float(np.median(values)) if len(values) else 0.0

@@ -1,7 +1,7 @@
-"""What a kind of measurement follows of what a material has beside its law: viscosity, softening, fibres.
+"""Support of a kind of measurement for fits of viscosity, softening and fibres (parts beside the law).
 
-A kind says so by `Kind.over_time`; one that says nothing is not fitted with such parts. Its model then finds
-them in the baseline (`baseline.law.parts`), and must evaluate materials that have them.
+A kind declares it by `Kind.over_time`; a kind without it is not fitted with such parts. The model finds them
+in the baseline (`baseline.law.parts`), and must evaluate materials that have them.
 """
 
 from __future__ import annotations
@@ -20,19 +20,20 @@ def _anything(experiment: Experiment, specs: Sequence[str]) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class OverTime:
-    """Fits of one kind of measurement over time.
+    """Support of one kind of measurement for fits with parts.
 
     Attributes
     ----------
     options : tuple
-        Of a fit ("time", "damage", "fibres"): parts of these are followed.
+        Options of a fit ("time", "damage", "fibres") whose parts are supported.
     window : callable
-        Trials of one material -> what they show of its parts. Times are 0 where no trial has a clock.
+        Function from an experiment of one material to the range of times and peaks that its trials cover;
+        times are 0 if no trial has a clock.
     check : callable
-        Trials of one material and the specs of parts ("prony:2") -> None; InputError, in one sentence, for
-        trials that cannot be fitted with them.
+        Function of an experiment of one material and the specs of parts ("prony:2"); raises InputError, in
+        one sentence, for trials that cannot be fitted with them.
     why_not : str
-        Why other parts are not followed, to end a sentence.
+        Reason why other parts are not supported, as the end of a sentence.
     """
 
     options: tuple[Option, ...]
@@ -42,7 +43,7 @@ class OverTime:
 
 
 def need_clock(trial: str, specs: Sequence[str]) -> None:
-    """InputError for a trial without a clock where some part needs one."""
+    """InputError for a trial without a clock if a part needs one."""
     for spec in specs:
         part = part_kind(spec)
         if part.needs_time:
@@ -50,7 +51,7 @@ def need_clock(trial: str, specs: Sequence[str]) -> None:
 
 
 def union(windows: Sequence[ProtocolWindow]) -> ProtocolWindow:
-    """What several kinds of tests show together."""
+    """Union of the windows of several kinds of tests."""
     timed = [w for w in windows if w.last > 0.0]
     return ProtocolWindow(
         first=min((w.first for w in timed), default=0.0),

@@ -1,4 +1,4 @@
-"""What records of all kinds share: cut into strokes, thinned by means of neighbours, listed in a sentence."""
+"""Functions on records of all kinds: segmentation into strokes and holds, thinning, listing of names."""
 
 from __future__ import annotations
 
@@ -12,13 +12,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-LONG = 2.0  # a hold takes so many times as long as 10 of its tolerances of motion beside it
+LONG = 2.0  # least duration of a hold, over the time that the adjacent motion takes for 10 tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
-    """A monotone part of a driven quantity. points : where in the record, from the turning point before.
-    direction : +1 where it grows, -1 where it falls, 0 where it never moves by the tolerance."""
+    """A monotone part of a driven quantity.
+
+    Attributes
+    ----------
+    points : slice of the record, from the preceding turning point on.
+    direction : +1 if it grows, -1 if it falls, 0 if it never moves by the tolerance.
+    """
 
     points: slice
     direction: float
@@ -27,10 +32,10 @@ class Stroke:
 def strokes(driven: Array, tolerance: float) -> list[Stroke]:
     """Monotone parts of a driven quantity (a stretch, a depth) in the order of the record.
 
-    A reversal by no more than `tolerance` is noise. Holds belong to the stroke before them.
+    A reversal by no more than `tolerance` counts as noise. Holds belong to the stroke before them.
     """
     turns, directions = [0], []
-    top = bottom = 0  # where the extremes since the last turn are
+    top = bottom = 0  # indices of the extremes since the last turn
     direction = 0.0
     for i in range(1, driven.size):
         top = i if driven[i] > driven[top] else top
@@ -53,8 +58,11 @@ def strokes(driven: Array, tolerance: float) -> list[Stroke]:
 
 
 def holds(time: Array, driven: Array, tolerance: float) -> list[slice]:
-    """Rows of each hold: a driven quantity stays within a tolerance of where it is for longer than motion
-    beside it would take."""
+    """Rows of each hold of a driven quantity.
+
+    In a hold the quantity stays within `tolerance` of its value in the first row, for at least LONG times the
+    time in which the adjacent motion covers 10 tolerances.
+    """
     found: list[slice] = []
     i = 0
     while i < driven.size - 1:
@@ -74,7 +82,7 @@ def holds(time: Array, driven: Array, tolerance: float) -> list[slice]:
 
 
 def bins(points: slice, most: int) -> tuple[NDArray[np.intp], Array]:
-    """First points of at most `most` bins, counted from the slice's first, and how many are in each."""
+    """First index of each of at most `most` bins, relative to the slice's start, and their sizes."""
     size = points.stop - points.start
     first = np.unique(np.linspace(0, size, min(size, most), endpoint=False).astype(np.intp))
     return first, np.diff(np.append(first, size)).astype(float)
@@ -86,24 +94,24 @@ class Named(Protocol):
 
 
 def listed(records: Sequence[Named]) -> str:
-    """Names of records, a few of them where there are many."""
+    """Names of records, separated by commas; of more than six, the first five and the number of others."""
     names = [r.name for r in records]
     return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"
 
 
-HELD = 0.3  # fraction of a record's points in holds from which on it is shown over time
-STILL = 1e-3  # of the range of what is driven: a smaller step is none
+HELD = 0.3  # fraction of steps without motion above which a record is shown over time
+STILL = 1e-3  # fraction of the driven quantity's range below which a step counts as no motion
 
 
 class Axis(TypedDict):
-    """What a record is shown over, with its unit, and where its points are."""
+    """Abscissa of a record for display: label with unit, and values."""
 
     axis: str
     x: Array
 
 
 def over_time(time: Array, driven: str, values: Array) -> Axis:
-    """The axis of a record: time where it has a clock and holds, what is driven otherwise."""
+    """Abscissa of a record: time if it has a clock and many holds (HELD), else the driven quantity."""
     still = np.abs(np.diff(values)) < STILL * max(float(np.ptp(values)), 1e-300)
     if np.isfinite(time).all() and still.size and still.mean() > HELD:
         return {"axis": "time [s]", "x": time}

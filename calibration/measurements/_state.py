@@ -1,4 +1,4 @@
-"""A point of a fit: free coordinates of the baseline, amplitudes of effects, and the derivatives there."""
+"""State of a fit: free coordinates of the baseline and amplitudes of effects; its linearisation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class State:
-    """u : free coordinates of the baseline, shape (n,). amplitudes : of the effects that are present [SI]."""
+    """Point in the parameter space of a fit.
+
+    Attributes
+    ----------
+    u : free coordinates of the baseline, shape (n,).
+    amplitudes : amplitudes of the effects that are present [SI].
+    """
 
     u: Array
     amplitudes: Mapping[Candidate, float] = field(default_factory=dict)
@@ -27,12 +33,13 @@ class Linearisation:
 
     Attributes
     ----------
-    z : whitened residuals, shape (m,); standard normal under the right model but for what is fitted.
+    state : point of linearisation.
+    z : whitened residuals, shape (m,); standard normal at the true parameters of the true model.
     by_u : derivatives by the coordinates u, shape (m, n).
     columns : derivatives by the candidates' amplitudes [1/SI], shape (m, c).
-    candidates : of the columns.
-    alias_tolerance : fraction of a column's length that finite differences may leave of an exact alias; None
-        for the usual one (`calibration.diagnosis.engine.screening`).
+    candidates : candidates of the columns.
+    alias_tolerance : fraction of a column's length that must remain after projection, or else the candidate
+        counts as an alias; None for the default (`calibration.diagnosis.engine.screening`).
     """
 
     state: State

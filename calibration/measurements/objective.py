@@ -1,7 +1,7 @@
-"""A measurement model as an objective of a fit: one law's search coordinates in, whitened residuals out.
+"""Adapter of a measurement model to an objective: from search coordinates of one law to whitened residuals.
 
-`calibration.diagnosis` searches a model for causes; this makes the same model, with the same noise and the
-same corrections, an `Objective` of `calibration.inference.Problem`::
+`calibration.diagnosis` searches a model for causes; this adapter makes the same model, with the same noise
+and corrections, an `Objective` of `calibration.inference.Problem`::
 
     law = parametrisation("ogden")
     model = HomogeneousModel(experiment, baseline=Baseline.of_law(trials, law))
@@ -23,30 +23,31 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 Model = TypeVar("Model", bound=MeasurementModel)
 
-EXTRA_STEPS = 4  # Gauss-Newton, for the extras of a baseline where nuisances are taken
-EXTRA_ENOUGH = 0.1  # [sd of an extra]: a smaller step ends them
+EXTRA_STEPS = 4  # largest number of Gauss-Newton steps of the extras in `linearise`
+EXTRA_ENOUGH = 0.1  # step, in prior sd of an extra, below which these end
 
 
 class ModelObjective(Generic[Model]):
-    """Whitened residuals of a model of one material. `residuals` needs `linearise` first, which takes the
-    model's nuisances and discretisation errors.
+    """Whitened residuals of a model of one material.
 
-    The priors of the law's coordinates are the problem's, and left out here. Extras of the baseline (a
-    release time, a test's own deviation) are no coordinates of the law: they are profiled. `linearise` moves
-    them to their best at its point; around it they are linear, and their best for each u is taken out of its
-    residuals, their priors counted:
+    Call `linearise` before `residuals`: it updates the model's nuisances and discretisation errors.
 
-        r(u) = min_e |z(u, e0) + A (e - e0)|^2,    A = dz/de with the rows of the extras' priors.
+    The priors of the law's coordinates belong to the problem and are left out here. Extras of the baseline (a
+    release time, a test's own deviation) are not coordinates of the law; they are profiled. `linearise` fits
+    them (e0) at its point; `residuals` are linear in them about it and are minimised over e for each u:
+
+        |r(u)|^2 = min_e |z(u, e0) + A (e - e0)|^2,    A = dz/de with the rows of the extras' priors.
 
     Parameters
     ----------
-    model : of one material, with the baseline `Baseline.of_law`.
-    name : for messages.
-    frozen : nuisances stay as the model has them, whatever is linearised.
+    model : model of one material, with the baseline `Baseline.of_law`.
+    name : name in messages.
+    frozen : if True, `linearise` leaves nuisances and extras as they are.
 
     Raises
     ------
-    ValueError : the model's baseline is not of one law and one material.
+    ValueError
+        If the model's baseline is not of one law and one material.
     """
 
     def __init__(self, model: Model, *, name: str, frozen: bool = False) -> None:
@@ -62,19 +63,19 @@ class ModelObjective(Generic[Model]):
 
     @property
     def points(self) -> int:
-        """Rows that are measurements: as many as the model compares."""
+        """Number of rows that are measurements."""
         return self.model.points
 
     def size(self) -> int:
-        """Number of residuals: the measurements, and one prior for each extra."""
+        """Number of residuals: the measurements, and one prior row per extra."""
         return self.model.points + len(self.model.baseline.extras)
 
     def state(self, u: Array) -> State:
-        """The model's state at u (n,), extras as they were taken last."""
+        """State of the model at u (n,), with the extras of the last `linearise`."""
         return State(u=np.concatenate([u, self.extras]))
 
     def linearise(self, u: Array, *, rough: bool = False) -> bool:
-        """Take nuisances, discretisation errors and extras at u (n,); False where it has no answer."""
+        """Update nuisances, discretisation errors and extras at u (n,); False if u has no solution."""
         if self.frozen:
             return True
         try:
@@ -85,8 +86,10 @@ class ModelObjective(Generic[Model]):
         return True
 
     def suggested_start(self) -> Array | None:
-        """The law's coordinates (n,) near which a fit has to begin, if the model names any; extras are then
-        taken from there. ValueError where the model has no answer anywhere."""
+        """Coordinates (n,) of the law near which a fit must start, if the model has any; sets the extras too.
+
+        ValueError if the model has no solution anywhere.
+        """
         found = self.model.suggested_start()
         if found is None:
             return None
@@ -95,15 +98,14 @@ class ModelObjective(Generic[Model]):
         return found[:first]
 
     def residuals(self, U: Array) -> Array:
-        """(batch, size): whitened residuals, the priors of extras last; NaN where a point has no answer."""
+        """Whitened residuals (batch, size), priors of the extras last; NaN for a point without a solution."""
         rows = self._own(self.model.residuals([self.state(u) for u in U]))
         if not len(self.extras):
             return rows
         return np.asarray(rows - (rows @ self._basis) @ self._basis.T)
 
     def subset(self, fold: Rows, *, others: bool = False) -> Self:
-        """The measurements of a fold, or all others; nuisances and extras stay as they were taken here,
-        whatever is linearised later."""
+        """Objective of the measurements of a fold, or of all others; its nuisances and extras are frozen."""
         part = type(self)(self.model.subset(fold, others=others), name=self.name, frozen=True)
         part.extras = self.extras
         if self._at is not None and part.points:
@@ -111,15 +113,15 @@ class ModelObjective(Generic[Model]):
         return part
 
     def nuisances(self, u: Array) -> Mapping[str, float]:
-        """Most likely value of each named nuisance [its sd]. ValueError where u has no answer."""
+        """Most likely value of each named nuisance, in its sd. ValueError if u has no solution."""
         return self.model.nuisance_values(self.state(u))
 
     def shortcomings(self) -> list[str]:
-        """How the simulation falls short of what it should be, a sentence each."""
+        """Sentences on deficiencies of the simulation."""
         return self.model.shortcomings()
 
     def _take_extras(self, u: Array) -> None:
-        """Extras at their best beside u, the law's coordinates held."""
+        """Fit the extras at fixed coordinates u of the law."""
         if not len(self.extras):
             return
         sds = np.array([e.sd for e in self.model.baseline.extras])
@@ -130,7 +132,7 @@ class ModelObjective(Generic[Model]):
             self.extras = self.extras + step
 
     def _linearise_extras(self, state: State) -> Array:
-        """Take the derivatives by the extras at a state; returns the step (e,) to their best there."""
+        """Update the derivatives by the extras at a state; return their Gauss-Newton step, shape (e,)."""
         found = self.model.linearise(state, ())
         columns = self._own(found.by_u[:, self.model.baseline.first_extra :].T).T
         self._at = state
@@ -138,7 +140,7 @@ class ModelObjective(Generic[Model]):
         return np.asarray(-np.linalg.lstsq(columns, self._own(found.z[None])[0], rcond=None)[0])
 
     def _own(self, rows: Array) -> Array:
-        """Residuals (batch, m) of the model without the rows of the law's own priors."""
+        """Residuals (batch, m) of the model, without the rows of the priors of the law and of specimens."""
         priors = len(self.model.baseline.prior) - len(self.model.baseline.extras)
         first = self.model.points
         return np.concatenate([rows[:, :first], rows[:, first + priors :]], axis=1)

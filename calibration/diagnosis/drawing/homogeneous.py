@@ -1,4 +1,4 @@
-"""Pictures of coupons for the page of a diagnosis: curves, what is left of them, and its rms."""
+"""Figures of homogeneous tests for the page of a diagnosis: curves, residuals, rms of residuals."""
 
 from __future__ import annotations
 
@@ -37,15 +37,14 @@ UNIT = ("kPa", _KPA)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnRecord(DrawnCurve):
-    """A record with the stress [Pa] that the baseline makes of its stretches, and the extension; None where
-    there is none."""
+    """A record with its stress [Pa] by the baseline, and by the extension (None if there is none)."""
 
     record: Record
     before: Array
     after: Array | None
 
     def branches(self) -> list[tuple[NDArray[np.bool_], Kind]]:
-        """Points of each branch, and what it is."""
+        """Mask of the points of each branch, and its type."""
         found: list[tuple[NDArray[np.bool_], Kind]] = []
         unloaded = self.record.remembers
         for b in np.unique(self.record.branch):
@@ -59,7 +58,7 @@ class DrawnRecord(DrawnCurve):
 
 
 def drawn(model: HomogeneousModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
-    """All records, with what stands for the extension."""
+    """All records with the stresses of the baseline and of the extension."""
     stresses = before_and_after(diagnosis, model.stresses)
     return [
         DrawnRecord(
@@ -77,7 +76,7 @@ def drawn(model: HomogeneousModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
 
 @figures_of.register(HomogeneousModel)
 def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[Figure]:
-    """Curves, residuals with the noise's band, and rms. ValueError where a law has no stress."""
+    """Figures of curves, residuals and rms. ValueError if the baseline's law has no stress."""
     records = drawn(model, diagnosis)
     if not all(np.isfinite(d.before).all() for d in records):
         raise ValueError("the law has no stress at the baseline")
@@ -103,7 +102,7 @@ def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[F
 
 
 def draw_curves(records: Sequence[DrawnRecord], after: str) -> Figure:
-    """One panel a trial: stress over stretch, measured and simulated."""
+    """One panel per trial: stress over stretch, measured and simulated."""
 
     def draw(axes: Any, d: DrawnRecord) -> None:
         measured_and_simulated(
@@ -126,8 +125,10 @@ def draw_curves(records: Sequence[DrawnRecord], after: str) -> Figure:
 
 
 def draw_residuals(records: Sequence[DrawnRecord], after: str, *, section: Section) -> Figure:
-    """One panel a trial: measured less baseline, in means of neighbouring points, and what the extension adds
-    to the baseline: where it says what the baseline lacks, its lines go through the dots."""
+    """One panel per trial: measured minus baseline (means of neighbours), and extension minus baseline.
+
+    If the extension explains the misfit of the baseline, its lines pass through the dots.
+    """
 
     def draw(axes: Any, d: DrawnRecord) -> None:
         x = _strain(d)
@@ -156,7 +157,7 @@ def draw_residuals(records: Sequence[DrawnRecord], after: str, *, section: Secti
 
 
 def _means(axes: Any, x: Array, y: Array, sd: Array, kind: Kind) -> None:
-    """Dots with error bars: weighted means of neighbours."""
+    """Draw weighted means of neighbouring points with error bars."""
     parts = np.array_split(np.arange(x.size), min(x.size, DOTS))
     weights = [sd[p] ** -2.0 for p in parts]
     axes.errorbar(

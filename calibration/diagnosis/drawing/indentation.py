@@ -1,5 +1,4 @@
-"""Pictures of indentation for the page of a diagnosis: forces over depth, residuals over time, and their
-rms."""
+"""Figures of indentation for the page of a diagnosis: force over depth, residuals over time, their rms."""
 
 from __future__ import annotations
 
@@ -34,15 +33,17 @@ UNIT = ("mN", MN)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnRecord(DrawnCurve):
-    """A record with the force [N] that the baseline gives it, and the extension (None where there is none).
-    Residuals are without the most likely mesh error and first touch."""
+    """A record with its force [N] by the baseline, and by the extension (None if there is none).
+
+    Residuals are without the most likely nuisances (mesh error, first touch ...).
+    """
 
     record: Record
     before: Array
     after: Array | None
 
     def phases(self) -> list[tuple[NDArray[np.bool_], bool]]:
-        """Points of each phase, and whether it is a loading."""
+        """Mask of the points of each phase, and True if it is a loading."""
         found = []
         for p in np.unique(self.record.phase):
             mine = self.record.phase == p
@@ -51,7 +52,7 @@ class DrawnRecord(DrawnCurve):
 
 
 def drawn(model: IndentationModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
-    """All records, with what stands for the extension."""
+    """All records with the forces of the baseline and of the extension."""
     forces = before_and_after(diagnosis, model.forces)
     left = before_and_after(diagnosis, lambda state: [-x for x in model.registered(state)])
     return [
@@ -72,7 +73,7 @@ def drawn(model: IndentationModel, diagnosis: Diagnosis) -> list[DrawnRecord]:
 
 @figures_of.register(IndentationModel)
 def indentation_figures(model: IndentationModel, diagnosis: Diagnosis) -> list[Figure]:
-    """Forces over depth, residuals over time with the noise's band, and rms."""
+    """Figures of force over depth, residuals over time with the band of the noise, and rms."""
     records = drawn(model, diagnosis)
     after = legend_of(diagnosis)
     return [
@@ -91,7 +92,7 @@ def indentation_figures(model: IndentationModel, diagnosis: Diagnosis) -> list[F
 
 
 def draw_forces(records: Sequence[DrawnRecord], after: str) -> Figure:
-    """One panel a trial: force over depth, measured and simulated."""
+    """One panel per trial: force over depth, measured and simulated."""
 
     def draw(axes: Any, d: DrawnRecord) -> None:
         measured_and_simulated(
@@ -114,8 +115,7 @@ def draw_forces(records: Sequence[DrawnRecord], after: str) -> Figure:
 
 
 def draw_residuals(records: Sequence[DrawnRecord], after: str) -> Figure:
-    """One panel a trial: measured less simulated force over time, with two standard deviations of the
-    noise."""
+    """One panel per trial: measured minus simulated force over time, with a band of two sd of the noise."""
 
     def draw(axes: Any, d: DrawnRecord) -> None:
         t = d.record.time - d.record.time[0]

@@ -1,4 +1,4 @@
-"""Pictures of cantilever releases for a diagnosis: the tip through time, its residuals, and their rms."""
+"""Figures of cantilever releases for the page of a diagnosis: tip over time, residuals, their rms."""
 
 from __future__ import annotations
 
@@ -28,14 +28,16 @@ FINE = 2000  # points of a simulated curve
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnRelease(DrawnCurve):
-    """The tip of a record, the mean of its outer markers.
+    """Height of the tip of a record, the mean of its outer markers.
 
     Attributes
     ----------
-    time : since the release [s], shape (k,).
-    height : measured, shape (k,) [m].
-    tip_before, tip_after : measured less simulated height, without the most likely nuisances, shape (k,) [m].
-    lines : simulated: time [s], height by the baseline and by the extension [m].
+    record : the record.
+    time : time since the release [s], shape (k,).
+    height : measured height [m], shape (k,).
+    tip_before, tip_after : measured minus simulated height without the most likely nuisances, by the baseline
+        and by the extension (None without one) [m], shape (k,).
+    lines : simulated curves: time [s], height by the baseline and by the extension [m].
     """
 
     record: Record
@@ -48,7 +50,7 @@ class DrawnRelease(DrawnCurve):
 
 @figures_of.register(ReleaseModel)
 def release_figures(model: ReleaseModel, diagnosis: Diagnosis) -> list[Figure]:
-    """The tip, its residuals, and the rms of all markers. ValueError where a beam has no equilibrium."""
+    """Figures of the tip, its residuals, and the rms of all markers. ValueError without an equilibrium."""
     releases = drawn(model, diagnosis)
     after = legend_of(diagnosis)
     return [
@@ -67,7 +69,7 @@ def release_figures(model: ReleaseModel, diagnosis: Diagnosis) -> list[Figure]:
 
 
 def drawn(model: ReleaseModel, diagnosis: Diagnosis) -> list[DrawnRelease]:
-    """All records, with what stands for the extension."""
+    """All records with the motion by the baseline and by the extension."""
     fine = [np.linspace(0.0, float(r.time[-1] - r.release_time), FINE) for r in model.records]
     left = before_and_after(diagnosis, lambda state: [-x for x in model.registered(state)])
     lines = before_and_after(
@@ -82,7 +84,7 @@ def drawn(model: ReleaseModel, diagnosis: Diagnosis) -> list[DrawnRelease]:
 def _drawn(
     r: Record, left: tuple[Array, Array | None], lines: tuple[Array, Array, Array | None]
 ) -> DrawnRelease:
-    """left: measured less simulated by the baseline and by the extension, in the record's rows."""
+    """Data of a record; left : measured minus simulated rows by the baseline and by the extension."""
     before, after = left
     marker, axis, time = r.labels()
     there = np.isfinite(r.deviations())
@@ -109,7 +111,7 @@ def _drawn(
 
 
 def draw_motion(releases: Sequence[DrawnRelease], after: str) -> Figure:
-    """One panel a trial: the tip's height through time, measured and simulated."""
+    """One panel per trial: height of the tip over time, measured and simulated."""
 
     def draw(axes: Any, d: DrawnRelease) -> None:
         time, before, extended = d.lines
@@ -129,7 +131,7 @@ def draw_motion(releases: Sequence[DrawnRelease], after: str) -> Figure:
 
 
 def draw_residuals(releases: Sequence[DrawnRelease], after: str) -> Figure:
-    """One panel a trial: measured less simulated height of the tip, over the logarithm of time."""
+    """One panel per trial: measured minus simulated height of the tip, over the logarithm of time."""
 
     def draw(axes: Any, d: DrawnRelease) -> None:
         axes.axhline(0.0, color=INK, lw=0.8, zorder=1)

@@ -1,4 +1,4 @@
-"""Cylinders pressed between platens: how they were held, and what they are made of, from force and height."""
+"""Uniaxial compression tests of cylinders: identification of material and platen conditions from force."""
 
 from calibration.measurements.compression.curves import SHAPES, Cylinder, Platens, PressCurves, press_curves
 from calibration.measurements.compression.fit import PressFit, Repeats, fit_press, repeats

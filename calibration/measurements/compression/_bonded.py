@@ -1,4 +1,4 @@
-"""How much more force a bonded cylinder needs than a free one: interpolated between stored simulations."""
+"""Bonded-to-free force ratio of a compressed cylinder, interpolated between stored simulations."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from calibration.measurements.compression.curves import Cylinder
 
 Array = NDArray[np.float64]
 
-# A disc of 50 mm by 30 mm, the reference of the stored simulations.
+# Diameter 50 mm, height 30 mm: the reference of the stored simulations.
 USUAL = Cylinder(radius=0.025, height=0.030)
-REMEMBERED = 64  # curves, of many records together
+REMEMBERED = 64  # cached curves, each for many records together
 
 
 @dataclass(frozen=True, kw_only=True)
 class BondedRatio:
-    """Of one cylinder; InputError where it is flatter than the stored simulations."""
+    """Bonded-to-free force ratio of one cylinder; InputError if it is flatter than the stored simulations."""
 
     cylinder: Cylinder
     _memory: Memory[Hashable, Array] = field(
@@ -43,11 +43,11 @@ class BondedRatio:
         return 2.0 * self.cylinder.radius / self.cylinder.height
 
     def log_ratio(self, stretch: Array, law: Mapping[str, float]) -> Array:
-        """ln of bonded over free force at stretches, shape of these; NaN beyond what was simulated.
+        """ln(bonded / free force) at stretches, shape of these; NaN beyond the simulated strains.
 
-        The law is Neo-Hookean with the amplitudes of the effects that change it.
-        Several effects add what each changes. At another diameter over height they change it by the same
-        factor as at the reference.
+        The law is neo-Hookean with effects, given by their amplitudes; effects without simulations are
+        ignored. The changes by several effects add up; their relative change is taken as independent of
+        diameter over height. Below the first simulated strain the ratio is constant.
         """
         own = {n: a for n, a in law.items() if n in LAWS and a != 0.0}
         key = stretch.shape, stretch.tobytes(), tuple(own.items())
@@ -65,14 +65,14 @@ class BondedRatio:
 def _by_slenderness(slender: float, strain: Array) -> Array:
     if slender in SLENDER:
         return _curve(("plain", slender), strain)
-    # what ends hold of a slender cylinder grows with the first power: they reach a diameter far
+    # for slender cylinders the ratio is linear in diameter/height: end effects extend over about a diameter
     nodes = np.array([0.0, *SLENDER])
     values = np.array([np.zeros(strain.shape), *(_curve(("plain", s), strain) for s in SLENDER)])
     return np.asarray(BarycentricInterpolator(nodes, values)(slender))
 
 
 def _between(name: str, amplitude: float, strain: Array, plain: Array) -> Array:
-    """Linear between the two stored amplitudes beside this one; beyond the last, as there."""
+    """Linear interpolation between stored amplitudes; constant beyond the first and last."""
     nodes = sorted([0.0, *LAWS[name]])
     amplitude = min(max(amplitude, nodes[0]), nodes[-1])
     k = min(int(np.searchsorted(nodes, amplitude, side="right")), len(nodes) - 1)

@@ -1,5 +1,4 @@
-"""Coordinates of compression besides the moduli: how repeated tests differ, and the mesh's error of bonded
-cylinders."""
+"""Extras of compression tests: deviations between repeated tests, and mesh error of bonded cylinders."""
 
 from __future__ import annotations
 
@@ -17,24 +16,24 @@ from calibration.measurements.homogeneous._record import Record
 
 Array = NDArray[np.float64]
 
-# sd of each term of the logarithm of bonded over free: two meshes (refinement 1 and 1.5) differ by 0.003 rms,
-# in ripples as long as a tenth of the height, since the side comes down node by node.
+# sd of each term of the mesh error of ln(bonded / free): two meshes (refinement 1 and 1.5) differ by 0.003
+# rms, in ripples with a length of a tenth of the height, since the side touches the platen node by node.
 MESH = 0.003
 MESH_BEND = 12
-REMEMBERED = 512  # bases: fits ask for those of the same records again and again
+REMEMBERED = 512  # cached bases, which fits evaluate repeatedly for the same records
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """Extras of a baseline, in this order: the terms of each record's deviation (where repeats show how large
-    these are), and those of the mesh's error.
+    """Extras of a baseline: terms of each record's deviation (if repeats show their sd), then mesh error.
 
     Attributes
     ----------
-    baseline : with these extras.
-    last : strain up to which records are compared.
-    scattered : records that have a deviation. terms : of `TERMS`, by index.
-    bases : of deviations, by record.
+    baseline : baseline with these extras.
+    last : strain up to which deviations vary.
+    scattered : names of the records that have a deviation.
+    terms : indices of its terms in `TERMS`.
+    bases : cached bases of the deviations, by record.
     """
 
     baseline: Baseline
@@ -58,11 +57,11 @@ class Coordinates:
         )
 
     def mesh(self, u: Array) -> Array:
-        """Terms of the mesh's error, shape (MESH_BEND + 1,)."""
+        """Coefficients of the mesh error, shape (MESH_BEND + 1,)."""
         return u[-(MESH_BEND + 1) :]
 
     def deviation(self, record: Record, u: Array) -> Array:
-        """Of the logarithm of a record's force (k,)."""
+        """Deviation of the logarithm of a record's force, shape (k,)."""
         if record.name not in self.scattered or not self.terms:
             return np.zeros(record.points)
         first = self._of_record(record)
@@ -70,11 +69,11 @@ class Coordinates:
         return np.asarray(own @ u[first : first + len(self.terms)])
 
     def mesh_error(self, strain: Array, mesh: Array) -> Array:
-        """Of the logarithm of bonded over free force, shape of the strain; mesh : its terms."""
+        """Mesh error of ln(bonded / free force), shape of the strain; mesh : its coefficients."""
         return bent(strain, LAST, mesh)
 
     def constrained_by(self, record: Record) -> NDArray[np.bool_]:
-        """Coordinates (n,) that a record constrains."""
+        """Mask (n,) of the coordinates that a record constrains."""
         found = self.baseline.informed_by(record, whole_material=False)
         if record.name in self.scattered:
             first = self._of_record(record)
@@ -83,5 +82,5 @@ class Coordinates:
         return found
 
     def _of_record(self, record: Record) -> int:
-        """Where a record's deviation begins."""
+        """Index in u of the first term of a record's deviation."""
         return self.baseline.first_extra + self.scattered.index(record.name) * len(self.terms)

@@ -1,4 +1,4 @@
-"""How an effect enters a compression test: as in homogeneous tests, and what platens and load cells do."""
+"""Effects in compression tests: those of homogeneous tests, and effects of platens and load cells."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class CompressionEffect(HomogeneousEffect):
-    """It applies to records of compression only.
+    """An effect in compression tests; by default it applies to records of compression only.
 
     Attributes
     ----------
-    bonds : the amplitude is the fraction of the way from free to bonded platens (in the force's logarithm).
-    rubs : the amplitude is the coefficient of friction of the platens.
-    tilts : the amplitude is the gap across an end face when its first edge touches, over the height.
-    reads : nominal stress [Pa] that the load cell shows, from the true one and the amplitude.
+    bonds : True if the amplitude is the fraction from free (0) to bonded (1) platens, in the logarithm of the
+        force.
+    rubs : True if the amplitude is the friction coefficient of the platens.
+    tilts : True if the amplitude is the gap across an end face when its first edge touches, over the height.
+    reads : function from the true nominal stress [Pa] and the amplitude to the load cell's reading [Pa].
     """
 
     bonds: bool = False

@@ -1,4 +1,4 @@
-"""Which records are of cylinders between platens, and how much of them is compared."""
+"""Selection of the records of cylinders between platens, and of their compared range."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from calibration.measurements.homogeneous._record import Record
 
 Array = NDArray[np.float64]
 
-COMPRESSED = 0.97  # stretch below which platens press
-# Strain to which simulation and measurement are compared: the mesh of a bonded cylinder is good to 1 % there,
-# and a law with a negative second share has an equilibrium (`docs/compression.md`).
+COMPRESSED = 0.97  # stretch below which a test counts as compression
+# Largest strain of the comparison: up to it the mesh error of a bonded cylinder is below 1 %, and a law with
+# a negative share of the second invariant has an equilibrium (`docs/compression.md`).
 LAST = 0.5
 
 
 def goes_into_compression(mode: str, stretch: Array) -> bool:
-    """A uniaxial test that goes into compression, and hardly into tension."""
+    """True for a uniaxial test that goes below COMPRESSED, with less than 3 % of tension."""
     return mode == "uniaxial" and bool(stretch.min() < COMPRESSED) and bool(stretch.max() < 2.0 - COMPRESSED)
 
 
@@ -27,13 +27,15 @@ def is_compressed(record: Record) -> bool:
 
 
 def compared(record: Record, last: float) -> Record:
-    """The part of a record of compression up to a strain; others as they are."""
+    """Record of compression up to a strain; other records unchanged."""
     return record.only(1.0 - record.stretch <= last) if is_compressed(record) else record
 
 
 def pushed(record: Record) -> Record:
-    """A record of compression whose course is that of platens, which push and do not pull; others as they
-    are."""
+    """Mark the course of a compression record as driven by platens, which push but do not pull.
+
+    Other records are returned unchanged.
+    """
     if record.course is None or not is_compressed(record):
         return record
     return replace(record, course=replace(record.course, pushes=True))

@@ -1,5 +1,4 @@
-"""Repeatability scatter: repeats of one test differ smoothly along the strain, and each record may deviate as
-much as the experiment's own repeats show."""
+"""Repeatability scatter: standard deviations of smooth deviations along the strain, from repeated tests."""
 
 from __future__ import annotations
 
@@ -31,8 +30,15 @@ _NORMAL = 1.4826  # standard deviations in a median absolute deviation
 
 @dataclass(frozen=True, kw_only=True)
 class Drift:
-    """What goes on from test to test. per_test : of the logarithm of the stress at a strain. correlation :
-    with the number of the test."""
+    """Linear trend over the number of the test.
+
+    Attributes
+    ----------
+    material : name of the material.
+    strain : compressive strain of the comparison.
+    per_test : change of the logarithm of the stress from one test to the next.
+    correlation : correlation of that logarithm with the number of the test.
+    """
 
     material: str
     strain: float
@@ -42,8 +48,15 @@ class Drift:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Repeatability:
-    """sds : of the terms of `basis` up to the strain `last`, shape (len(TERMS),); zero without repeats.
-    repeats : names of the tests that show it. drifts : of materials whose tests' number clearly counts."""
+    """Scatter between repeats.
+
+    Attributes
+    ----------
+    last : largest strain of `basis`.
+    sds : standard deviations of the terms of `basis`, shape (len(TERMS),); zero without repeats.
+    repeats : names of the tests that it is estimated from.
+    drifts : significant trends over the number of the test.
+    """
 
     last: float
     sds: Array
@@ -52,12 +65,12 @@ class Repeatability:
 
 
 def bends(strain: Array, last: float, degree: int = BEND) -> Array:
-    """Legendre polynomials over [FIRST, last], (k, degree + 1); constant beyond."""
+    """Legendre polynomials over [FIRST, last], shape (k, degree + 1); constant beyond."""
     return np.asarray(np.polynomial.legendre.legvander(_unit(strain, last), degree))
 
 
 def bent(strain: Array, last: float, terms: Array) -> Array:
-    """The sum of the first of `bends` with these factors, shape of the strain."""
+    """Sum of `bends` with coefficients `terms`, shape of the strain."""
     return np.asarray(np.polynomial.legendre.legval(_unit(strain, last), terms))
 
 
@@ -66,14 +79,19 @@ def _unit(strain: Array, last: float) -> Array:
 
 
 def basis(strain: Array, last: float) -> Array:
-    """Of the logarithm of a force, (k, len(TERMS)): what a strain that is off by one would change it by (a
-    force grows in proportion at first), and bends."""
+    """Basis of deviations of the logarithm of a force, shape (k, len(TERMS)).
+
+    The first column is 1/strain, the derivative by an offset of the strain for a force in proportion to the
+    strain; the others are `bends`.
+    """
     return np.column_stack([1.0 / np.maximum(strain, 0.5 * FIRST), bends(strain, last)])
 
 
 def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
-    """From the first strokes of tests of one material, all materials together. The scale of unlike specimens
-    does not count: each has its modulus."""
+    """Estimate the repeatability scatter from the first strokes of repeats, pooled over all materials.
+
+    The scale term is left out for repeats on different specimens, since each specimen has its own modulus.
+    """
     last = min(last, max((_reach(r) for r in records if is_compressed(r)), default=last))
     squares, weights, names = [], [], []
     drifts: list[Drift] = []
@@ -96,7 +114,7 @@ def repeatability_of(records: Sequence[Record], last: float) -> Repeatability:
 
 
 def _drift(group: Sequence[Record]) -> list[Drift]:
-    """Of the stress at the largest strain that all reach; none where noise would make as much of it."""
+    """Trend of the stress at the largest common strain over the number of the test, if it is significant."""
     order = np.array([r.earlier for r in group], dtype=float)
     if np.ptp(order) == 0.0:
         return []
@@ -115,12 +133,13 @@ def _drift(group: Sequence[Record]) -> list[Drift]:
 
 
 def _variances(group: Sequence[Record], last: float) -> tuple[Array, int]:
-    """Of the terms by which n repeats differ (k,), and the degrees of freedom that tell of them.
+    """Variances of the terms between n repeats, shape (k,), and their degrees of freedom.
 
-    What goes on from test to test is a cause (set between tests, their order), and no scatter: a line over
-    the number of the test is taken out. Terms are random effects beside the noise of single points, by
-    expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977) with a median in the
-    maximisation, so that one odd test does not count; terms that hide each other are not all blamed.
+    A trend over the number of the test has a cause (set between tests, their order) and is not scatter: a
+    linear trend is removed. The terms are random effects in addition to the noise of single points. Their
+    variances are estimated by expectation-maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39,
+    1977) with a median in the maximisation, robust against one outlier; variance is not counted twice for
+    nearly collinear terms.
     """
     grid = np.linspace(FIRST, min(_reach(r) for r in group), GRID)
     own = np.array([_loading(r, grid) for r in group])
@@ -145,8 +164,11 @@ def _variances(group: Sequence[Record], last: float) -> tuple[Array, int]:
 
 
 def _repeats(records: Sequence[Record], last: float) -> list[list[Record]]:
-    """Tests of one material in one state: first loadings, and loadings of specimens that a test before has
-    loaded already, since a first loading softens the material. In a fit over time, those of one speed."""
+    """Groups of at least REPEATS repeats: tests of one material in one state.
+
+    First loadings and loadings of specimens that were loaded in earlier tests are separate, since a first
+    loading softens the material. In a fit over time a group has one speed.
+    """
     found: dict[tuple[str, bool], list[list[Record]]] = {}
     for r in sorted(records, key=_duration):
         if is_compressed(r) and _reach(r) > 0.9 * last:
@@ -158,7 +180,7 @@ def _repeats(records: Sequence[Record], last: float) -> list[list[Record]]:
 
 
 def _duration(record: Record) -> float:
-    """Of the first loading [s]; 1 where time does not count."""
+    """Duration of the first loading [s]; 1 without a course or a clock."""
     time = record.time[record.branch == record.branch[0]]
     if record.course is None or not np.isfinite(time).all():
         return 1.0
@@ -166,12 +188,12 @@ def _duration(record: Record) -> float:
 
 
 def _reach(record: Record) -> float:
-    """Largest strain."""
+    """Largest compressive strain."""
     return float(1.0 - record.stretch.min())
 
 
 def _loading(record: Record, strain: Array) -> Array:
-    """Compressive stress [Pa] of the first branch at these strains; tiny where it pulls."""
+    """Compressive stress [Pa] of the first branch at these strains, at least 1e-3 of the largest."""
     first = record.branch == record.branch[0]
     x, y = 1.0 - record.stretch[first], -record.stress[first]
     order = np.argsort(x, kind="stable")

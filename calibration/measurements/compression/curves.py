@@ -1,8 +1,8 @@
-"""The curve of a pressed cylinder at any parameters of a law, interpolated between finite element runs.
+"""Stress-strain curves of a compressed cylinder for any parameters of a law, interpolated between FEM runs.
 
-All moduli together only scale the stress, so a curve divided by G depends on K/G and the law's shape
-constant: one or two coordinates, on Chebyshev nodes, between which the logarithm of the stress is a
-polynomial. Free platens need no elements: the body stays homogeneous.
+A common factor on all moduli scales the stress, so that a curve divided by G depends on K/G and the law's
+shape constant only: one or two coordinates, on Chebyshev nodes, between which the logarithm of the stress is
+interpolated by polynomials. Free platens need no FEM: the body stays homogeneous.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from calibration.parameters import parametrisation
 Array = NDArray[np.float64]
 Platens = Literal["bonded", "free"]
 
-# Where curves are computed, as strains; the first is before any data are used.
+# Strains of the computed curves; the first one is below the range of the data.
 STRAINS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.63, 0.66)
-# Search range of the shape constants, narrower than a search on coupons has: outside, runs fail.
+# Search range of the shape constants, narrower than for homogeneous tests: outside, runs fail.
 SHAPES = {"second_share": (-0.2, 0.5), "alpha": (1.0, 6.0), "locking": (1.5, 8.0)}
 BULK_RATIO = (20.0, 2000.0)
-# K/G that a fit may choose: a silicone's is in the thousands, and below some 100 it is felt at large strain,
-# where it would hide what the law or the platens do wrong.
+# Range of K/G in a fit: a silicone's is in the thousands, and below about 100 it affects the stress at large
+# strain, where it would compensate errors of the law or of the platens.
 FITTED_BULK_RATIO = (100.0, 2000.0)
 _NODES = {"bulk_ratio": 3, "second_share": 4, "alpha": 5, "locking": 4}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder:
-    """radius and height at rest [m]."""
+    """A cylinder; radius and height at rest [m]."""
 
     radius: float
     height: float
@@ -43,10 +43,17 @@ class Cylinder:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PressCurves:
-    """Curves of one law between one kind of platens.
+    """Curves of one law with bonded or free platens.
 
-    names: of the coordinates besides the shear modulus, "bulk_ratio" first; nodes: of each, as interpolated.
-    reached: smallest stretch that all runs reached; runs_short: how many of the `runs` stopped earlier.
+    Attributes
+    ----------
+    law, platens, cylinder : arguments of `press_curves`.
+    names : coordinates other than the shear modulus, in the order of the law.
+    nodes : Chebyshev nodes of each coordinate, in the variables of the interpolation (`_inside`).
+    stretches : stretches of the table, decreasing, shape (k,).
+    table : ln of the stress relative to the homogeneous incompressible neo-Hookean's, shape (nodes ..., k).
+    reached : smallest stretch that all runs reached.
+    runs, runs_short : number of runs, and of those that stopped before the last strain.
     """
 
     law: str
@@ -62,13 +69,13 @@ class PressCurves:
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
-        """What a fit may choose of the coordinates besides the shear modulus, as values."""
+        """Search ranges of the coordinates other than the shear modulus, as values."""
         return [FITTED_BULK_RATIO if name == "bulk_ratio" else SHAPES[name] for name in self.names]
 
     def stress(self, stretch: ArrayLike, values: dict[str, float]) -> Array:
         """Nominal stress [Pa], negative, at stretches in [reached, 1).
 
-        values: "shear_modulus" [Pa] and the coordinates in `names`. ValueError below `reached`.
+        values : "shear_modulus" [Pa] and the coordinates in `names`. ValueError if a stretch is too small.
         """
         stretch = np.asarray(stretch, dtype=float)
         if stretch.size and stretch.min() < self.reached - 1e-9:
@@ -86,9 +93,22 @@ class PressCurves:
 def press_curves(
     law: str, platens: Platens, cylinder: Cylinder, *, refinement: float = 1.0, workers: int | None = 1
 ) -> PressCurves:
-    """Run a law on its nodes: 3 curves for a law of two moduli, 12 to 15 with a shape constant.
+    """Simulate a law at its nodes: 3 curves for a law of two moduli, 12 to 15 with a shape constant.
 
-    refinement: of the mesh, as in `tisim.Press`. Where a run stops early, `reached` is where the first did.
+    If runs stop early, the curves end at the smallest strain that a run reached.
+
+    Parameters
+    ----------
+    law : name of the law.
+    platens : "bonded" or "free".
+    cylinder : dimensions at rest.
+    refinement : mesh refinement of `tisim.Press`.
+    workers : number of processes of `tisim.simulate`.
+
+    Raises
+    ------
+    ValueError
+        If a run stops before the second strain.
     """
     names = tuple(c.name for c in parametrisation(law).coordinates if c.name != "shear_modulus")
     nodes = tuple(_chebyshev(name) for name in names)
@@ -133,7 +153,7 @@ def press_curves(
 
 
 def _plain(stretch: Array) -> Array:
-    """What the logarithm is taken of: incompressible Neo-Hookean of G = 1 in free compression."""
+    """Nominal stress (compressive) of an incompressible neo-Hookean cylinder, G = 1, between free platens."""
     return stretch**-2 - stretch
 
 
@@ -142,7 +162,7 @@ def _range(name: str) -> tuple[float, float]:
 
 
 def _inside(name: str, value: float) -> float:
-    """The coordinate in which a curve is closest to a polynomial: compliances, not stiffnesses."""
+    """Variable in which a curve is closest to a polynomial: a compliance in place of a stiffness."""
     return {"bulk_ratio": 1.0 / value, "locking": value**-2}.get(name, value)
 
 

@@ -1,4 +1,4 @@
-"""Fit a measured curve of a pressed cylinder with a law and a way to hold it."""
+"""Fit of a law, for given platens, to the measured curve of a compressed cylinder."""
 
 from __future__ import annotations
 
@@ -16,19 +16,27 @@ from calibration.measurements.compression.curves import PressCurves
 Array = NDArray[np.float64]
 
 POINTS = 45
-# Strain before which platen and cylinder are still coming together: the secant modulus of the Ecoflex
-# cylinders doubles between 0.5 and 2 % strain, and no law does that.
+# Strain below which platen and cylinder are not in full contact: the secant modulus of the Ecoflex cylinders
+# doubles between 0.5 and 2 % strain, which no law describes.
 FIRST_STRAIN = 0.05
-# Part of the travel before the platen touched the whole face, fitted as a shift of the strain.
+# Range of the strain before the platen touches the whole face, fitted as a shift of the strain.
 SLACK = (0.0, 0.015)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PressFit:
-    """values: by name, SI, the shear modulus first. slack: strain before the platen touched [-].
+    """Result of a fit.
 
-    error: rms of the relative error of the stress [-]; chi_square: per point, against the repeats.
-    at_bound: names of the values at an end of their range. strains: fitted range.
+    Attributes
+    ----------
+    trial, law, platens : what was fitted.
+    values : fitted values by name (SI), the shear modulus first.
+    slack : strain before the platen touches [-].
+    error : rms relative error of the stress [-].
+    chi_square : (error / relative sd of the repeats)^2.
+    at_bound : names of the values at an end of their range.
+    strains : fitted range of strain.
+    points : number of points.
     """
 
     trial: str
@@ -45,7 +53,14 @@ class PressFit:
 
 @dataclass(frozen=True, kw_only=True)
 class Repeats:
-    """relative_sd: of one curve about the mean of the repeats [-], rms over `strains`; tests: how many."""
+    """Scatter of repeated tests.
+
+    Attributes
+    ----------
+    relative_sd : relative standard deviation of one curve about the mean of the repeats [-], rms over strain.
+    tests : number of tests.
+    strains : range of strain.
+    """
 
     relative_sd: float
     tests: int
@@ -53,7 +68,7 @@ class Repeats:
 
 
 def sampled(trial: CouponTrial, strains: tuple[float, float]) -> tuple[Array, Array]:
-    """Stretch and stress [Pa] at POINTS even strains; InputError where the trial is no such compression."""
+    """Stretch and stress [Pa] at POINTS equidistant strains; InputError if the trial does not cover them."""
     if trial.mode != "uniaxial":
         raise InputError(f"{trial.id}: expected a uniaxial test, got {trial.mode}")
     strain, stress = 1.0 - np.asarray(trial.stretch), np.asarray(trial.stress)
@@ -70,7 +85,7 @@ def sampled(trial: CouponTrial, strains: tuple[float, float]) -> tuple[Array, Ar
 
 
 def repeats(trials: Sequence[CouponTrial], strains: tuple[float, float]) -> Repeats:
-    """Scatter of repeated tests, what one test's curve is uncertain by; at least two."""
+    """Scatter of repeated tests, the uncertainty of one test's curve; InputError for fewer than two tests."""
     if len(trials) < 2:
         raise InputError("repeats: expected at least two tests of one sample")
     stresses = np.array([sampled(trial, strains)[1] for trial in trials])
@@ -87,9 +102,19 @@ def fit_press(
     noise: Repeats,
     first_strain: float = FIRST_STRAIN,
 ) -> PressFit:
-    """Least squares of the relative error over strains [first_strain, last_strain], the slack fitted too.
+    """Fit curves and slack by least squares of ln(simulated / measured stress) over a range of strain.
 
-    ValueError where the curves end before the last strain.
+    Parameters
+    ----------
+    trial : the test.
+    curves : curves of a law.
+    last_strain, first_strain : range of strain.
+    noise : scatter of repeats, for `PressFit.chi_square`.
+
+    Raises
+    ------
+    ValueError
+        If the curves end before the last strain.
     """
     stretch, stress = sampled(trial, (first_strain, last_strain))
     guess = float(-stress[0] / (4.0 * (1.0 - stretch[0])))

@@ -1,9 +1,10 @@
-"""What bonded platens add to a cylinder's force, from finite elements: writes `_bonded_table.py` beside it.
+"""Compute the bonded-to-free force ratio of cylinders by finite elements; write `_bonded_table.py`.
 
     python -m calibration.measurements.compression.make_bonded_table        # four core-minutes
 
-`tisim.Press` of a bonded cylinder over the closed form of a free one, of the same law, as a logarithm; by the
-quotient of diameter and height for the Neo-Hookean law, and for others at that of the reference cylinder.
+The table has the logarithm of the force of a bonded cylinder (`tisim.Press`) over that of a free one of the
+same law (homogeneous): for several diameter-to-height ratios for the neo-Hookean law, and at the reference
+ratio for other laws.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ BULK_RATIO = 1000.0  # K/G of 3000 changes the logarithm by less than 0.005 to 6
 HEIGHT = 0.03
 REFERENCE = 5.0 / 3.0  # diameter over height
 SLENDER = (0.8, 1.2, REFERENCE, 2.3)
-LONGEST = 0.75  # of the chains' length
+LONGEST = 0.75  # largest chain stretch over the locking stretch
 AMPLITUDES = {
     "strain-stiffening": (0.03, 0.08, 0.15, 0.3, 0.6, 1.2),
     "second-invariant": (-0.2, -0.1, 0.2, 0.4, 0.7, 1.0),
@@ -46,7 +47,7 @@ LAWS: dict[str, dict[float, tuple[float, ...]]] = {{
 
 
 def material(effect: str | None, amplitude: float) -> tisim.Material:
-    """The law of `tisim` that an effect of coupons is, with the shear modulus SHEAR."""
+    """Law of `tisim` that corresponds to an effect of homogeneous tests, with the shear modulus SHEAR."""
     bulk = BULK_RATIO * SHEAR
     if effect == "strain-stiffening":
         return tisim.Material(law="yeoh", parameters={"mu": SHEAR, "stiffening": amplitude, "bulk": bulk})
@@ -61,7 +62,7 @@ def material(effect: str | None, amplitude: float) -> tisim.Material:
 
 
 def log_ratio(law: tisim.Material, slender: float) -> NDArray[np.float64]:
-    """Logarithm of the quotient at STRAINS; NaN from where no equilibrium was found."""
+    """ln(bonded / free force) at STRAINS; NaN from the first strain without an equilibrium."""
     stretches = 1.0 - np.array(STRAINS)
     scene = tisim.Press(
         material=law, radius=0.5 * slender * HEIGHT, height=HEIGHT, stretches=tuple(stretches)
@@ -77,8 +78,10 @@ def log_ratio(law: tisim.Material, slender: float) -> NDArray[np.float64]:
 
 
 def short_of_ends(effect: str, amplitude: float, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """NaN where chains of the free cylinder are past LONGEST: at the bonded ends they then are past what the
-    law is made for."""
+    """Values with NaN where the chain stretch of the free cylinder exceeds LONGEST.
+
+    At bonded ends the chains are then beyond the range of the law.
+    """
     if effect != "limited-extensibility":
         return values
     stretches = 1.0 - np.array(STRAINS)
@@ -105,7 +108,7 @@ def main() -> None:
 
 
 def _row(values: NDArray[np.float64]) -> str:
-    """In two lines."""
+    """Format a row of the table in two lines."""
     cells = ["nan" if np.isnan(v) else f"{v:.4f}" for v in values]
     half = len(cells) // 2
     return "(" + ", ".join(cells[:half]) + ",\n            " + ", ".join(cells[half:]) + ")"

@@ -1,9 +1,9 @@
-"""Compression tests: cylinders of all materials together, effects nested in their forces.
+"""Measurement model of compression tests: cylinders of all materials together, with effects.
 
-The baseline is a neo-Hookean cylinder between free platens, which stays homogeneous. Bonded platens are
-interpolated between finite element solutions (`_bonded.py`); effects of the material, the rig and the record
-act as in homogeneous tests. In a fit over time the cylinder follows the course of each record, and recovers
-freely where its platens have left it.
+The baseline is a neo-Hookean cylinder between free platens, which stays homogeneous. Forces with bonded
+platens are interpolated between finite element solutions (`_bonded.py`); effects of the material, the rig and
+the record act as in homogeneous tests. In a fit over time the cylinder follows the course of each record, and
+recovers freely after loss of contact with its platens.
 """
 
 from __future__ import annotations
@@ -33,32 +33,38 @@ from calibration.measurements.homogeneous.model import HomogeneousModel
 
 Array = NDArray[np.float64]
 
-COLUMNS = 16  # of a tilted cylinder
-# Chords of a disc: where they lie, from the edge that touches first (0) to the last (1), and their share
+COLUMNS = 16  # columns of a tilted cylinder
+# Quadrature over chords of a disc: position from the edge that touches first (0) to the last (1), and weight
 _ANGLES = np.pi * np.arange(1, COLUMNS + 1) / (COLUMNS + 1)
 _PLACES = 0.5 * (1.0 - np.cos(_ANGLES))
 _SHARES = np.sin(_ANGLES) ** 2 / np.sum(np.sin(_ANGLES) ** 2)
 
 
 class CompressionModel(HomogeneousModel):
-    """One shear modulus a specimen; trials that name no specimen share one a material. Coupons of the
-    experiment that are not compressed are seen beside those that are.
+    """Measurement model of compression tests.
+
+    There is one shear modulus per specimen; trials of a material that name no specimen share one. Coupons in
+    other modes are included as in `HomogeneousModel`.
 
     Parameters
     ----------
-    experiment : its coupons are used.
-    effects : by name; see `calibration.diagnosis.effects.compression`.
-    cylinder : of all compressed trials, since the format does not hold it; only diameter over height counts.
+    experiment : experiment with coupons; other trials are ignored.
+    effects : effects by name; see `calibration.diagnosis.effects.compression`.
+    cylinder : dimensions of all compressed specimens, which the file format lacks; only diameter over height
+        matters.
     last : strain up to which records of compression are compared, at most LAST.
-    baseline : in place of the neo-Hookean one.
+    baseline : baseline in place of the neo-Hookean one.
 
     Raises
     ------
-    InputError : nothing is compressed, or the cylinder is flatter than what was simulated.
+    InputError
+        If there is no compressed coupon, or the cylinder is flatter than in the stored simulations.
+    ValueError
+        If `last` is out of range.
     """
 
     kind = "compression"
-    laws: ClassVar[Sequence[tuple[str, int]]] = ()  # a law's form and platens that hold look alike
+    laws: ClassVar[Sequence[tuple[str, int]]] = ()  # the form of a law and bonded platens look alike
 
     def __init__(
         self,
@@ -98,20 +104,22 @@ class CompressionModel(HomogeneousModel):
         return self.coordinates.constrained_by(record)
 
     def _loading(self, record: Record, state: State, acting: Acting) -> Loading:
-        """The mesh's error counts where platens hold; what load cells do does not change the stress."""
+        """Loading without effects of the load cell, and with the mesh error if platens bond or rub."""
         acting = [(e, a) for e, a in acting if not (isinstance(e, CompressionEffect) and e.reads)]
         found = super()._loading(record, state, acting)
         held = _amount(found, "bonds") or _amount(found, "rubs")
         return replace(found, further=self.coordinates.mesh(state.u)) if held else found
 
     def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
-        """A tilted cylinder is compressed in columns side by side, shape (COLUMNS, k). Platens push and do
-        not pull."""
+        """Stress over the shear modulus at the specimens' own stretches, with effects of the platens.
+
+        A tilted cylinder is compressed as parallel columns, shape (COLUMNS, k). Platens push but do not pull.
+        """
         level = []
         for x, s in zip(loadings, stretches, strict=True):
             gap = _amount(x, "tilts")
             met = s + gap * _PLACES[:, None] if gap else s
-            # a column that the platen has not met yet carries nothing; one that remembers may be met later
+            # a column before contact carries no force; with a course, `balanced` treats loss of contact
             remembers = x.record.course is not None
             level.append(np.minimum(met, 1.0) if is_compressed(x.record) and not remembers else met)
         free = super()._at_own_stretches(loadings, level)
@@ -130,8 +138,10 @@ class CompressionModel(HomogeneousModel):
     def _log_ratios(
         self, loadings: Mapping[int, Loading], stretches: Mapping[int, Array]
     ) -> dict[int, Array]:
-        """ln of bonded over free force, with the mesh's error, shape of each stretch. Those of one law are
-        taken together: a call costs more than its points do."""
+        """ln(bonded / free force) with the mesh error, shape of each stretch.
+
+        Records of one law are evaluated together, since a call costs more than its points.
+        """
         alike: dict[Hashable, list[int]] = {}
         for k, x in loadings.items():
             law = tuple((e.name, a) for e, a in x.acting)
@@ -147,8 +157,10 @@ class CompressionModel(HomogeneousModel):
         return found
 
     def _rubbed(self, stretch: Array, friction: float, bonded: Array) -> Array:
-        """ln of the force between platens with this coefficient of friction over that between free ones,
-        shape of the stretch; bonded : the same of platens that stick all over, which it tends to."""
+        """ln(force with friction / free force) for a coefficient of friction, shape of the stretch.
+
+        bonded : ln(bonded / free force), the limit for large friction.
+        """
         if friction == 0.0:
             return np.zeros(stretch.shape)
         slipping = np.log(slab_factor(friction * self.bonded.slender * np.maximum(stretch, 1e-3) ** -1.5))
@@ -205,6 +217,6 @@ class CompressionModel(HomogeneousModel):
 
 
 def _amount(loading: Loading, what: Literal["bonds", "rubs", "tilts"]) -> float:
-    """Sum of the amplitudes [SI] of those of a record's effects that bond, rub at, or tilt its platens."""
+    """Sum of the amplitudes [SI] of a record's effects that bond, rub or tilt."""
     own = [(e, a) for e, a in loading.acting if isinstance(e, CompressionEffect)]
     return sum((a for e, a in own if getattr(e, what)), 0.0)

@@ -1,5 +1,4 @@
-"""Compression over time: cylinders between free platens along the course of each record, with viscosity and
-softening."""
+"""Time-dependent fits of compression tests: free platens, along each record, with viscosity and softening."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Homogeneous material tests (coupons): stress without a mesh, a fit with its certainty."""
+"""Homogeneous material tests (coupons): nominal stress without a mesh, and fits with uncertainty."""
 
 from calibration.measurements.homogeneous._forward import predicted
 from calibration.measurements.homogeneous._record import protocol_window

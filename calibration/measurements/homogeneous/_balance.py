@@ -1,12 +1,12 @@
-"""The deformation of homogeneous tests of which not all is driven, at all times of a course at once.
+"""Free deformations in homogeneous tests by Newton's method, for all times of a course at once.
 
-    strip with fibres     sides carry no stress: the lateral stretch, and the shear where fibres are oblique
-    cylinder              platens push and do not pull: it recovers freely where they have left it
+    strip with fibres     traction-free sides: lateral stretch y, and shear g if the fibres are oblique
+    cylinder              platens that push but do not pull: axial stretch a after they lose contact
 
-At J = 1, F = [[s e^a, g, 0], [0, e^y / r, 0], [0, 0, e^-y / r]] with r = sqrt(s e^a); lines along the pull
-stay along it, so that grips which let a long strip shear carry no force across it. What must vanish is linear
-in the second Piola-Kirchhoff stress, and that in its own past: later stresses depend on earlier deformations
-alone, and Newton's linear system for all times is triangular.
+At J = 1, F = [[s e^a, g, 0], [0, e^y / r, 0], [0, 0, e^-y / r]] with r = sqrt(s e^a). Lines along the pull
+keep their direction, so that grips which let a long strip shear carry no transverse force. The residuals are
+linear in the second Piola-Kirchhoff stress, and this is linear in its history: stresses depend on earlier
+deformations only, and the linear system of Newton's method for all times is lower triangular.
 """
 
 from __future__ import annotations
@@ -23,24 +23,26 @@ Rows = NDArray[np.bool_]
 # unknowns, by column
 AXIAL, LATERAL, SHEAR = range(3)
 PASSES = 40
-ENOUGH = 1e-7  # stress that should vanish, over the shear modulus
-LONGEST = 0.2  # step of an unknown
+ENOUGH = 1e-7  # tolerance of the residual stress, over the shear modulus
+LONGEST = 0.2  # largest step of an unknown
 _DIFFERENCE = 1e-6
-_AXIS, _OTHER = np.array([0, 1, 2, 0]), np.array([0, 1, 2, 1])  # of the stresses 11, 22, 33, 12
+_AXIS, _OTHER = np.array([0, 1, 2, 0]), np.array([0, 1, 2, 1])  # indices of the stresses 11, 22, 33, 12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Memory:
-    """How a stress remembers: total_n = equilibrium S_n + sum Q_n, Q_n = decay_n Q_(n-1) + gain_n (S_n -
-    S_(n-1)), each test from rest.
+    """Coefficients of the viscoelastic recursion; each test starts from rest.
+
+        total_n = equilibrium S_n + sum Q_n,    Q_n = decay_n Q_(n-1) + gain_n (S_n - S_(n-1))
 
     Attributes
     ----------
     equilibrium : float
+        Long-time fraction of the stress.
     decays, gains : array, shape (n, terms)
-        Decays are 0 where a test begins.
+        Decays are 0 at the first time of a test.
     begins : array
-        First time of each test, by index.
+        Index of the first time of each test.
     """
 
     equilibrium: float
@@ -50,12 +52,12 @@ class Memory:
 
     @property
     def at_once(self) -> Array:
-        """Slope of a total stress by its own instantaneous one, shape (n,)."""
+        """Derivative of the total stress by the instantaneous stress at the same time, shape (n,)."""
         return np.asarray(self.equilibrium + self.gains.sum(axis=1))
 
 
 def deformed(F: Array, x: Array) -> Array:
-    """Driven gradients F (n, 3, 3) with unknowns x (n, 3) other than 0."""
+    """Deformation gradients (n, 3, 3) from the driven gradients F and the unknowns x (n, 3)."""
     found, half = F.copy(), np.exp(-0.5 * x[:, AXIAL])
     found[:, 0, 0] *= np.exp(x[:, AXIAL])
     found[:, 1, 1] *= half * np.exp(x[:, LATERAL])
@@ -65,8 +67,10 @@ def deformed(F: Array, x: Array) -> Array:
 
 
 def along(F: Array, S: Array) -> Array:
-    """Nominal stress (n,) along the first axis, the third side free; S : second Piola-Kirchhoff without its
-    pressure, (n, 3, 3)."""
+    """Nominal stress (n,) along the first axis with a traction-free third side.
+
+    S : second Piola-Kirchhoff stress without the pressure term, shape (n, 3, 3).
+    """
     return np.asarray(np.einsum("nc,nc->n", _weights(F)[:, AXIAL], S[:, _AXIS, _OTHER]) / F[:, 0, 0])
 
 
@@ -80,16 +84,19 @@ def balanced(
     memory: Memory,
     modulus: float,
 ) -> tuple[Array, Rows]:
-    """Gradients (n, 3, 3) with the unknowns found, and times at which none were.
+    """Solve for the unknowns; return the gradients (n, 3, 3), and True for times without convergence (n,).
 
     Parameters
     ----------
-    F : as driven, shape (n, 3, 3).
-    free : which unknowns there are, shape (n, 3).
-    pushed : times of platens that push and do not pull: the axial unknown is theirs where they have left.
-    isochoric : gradients -> instantaneous stress without its pressure, (n, 3, 3).
-    totals : that stress -> the one with its memory.
-    modulus : shear modulus of the stress that counts as none [Pa].
+    F : driven deformation gradients, shape (n, 3, 3).
+    free : mask of the unknowns, shape (n, 3).
+    pushed : times with platens that push but do not pull, shape (n,); the axial stretch is unknown there
+        after loss of contact.
+    isochoric : function from gradients to the instantaneous second Piola-Kirchhoff stress without the
+        pressure term, shape (n, 3, 3).
+    totals : function from that stress to the stress with its history.
+    memory : coefficients of the recursion.
+    modulus : shear modulus, the scale of the tolerance [Pa].
     """
     x = np.zeros((len(F), 3))
     at, lost = F, np.zeros(len(F), dtype=bool)
@@ -124,8 +131,11 @@ def balanced(
 
 
 def _weights(F: Array) -> Array:
-    """Of the stresses 11, 22, 33, 12 in what must vanish: Kirchhoff stress along the axis, that of the second
-    less the third side, shear stress; shape (n, 3, 4). The pressure frees the third side."""
+    """Weights of the stresses 11, 22, 33, 12 in the residuals, shape (n, 3, 4).
+
+    The residuals are Kirchhoff stresses: axial minus third side, second minus third side, and shear. The
+    pressure makes the third side traction-free.
+    """
     a, b, c, g = F[:, 0, 0], F[:, 1, 1], F[:, 2, 2], F[:, 0, 1]
     found = np.zeros((len(F), 3, 4))
     found[:, AXIAL, 0] = a**2
@@ -139,19 +149,20 @@ def _weights(F: Array) -> Array:
 
 
 def _triangular(left: Array, weights: Array, slopes: Array, own: Array, memory: Memory) -> Array:
-    """Newton's step (n, 3).
+    """Newton step (n, 3) by forward substitution in time.
 
     Parameters
     ----------
-    left : what should vanish, shape (n, 3).
-    weights : of the four total stresses in it, shape (n, 3, 4).
-    slopes : of the instantaneous stresses by the unknowns, shape (n, 4, 3).
-    own : slope of `left` by the unknowns where stresses stay, shape (n, 3, 3).
+    left : residuals, shape (n, 3).
+    weights : weights of the four total stresses in the residuals, shape (n, 3, 4).
+    slopes : derivatives of the instantaneous stresses by the unknowns, shape (n, 4, 3).
+    own : derivatives of the residuals by the unknowns at constant stresses, shape (n, 3, 3).
+    memory : coefficients of the recursion.
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        At some time what is left does not depend on the unknowns.
+        If the system of some time is singular.
     """
     inverse = np.linalg.inv(memory.at_once[:, None, None] * (weights @ slopes) + own)
     moves = np.empty_like(left)

@@ -1,7 +1,7 @@
-"""The course of a homogeneous test as it was measured: stretch against time, ramps and holds.
+"""Loading history of a homogeneous test as measured: stretch against time, ramps and holds.
 
-A material that remembers is followed along the record, in straight lines from row to row; of long records the
-stress is averaged over the same rows as the measured one.
+A history-dependent material is integrated along the record, with linear interpolation between rows; for long
+records the computed stress is averaged over the same rows as the measured stress.
 """
 
 from __future__ import annotations
@@ -21,28 +21,28 @@ from calibration.parameters import ProtocolWindow
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-STEP = 0.01  # of stretch at most in one straight line: the stress is taken to be linear in time along it
-STILL = 0.01  # fraction of the record's range within which a hold stays
-NOISE = 6.0  # standard deviations of the stretch that are no motion
-NEAR = 25  # rows to either side that the stretch of a hold is averaged over
-BEGINNING = 4  # rows by which the speed of a first ramp is known
-DIFFERENT = 1.1  # ratio of largest strains (I1 - 3) that count as two
+STEP = 0.01  # largest change of stretch per step: the stress is taken as linear in time within it
+STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
+NOISE = 6.0  # tolerance of a hold, in standard deviations of the stretch
+NEAR = 25  # half width [rows] of the moving average of the stretch in a hold
+BEGINNING = 4  # number of rows from which the speed of the first ramp is estimated
+DIFFERENT = 1.1  # ratio of peak strains (I1 - 3) from which two peaks count as different
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Course:
-    """What drives a record, from rest at its first time on.
+    """Loading history of a record, from rest at its first time.
 
     Attributes
     ----------
-    time, stretch : shape (f,); rows of the record and points between them. Time is 0 throughout where the lab
-        has no clock.
-    owner : which of the record's points each belongs to, shape (f,).
-    rows : where the rows of the record are among them, shape (rows,).
-    first, count : first row of each point and how many it is the mean of, shape (k,).
-    kept : of the k points, those that the record still has.
-    before : stretch furthest from rest in earlier tests of the specimen; 1 without.
-    pushes : what drives it are platens, which push and do not pull.
+    time, stretch : time [s] and stretch at the rows of the record and at points between them, shape (f,).
+        Time is 0 throughout if the record has no clock.
+    owner : index of the record's point to which each belongs, shape (f,).
+    rows : indices of the record's rows among them, shape (rows,).
+    first, count : first row of each of the k points, and number of rows that it is the mean of, shape (k,).
+    kept : indices of the points that the record keeps.
+    before : stretch of largest I1 - 3 in earlier tests of the specimen; 1 if there are none.
+    pushes : True if it is driven by platens, which push but do not pull.
     """
 
     time: Array
@@ -56,11 +56,11 @@ class Course:
     pushes: bool = False
 
     def means(self, values: Array) -> Array:
-        """Means of values (f,) over the rows of each point that is kept."""
+        """Means of values (f,) over the rows of each kept point."""
         return np.asarray((np.add.reduceat(values[self.rows], self.first) / self.count)[self.kept])
 
     def moved(self, shift: Array) -> Array:
-        """Stretches (f,) with the points that are kept shifted."""
+        """Stretches (f,), shifted by `shift` at the kept points."""
         if not shift.any():
             return self.stretch
         whole = np.zeros(len(self.first))
@@ -68,12 +68,20 @@ class Course:
         return np.asarray(self.stretch + whole[self.owner])
 
     def only(self, kept: NDArray[np.bool_]) -> Course:
-        """Of the points that are kept, some."""
+        """Copy with a subset of the kept points; `kept` is a mask over them."""
         return replace(self, kept=self.kept[kept])
 
 
 def course_of(trial: CouponTrial, first: Rows, count: Array, before: float, holds: Sequence[slice]) -> Course:
-    """first, count : rows of each point."""
+    """Loading history of a trial.
+
+    Parameters
+    ----------
+    trial : the trial.
+    first, count : first row of each point of the record, and its number of rows.
+    before : stretch of largest I1 - 3 in earlier tests of the specimen.
+    holds : rows of each hold, in which the stretch is smoothed.
+    """
     time = np.zeros(trial.stretch.size) if trial.time is None else trial.time - trial.time[0]
     stretch = _quiet(trial.stretch, holds)
     lead = _lead(time, stretch)
@@ -96,8 +104,10 @@ def course_of(trial: CouponTrial, first: Rows, count: Array, before: float, hold
 
 
 def _quiet(stretch: Array, holds: Sequence[slice]) -> Array:
-    """Stretch with the means of up to 2 NEAR + 1 rows about each row of a hold: its noise would be taken for
-    new largest strains, and soften the specimen beside itself."""
+    """Stretch with a moving average over up to 2 NEAR + 1 rows in each hold.
+
+    Otherwise its noise would count as new peak strains and cause spurious softening.
+    """
     found, sums = stretch.copy(), np.concatenate([[0.0], np.cumsum(stretch - 1.0)])
     for h in holds:
         i = np.arange(h.start, h.stop)
@@ -107,8 +117,10 @@ def _quiet(stretch: Array, holds: Sequence[slice]) -> Array:
 
 
 def _lead(time: Array, stretch: Array) -> Array:
-    """When the test began [s], shape (1,), where its first row is a little way along its first ramp (rows may
-    be means of several samples); none where it begins at rest, or with a jump."""
+    """Extrapolated start of the first ramp [s], shape (1,); empty if the record begins at rest or by a jump.
+
+    The first row can lie on the ramp, since rows may be means of several samples.
+    """
     last = min(BEGINNING, stretch.size - 1)
     gone, made = stretch[0] - 1.0, stretch[last] - stretch[0]
     if gone * made <= 0.0 or time[last] <= time[0] or gone / made > 1.0:
@@ -117,7 +129,7 @@ def _lead(time: Array, stretch: Array) -> Array:
 
 
 def holds_of(trial: CouponTrial) -> list[slice]:
-    """Rows of each hold: the stretch stays where it is for longer than motion beside it would take."""
+    """Rows of each hold (`calibration.measurements._records.holds`); empty without a clock."""
     if trial.time is None:
         return []
     tolerance = max(STILL * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
@@ -125,7 +137,10 @@ def holds_of(trial: CouponTrial) -> list[slice]:
 
 
 def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]]) -> ProtocolWindow:
-    """What tests show of a material's parts; branches : of each trial."""
+    """Range of times and number of different peak strains that tests cover.
+
+    branches : strokes of each trial.
+    """
     ramps, waits, lengths, peaks = [], [], [], []
     for trial, strokes in zip(trials, branches, strict=True):
         excess = first_excess(trial.mode, trial.stretch)
@@ -153,7 +168,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
 def bins_over_time(
     trial: CouponTrial, points: slice, holds: Sequence[slice], most: int
 ) -> tuple[Rows, Array]:
-    """As `bins`, each ramp and each hold by itself; those of a hold grow with the time since it began."""
+    """Bins as by `bins`, separate for each ramp and hold; in a hold their width grows with its time."""
     assert trial.time is not None
     corners = {points.start, points.stop}
     corners |= {i for h in holds for i in (h.start, h.stop) if points.start < i < points.stop}
@@ -172,6 +187,6 @@ def bins_over_time(
 
 
 def largest_before(mode: CouponMode, stretch: Array, before: float) -> float:
-    """The stretch furthest from rest so far."""
+    """Stretch of largest I1 - 3 among `stretch` and `before`."""
     whole = np.append(stretch, before)
     return float(whole[int(np.argmax(first_excess(mode, whole)))])

@@ -1,4 +1,4 @@
-"""The nominal stress of one material in one mode, as a spline through stresses that are solved for."""
+"""Cubic spline of the nominal stress of one material in one mode."""
 
 from __future__ import annotations
 
@@ -12,19 +12,22 @@ from tisim import Material
 
 Array = NDArray[np.float64]
 
-# of ln stretch: a rubber's stress is met to 1e-8, and smoothly, which is what finite differences need
+# step of ln stretch: the error for a rubber is 1e-8, and smooth, as finite differences require
 STEP = 1.0 / 512
-LAST = 2.0  # of ln stretch on either side of rest
-_MARGIN = 8  # nodes beyond: a spline is less sharp at its ends
+LAST = 2.0  # largest |ln stretch|
+_MARGIN = 8  # nodes beyond it: a spline is less accurate at its ends
 
 
 class Curve:
-    """Stress at any stretch. Beyond e^2 and e^-2, and in simple shear, it is solved for each time.
+    """Nominal stress as a function of the stretch.
+
+    If a stretch lies outside [e^-2, e^2], in simple shear, or if the law has no solution at some node, the
+    stress is computed by `nominal_stress` at each call.
 
     Parameters
     ----------
-    material : without parts, which would remember.
-    mode : of loading.
+    material : material without parts (the stress must not depend on the history).
+    mode : mode of loading.
     """
 
     def __init__(self, material: Material, mode: CouponMode) -> None:
@@ -38,7 +41,7 @@ class Curve:
                 self._spline = CubicSpline(nodes, stress)
 
     def at(self, stretch: Array) -> Array:
-        """[Pa], shape of the stretch; NaN where the law has none."""
+        """Nominal stress [Pa], shape of `stretch`; NaN where the law has no solution."""
         log = np.log(stretch) if self._spline is not None else np.inf
         if self._spline is None or not np.abs(log).max(initial=0.0) <= LAST:
             return nominal_stress(self._material, self._mode, stretch)

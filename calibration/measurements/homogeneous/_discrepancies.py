@@ -1,4 +1,4 @@
-"""What a lack of fit of homogeneous tests might look like: smooth in the strain, shared in several ways."""
+"""Discrepancy basis of homogeneous tests: smooth functions of the strain, shared in several ways."""
 
 from __future__ import annotations
 
@@ -12,16 +12,19 @@ from calibration.measurements.homogeneous._record import Record
 
 Array = NDArray[np.float64]
 
-BEND, JUMPS = 4, 8  # highest degree, and parts of a record that steps lie between
+BEND, JUMPS = 4, 8  # highest polynomial degree, and number of parts of a record between which steps lie
 
 
 def discrepancies(records: Sequence[Record], sd: Array) -> Mapping[str, Array]:
     """Sets of columns (rows, k) [Pa], in proportion to the standard deviation `sd` (rows,) of each point.
 
-    trial bends : of each trial, degrees up to BEND in the strain. mode bends : the same for trials of one
-    mode and material. loops : as trial bends, opposite in loading and unloading. drifts : of each trial
-    that turns, in its time (in the order of its points, where it has none). cycles : one shift a branch.
-    jumps : steps of each trial, between JUMPS parts of its record.
+    trial bends : for each trial, Legendre polynomials of degree 0 to BEND in ln stretch (in the stretch, if
+        it is not positive).
+    mode bends : for trials of one mode and material together, in the stretch.
+    loops : as trial bends, with opposite sign in loading and unloading; trials with an unloading.
+    drifts : polynomials in time (in the point's index, without a clock); trials of several branches.
+    cycles : one constant per branch; trials of several branches.
+    jumps : for each trial, steps between JUMPS parts of its record.
     """
     columns = Columns([r.points for r in records])
     for k, r in enumerate(records):

@@ -1,4 +1,4 @@
-"""How an effect enters a homogeneous test: the stress, or the stretch that makes it."""
+"""Effects in homogeneous tests: they change the stress, or the stretch that causes it."""
 
 from __future__ import annotations
 
@@ -17,18 +17,19 @@ Term = Callable[[Array, float, Record], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class HomogeneousEffect(EffectModel):
-    """Hooks take the stretch s (k,), the amplitude and the record.
+    """An effect in homogeneous tests. The functions take the stretch s (k,), the amplitude and the record.
 
     Attributes
     ----------
-    extra : a stress beside the baseline's, over its shear modulus.
-    extra_of : the same of a variant. form : the variant that it has become.
-    factor : on the whole stress.
-    shift : of the stretch.
-    yields : strain of the rig by the stress [1/Pa], which the specimen does not see.
-    bounds_in : narrower bounds of the amplitude, from the records that it applies to [SI].
-    richer : the amplitude is the part of the strain energy that the model's richer law has in place of the
-        baseline's; only models with such a law have the effect.
+    extra : function to a stress, over the shear modulus, that is added to the baseline's.
+    extra_of : function from a variant to its `extra`.
+    form : the variant, after `formed`.
+    factor : function to a factor on the whole stress.
+    shift : function to a shift of the stretch.
+    yields : strain of the rig per unit stress and unit amplitude [1/Pa]; the specimen does not have it.
+    bounds_in : function from the records that it applies to, to narrower bounds of the amplitude [SI].
+    richer : True if the amplitude is the fraction of the stress that comes from the model's richer law in
+        place of the baseline's; only models with a richer law have the effect.
     """
 
     extra: Term | None = None

@@ -1,4 +1,4 @@
-"""The stress of homogeneous tests: a law a material, scaled by the modulus of each specimen, with effects."""
+"""Stress of homogeneous tests: the material's law, scaled by the modulus of each specimen, with effects."""
 
 from __future__ import annotations
 
@@ -22,21 +22,22 @@ from tisim import Material
 Array = NDArray[np.float64]
 Acting = Sequence[tuple[HomogeneousEffect, float]]  # effects in a record, with their amplitudes [SI]
 
-REMEMBERED = 2048  # curves
+REMEMBERED = 2048  # cached curves
 STEPS = 30
-TOLERANCE = 1e-10  # of the stress, over the shear modulus or, where that is more, its record's largest
+TOLERANCE = 1e-10  # of the stress, relative to the larger of shear modulus and largest stress
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Loading:
-    """A record at a state: what its stress depends on.
+    """A record at a state, with all that its stress depends on.
 
     Attributes
     ----------
-    shear_modulus : small-strain, of its specimen [Pa].
+    record : the record.
+    shear_modulus : small-strain shear modulus of its specimen [Pa].
     law : coordinates of its material's law, shape (n,).
-    acting : effects in it, with their amplitudes.
-    further : other coordinates u that the stress over the modulus depends on, shape (k,).
+    acting : effects in the record, with their amplitudes.
+    further : other coordinates that the stress over the modulus depends on, shape (k,).
     """
 
     record: Record
@@ -47,23 +48,23 @@ class Loading:
 
     @cached_property
     def compliance(self) -> float:
-        """Strain of the rig by the stress over the shear modulus."""
+        """Strain of the rig per unit of stress over shear modulus."""
         return self.shear_modulus * sum(e.yields * a for e, a in self.acting)
 
     @property
     def key(self) -> Hashable:
-        """Of the stress over the shear modulus."""
+        """Cache key of the stress over the shear modulus."""
         effects = tuple((e.name, e.form, a) for e, a in self.acting)
         return self.record, self.law.tobytes(), effects, self.compliance, self.further.tobytes()
 
 
 class BaseStress:
-    """Nominal stress of the baseline over the shear modulus; curves are remembered.
+    """Nominal stress of the baseline over the shear modulus, with a cache of curves.
 
     Parameters
     ----------
-    baseline : of specimens, or of a law.
-    bulk_ratio : K/G of the curves where K/G is held.
+    baseline : baseline of the model (per specimen, or of a law).
+    bulk_ratio : K/G of the curves if K/G is fixed.
     """
 
     def __init__(self, baseline: Baseline, *, bulk_ratio: float) -> None:
@@ -73,7 +74,7 @@ class BaseStress:
         self._drawn_curves: dict[CouponMode, Curve] = {}
 
     def over_modulus(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
-        """At these stretches, shape of each; NaN where the law has none."""
+        """Stress over the shear modulus at these stretches, shape of each; NaN where the law has none."""
 
         def missing(some: Sequence[int]) -> list[Array]:
             found: dict[int, Array] = {}
@@ -91,7 +92,7 @@ class BaseStress:
         return self._memory.fetch(keys, missing)
 
     def _curves(self, own: Array, curves: Sequence[tuple[Record, Array]]) -> list[Array]:
-        """Of the law's coordinates (n,), at the stretches of each record."""
+        """Stress over the shear modulus for law coordinates `own` (n,), at the stretches of each record."""
         law, bounds = self.baseline.law, self.baseline.law.bounds
         sound = bool(((own >= bounds[:, 0]) & (own <= bounds[:, 1])).all())
         if not sound or any(not (s > 0.0).all() for r, s in curves if r.mode != "simple-shear"):
@@ -106,7 +107,7 @@ class BaseStress:
             return [np.full(s.shape, np.nan) for _, s in curves]
         with np.errstate(all="ignore"):
             if not (self.baseline.free or material.has_parts):
-                # nothing but the stretch moves: one curve a mode, for any number of points
+                # only the stretch varies: one curve per mode, for any number of points
                 return [self._drawn(material, r.mode).at(s) / shear_modulus for r, s in curves]
             return [p / shear_modulus for p in predicted(material, curves)]
 
@@ -117,8 +118,11 @@ class BaseStress:
 
 
 def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> list[Array]:
-    """Nominal stress of each record at these stretches, shape of each, (k,) or (m, k) [Pa]: where the
-    material has parts, along the record's own course, at constant volume; NaN where there is none."""
+    """Nominal stress of each record at these stretches [Pa], shape of each, (k,) or (m, k).
+
+    If the material has parts, it is integrated along the record's own course at constant volume. NaN where
+    there is no solution. ValueError for a record without a course if the material has parts.
+    """
     if not material.has_parts:
         return nominal_stresses(material, [(r.mode, s) for r, s in curves])
     tests = []
@@ -132,8 +136,8 @@ def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> lis
 
 
 def with_effects(loading: Loading, stretch: Array, stress: Array) -> Array:
-    """Nominal stress over the shear modulus with what effects add to it, then with their factors."""
-    with np.errstate(all="ignore"):  # a stretch out of range has no stress, and the baseline says so
+    """Nominal stress over the shear modulus with the added stresses of effects, then with their factors."""
+    with np.errstate(all="ignore"):  # a stretch out of range is NaN in the baseline already
         for e, a in loading.acting:
             if e.extra is not None:
                 stress = stress + e.extra(stretch, a, loading.record)
@@ -148,18 +152,19 @@ def yielding(
     stretches: Sequence[Array],
     compliances: Sequence[float],
 ) -> list[Array]:
-    """Stress of each record at its stretches less its compliance times that stress, by a secant search; NaN
-    where it does not end. Records do not depend on each other.
+    """Stress p of each record with machine compliance: p = stress(stretch - compliance p), secant method.
+
+    NaN for records without convergence. Records do not depend on each other.
 
     Parameters
     ----------
-    stresses : of some records, by index, at their specimens' own stretches.
-    stretches : of each record, shape (k,).
-    compliances : of each record.
+    stresses : function from indices of records and their specimens' own stretches to stresses.
+    stretches : stretches of each record, shape (k,).
+    compliances : compliance of each record.
     """
     found = stresses(range(len(stretches)), stretches)
     open_ = [k for k, c in enumerate(compliances) if c]
-    before = {k: (np.zeros(stretches[k].size), -found[k]) for k in open_}  # stresses, and what is left there
+    before = {k: (np.zeros(stretches[k].size), -found[k]) for k in open_}  # stresses and their residuals
     for _ in range(STEPS):
         if not open_:
             break

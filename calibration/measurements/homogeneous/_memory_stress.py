@@ -1,13 +1,13 @@
-"""Nominal stress of a material that remembers, along the course of each test. No mesh, and no volume change.
+"""Nominal stress of a history-dependent material along the course of each test, at constant volume, no mesh.
 
-At J = 1 the deformation is known beforehand, so that all times are evaluated at once by tisim's own material
-points: the isochoric stress S at its deformation and the largest energy so far, then
+At J = 1 the deformation is known in advance, so that all times are evaluated at once by tisim's material
+points: the isochoric stress S at the deformation and the largest energy so far, then
 
     Q_i(n+1) = exp(-h) Q_i(n) + g_i c(h) [S(n+1) - S(n)],    h = dt/tau_i,    c(h) = (1 - exp(-h))/h
 
-which is how tisim integrates each term (`tisim.discretisation.history`). The pressure follows from the free
-side. What of a strip with fibres, or of a cylinder that its platens have left, is not driven is found in
-`_balance`; in planar and equibiaxial tests the grips take up the shear stress of fibres off the axes.
+as tisim integrates each term (`tisim.discretisation.history`). The pressure follows from the traction-free
+side. `_balance` solves for the free deformations of a strip with fibres, and of a cylinder after its platens
+lose contact; in planar and equibiaxial tests the grips carry the shear stress of fibres off the axes.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from tisim.parts import MaterialPoints
 Array = NDArray[np.float64]
 Test = tuple[CouponMode, Course, Array]  # mode, course, stretch (f,) along it
 
-# of a stress, those components that a test sees: the driven ones and the sides
+# components of the stress that enter a test: those of the driven directions and of the sides
 _AXIS, _OTHER = np.array([0, 0, 0, 1, 2]), np.array([0, 1, 2, 1, 2])
 
 
 def stresses_along(material: Material, tests: Sequence[Test]) -> list[Array]:
-    """Nominal stress along each test [Pa], shape (f,). A test begins at rest, what it first reaches at once.
+    """Nominal stress along each test [Pa], shape (f,).
 
-    NaN where no balance was found of what is not driven (`_balance`). ValueError, in one sentence: unsound
-    material.
+    A test begins at rest; its first deformation is applied as a jump. NaN at times for which `_balance` does
+    not converge. ValueError, in one sentence, for an invalid material.
     """
     sizes = np.array([s.size for _, _, s in tests])
     begins = np.cumsum(sizes) - sizes
@@ -68,13 +68,13 @@ def stresses_along(material: Material, tests: Sequence[Test]) -> list[Array]:
 
 
 def _oblique(material: Material) -> bool:
-    """True if fibres lie along none of the axes that a test has."""
+    """True if the fibres lie along none of the axes of a test."""
     direction = np.abs(np.asarray(getattr(material.fibres, "direction", (1.0, 1.0, 1.0)), dtype=float))
     return bool(np.sort(direction)[1] > 1e-12 * direction.max())
 
 
 def _gradients(mode: CouponMode, stretch: Array) -> Array:
-    """F (f, 3, 3) at J = 1."""
+    """Deformation gradients (f, 3, 3) at J = 1."""
     F = np.zeros((stretch.size, 3, 3))
     axis = np.arange(3)
     if mode == "simple-shear":
@@ -86,7 +86,7 @@ def _gradients(mode: CouponMode, stretch: Array) -> Array:
 
 
 def _isochoric(material: Material, tests: Sequence[Test], F: Array, begins: NDArray[np.intp]) -> Array:
-    """S_iso (n, 3, 3), softened, without viscosity."""
+    """Isochoric second Piola-Kirchhoff stress (n, 3, 3), with softening, without viscosity."""
     plain = replace(material, viscosity=None, softening=None)
     if material.softening is None:
         P = _evaluate(plain, F)[1]
@@ -97,7 +97,7 @@ def _isochoric(material: Material, tests: Sequence[Test], F: Array, begins: NDAr
         peaks = np.empty(len(F), dtype=np.intp)
         for k, begin in enumerate(begins):
             end = begin + tests[k][2].size
-            own = np.concatenate([[len(F) + k], np.arange(begin, end)])  # the largest of earlier tests first
+            own = np.concatenate([[len(F) + k], np.arange(begin, end)])  # the peak of earlier tests first
             top = np.maximum.accumulate(energy[own])
             latest = np.maximum.accumulate(np.where(energy[own] >= top, np.arange(len(own)), 0))
             peaks[begin:end] = own[latest[1:]]
@@ -112,7 +112,7 @@ def _isochoric(material: Material, tests: Sequence[Test], F: Array, begins: NDAr
 
 
 def _evaluate(material: Material, F: Array) -> tuple[Array, Array]:
-    """Energy (n,) and first Piola-Kirchhoff stress (n, 3, 3) of a material that remembers nothing."""
+    """Energy (n,) and first Piola-Kirchhoff stress (n, 3, 3), without viscosity and softening."""
     if material.has_parts:
         energy, P, _ = MaterialPoints(material, len(F)).evaluate(F)
     else:
@@ -138,7 +138,7 @@ def _memory(material: Material, tests: Sequence[Test], begins: NDArray[np.intp])
 
 
 def _relaxing(S: Array, memory: Memory) -> Array:
-    """Long-time part of S (n, 3, 3) and its viscous terms."""
+    """Sum of the long-time part of S (n, 3, 3) and its viscous terms (`Memory`)."""
     flat = S[:, _AXIS, _OTHER]
     change = np.diff(flat, axis=0, prepend=0.0)
     change[memory.begins] = flat[memory.begins]  # from rest
@@ -153,6 +153,6 @@ def _relaxing(S: Array, memory: Memory) -> Array:
 
 
 def ramp_weights(h: Array) -> Array:
-    """(1 - exp(-h))/h, 1 at h = 0: of a change in a straight line over h relaxation times."""
+    """(1 - exp(-h))/h, and 1 at h = 0: weight of a linear change over h relaxation times."""
     safe = np.where(h > 0.0, h, 1.0)
     return np.where(h > 0.0, -np.expm1(-safe) / safe, 1.0)

@@ -1,4 +1,4 @@
-"""Records of homogeneous tests: thinned, with their history (branches, largest strain before, rate)."""
+"""Records of homogeneous tests: thinned, with their history (branches, earlier peak strain, rate)."""
 
 from __future__ import annotations
 
@@ -27,34 +27,37 @@ from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
 
-MOST = 100  # points that are kept of a branch: more are averaged in bins of neighbours
-TURN = 0.03  # fraction of the record's range that a real turn goes back by
-NOISE = 6.0  # standard deviations of the stretch that are no turn
-SAME_REACH, SAME_RATE = 0.05, 1.2  # part of the strain, and quotient of rates, within which tests are alike
-LATE = 0.3  # fraction of a ramp's time for which it may stand still before this is a hold
+MOST = 100  # largest number of points of a branch: more are averaged in bins of neighbours
+TURN = 0.03  # least reversal at a turning point, as a fraction of the record's range
+NOISE = 6.0  # the same, in standard deviations of the stretch
+SAME_REACH, SAME_RATE = 0.05, 1.2  # relative difference of strain, and ratio of rates, between repeats
+LATE = 0.3  # time after the end of a ramp, as a fraction of its duration, from which a hold begins
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """The points of one trial, in the order in which they were measured; all arrays (k,).
+    """Points of one trial in the order of measurement; all arrays have shape (k,).
 
     Attributes
     ----------
-    name : of the trial.
-    specimen : whose modulus it has.
-    stretch : of the driven direction; simple shear has 1 + gamma.
+    name : name of the trial.
+    material, specimen : of the trial; the specimen is the material's name if the trial names none.
+    mode : mode of loading.
+    stretch : stretch in the driven direction; 1 + gamma in simple shear.
     stress, sd : nominal stress and its standard deviation [Pa].
-    time : [s]; NaN where the lab has none.
-    branch : number of the stroke that a point belongs to.
-    turn : while unloading, I1 - 3 at the turning point before; NaN otherwise.
-    peak : the largest I1 - 3 that the specimen has seen so far.
-    reloaded : it was loaded again after an unloading. remembers : after one in another trial.
-    rate : of the stretch [1/s]; in a hold, the stretch over the time since its ramp began; NaN without time.
-    estimated : the lab states no error of the stress, and sd comes from the scatter.
-    ranges : see `calibration.measurements.Record`.
-    earlier : how many tests like it its specimen had before, and `alike` in all, itself among them: of its
-        mode, as far, at its rate.
-    course : the rows that it was made of, for materials that remember; None where it was made for others.
+    time : [s]; NaN without a clock.
+    branch : number of the stroke of each point.
+    turn : I1 - 3 at the preceding turning point during unloading; NaN otherwise.
+    peak : largest I1 - 3 of the specimen so far.
+    reloaded : True if the specimen was loaded again after an unloading, in this or an earlier trial.
+    remembers : True if the specimen was loaded in an earlier trial.
+    rate : rate of the stretch [1/s]; in a hold, the stretch of its ramp over the time since the ramp began;
+        NaN without a clock.
+    estimated : True if the lab states no error of the stress, so that sd comes from the scatter.
+    ranges : see `calibration.measurements._model.Record`.
+    earlier : number of earlier repeats (same specimen, mode, largest strain and rate).
+    alike : number of all repeats, including this record.
+    course : loading history, for history-dependent materials; None otherwise.
     """
 
     name: str
@@ -95,16 +98,29 @@ class Record:
         return bool(np.isfinite(self.turn).any())
 
     def only(self, kept: NDArray[np.bool_]) -> Record:
-        """Some of its points."""
+        """Record of a subset of the points; `kept` is a mask (k,)."""
         arrays = ("stretch", "stress", "sd", "time", "branch", "turn", "peak", "rate")
         course = None if self.course is None else self.course.only(kept)
         return replace(self, course=course, **{name: getattr(self, name)[kept] for name in arrays})
 
 
 def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[Record]:
-    """One record a trial. A named specimen's trials were done in the order of the file, so that it remembers
-    in one of them what it was strained to in those before. courses : for a material that remembers: holds
-    count by their time. InputError where an error is neither stated nor to be had from the stress."""
+    """Records of trials, one per trial.
+
+    The trials of a named specimen are taken in the order of the file: `peak` includes its earlier trials of
+    the same mode.
+
+    Parameters
+    ----------
+    trials : the trials.
+    courses : True for a history-dependent material: records have their course, and the bins of holds are
+        spaced by time.
+
+    Raises
+    ------
+    InputError
+        If the error of a stress is neither stated nor can be estimated.
+    """
     found: list[Record] = []
     seen: dict[tuple[str, str], float] = {}
     furthest: dict[tuple[str, str], float] = {}
@@ -126,7 +142,7 @@ def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[
 
 
 def _alike(one: Record, other: Record) -> bool:
-    """True if two records are of one test, repeated. Trials that name no specimen share one."""
+    """True if two records are repeats of one test. Trials of a material that name no specimen share one."""
     if (one.material, one.specimen, one.mode) != (other.material, other.specimen, other.mode):
         return False
     reaches = [float(r.stretch[np.argmax(np.abs(r.stretch - 1.0))] - 1.0) for r in (one, other)]
@@ -136,7 +152,10 @@ def _alike(one: Record, other: Record) -> bool:
 
 
 def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record:
-    """before, furthest : largest I1 - 3 and stretch of earlier trials; furthest is None without a course."""
+    """Record of a trial.
+
+    before, furthest : largest I1 - 3 of earlier trials, and its stretch; `furthest` is None without a course.
+    """
     parts = branches_of(trial)
     timed = furthest is not None and trial.time is not None
     holds = holds_of(trial) if timed else []
@@ -198,7 +217,7 @@ _AVERAGED = ("stretch", "stress", "time", "turn", "peak", "rate")
 
 
 def _unloading(trial: CouponTrial, b: Stroke) -> NDArray[np.bool_]:
-    """Which points of a branch go back to rest, apart from noise about rest; beyond it they load again."""
+    """Mask of a branch's points that return towards rest; beyond rest, and beyond noise, they load again."""
     s = trial.stretch[b.points]
     noise = turning(trial)
     gone = b.direction * (s - 1.0)
@@ -214,8 +233,11 @@ def _loads_again(turn: Array) -> bool:
 
 
 def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array) -> Array:
-    """Of the means in bins [Pa]. An error estimated from the scatter stays at least what areas and gauges are
-    known to, however many points are averaged."""
+    """Standard deviation of the means in bins [Pa], including the stretch error.
+
+    An error estimated from the scatter is at least SMALLEST_RELATIVE of the trial's largest stress, for any
+    number of averaged points.
+    """
     own = _own_sd(trial, b, trial.stretch[b.points], stress, count)
     if trial.stretch_sd == 0.0:
         return own
@@ -230,7 +252,7 @@ def _sd_over_time(
     first: NDArray[np.intp],
     count: Array,
 ) -> Array:
-    """As `_sd`, with the scatter about a smooth curve over time; in a hold the slope is the last ramp's."""
+    """As `_sd`, with the scatter about a smooth curve of time; a hold has the slope of the last ramp."""
     assert trial.time is not None
     own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count)
     if trial.stretch_sd == 0.0:
@@ -245,7 +267,7 @@ def _sd_over_time(
 
 
 def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
-    """Of the stress alone; over : what its scatter is taken about a smooth curve of."""
+    """Standard deviation of the stress alone [Pa]; over : abscissa of the curve, for the scatter about it."""
     if trial.stress_sd is None:
         return np.maximum(
             unstated_sd(over, trial.stress[b.points], stress, count),
@@ -255,12 +277,12 @@ def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Ar
 
 
 def turning(trial: CouponTrial) -> float:
-    """How far a stretch goes back where it really turns."""
+    """Least reversal of the stretch at a turning point."""
     return max(TURN * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
 
 
 def branches_of(trial: CouponTrial) -> list[Stroke]:
-    """Loading and unloading in the order of the record; a record that goes nowhere has its net direction."""
+    """Strokes in the order of the record, each with the sign of its net change of stretch (1 if 0)."""
     x = trial.stretch
     found = []
     for s in strokes(x, turning(trial)):
@@ -270,18 +292,20 @@ def branches_of(trial: CouponTrial) -> list[Stroke]:
 
 
 def protocol_window(trials: Sequence[CouponTrial]) -> ProtocolWindow:
-    """What tests can show of parts beside a law: the times of their ramps and holds, and their peaks."""
+    """Range of the times of ramps and holds, and number of peak strains, that tests cover."""
     return window_of(trials, [branches_of(t) for t in trials])
 
 
 def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
-    """|d stretch / d time| of each point [1/s]: that of its whole ramp, so that noise does not enter. In a
-    hold: the ramp's stretch over the time since it began, which falls as 1/time. NaN where there is no
-    time."""
+    """|d stretch / d time| of each point [1/s].
+
+    It is the mean of the ramp between 10 and 90 % of its stretch, so that noise does not enter. In a hold it
+    is the ramp's stretch over the time since the ramp began, which falls as 1/time. NaN without a clock.
+    """
     found = np.full(trial.stretch.size, np.nan)
     if trial.time is None:
         return found
-    begun, travelled = 0.0, 0.0  # of the ramp before
+    begun, travelled = 0.0, 0.0  # start and stretch of the preceding ramp
     for b in parts:
         x, t = trial.stretch[b.points], trial.time[b.points]
         reach = slice(b.points.start, min(b.points.stop + 1, trial.stretch.size))
@@ -299,7 +323,7 @@ def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
         here = np.full(x.size, rate)
         held = t > end + LATE * between
         here[held] = travel / (t[held] - start)
-        if travelled > 0.0:  # still held from before
+        if travelled > 0.0:  # the preceding hold continues
             held = t < start - LATE * between
             here[held] = travelled / (t[held] - begun)
         found[b.points] = here
@@ -308,7 +332,7 @@ def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
 
 
 def protocol(r: Record) -> tuple[str, int, float, float]:
-    """Mode, strokes, how far (logarithm of the stretch) and how fast [1/s] (0 without a time)."""
+    """Mode, number of strokes, largest |ln stretch| and median rate [1/s] (0 without a clock)."""
     rates = r.rate[np.isfinite(r.rate)]
     far = float(np.abs(np.log(np.maximum(r.stretch, 1e-3))).max())
     return str(r.mode), len(np.unique(r.branch)), far, float(np.median(rates)) if rates.size else 0.0

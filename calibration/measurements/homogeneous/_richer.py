@@ -1,4 +1,4 @@
-"""A richer law beside the baseline's, for the effect that brings it in; and where a law's fit begins."""
+"""A richer law that an effect mixes with the baseline's law; start values for the fit of a law."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from tisim.laws import evaluate
 
 Array = NDArray[np.float64]
 
-WIDE = 0.25  # sd of a constant, as a part of its search range: it keeps a constant that nothing shows
-DRAWS = 60  # of constants, times their number, before the search
-SPREAD = 1.5  # sd of draws of a logarithm
-STARTS, MOST_STEPS = 3, 40  # local searches, and their steps
-SHARP = 1e-4  # of the squares, where a search ends
-_BAD = 1e6  # whitened residual of a point without an answer
+WIDE = 0.25  # prior sd of a constant, as a fraction of its search range: keeps unidentified constants finite
+DRAWS = 60  # random draws per constant before the local searches
+SPREAD = 1.5  # sd of the draws of a logarithm
+STARTS, MOST_STEPS = 3, 40  # number of local searches, and their largest number of evaluations
+SHARP = 1e-4  # relative tolerance on the sum of squares of the last search
+_BAD = 1e6  # whitened residual of a point without a solution
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RicherLaw:
-    """A law whose constants are coordinates of a fit, of each material its own.
+    """A law whose constants are coordinates of a fit, one set per material.
 
     Attributes
     ----------
-    law : in search coordinates.
-    centres : of each material all coordinates of the law, its first modulus REFERENCE, where a search begins.
+    law : the law in search coordinates.
+    centres : start values of all coordinates of the law by material; the first modulus is REFERENCE.
     """
 
     law: Parametrisation
@@ -42,7 +42,7 @@ class RicherLaw:
 
     @cached_property
     def free(self) -> tuple[int, ...]:
-        """Coordinates other than the modulus and K/G, by index."""
+        """Indices of the coordinates other than the modulus and K/G."""
         return tuple(k for k, c in enumerate(self.law.coordinates) if k > 0 and c.name != "bulk_ratio")
 
     @cached_property
@@ -50,7 +50,7 @@ class RicherLaw:
         return tuple(self.centres)
 
     def extras(self) -> list[Extra]:
-        """The constants as further coordinates of a baseline, held together by wide priors."""
+        """The constants as extras of a baseline, with wide priors."""
         bounds = self.law.bounds
         return [
             Extra(
@@ -64,7 +64,7 @@ class RicherLaw:
         ]
 
     def of(self, material: str, extras: Array) -> Array:
-        """All coordinates of a material's law, from those of `extras`, shape (n,)."""
+        """All coordinates of a material's law, shape (n,), with the constants from `extras`."""
         first = self.first(material)
         found = self.centres[material].copy()
         low, high = self.law.bounds[list(self.free)].T
@@ -72,20 +72,25 @@ class RicherLaw:
         return found
 
     def first(self, material: str) -> int:
-        """Where a material's constants begin among the extras."""
+        """Index of a material's first constant among the extras."""
         return self.materials.index(material) * len(self.free)
 
 
 def law_start(
     law: Parametrisation, records: Sequence[Record], *, bulk_ratio: float
 ) -> tuple[dict[str, float], Array] | None:
-    """The law that fits the records of a material best: shear modulus of each specimen [Pa], and coordinates
-    of the law, its first modulus REFERENCE. None where it has no answer.
+    """Fit a law to the records of one material, as the start of a joint fit.
 
-    At constant volume, where a stress takes one evaluation; moduli of specimens are linear and solved for.
-    Constants are drawn over their range, and the best draws descend. The best of them descends once more at
-    K/G as it is held: at ten times its length a rubber is 1 % larger, and terms of a series law that nearly
-    hide each other are found by this search, not by the joint steps of a fit.
+    The search is at constant volume, where a stress takes one evaluation; the moduli of the specimens are
+    linear and are solved for. Constants are drawn over their range; the best draws are refined by local least
+    squares. The best result is refined once more at `bulk_ratio`: at a stretch of 10 a rubber is 1 % larger,
+    and nearly collinear terms of a series law are resolved by this search, not by the joint steps of a fit.
+
+    Returns
+    -------
+    tuple or None
+        Shear modulus of each specimen [Pa], and coordinates of the law (n,), whose first modulus is
+        REFERENCE. None if the law has no solution.
     """
     curves = _Curves.of(law, records)
     base = law.start(shear=REFERENCE)
@@ -139,17 +144,18 @@ def law_start(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Curves:
-    """Measured curves of a material, whitened, beside those of a law.
+    """Measured curves of a material for the comparison with a law.
 
     Attributes
     ----------
-    bulk_ratio : K/G; None is constant volume.
-    modes : of each record, and its stretches.
-    F : deformation gradients of all points, shape (n, 3, 3).
-    free, driven : of each point the free principal stretch, and the driven one; 1 in simple shear.
-    sheared : points in simple shear, shape (n,).
-    stress, sd : measured [Pa], shape (n,).
-    owners : of each specimen the points that are its own.
+    law : the law in search coordinates.
+    bulk_ratio : K/G; None for constant volume.
+    modes : mode and stretches of each record.
+    F : deformation gradients of all points at constant volume, shape (n, 3, 3).
+    free, driven : principal stretch in the free and in the driven direction; 1 in simple shear, shape (n,).
+    sheared : True for points in simple shear, shape (n,).
+    stress, sd : measured stress and its standard deviation [Pa], shape (n,).
+    owners : mask (n,) of the points of each specimen.
     """
 
     law: Parametrisation
@@ -189,7 +195,7 @@ class _Curves:
         )
 
     def scales(self, u: Array) -> dict[str, float]:
-        """Of each specimen, the factor on the law's stress that fits it best."""
+        """Best-fit factor on the law's stress for each specimen."""
         return self._scales(self._own(u))
 
     def _scales(self, own: Array) -> dict[str, float]:
@@ -200,7 +206,7 @@ class _Curves:
         return found
 
     def residuals(self, u: Array) -> Array:
-        """Whitened, shape (n,); NaN where the law has no stress, or would need a negative modulus."""
+        """Whitened residuals, shape (n,); NaN without a stress or with a modulus that is not positive."""
         with np.errstate(all="ignore"):
             try:
                 own = self._own(u)
@@ -213,7 +219,7 @@ class _Curves:
             return np.asarray((factor * own - self.stress) / self.sd)
 
     def _own(self, u: Array) -> Array:
-        """Nominal stress of the law [Pa], the free side without traction."""
+        """Nominal stress of the law [Pa] with a traction-free side, shape (n,)."""
         if self.bulk_ratio is not None:
             bulk = [c.name == "bulk_ratio" for c in self.law.coordinates]
             material = self.law.material(np.where(bulk, np.log(self.bulk_ratio), u))
@@ -230,8 +236,10 @@ def _cost(z: Array) -> float:
 
 
 def start_of(baseline: Baseline, records: Sequence[Record], *, bulk_ratio: float) -> Array:
-    """Coordinates u of a baseline that fit best at this K/G, of each material by itself. ValueError where the
-    law has no answer."""
+    """Start coordinates u of a baseline: best fit of each material by itself at this K/G (`law_start`).
+
+    ValueError if the law has no solution.
+    """
     moduli: dict[str, float] = {}
     laws: dict[str, Array] = {}
     for m in baseline.materials:

@@ -1,4 +1,4 @@
-"""Standard deviations of a coupon's points, from what the lab says or from the curve itself."""
+"""Standard deviation of the stress of homogeneous tests, estimated from the scatter of the curve."""
 
 from __future__ import annotations
 
@@ -7,30 +7,29 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Where the lab gives no stress_sd, and the scatter grows with the stress: an error relative to it, which
-# below FLOOR of the largest stress stays what it is there.
+# If the lab gives no stress_sd, and the scatter grows with the stress: the error is relative to the stress,
+# and constant below FLOOR of the largest stress.
 FLOOR = 0.05
-# Nobody's area, gauge length and load cell are known better than this; curves drawn smooth look so. Of the
-# largest stress: as a part of each it would be absurdly small near rest, where a record has many points, and
-# these would decide which cause is named.
+# Least error as a fraction of the largest stress: areas, gauge lengths and load cells are not known better,
+# though smoothed curves look so. Relative to each stress it would be too small near rest, where a record has
+# many points, and these would decide which cause is named.
 SMALLEST_RELATIVE = 0.005
-ENOUGH = 24  # points that show whether their scatter grows with the stress,
-CLEARLY = 2.0  # by this factor from the smaller half of the stresses to the larger
-_NORMAL = 1.4826  # standard deviations in a median absolute deviation
-_WINDOW = 0.15  # of the points, for the slope
+ENOUGH = 24  # least number of points to decide if the scatter grows with the stress:
+CLEARLY = 2.0  # its ratio between the half with larger stresses and the half with smaller ones
+_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
+_WINDOW = 0.15  # fraction of the points in the window of the slope
 
 
 def unstated_sd(over: Array, measured: Array, values: Array, count: Array | float = 1.0) -> Array:
-    """Standard deviation of means (k,) of a curve whose error the lab does not state, at least
-    SMALLEST_RELATIVE of its largest value.
+    """Standard deviation of means (k,) of a curve whose error the lab does not state.
 
-    The scatter grows with the value where the curve shows that it does (`grows`), and is the same all along
-    it otherwise.
+    The error is proportional to the value if the scatter grows with it (`grows`), and constant otherwise. It
+    is at least SMALLEST_RELATIVE of the largest value.
 
     Parameters
     ----------
-    over, measured : the curve, shape (n,).
-    values, count : means of its points, and of how many each is.
+    over, measured : abscissa and values of the curve, shape (n,).
+    values, count : means of its points, shape (k,), and number of points in each mean.
     """
     largest = max(float(np.abs(measured).max(initial=0.0)), float(np.finfo(float).tiny))
     if grows(over, measured):
@@ -42,7 +41,7 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
 
 
 def grows(over: Array, measured: Array) -> bool:
-    """True if the scatter of the larger half of a curve's values is clearly above that of the smaller."""
+    """True if the larger half of a curve's |values| scatters over CLEARLY times as much as the smaller."""
     left = _left(over, measured)
     if left is None or len(left[0]) < ENOUGH:
         return False
@@ -51,12 +50,12 @@ def grows(over: Array, measured: Array) -> bool:
 
 
 def relative_sd(stretch: Array, stress: Array) -> float:
-    """Relative error of a curve, from its scatter about itself.
+    """Relative error of a curve from its scatter.
 
-    Each inner point is compared with the cubic through its two neighbours on either side (points of one
-    stretch are averaged first); 1.4826 times the median of what is left, at least SMALLEST_RELATIVE. A
-    smooth curve shows its scatter only, not an error that all of its points share. Fewer than 8 different
-    stretches: SMALLEST_RELATIVE.
+    Each inner point is compared with the cubic through its two neighbours on either side (points of equal
+    stretch are averaged first). The error is 1.4826 times the median absolute residual over the stress, at
+    least SMALLEST_RELATIVE; SMALLEST_RELATIVE for fewer than 8 different stretches. It does not include an
+    error that all points share.
     """
     found = _left(stretch, stress)
     if found is None:
@@ -67,15 +66,17 @@ def relative_sd(stretch: Array, stress: Array) -> float:
 
 
 def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:
-    """What each inner point departs from the cubic through its neighbours, as large as an error of one point,
-    and the measured values there; None of fewer than 8 different places."""
+    """|residual| of each inner point from the cubic through its neighbours, and the measured values there.
+
+    Residuals are scaled to the standard deviation of one point. None for fewer than 8 different abscissae.
+    """
     x, first, counts = np.unique(over, return_inverse=True, return_counts=True)
     y = np.bincount(first, weights=measured) / counts
     if len(x) < 8:
         return None
     inner = np.arange(2, len(x) - 2)
     near = inner[:, None] + np.array([-2, -1, 1, 2])
-    weight = np.ones((len(inner), 4))  # Lagrange's, at the point left out
+    weight = np.ones((len(inner), 4))  # Lagrange weights at the point left out
     for i in range(4):
         for j in range(4):
             if j != i:
@@ -86,8 +87,10 @@ def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:
 
 
 def slope(stretch: Array, stress: Array) -> Array:
-    """d stress / d stretch of the measured curve [Pa], (k,): lines fitted to the nearest points, weighted by
-    distance (tricube), over 15 % of the points and at least 5."""
+    """d stress / d stretch of the measured curve [Pa], shape (k,), by local linear regression.
+
+    The window has the nearest 15 % of the points, at least 5, with tricube weights.
+    """
     k = len(stretch)
     take = min(k, max(5, int(np.ceil(_WINDOW * k))))
     distance = np.abs(stretch[:, None] - stretch[None, :])

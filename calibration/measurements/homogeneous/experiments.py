@@ -1,4 +1,4 @@
-"""What a lab can do next with coupons: other protocols on the same specimens, and direct measurements."""
+"""Next experiments for homogeneous tests: other protocols on the same specimens, direct measurements."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from calibration.measurements.homogeneous.kinematics import first_excess
 
 Array = NDArray[np.float64]
 
-POINTS = 50  # of a ramp
-SLOW = 0.01  # [1/s], where the lab wrote down no time
-FURTHER = 1.5  # as much strain
+POINTS = 50  # points of a ramp
+SLOW = 0.01  # rate [1/s] if the records have no clock
+FURTHER = 1.5  # factor on the strain
 
 
 CouponTest = Test[Record, CouponTrial]
@@ -25,13 +25,16 @@ CouponTest = Test[Record, CouponTrial]
 def made(
     r: Record, name: str, *, mode: CouponMode, top: float, ramps: int = 1, faster: float = 1.0
 ) -> CouponTrial:
-    """A test of a record's specimen from rest to the stretch `top` and back, `ramps` in all; the error of the
-    stress is that part of the largest that the record has. Its stress is still to be predicted."""
+    """Trial of a record's specimen from rest to the stretch `top`, back, and so on, `ramps` ramps in all.
+
+    The rate is `faster` times the record's median rate; the stress error is the record's median. The stress
+    is 0, to be predicted.
+    """
     there = np.linspace(1.0, top, POINTS)
     stretch = np.concatenate([there if k % 2 == 0 else there[::-1] for k in range(ramps)])
     rates = r.rate[np.isfinite(r.rate)]
     rate = faster * (float(np.median(rates)) if rates.size else SLOW)
-    # turning points are there twice: a hold of a moment
+    # turning points occur twice, with a very short hold between
     steps = np.maximum(np.abs(np.diff(stretch)), 1e-6)
     return CouponTrial(
         id=f"{r.name} {name}",
@@ -46,7 +49,7 @@ def made(
 
 
 def _furthest(r: Record) -> float:
-    """The stretch of a record that is furthest from rest."""
+    """Stretch of largest I1 - 3 of a record."""
     return float(r.stretch[np.argmax(first_excess(r.mode, r.stretch))])
 
 
@@ -57,7 +60,7 @@ def _mode(mode: CouponMode, *, pressed: bool = False) -> Callable[[Sequence[Reco
             return []
         r = max(records, key=lambda q: float(first_excess(q.mode, q.stretch).max()))
         reach = float(first_excess(r.mode, r.stretch).max())
-        # to the same I1, so that it is no larger test than those that were done
+        # to the same I1, so that the strain is no larger than in the earlier tests
         grid = np.linspace(0.3, 1.0, 2000) if pressed else np.linspace(1.0, 6.0, 6000)
         top = float(grid[np.argmin(np.abs(first_excess(mode, grid) - reach))])
         return [made(r, "pressed" if pressed else mode, mode=mode, top=top)]

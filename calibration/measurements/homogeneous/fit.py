@@ -1,4 +1,4 @@
-"""A law fitted to coupons: local least squares from many starts, CMA-ES before where the cost has basins."""
+"""Fit of a law to homogeneous tests: multi-start least squares, after CMA-ES if the cost is multimodal."""
 
 from __future__ import annotations
 
@@ -25,35 +25,36 @@ from tisim import Material
 Array = NDArray[np.float64]
 Residuals = Callable[[Array], Array]
 
-_SAME = 1.01  # a start within this factor of the best cost has reached it
-_BAD = 1e30  # CMA-ES's cost of a candidate without an answer
+_SAME = 1.01  # a start whose cost is within this factor of the best has reached the best
+_BAD = 1e30  # cost in CMA-ES of a point without a solution
 
 
 class FitStatus(StrEnum):
-    """How a fit ended."""
+    """Outcome of a fit."""
 
     CONVERGED = "converged"
-    NOT_CONVERGED = "not-converged"  # the best start ran out of steps
-    NO_ANSWER = "no-answer"  # at no start has the law a stress at all measured points
+    NOT_CONVERGED = "not-converged"  # the best start reached the limit of evaluations
+    NO_ANSWER = "no-answer"  # at every start the law lacks a stress at some measured point
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CouponFit:
-    """The best of all starts.
+    """Result of a fit: the best of all starts.
 
     Attributes
     ----------
-    records : points as they are compared (of long records the means of neighbours).
-    status : how it ended.
-    u : search coordinates, shape (n,); NaN without an answer.
-    chi2 : of the points, with their standard deviations.
-    points : how many.
-    starts, reached, unanswered : starts tried, those that ended at the best cost (within 1 %), those at which
-        the law had no answer.
-    evaluations : of the law on all curves.
-    held : coordinates that were not fitted.
-    identification : covariance and what the data see; None without an answer. Where the law misfits, errors
-        of neighbouring points are alike and the intervals are too narrow, though scaled by chi-square.
+    parametrisation : the law in search coordinates.
+    records : points as compared (for long records, means of neighbours).
+    status : outcome of the best start.
+    u : search coordinates, shape (n,); NaN without a solution.
+    chi2 : chi-square of the points, without priors.
+    points : number of points.
+    starts, reached, unanswered : number of starts, of those that reached the best cost (within 1 %), and of
+        those at which the law had no solution.
+    evaluations : number of evaluations of the law on all curves.
+    held : names of the coordinates that were fixed.
+    identification : covariance and identifiability; None without a solution. If the law misfits, errors of
+        neighbouring points are correlated and the intervals are too narrow, though scaled by chi-square.
     """
 
     parametrisation: Parametrisation
@@ -71,15 +72,17 @@ class CouponFit:
 
     @property
     def undecided(self) -> dict[str, str]:
-        """Coordinates that priors, bounds or the caller decided, not the data: name -> "held",
-        "not identified" or "at a bound"; "weak" where an interval is too wide to print one figure."""
+        """Coordinates that the data do not determine, by name.
+
+        Values: "held", "not identified", "at a bound", or "weak" if the interval is too wide for one figure.
+        """
         if self.identification is None:
             return {}
         seen = {e.name: e.seen for e in self.identification.estimates if e.seen != "identified"}
         return {**seen, **dict.fromkeys(self.held, "held")}
 
     def material(self, *, density: float = 1000.0) -> Material:
-        """ValueError where there is no answer."""
+        """The fitted material; ValueError if there is no solution. density : [kg/m3]."""
         if self.status is FitStatus.NO_ANSWER:
             raise ValueError(
                 f"{self.parametrisation.label}: no answer at the measured points, nothing fitted"
@@ -89,7 +92,7 @@ class CouponFit:
 
 @dataclass(eq=False)
 class _Counted:
-    """Residuals of the free coordinates, prior rows last; counts its calls."""
+    """Residuals as a function of the free coordinates, prior rows last; counts its calls."""
 
     model: HomogeneousModel
     base: Array
@@ -116,24 +119,28 @@ def fit_coupons(
     seed: int = 0,
     held: Mapping[str, float] | None = None,
 ) -> CouponFit:
-    """Fit a law to homogeneous tests of one material: chi-square plus the parametrisation's priors.
+    """Fit a law to homogeneous tests of one material: minimise chi-square plus the parametrisation's priors.
 
-    What is compared, and by which errors, is what a diagnosis compares (`HomogeneousModel`).
+    Points and errors are those of a diagnosis (`HomogeneousModel`).
 
     Parameters
     ----------
     parametrisation : the law in search coordinates.
     coupons : the tests.
-    starts : local searches (bounded trust-region least squares): the parametrisation's start, then draws.
-    evolution : evaluations spent on CMA-ES first, its best point being one more start; by default 4000 for
-        laws with two exponents or more (Ogden-2, -3), whose cost has many basins, else none.
-    held : coordinates fixed at a value (SI), by name; they enter the covariance by their prior. By default
-        bulk_ratio at its prior's centre: a stress does not see it, and where the law is wrong the fit would
-        move it to repair the curve. {} fits everything.
+    starts : number of local searches (bounded trust-region least squares): one from the parametrisation's
+        start, the others from random draws.
+    evolution : number of evaluations of a preceding CMA-ES search, whose best point is one more start; by
+        default 4000 for laws with two or more exponents (Ogden-2, -3), whose cost has many local minima,
+        else 0.
+    seed : of the random draws and of CMA-ES.
+    held : fixed coordinates (SI) by name; they enter the covariance by their prior. By default bulk_ratio is
+        fixed at its start value, since the stress is insensitive to it and a fit of a wrong law would use it
+        to compensate misfit. {} fits all coordinates.
 
     Raises
     ------
-    ValueError : there are no coupons, they are of several materials, or a held name is none of the law's.
+    ValueError
+        If there are no coupons, they are of several materials, or a held name is not a coordinate of the law.
     """
     if not coupons:
         raise ValueError("expected at least one coupon")
@@ -197,7 +204,7 @@ def _bulk_ratio(parametrisation: Parametrisation) -> dict[str, float]:
 
 
 def _model(parametrisation: Parametrisation, coupons: Sequence[CouponTrial]) -> HomogeneousModel:
-    """Of these tests alone."""
+    """Model of these tests alone."""
     experiment = Experiment(
         name="coupons",
         folder=Path(),
@@ -210,7 +217,7 @@ def _model(parametrisation: Parametrisation, coupons: Sequence[CouponTrial]) -> 
 
 
 def _nearest_modulus(records: Sequence[Record]) -> float:
-    """Shear modulus [Pa] of the incompressible neo-Hookean curve nearest to the data, whitened."""
+    """Shear modulus [Pa] of the best-fit incompressible neo-Hookean curve, at least 100 Pa."""
     top = bottom = 0.0
     for r in records:
         unit = stress_of(r.mode, r.stretch, 0.5) / r.sd
@@ -220,7 +227,7 @@ def _nearest_modulus(records: Sequence[Record]) -> float:
 
 
 def _draw(p: Parametrisation, base: Array, free: NDArray[np.intp], rng: np.random.Generator) -> Array:
-    """Logarithms about the start with sd 1, other coordinates anywhere between their bounds."""
+    """Random start: logarithms normal about `base` with sd 1, other coordinates uniform within bounds."""
     u = base.copy()
     for i, c in enumerate(p.coordinates):
         low, high = p.bounds[i]
@@ -229,8 +236,8 @@ def _draw(p: Parametrisation, base: Array, free: NDArray[np.intp], rng: np.rando
 
 
 def _evolve(residuals: _Counted, start: Array, bounds: Array, evaluations: int, seed: int) -> Array:
-    """CMA-ES in the unit box."""
-    import cma  # imported when needed: it takes a second with the plotting it brings along
+    """Best point of CMA-ES in the box of the bounds, scaled to the unit cube."""
+    import cma  # imported when needed: it takes a second, with the plotting that it imports
 
     low, span = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
     options = {
@@ -252,7 +259,7 @@ def _evolve(residuals: _Counted, start: Array, bounds: Array, evaluations: int, 
 
 
 def _descend(residuals: Residuals, start: Array, bounds: Array) -> tuple[float, Array, bool] | None:
-    """(chi-square with priors, x, converged); None where the start has no answer."""
+    """Local search: (chi-square with priors, x, converged); None if the start has no solution."""
     inside = 1e-6 * (bounds[:, 1] - bounds[:, 0])
     x = np.clip(start, bounds[:, 0] + inside, bounds[:, 1] - inside)
     if not np.isfinite(residuals(x)).all():
@@ -266,8 +273,10 @@ def _descend(residuals: Residuals, start: Array, bounds: Array) -> tuple[float, 
 
 
 def _jacobian(residuals: Residuals, x: Array, here: Array, bounds: Array, step: float) -> Array:
-    """One-sided differences, inwards at a bound, to the other side where the first has no answer; 0 where
-    neither side has one."""
+    """Jacobian by one-sided differences, inwards at an upper bound.
+
+    If the first side has no solution the other one is used; a column is 0 if neither side has one.
+    """
     columns = np.zeros((len(here), len(x)))
     for i in range(len(x)):
         h = step if x[i] + step <= bounds[i, 1] else -step

@@ -1,4 +1,4 @@
-"""Invariants of incompressible homogeneous tests, and the nominal stress that an energy in them makes."""
+"""Invariants of incompressible homogeneous tests, and the nominal stress of an energy W(I1, I2)."""
 
 from __future__ import annotations
 
@@ -24,8 +24,10 @@ def first_excess(mode: CouponMode, s: Array) -> Array:
 
 
 def slopes(mode: CouponMode, s: Array) -> tuple[Array, Array]:
-    """dI1/ds and dI2/ds, each divided by the number of axes that are driven, so that the nominal stress of an
-    energy W(I1, I2) is W_1 and W_2 times these."""
+    """dI1/ds and dI2/ds, each divided by the number of driven axes.
+
+    The nominal stress of an energy W(I1, I2) is dW/dI1 and dW/dI2 times these.
+    """
     if mode == "uniaxial":
         return 2.0 * (s - s**-2), 2.0 * (1.0 - s**-3)
     if mode == "equibiaxial":
@@ -35,14 +37,16 @@ def slopes(mode: CouponMode, s: Array) -> tuple[Array, Array]:
 
 
 def stress_of(mode: CouponMode, s: Array, by_first: Array | float, by_second: Array | float = 0.0) -> Array:
-    """Nominal stress of an energy with dW/dI1 and dW/dI2 at these points, in their unit."""
+    """Nominal stress of an energy with derivatives dW/dI1 and dW/dI2, in their unit."""
     one, two = slopes(mode, s)
     return np.asarray(one * by_first + two * by_second)
 
 
 def slab_factor(x: Array) -> Array:
-    """Mean pressure under a rubbing platen over that without friction, shape of x: x is the coefficient of
-    friction times the diameter over the height. The pressure grows exponentially inwards (slab method)."""
+    """Ratio of the mean pressure under a platen with friction to that without, shape of x (slab method).
+
+    x = friction coefficient * diameter / height. The pressure increases exponentially inwards.
+    """
     small = np.abs(x) < 1e-2
     large = np.where(small, 1.0, x)
     exact = 2.0 * (np.expm1(large) - large) / large**2

@@ -1,4 +1,4 @@
-"""How far a law is from a measured curve, as tables print it."""
+"""Misfit of a law to a measured curve, for tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tisim import Material
 def percent_error(trial: CouponTrial, material: Material) -> float:
     """Root mean square of (model - data) over the curve's points, in percent of its largest |stress|.
 
-    NaN where the law has no answer at some point of the curve. ValueError: a curve without stress.
+    NaN if the law has no solution at some point of the curve. ValueError if all stresses are 0.
     """
     largest = float(np.abs(trial.stress).max(initial=0.0))
     if largest == 0.0:

@@ -1,8 +1,7 @@
-"""Homogeneous material tests: coupons of all materials together, effects nested in their closed-form stress.
+"""Measurement model of homogeneous tests: coupons of all materials together, with effects, without a mesh.
 
-What is compared is the nominal stress at each point, over its standard deviation as the lab states it
-(stretch noise through the measured curve's slope; where no error of the stress is stated, one from the
-curve's scatter).
+It compares the nominal stress at each point, over its standard deviation as stated by the lab (including the
+stretch error times the slope of the measured curve), or estimated from the curve's scatter if none is stated.
 """
 
 from __future__ import annotations
@@ -61,21 +60,25 @@ ALIKE = 0.15  # of range and rate: of two repeats of one test
 
 
 class HomogeneousModel(MeasurementModel):
-    """Baseline: a law of `tisim` (neo-Hookean by default), one shear modulus a specimen; trials that name no
-    specimen share one a material.
+    """Measurement model of homogeneous tests.
+
+    The baseline is a law of `tisim` (neo-Hookean by default) with one shear modulus per specimen; trials of a
+    material that name no specimen share one.
 
     Parameters
     ----------
-    experiment : its coupons are used.
-    effects : by name; see `calibration.diagnosis.effects.homogeneous`.
-    law, terms : of the baseline; terms of a series law (Ogden, 1 to 3).
-    baseline : in place of that.
-    richer : a law, and its terms, that one of the effects has in place of the baseline's.
+    experiment : experiment with coupons; other trials are ignored.
+    effects : effects by name; see `calibration.diagnosis.effects.homogeneous`.
+    law, terms : law of the baseline, and number of terms of a series law (Ogden, 1 to 3).
+    baseline : baseline in place of `law` and `terms`.
+    richer : (law, terms) that an effect mixes with the baseline's law.
 
     Raises
     ------
-    InputError : there is no coupon.
-    ValueError : the law is unknown.
+    InputError
+        If there is no coupon.
+    ValueError
+        If the law is unknown, or the richer law has no stress at some stretches.
     """
 
     kind = "homogeneous"
@@ -117,7 +120,7 @@ class HomogeneousModel(MeasurementModel):
         self._set_candidates()
 
     def _take_richer(self, law: str, terms: int) -> None:
-        """Constants of a richer law as further coordinates, each material's from a fit of its own."""
+        """Add the constants of a richer law as extras; their centres are from a fit of each material."""
         form = parametrisation(law, terms=terms)
         centres: dict[str, Array] = {}
         self._rich_moduli: dict[str, float] = {}
@@ -133,7 +136,7 @@ class HomogeneousModel(MeasurementModel):
         self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
 
     def _own(self, effect: HomogeneousEffect) -> HomogeneousEffect:
-        """An effect as these records have it: its bounds, and which law it brings in."""
+        """Effect with the bounds, sentence and variant label for these records and the richer law."""
         touched = [r for r in self.records if effect.acts_on(r)]
         if effect.bounds_in is not None and touched:
             (low, high), (least, most) = effect.bounds, effect.bounds_in(touched)
@@ -148,8 +151,8 @@ class HomogeneousModel(MeasurementModel):
     def with_law(self, law: str, terms: int) -> list[Self]:
         """The same measurements with another law as baseline and no effects, to compare laws.
 
-        Of each material by itself: they share no coordinate, and one fit of all would go at the slowest one's
-        pace. ValueError where the law has no answer.
+        One model per material: they share no coordinate, and a joint fit would be as slow as the slowest.
+        ValueError if the law is unknown.
         """
         each: dict[str, list[CouponTrial]] = {m: [] for m in self.baseline.materials}
         for t in self.trials:
@@ -158,8 +161,11 @@ class HomogeneousModel(MeasurementModel):
         return [type(self)(e, law=law, terms=terms) for e in some]
 
     def begun(self, state: State, candidates: Sequence[Candidate]) -> State:
-        """With a richer law the moduli begin where that law's fit has them: a stress that grows hundredfold
-        asks another small-strain modulus of each law, too far for steps from the baseline's."""
+        """Start of a fit with these candidates: with the richer law, at the moduli of that law's own fit.
+
+        For a stress that grows a hundredfold, the small-strain moduli of the two laws differ too much for
+        local steps from the baseline's.
+        """
         u = state.u.copy()
         for c in candidates if self.richer is not None else ():
             if self.effects[c.effect].richer:
@@ -185,7 +191,7 @@ class HomogeneousModel(MeasurementModel):
         return len(self.richer.free) * len({r.material for r, h in zip(self.records, hit, strict=True) if h})
 
     def _measured_in(self, records: Sequence[Record]) -> None:
-        """Take these records, one row a point."""
+        """Set the records, with one row per point, and their noise; clear the caches."""
         self.records = records
         self.row_record = np.repeat(np.arange(len(records)), [r.points for r in records])
         self.noise = Noise.independent(np.concatenate([r.sd for r in records]))
@@ -193,8 +199,11 @@ class HomogeneousModel(MeasurementModel):
         self._memory: Memory[Hashable, Array] = Memory(REMEMBERED)
 
     def start(self) -> Array:
-        """Moduli of the incompressible neo-Hookean curves nearest to the records; a law with constants of its
-        own is fitted from several starts. ValueError where a specimen pulls back against its stretch."""
+        """Start coordinates (n,): moduli of the best-fit incompressible neo-Hookean curves of the specimens.
+
+        A law with further constants is fitted from several starts (`start_of`). ValueError if the modulus of
+        a specimen would not be positive, or if that law has no solution.
+        """
         if self.baseline.free and not self.baseline.whole:
             return start_of(self.baseline, self.records, bulk_ratio=BULK_RATIO)
         found = {}
@@ -213,12 +222,11 @@ class HomogeneousModel(MeasurementModel):
         return self.baseline.start(found)
 
     def stresses(self, state: State) -> list[Array]:
-        """Nominal stress of each record at its stretches [Pa], with the state's effects; NaN where there is
-        none."""
+        """Nominal stress of each record at its stretches [Pa], with the state's effects; NaN without one."""
         return self._stresses_of(range(len(self.records)), state)
 
     def _stresses_of(self, some: Sequence[int], state: State) -> list[Array]:
-        """Of some records, by index."""
+        """Nominal stress of some records, by index [Pa]."""
         loadings = [self._loading(self.records[k], state, self._effects_in(state, k)) for k in some]
         return [x.shear_modulus * p for x, p in zip(loadings, self._over_modulus(loadings), strict=True)]
 
@@ -232,7 +240,7 @@ class HomogeneousModel(MeasurementModel):
         )
 
     def _richer_constants(self, record: Record, state: State, acting: Acting) -> Array:
-        """All coordinates of its material's richer law, where an effect brings it in; none otherwise."""
+        """All coordinates of the material's richer law if an acting effect uses it; else empty."""
         if self.richer is None or not any(e.richer for e, _ in acting):
             return np.zeros(0)
         return self.richer.of(record.material, state.u[self.baseline.first_extra :])
@@ -245,8 +253,10 @@ class HomogeneousModel(MeasurementModel):
         return found
 
     def _over_modulus(self, loadings: Sequence[Loading]) -> list[Array]:
-        """Stress over the shear modulus at the records' stretches. It is remembered, since a coordinate or an
-        effect changes few records."""
+        """Stress over the shear modulus at the records' stretches.
+
+        It is cached, since a coordinate or an effect changes few records.
+        """
         return self._memory.fetch(
             [x.key for x in loadings], lambda some: self._solved([loadings[k] for k in some])
         )
@@ -273,7 +283,7 @@ class HomogeneousModel(MeasurementModel):
     def _blended(
         self, loadings: Sequence[Loading], stretches: Sequence[Array], base: list[Array]
     ) -> list[Array]:
-        """The baseline's stresses, with the richer law's in their place as far as an effect says."""
+        """(1 - a) times the baseline's stress plus a times the richer law's; a : amplitude of the effect."""
         parts = [sum(a for e, a in x.acting if e.richer) for x in loadings]
         some = [k for k, part in enumerate(parts) if part]
         if not some:
@@ -285,7 +295,7 @@ class HomogeneousModel(MeasurementModel):
         return base
 
     def _effects_in(self, state: State, k: int) -> Acting:
-        """Effects in a record, by index, with the sums of their amplitudes there."""
+        """Effects in record `k`, with the sums of their amplitudes there."""
         found: dict[tuple[str, float | None], float] = {}
         for c, a in state.amplitudes.items():
             if self.visible.get(c, True) and self.reached(c)[k]:
@@ -310,7 +320,7 @@ class HomogeneousModel(MeasurementModel):
         return self._depends_on(record)
 
     def predicted_in(self, test: CouponTest, state: State) -> Self | None:
-        """The same specimens in a new test, seen beside the trials that there are; None without a stress."""
+        """Model of the same specimens in a new test, with predicted stresses; None if there are none."""
         trials = test.of_each(self.records)
         if not trials:
             return None
@@ -322,8 +332,10 @@ class HomogeneousModel(MeasurementModel):
         return new
 
     def measuring(self, trials: Sequence[CouponTrial]) -> Self:
-        """The same specimens in other trials, which are seen beside those that there are: coordinates and
-        candidates stay."""
+        """Copy of the model for other trials of the same specimens, done after the present ones.
+
+        Coordinates and candidates stay; `visible` is for both sets of trials together.
+        """
         some = copy(self)
         courses = bool(self.baseline.law.parts)
         some._measured_in(records_of([*self.trials, *trials], courses=courses)[len(self.trials) :])
@@ -331,7 +343,7 @@ class HomogeneousModel(MeasurementModel):
         return some
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        """By mode, by material, by trial, by loading and unloading, and in fifths of each record."""
+        """Fold labels by mode, material, trial, branch, and fifth of each record."""
         found: dict[str, list[str]] = {}
         for r in self.records:
             for name, labels in {
@@ -348,7 +360,7 @@ class HomogeneousModel(MeasurementModel):
         return discrepancies(self.records, self.noise.sd)
 
     def remarks(self) -> list[str]:
-        """Where the errors come from, what one loop cannot separate, what order was taken for granted."""
+        """Sentences on estimated errors, on single loops, and on the assumed order of trials."""
         records = self.records
         found = []
         guessed = [r for r in records if r.estimated]
@@ -374,7 +386,7 @@ class HomogeneousModel(MeasurementModel):
         return found
 
     def repeat_of(self, k: int) -> Hashable | None:
-        """The first record of the same mode and strokes, that goes as far and as fast within ALIKE."""
+        """Index of the first record of equal mode and number of strokes, with range and rate within ALIKE."""
         own = protocol(self.records[k])
         for j, other in enumerate(self.records):
             there = protocol(other)

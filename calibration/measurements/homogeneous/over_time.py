@@ -1,4 +1,4 @@
-"""Homogeneous tests over time: along the course of each record, with all parts of a material."""
+"""Time-dependent fits of homogeneous tests: along the course of each record, with all parts of a material."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def _coupons(experiment: Experiment) -> list[CouponTrial]:
 
 
 def window(experiment: Experiment) -> ProtocolWindow:
-    """Of the coupons of an experiment."""
+    """Range of times and number of peaks that the coupons of an experiment cover."""
     return protocol_window(_coupons(experiment))
 
 
 def check(experiment: Experiment, specs: Sequence[str]) -> None:
-    """InputError for a record without a clock where a part needs one."""
+    """InputError for a record without a clock if a part needs one."""
     for t in _coupons(experiment):
         if t.time is None:
             need_clock(t.id, specs)

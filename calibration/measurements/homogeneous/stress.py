@@ -1,12 +1,12 @@
-"""Nominal stress of homogeneous tests, by solving for the free lateral stretches. No mesh, no FEM.
+"""Nominal stress of homogeneous tests, by solving for the free lateral stretches, without a mesh.
 
-Free sides carry no stress: with the principal stretches at a driven stretch s and the volume ratio J = exp(v)
+Free sides are traction-free. With the principal stretches at a driven stretch s and volume ratio J = exp(v)
 
     uniaxial      (s, sqrt(J/s), sqrt(J/s))        equibiaxial   (s, s, J/s^2)        planar   (s, 1, J/s)
 
-one unknown v a point remains, and the Kirchhoff stress of the free side, tau = l3 P33, must vanish. In v it
-is nearly a straight line of slope K, so that Newton's method from v = 0 takes three or four steps. Where a
-law has no such state (St Venant-Kirchhoff in tension), the stress is NaN.
+one unknown v per point remains, and the Kirchhoff stress of the free side, tau = l3 P33, must vanish. It is
+nearly linear in v with slope K, so that Newton's method from v = 0 takes three or four steps. If a law has no
+such state (St Venant-Kirchhoff in tension), the stress is NaN.
 """
 
 from __future__ import annotations
@@ -27,27 +27,41 @@ DRIVEN = {"uniaxial": (1.0, -0.5, -0.5), "equibiaxial": (1.0, 1.0, -2.0), "plana
 _FREE = {"uniaxial": (0.0, 0.5, 0.5), "equibiaxial": (0.0, 0.0, 1.0), "planar": (0.0, 0.0, 1.0)}
 MODES: tuple[CouponMode, ...] = ("uniaxial", "equibiaxial", "planar", "simple-shear")
 
-# v is sought within these: beyond, sides of no thickness look free of stress
+# search interval of v: beyond it, sides of vanishing thickness seem traction-free
 _LOW, _HIGH, _EDGE = -6.0, 5.0, 0.05
-_LONGEST = 0.5  # step in v
-_TOLERANCE = 1e-11  # of tau, relative to G and to the stresses in the other directions
-_ROUNDING = 5e-15  # of K: ln J is not known better
+_LONGEST = 0.5  # largest step in v
+_TOLERANCE = 1e-11  # of tau, relative to G plus the largest stress in the other directions
+_ROUNDING = 5e-15  # of tau, relative to K: rounding error of ln J
 _ITERATIONS = 60
 
 
 def nominal_stress(material: Material, mode: CouponMode, stretch: ArrayLike) -> Array:
     """Force on the pulled (sheared) face over its rest area [Pa], shape of `stretch`.
 
-    stretch: of the driven direction, above 0; simple-shear: 1 + gamma, any. As in `tisim.Coupon`, but each
-    point is solved from rest volume on its own. NaN where the law has no state with free sides.
-    ValueError, in one sentence: unknown mode, a stretch that is not finite and positive, unsound material.
+    As `tisim.Coupon`, but each point is solved independently, from the rest volume.
+
+    Parameters
+    ----------
+    material : material; its parts are ignored.
+    mode : mode of loading.
+    stretch : stretch in the driven direction, above 0; in simple-shear 1 + gamma, any finite value.
+
+    Returns
+    -------
+    ndarray
+        NaN where the law has no state with traction-free sides.
+
+    Raises
+    ------
+    ValueError
+        In one sentence: unknown mode, a stretch that is not finite and positive, or an invalid material.
     """
     (found,) = nominal_stresses(material, [(mode, stretch)])
     return found
 
 
 def nominal_stresses(material: Material, curves: Sequence[tuple[CouponMode, ArrayLike]]) -> list[Array]:
-    """`nominal_stress` of several curves, (mode, stretch) each, at little more than the cost of one."""
+    """`nominal_stress` of several curves (mode, stretch), at little more than the cost of one."""
     stretches = [np.asarray(stretch, dtype=np.float64) for _, stretch in curves]
     for (mode, _), stretch in zip(curves, stretches, strict=True):
         _check(mode, stretch)
@@ -83,7 +97,7 @@ def _sheared(material: Material, stretch: Array) -> Array:
 
 
 def _pulled(material: Material, driven: Array, free: Array) -> Array:
-    """Nominal stress along axis 1 at log stretches driven + v free, v solved; driven, free: (n, 3)."""
+    """Nominal stress along axis 1 at log stretches driven + v free, solved for v; driven, free : (n, 3)."""
     n = len(driven)
     moduli = laws.get(material.law).moduli(material.parameters)
     v, low, high = np.zeros(n), np.full(n, _LOW), np.full(n, _HIGH)
@@ -94,14 +108,14 @@ def _pulled(material: Material, driven: Array, free: Array) -> Array:
         size = moduli.shear_modulus + np.abs(l[:, :2] * P[:, :2]).max(axis=1)
         done = np.abs(tau) <= _TOLERANCE * size + _ROUNDING * moduli.bulk_modulus
         stress[open_[done]] = P[done, 0]
-        # stresses that overflowed cannot be mended
+        # points whose stress overflowed are given up
         go_on = ~done & np.isfinite(tau)
         slope = l[:, 2] * (np.einsum("nk,nk,nk->n", A[:, 2], l, free[open_]) + P[:, 2] * free[open_, 2])
         open_, tau, slope = open_[go_on], tau[go_on], slope[go_on]
         high[open_] = np.where(tau > 0.0, v[open_], high[open_])
         low[open_] = np.where(tau > 0.0, low[open_], v[open_])
         v[open_] = _next(v[open_], tau, slope, low[open_], high[open_])
-        # a bracket closed on a bound holds no root
+        # a bracket that has closed on a bound contains no root
         open_ = open_[(high[open_] > _LOW + _EDGE) & (low[open_] < _HIGH - _EDGE)]
         if not open_.size:
             break
@@ -109,7 +123,7 @@ def _pulled(material: Material, driven: Array, free: Array) -> Array:
 
 
 def _next(v: Array, tau: Array, slope: Array, low: Array, high: Array) -> Array:
-    """Newton's step, cut to _LONGEST; halfway between the bounds where it leaves them or points uphill."""
+    """Newton step limited to _LONGEST; bisection if it leaves the bracket or the slope is not positive."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         step = -tau / slope
     aim = v + np.clip(np.nan_to_num(step), -_LONGEST, _LONGEST)

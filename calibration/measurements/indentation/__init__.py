@@ -1,4 +1,4 @@
-"""Indentation: force against depth of an indenter in a block, as a model of fits and diagnoses."""
+"""Indentation tests: force against depth of an indenter in a block; a model for fits and diagnoses."""
 
 from calibration.measurements.indentation._noise import TOGETHER, scatter, wandering_modes
 from calibration.measurements.indentation._scene import approach, block_names, poke_scene

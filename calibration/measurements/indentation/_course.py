@@ -1,4 +1,4 @@
-"""The course of an indentation as it was measured: depth against time, from rest on."""
+"""Loading history of an indentation as measured: depth against time, from rest."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from calibration.parameters import ProtocolWindow
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-STILL = 0.01  # fraction of the record's range within which a hold stays
-NOISE = 6.0  # standard deviations of the depth that are no motion
-BEGINNING = 4  # rows by which the speed of a first loading is known
-DIFFERENT = 1.1  # ratio of largest depths that count as two
+STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
+NOISE = 6.0  # tolerance of a hold, in standard deviations of the depth
+BEGINNING = 4  # number of rows from which the speed of the first loading is estimated
+DIFFERENT = 1.1  # ratio of peak depths from which two peaks count as different
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Course:
-    """What drives a record, in straight lines from rest on: its points, and the corners between phases.
+    """Loading history of a record, piecewise linear from rest: its points, and the corners between phases.
 
     Attributes
     ----------
     time : [s], shape (f,).
-    depth : from first touch [m], shape (f,).
-    at : where the record's points are among them, shape (k,).
+    depth : depth from first touch [m], shape (f,).
+    at : indices of the record's points among them, shape (k,).
     """
 
     time: Array
@@ -39,28 +39,29 @@ class Course:
     at: Rows
 
     def only(self, kept: NDArray[np.bool_]) -> Course:
-        """Some of its points; what drove the material stays."""
+        """Course with a subset of the points (mask); the loading history stays."""
         return replace(self, at=self.at[kept])
 
     def moved(self, shift: Array | float) -> Array:
-        """Depths (f,) with the points shifted [m], shape (k,) or one number."""
+        """Depths (f,) [m], shifted at the points; shift : [m], shape (k,) or one number."""
         own = np.broadcast_to(np.asarray(shift, dtype=float), self.at.shape)
         return np.asarray(self.depth + np.interp(self.time, self.time[self.at], own))
 
 
 def course_of(time: Array, depth: Array, phases: Sequence[Phase], points: Array, depths: Array) -> Course:
-    """Of the rows of a record.
+    """Loading history from the rows of a record.
 
     Parameters
     ----------
-    time, depth : of the rows, shape (t,).
+    time, depth : time [s] and depth [m] of the rows, shape (t,).
+    phases : phases of the record, whose first rows are corners.
     points, depths : times and depths of the points, means of neighbouring rows, shape (k,).
     """
     corners = np.unique([0, *(p.points.start for p in phases), time.size - 1])
     lead = _lead(time, depth, phases[0])
     every = np.concatenate([lead, time[corners], points])
     driven = np.concatenate([np.zeros(lead.size), depth[corners], depths])
-    # a corner comes before a point at its time, which then adds nothing
+    # a corner comes before a point at the same time, so that the point adds no step
     order = np.argsort(every, kind="stable")
     place = np.empty(order.size, dtype=np.intp)
     place[order] = np.arange(order.size)
@@ -68,19 +69,21 @@ def course_of(time: Array, depth: Array, phases: Sequence[Phase], points: Array,
 
 
 def _lead(time: Array, depth: Array, first: Phase) -> Array:
-    """When the indenter touched [s], shape (1,), where the record begins below the surface; none else."""
+    """Time of first touch [s], shape (1,), if the record begins below the surface; else empty."""
     if depth[0] <= 0.0:
         return np.zeros(0)
     last = min(BEGINNING, first.points.stop, depth.size - 1)
     made = depth[last] - depth[0]
     if made <= 0.0:
-        return time[:1]  # it was there at once
+        return time[:1]  # applied as a jump
     return np.array([time[0] - (time[last] - time[0]) * depth[0] / made])
 
 
 def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
-    """Phases with the holds that they contain as phases of their own: after a ramp of a few rows a hold is
-    most of a stroke, and counts as a part of it where time does not count."""
+    """Phases with their holds as separate phases.
+
+    After a ramp of a few rows a hold is most of a stroke; without time dependence it is part of the stroke.
+    """
     depth = trial.record.depth
     rests = holds(trial.record.time, depth, max(STILL * float(np.ptp(depth)), NOISE * trial.depth_sd))
     found = []
@@ -97,7 +100,7 @@ def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
 
 
 def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
-    """As `bins`; those of a hold grow with the time since it began."""
+    """Bins as by `bins`; in a hold their width grows with its time."""
     size = phase.points.stop - phase.points.start
     if phase.direction != 0.0 or size <= most:
         return bins(phase.points, most)
@@ -108,7 +111,7 @@ def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
 
 
 def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
-    """Between which times the ramps and holds of indentations show relaxation."""
+    """Range of times of ramps and holds, and number of different peak depths, of indentations."""
     ramps, waits, lengths, peaks = [], [], [], []
     for trial in trials:
         time, phases = trial.record.time, with_holds(trial, phases_of(trial))

@@ -1,7 +1,7 @@
 """Force over shear modulus against depth of a simulated indentation, from two meshes, with changes.
 
-Forces are those of a finer mesh as deep as it is followed; a coarser one continues them in proportion. A
-change (an effect of the scene) counts by the ratio that it makes on one mesh.
+Forces are those of the finer mesh up to its largest depth, continued by those of the coarser mesh in
+proportion. A change (an effect of the scene) is a ratio of forces on one mesh.
 """
 
 from __future__ import annotations
@@ -18,36 +18,38 @@ from tisim import Mesh, Poke, Result
 
 Array = NDArray[np.float64]
 
-# Powers of the depth that the force begins with: Hertz's under a round tip; under a flat one with a round
-# edge, around which the surface wraps, the one of an axisymmetric reference between 0.03 and 0.2 radii.
+# Exponents of the depth at small depth: Hertz's for a hemisphere; for a flat indenter with a round edge, that
+# of an axisymmetric reference between 0.03 and 0.2 radii.
 ROUND, FLAT = 1.5, 1.08
-LEAST = 3  # frames that a curve needs
+LEAST = 3  # least number of frames of a curve
 # Refinements of the two meshes.
 COARSE, FINE = 0.7, 1.0
-# Width of contact over indenter radius over which a change is taken to be smooth, at refinement 1: about a
-# quarter of a period of the waves that the force has as cells come to touch (0.2 under a ball, 0.4 under a
-# flat indenter).
+# Bandwidth, in contact width over indenter radius, of the smoothing of a change at refinement 1: about a
+# quarter of the period of the oscillations of the force as cells come into contact (0.2 under a hemisphere,
+# 0.4 under a flat indenter).
 SMOOTH = 0.08
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Curve:
-    """A simulated indentation.
+    """Force-depth curve of a simulated indentation.
 
-    The force is zero at or above the surface, and continues in a straight line beyond `reached`.
+    The force is zero at and above the surface. Beyond `reached` its root of power ROUND or FLAT is
+    extrapolated linearly, and so are the forces across.
 
     Attributes
     ----------
-    depth : of the frames [m], shape (f,).
+    depth : depth of the frames [m], shape (f,).
     along : force along the indenter over the shear modulus [m2], shape (f,).
     across : force across it over the shear modulus [m2], shape (f, 2).
-    reached : deepest simulated depth [m].
-    finer : depth to which the finer mesh was followed [m].
-    round_tip : the indenter is a hemisphere.
-    status : of the simulation.
-    mesh : of the simulation.
-    retraction_loss : shape (n, 2): depth over the deepest, from small to 1, and the fraction of the loading
-        force that is missing there in retraction.
+    reached : largest simulated depth [m].
+    finer : largest depth of the finer mesh [m].
+    round_tip : True for a hemisphere.
+    status : status of the simulation.
+    core_seconds : cost of the simulation [core s].
+    mesh : mesh of the simulation.
+    retraction_loss : depth over the largest depth, increasing to 1, and the fraction of the loading force
+        that is lost at this depth in retraction, shape (n, 2).
     """
 
     depth: Array
@@ -62,23 +64,25 @@ class Curve:
     retraction_loss: Array = field(default_factory=lambda: np.array([[0.0, 0.0], [1.0, 0.0]]))
 
     def at(self, depth: Array) -> Array:
-        """Along the indenter in loading (k,)."""
+        """Force along the indenter in loading [m2], shape (k,)."""
         power = ROUND if self.round_tip else FLAT
         root = _interpolated(self.depth, np.maximum(self.along, 0.0) ** (1.0 / power), depth)
         return np.asarray(np.maximum(root, 0.0) ** power)
 
     def retracting(self, depth: Array, deepest: Array) -> Array:
-        """Along the indenter in retraction from a depth (k,): the same fraction of the force is missing at
-        the same fraction of the depth, however deep the indenter went."""
+        """Force along the indenter in retraction from `deepest` [m2], shape (k,).
+
+        The lost fraction of the force depends on the fraction of the largest depth only.
+        """
         fraction = np.clip(depth / np.maximum(deepest, 1e-9), 0.0, 1.0)
         return np.asarray(self.at(depth) * (1.0 - np.interp(fraction, *self.retraction_loss.T)))
 
     def slope(self, depth: Array, over: float = 1e-6) -> Array:
-        """[m] (k,): chord over a depth to either side, so that points close to first touch feel it."""
+        """Central difference quotient of `at` over +-`over` [m], shape (k,); nonzero near first touch."""
         return np.asarray((self.at(depth + over) - self.at(depth - over)) / (2.0 * over))
 
     def sides(self, depth: Array) -> Array:
-        """Across the indenter (k, 2)."""
+        """Force across the indenter [m2], shape (k, 2)."""
         parts = [_interpolated(self.depth, side, depth) for side in self.across.T]
         return np.column_stack(parts)
 
@@ -92,12 +96,12 @@ def _interpolated(depth: Array, values: Array, at: Array) -> Array:
 
 
 def curve_of(result: Result, geometry: Geometry) -> Curve:
-    """The curve of a simulated scene of a geometry."""
+    """Curve of a simulated scene of a geometry."""
     scene = result.scene
     assert isinstance(scene, Poke)
     push = np.asarray(scene.direction, dtype=float)
     own = push / np.linalg.norm(push)  # the load cell sits on the indenter, and tilts with it
-    assert result.rod_force is not None  # every poke has one
+    assert result.rod_force is not None  # every indentation has one
     along = -(result.rod_force @ own) / SHEAR
     loading = int(np.argmax(result.load)) + 1 if len(result.load) else 0
     reached = float(result.load[loading - 1]) if loading else 0.0
@@ -121,11 +125,11 @@ def curve_of(result: Result, geometry: Geometry) -> Curve:
 
 
 def deepened(fine: Curve, coarse: Curve) -> Curve:
-    """The finer mesh's forces, continued below by the coarser mesh's in the ratio of both at its end."""
+    """Forces of the finer mesh, continued by those of the coarser mesh times their ratio at its end."""
     below = coarse.depth > fine.reached
     end = np.array([fine.reached])
     ratio = float((fine.at(end) / coarse.at(end))[0])
-    # forces across the indenter start from zero where nothing tilts: their error is no ratio
+    # forces across the indenter can be zero: their difference is additive, not a ratio
     aside = fine.sides(end)[0] - ratio * coarse.sides(end)[0]
     return replace(
         coarse,
@@ -137,16 +141,17 @@ def deepened(fine: Curve, coarse: Curve) -> Curve:
 
 
 def changed(base: Curve, pairs: Sequence[tuple[Curve, Curve, float]], radius: float) -> Curve:
-    """A curve with a change that was simulated on one mesh, or on several.
+    """Curve with a change that was simulated on one mesh or several.
 
-    The ratio with and without the change is smoothed in the width of contact: cells that come to touch at
-    other depths with the change than without it are no part of it.
+    The ratio of forces with and without the change is smoothed over the contact width, since cells come into
+    contact at different depths in the two simulations.
 
     Parameters
     ----------
-    pairs : with the change, without it, and the refinement of their mesh; the finest first, each used below
-        the end of those before.
-    radius : of the indenter [m].
+    base : curve without the change.
+    pairs : curves with and without the change, and the refinement of their mesh; the finest first, each used
+        beyond the largest depth of those before.
+    radius : radius of the indenter [m].
     """
     depth, ratio, aside = np.zeros(0), np.zeros(0), np.zeros((0, 2))
     for with_it, plain, refinement in pairs:
@@ -170,7 +175,7 @@ def changed(base: Curve, pairs: Sequence[tuple[Curve, Curve, float]], radius: fl
 
 
 def smoothed(x: Array, values: Array, width: float) -> Array:
-    """Values at x (k,) by local lines, weighted by a Gaussian of sd `width`."""
+    """Smooth values at x (k,) by local linear regression with Gaussian weights of sd `width`."""
     found = np.empty(x.size)
     for k in range(x.size):
         apart = x - x[k]

@@ -1,7 +1,7 @@
-"""Simulated indentations, one a geometry and change, on two meshes.
+"""Cache of simulated indentations, one per geometry and change, on two meshes.
 
-The material is neo-Hookean without gravity at a held K/G, so that the force is exactly proportional to its
-shear modulus: one curve serves all moduli. Curves stay in memory for as long as the process runs.
+The material is neo-Hookean without gravity at a fixed K/G, so that the force is exactly proportional to its
+shear modulus: one curve is valid for all moduli. Curves stay in memory for the lifetime of the process.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ from tisim import Mesh, Poke, simulate
 
 Array = NDArray[np.float64]
 
-BEYOND = 0.3e-3  # simulated further than the record's depth [m]
-STEP = 0.5e-3  # depths are rounded up to this [m], so that more indentations share a simulation
-TURN = 0.1e-3  # likewise, depths from which an indenter is retracted
-HIGHEST = 0.05  # fraction of its depth to which it is retracted
-# How deep the finer mesh is followed, in radii of the indenter. On flat indenters of 2.5 to 4 mm and a ball
-# the coarser one is 1 to 3 % off, in waves as cells come to touch, the finer 0.5 %.
+BEYOND = 0.3e-3  # margin of the simulated depth over the record's [m]
+STEP = 0.5e-3  # depths are rounded up to multiples of this [m], so that more indentations share a simulation
+TURN = 0.1e-3  # the same for depths from which an indenter is retracted
+HIGHEST = 0.05  # end of the retraction, as a fraction of the depth
+# Largest depth on the finer mesh, in radii of the indenter. For flat indenters of 2.5 to 4 mm and a
+# hemisphere the error of the coarser mesh is 1 to 3 %, oscillating as cells come into contact, that of the
+# finer 0.5 %.
 FINER_TO = 1.5
 
 Change = Callable[[Poke, Mesh | None], Poke]
@@ -40,16 +41,17 @@ Change = Callable[[Poke, Mesh | None], Poke]
 
 @dataclass(frozen=True, kw_only=True)
 class CurveRequest:
-    """A curve to at least a depth.
+    """Request for a curve up to at least a depth.
 
     Attributes
     ----------
-    depth : [m].
-    name : of a change of the scene; "" for none.
-    change : the scene with the change. It gets the unchanged scene and its mesh, so that no remeshing hides a
-        small change.
-    finer : the change is simulated on the finer mesh too.
-    retracts : the indenter is retracted from that depth.
+    geometry : geometry of the indentation.
+    depth : least depth [m].
+    name : name of a change of the scene; "" for none.
+    change : function from the unchanged scene and its mesh to the scene with the change; the mesh is reused
+        so that remeshing does not mask a small change.
+    finer : True if the change is simulated on the finer mesh too.
+    retracts : True if the indenter is retracted from that depth.
     """
 
     geometry: Geometry
@@ -60,7 +62,7 @@ class CurveRequest:
     retracts: bool = False
 
     def unchanged(self) -> CurveRequest:
-        """The same without the change."""
+        """Request without the change and the retraction."""
         return replace(self, name="", change=None, retracts=False)
 
 
@@ -68,17 +70,16 @@ _KNOWN: dict[tuple[Geometry, str, float], Curve] = {}
 
 
 class CurveCache:
-    """Curves of this process; simulates those that are requested and not known yet.
+    """Cache of curves, shared by the process; simulates requested curves that are missing.
 
-    Curves without a change are those of the finer mesh, since a record's misfit is compared with the mesh
-    error. Changes are simulated on the coarser one and count in proportion, unless they are requested on the
-    finer one.
+    Curves without a change use the finer mesh, since a record's misfit is compared with the mesh error.
+    Changes are simulated on the coarser mesh and applied in proportion, unless requested on the finer mesh.
 
     Attributes
     ----------
-    workers : processes, as in `tisim.simulate`.
-    simulated : number of simulations.
-    core_seconds : of these.
+    workers : number of processes, as in `tisim.simulate`.
+    simulated : number of simulations by this object.
+    core_seconds : cost of these simulations [core s].
     """
 
     def __init__(self, workers: int | None = None) -> None:
@@ -87,12 +88,14 @@ class CurveCache:
         self.core_seconds = 0.0
 
     def fetch(self, requests: Sequence[CurveRequest]) -> list[Curve]:
-        """Their curves.
+        """Curves of these requests, in their order.
 
         Raises
         ------
-        InputError : a scene cannot be set up.
-        ValueError : a simulation has no equilibrium at all.
+        InputError
+            If a scene cannot be set up.
+        ValueError
+            If a simulation on the coarser mesh finds fewer than LEAST equilibria.
         """
         bases = [r.unchanged() for r in requests]
         finer = [r for r in requests if r.finer]
@@ -149,7 +152,7 @@ class CurveCache:
         except ValueError as error:
             raise InputError(f"indentation: {error}") from error
         for key, result in zip(missing, results, strict=True):
-            # a finer mesh without an answer is no obstacle: the coarser one remains
+            # a finer mesh without a solution is replaced by the coarser one
             if refinement == COARSE and len(result.load) < LEAST:
                 raise ValueError(f"an indentation at {key[0].site} has no equilibrium ({result.message})")
             _KNOWN[key] = curve_of(result, key[0])
@@ -159,7 +162,7 @@ class CurveCache:
 
 def _scene(r: CurveRequest, depth: float, refinement: float) -> Poke:
     highest = 0.9 * r.geometry.block.size[2] / abs(float(r.geometry.axis[2]))
-    # the loss in retraction goes with the depth that the indenter turns at
+    # the loss in retraction depends on the depth of reversal
     to = TURN * np.ceil(depth / TURN) if r.retracts else STEP * np.ceil((depth + BEYOND) / STEP)
     to = min(float(to), highest)
     scene = r.geometry.scene(to, refinement=refinement)
@@ -171,6 +174,8 @@ def _scene(r: CurveRequest, depth: float, refinement: float) -> Poke:
 
 
 def finer_to(geometry: Geometry) -> float:
-    """Depth to which an indentation is simulated on the finer mesh [m]: further down more cells touch, and
-    each new one matters less."""
+    """Largest depth of simulations on the finer mesh [m].
+
+    At larger depth more cells are in contact, and each new one has a smaller effect.
+    """
     return FINER_TO * geometry.rod.radius

@@ -1,4 +1,4 @@
-"""What a lack of fit of indentations might look like: smooth in depth or time, shared in several ways."""
+"""Discrepancy basis of indentations: smooth functions of depth or time, shared in several ways."""
 
 from __future__ import annotations
 
@@ -12,16 +12,19 @@ from calibration.measurements.indentation._record import Record
 
 Array = NDArray[np.float64]
 
-BEND = 4  # highest degree
+BEND = 4  # highest polynomial degree
 
 
 def discrepancies(records: Sequence[Record], forces: Sequence[Array]) -> Mapping[str, Array]:
-    """Sets of columns (points of all records, k) [N], in proportion to the simulated force of each
-    record; the noise of measured forces would be fitted again.
+    """Sets of columns (points of all records, k) [N].
 
-    trial bends : of each trial, degrees up to BEND in the depth. phase bends : the same of each phase, in
-    a hold in time. drifts : of each trial in time. shared bends : as trial bends, common to all trials of
-    a specimen.
+    They scale with the simulated forces (k,) of each record, not with measured ones, whose noise would be
+    fitted again.
+
+    trial bends : for each trial, Legendre polynomials of degree 0 to BEND in the depth.
+    phase bends : for each phase of a trial of several, degrees below BEND in the depth, or in time in a hold.
+    drifts : for each trial, polynomials in time.
+    shared bends : as trial bends, common to all trials of a specimen.
     """
     columns = Columns([r.points for r in records])
     for k, r in enumerate(records):

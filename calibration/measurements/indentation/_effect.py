@@ -1,4 +1,4 @@
-"""How an effect enters indentation: the simulated scene, the depth, or the record's force."""
+"""Effects in indentation tests: they change the simulated scene, the depth, or the record's force."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ Force = Callable[[Array, float, Record, float | None], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class IndentationEffect(EffectModel):
-    """One of `scene`, `shift` and `force`; hooks take the amplitude and the variant.
+    """An effect in indentation tests; it has one of `scene`, `shift` and `force`.
 
     Attributes
     ----------
-    scene : the simulated scene with the effect.
-    nodes : amplitudes at which the scene is simulated, 0 among them; parabolas between.
-    straight : lines between the nodes.
-    chord : the node towards which the first column is taken.
-    chords : variants are no forms of the effect but nodes that the first column may be taken towards, where
-        these differ.
-    fits : whether a scene can be so simulated.
-    finer : it is simulated on the finer mesh, since it changes where cells come to touch.
-    retracts : the indenter's retraction is simulated, since the force there differs from loading.
-    shift : of the depth [m].
-    force : the force of a record [N] (k,) with the effect; applied in the order of `stage`.
+    scene : function of (scene, mesh, amplitude, variant) to the simulated scene with the effect.
+    nodes : amplitudes at which the scene is simulated, including 0, with parabolic interpolation between.
+    straight : True for linear interpolation between the nodes.
+    chord : node to which the finite difference at amplitude 0 goes.
+    chords : True if the variants are alternative nodes for that difference, not forms of the effect.
+    fits : function that is True for a scene that can be simulated.
+    finer : True if it is simulated on the finer mesh, since it changes where cells come into contact.
+    retracts : True if the retraction of the indenter is simulated, since its force differs from loading.
+    shift : function of (amplitude, record) to a shift of the depth [m].
+    force : function of (force [N] (k,), amplitude, record, variant) to the force with the effect.
+    stage : order in which forces are applied, ascending.
     """
 
     scene: Scene | None = None

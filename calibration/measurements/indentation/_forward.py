@@ -1,8 +1,8 @@
 """Simulated forces of records at their depths, with effects.
 
 An effect of the scene is simulated at a few amplitudes, its nodes, and interpolated between them. Without an
-effect of history the force in unloading is that of loading at the same depth, as long as nothing slides under
-the indenter (a friction of 0.6: to 0.01 % in an independent simulation that unloads).
+effect of history the force in unloading equals that in loading at the same depth, if there is no sliding
+under the indenter (for a friction of 0.6: within 0.01 % in an independent simulation with unloading).
 """
 
 from __future__ import annotations
@@ -24,18 +24,24 @@ Array = NDArray[np.float64]
 # Amplitudes of the effects in a record [SI], by name, position (None here) and variant.
 Acting = Mapping[tuple[str, float | None, float | None], float]
 
-LEAST = 5  # points of a record that must be reached
+LEAST = 5  # least number of points of a record within the simulated depth
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ForwardMap:
-    """Forces of records. curves : shared by all records. effects : by name."""
+    """Forces of records.
+
+    Attributes
+    ----------
+    curves : cache of curves, shared by all records.
+    effects : effects by name.
+    """
 
     curves: CurveCache
     effects: Mapping[str, IndentationEffect]
 
     def base(self, record: Record) -> Curve:
-        """The curve of a record without effects."""
+        """Curve of a record without effects."""
         return self.curves.fetch([CurveRequest(geometry=record.geometry, depth=record.deepest)])[0]
 
     def along(
@@ -50,8 +56,11 @@ class ForwardMap:
 
         Parameters
         ----------
-        curve : of the record's material without effects.
-        spectrum : by which that relaxes; the shear modulus is the one that it is stated by.
+        record : the record.
+        curve : curve of the record's material without effects.
+        shear_modulus : shear modulus [Pa]; with a spectrum, the one to which its fractions refer.
+        acting : effects in the record.
+        spectrum : relaxation spectrum of the material; None if it is elastic.
         """
         shift = np.zeros(record.points)
         for (name, _, _), a in acting.items():
@@ -86,8 +95,10 @@ class ForwardMap:
         acting: Acting,
         spectrum: Spectrum | None = None,
     ) -> Array:
-        """Force across the indenter [N], shape (k, 2): with effects of the scene only, since faults of the
-        load cell are modelled along the indenter. Parameters as in `along`."""
+        """Force across the indenter [N], shape (k, 2), with effects of the scene only.
+
+        Effects of the load cell and of the depth are modelled along the indenter. Parameters as in `along`.
+        """
 
         def elastic(depth: Array, loading: NDArray[np.bool_]) -> Array:
             unit = curve.sides(depth)
@@ -102,7 +113,7 @@ class ForwardMap:
         return shear_modulus * remembered(record, spectrum, elastic, np.zeros(record.points))
 
     def prepare(self, needed: Sequence[tuple[Record, Acting]]) -> None:
-        """Simulate together what these records need with these effects."""
+        """Simulate, in one batch, the curves that these records need for these effects."""
         requests = []
         for record, acting in needed:
             for (name, _, variant), a in acting.items():
@@ -126,8 +137,10 @@ class ForwardMap:
         loading: NDArray[np.bool_],
         across: bool,
     ) -> Array:
-        """Change of the force over the shear modulus by an effect of the scene at depths (k,), in loading or
-        not [m2], shape (k,) or (k, 2)."""
+        """Change of the force over the shear modulus by an effect of the scene [m2], shape (k,) or (k, 2).
+
+        depth : [m], shape (k,). loading : True for points in loading, shape (k,).
+        """
         base = self.base(record)
         found = np.zeros((depth.size, 2) if across else depth.size)
         effect = self.effects[name]
@@ -165,17 +178,19 @@ def remembered(
     elastic: Callable[[Array, NDArray[np.bool_]], Array],
     shift: Array,
 ) -> Array:
-    """Force over the shear modulus [m2] of a material that relaxes, along a record's course; shape (k,) or
-    (k, 2).
+    """Force over the shear modulus of a viscoelastic material along a record's course [m2], (k,) or (k, 2).
 
     Parameters
     ----------
-    elastic : the same of one that does not, at depths (m,), in loading or not.
-    shift : of the depths of its points [m], shape (k,).
+    record : record with a course.
+    spectrum : relaxation spectrum.
+    elastic : function of depths (m,) and a mask of loading to the elastic force over the modulus.
+    shift : shift of the depths of the record's points [m], shape (k,).
 
     Raises
     ------
-    ValueError : the record was made without its course.
+    ValueError
+        If the record has no course.
     """
     if record.course is None:
         raise ValueError(f"record {record.name}: expected its course, for a material that remembers")
@@ -187,7 +202,7 @@ def remembered(
 
 
 def at_depths(record: Record, shear_modulus: float, elastic: Callable[[Array], Array]) -> Array:
-    """Forces [N] at a record's depths, from elastic ones over the modulus against depth."""
+    """Elastic forces [N] at a record's depths; elastic : function from depths to force over the modulus."""
     return shear_modulus * elastic(record.depth)
 
 
@@ -199,21 +214,24 @@ def along_course(
     *,
     shift: float = 0.0,
 ) -> Array:
-    """The same of a material that relaxes, all depths moved by a shift [m]."""
+    """Viscoelastic forces [N] at a record's points, with all depths shifted by `shift` [m]."""
     moved = np.full(record.points, shift)
     return shear_modulus * remembered(record, spectrum, lambda depth, _: elastic(depth), moved)
 
 
 def reached(curves: CurveCache, records: Sequence[Record]) -> tuple[list[Record], tuple[str, ...]]:
-    """Simulate each geometry; leave out points deeper than its simulation reached.
+    """Simulate each geometry; cut each record before its first point beyond the simulated depth.
 
     Returns
     -------
-    The records, and a sentence for each that was shortened.
+    records : list of Record
+    sentences : tuple of str
+        One for each record that was cut.
 
     Raises
     ------
-    ValueError : hardly any point of a record is left.
+    ValueError
+        If fewer than LEAST points of a record remain.
     """
     requests = [CurveRequest(geometry=r.geometry, depth=r.deepest) for r in records]
     sentences, shortened = [], []
@@ -233,13 +251,15 @@ def reached(curves: CurveCache, records: Sequence[Record]) -> tuple[list[Record]
 
 
 def difference_step(effect: IndentationEffect, chord: float | None, now: float, record: Record) -> float:
-    """Step of a finite difference of an effect of the scene.
+    """Finite-difference step of an effect of the scene.
 
     Parameters
     ----------
-    chord : node that the first difference goes to.
-    now : amplitude; from zero the step goes all the way to the chord, else it stays between two nodes.
-    record : of which the nodes are.
+    effect : the effect.
+    chord : node to which the difference at amplitude 0 goes; if the record lacks it, the smallest node.
+    now : amplitude. If it is not zero the step is `effect.step` away from zero, or towards zero at the last
+        node.
+    record : record that defines the nodes.
     """
     if now == 0.0:
         nodes = nodes_of(record, effect)
@@ -251,7 +271,7 @@ def difference_step(effect: IndentationEffect, chord: float | None, now: float, 
 
 
 def nodes_of(record: Record, effect: IndentationEffect) -> tuple[float, ...]:
-    """Amplitudes at which a record's scene can be simulated with an effect, 0 among them."""
+    """Amplitudes at which a record's scene can be simulated with an effect, including 0."""
     scene = record.geometry.scene(1e-3)
     assert effect.scene is not None
     make, variants = effect.scene, effect.variants([record])
@@ -259,10 +279,10 @@ def nodes_of(record: Record, effect: IndentationEffect) -> tuple[float, ...]:
 
 
 def node_weights(nodes: Sequence[float], a: float, *, straight: bool) -> list[tuple[float, float]]:
-    """Nodes with the weights that interpolate at an amplitude.
+    """Nodes and weights of the interpolation at an amplitude.
 
-    Weights are those of the two parabolas through both neighbours and the next node on either side, of which
-    the nearer side counts more, or of a line (`straight`); a line continues beyond the last node.
+    The interpolant blends two parabolas, each through both neighbours and the next node on one side; the
+    nearer side has the larger weight. It is linear if `straight`, and beyond the last node.
     """
     ordered = sorted(nodes)
     if len(ordered) == 1:
@@ -273,7 +293,7 @@ def node_weights(nodes: Sequence[float], a: float, *, straight: bool) -> list[tu
     weights = {low: 1.0 - t, high: t}
     if straight or not 0.0 < t < 1.0:
         return list(weights.items())
-    # what a parabola adds to the line, for a node further on: zero at both neighbours
+    # difference of a parabola and the line, in terms of the further node: zero at both neighbours
     sides = [(n, w) for n, w in ((k - 2, 1.0 - t), (k + 1, t)) if 0 <= n < len(ordered)]
     whole = sum(w for _, w in sides)
     for n, w in sides:

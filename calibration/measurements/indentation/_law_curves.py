@@ -1,13 +1,13 @@
-"""Curves of a law: force over shear modulus at any of its materials, from simulations near one of them.
+"""Force-depth curves of a law for any of its parameters, from simulations near one of them.
 
-The force is exactly proportional to the shear modulus (quasi-static, without gravity) and smooth in the rest
-of the law, its shape x; to first order about a shape x0 that is simulated,
+The force is exactly proportional to the shear modulus (quasi-static, without gravity) and smooth in the other
+parameters of the law, its shape x. To first order about a simulated shape x0,
 
     F(depth) = G f(depth) exp(sum_i dlnF/dx_i (x_i - x0_i)).
 
-Shape coordinates are the law's search coordinates but the overall modulus, each as the force is most nearly
-log-linear in it: G/K in place of K/G (the force of a near-incompressible block falls linearly in G/K), and of
-several shear moduli the logarithms relative to the first.
+The shape coordinates are the law's search coordinates without the overall modulus, transformed so that the
+force is nearly log-linear in them: G/K in place of K/G (the force of a nearly incompressible block decreases
+linearly in G/K), and the logarithms of several shear moduli relative to the first.
 """
 
 from __future__ import annotations
@@ -27,24 +27,25 @@ from tisim import Material
 
 Array = NDArray[np.float64]
 
-# Curves are taken again where the shape has changed some force by more than this, relative: what is left out,
-# of second order in it, is then far below the mesh's error.
+# Curves are simulated again if a change of shape changes some force by more than this, relative: the error of
+# second order is then far below the mesh error.
 NEAR = 2e-3
-# Step in G/K for a derivative: at least this, a few per cent of force, far above the solver's tolerance.
+# Least step in G/K for a derivative: a few per cent of the force, far above the solver's tolerance.
 COMPLIANCE_STEP = 0.02
-STEP = 0.5  # in other coordinates, in their spread
+STEP = 0.5  # step in other coordinates, over their spread
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShapeCurve:
-    """A geometry's curve at the shape x0, and how it changes with the shape.
+    """Curve of a geometry at the shape x0, with its derivatives by the shape.
 
     Attributes
     ----------
-    base : at x0.
+    base : curve at x0.
     derivatives : of ln F by the shape coordinates, at the depths of `base`, shape (n, f).
     reached : depth that all of its simulations reached [m].
-    short : what became of a simulation that ended before its depth, as in "(bulk_ratio moved): status"; "".
+    short : status of the simulation that ended first, as in " (bulk_ratio moved): status"; "" if all were
+        complete.
     """
 
     base: Curve
@@ -53,14 +54,14 @@ class ShapeCurve:
     short: str
 
     def at(self, change: Array) -> Curve:
-        """At another shape, x - x0 = change (n,)."""
+        """Curve at another shape, x - x0 = change (n,)."""
         factor = np.exp(change @ self.derivatives)
         return replace(self.base, along=factor * self.base.along, across=factor[:, None] * self.base.across)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Taken:
-    """shape : x0, (n,). steps : of the derivatives, (n,)."""
+    """Simulated curves; shape : x0, (n,). steps : finite-difference steps of the derivatives, (n,)."""
 
     shape: Array
     steps: Array
@@ -72,10 +73,10 @@ class LawCurves:
 
     Parameters
     ----------
-    law : in search coordinates; where it holds K/G, materials have that of a diagnosis. Parts beside it are
-        left out, and their coordinates, which follow its own, do not count.
-    records : whose geometries and depths are simulated.
-    curves : simulates, and remembers.
+    law : the law in search coordinates. If it holds K/G, materials have that of a diagnosis. Its parts and
+        their coordinates, which follow those of the law, are ignored.
+    records : records whose geometries and depths are simulated.
+    curves : cache of simulated curves.
     """
 
     def __init__(self, law: Parametrisation, records: Sequence[Record], curves: CurveCache) -> None:
@@ -94,15 +95,16 @@ class LawCurves:
 
     @property
     def taken(self) -> bool:
-        """True if there are curves yet."""
+        """True if curves were simulated."""
         return self._taken is not None
 
     def take(self, own: Array) -> None:
-        """Simulate at the law's coordinates (n,), unless the shape is near enough to where it was done last.
+        """Simulate at the law's coordinates (n,), unless the shape is close to that of the last simulations.
 
         Raises
         ------
-        ValueError : there is no equilibrium, or the law has no such material. Curves stay as they were.
+        ValueError
+            If there is no equilibrium, or the law has no such material. The curves stay unchanged.
         """
         own = own[: len(self.law.coordinates)]
         shape = self._shape(own)
@@ -122,12 +124,12 @@ class LawCurves:
         self._taken = _Taken(shape=shape, steps=steps, curves=curves)
 
     def curve(self, record: Record, own: Array) -> Curve:
-        """Of a record's geometry at the law's coordinates (n,)."""
+        """Curve of a record's geometry at the law's coordinates (n,)."""
         taken = self._known()
         return taken.curves[record.geometry].at(self._shape(own) - taken.shape)
 
     def of(self, record: Record) -> ShapeCurve:
-        """As taken last."""
+        """Curve of a record's geometry from the last simulations."""
         return self._known().curves[record.geometry]
 
     def _known(self) -> _Taken:
@@ -144,7 +146,7 @@ class LawCurves:
         )
 
     def _shape(self, own: Array) -> Array:
-        """Shape coordinates x (n,)."""
+        """Shape coordinates x (n,) of law coordinates."""
         found = []
         for k in self._free:
             if self.law.coordinates[k].name == "bulk_ratio":
@@ -154,7 +156,7 @@ class LawCurves:
         return np.array(found)
 
     def _moved(self, own: Array, k: int) -> Array:
-        """The law's coordinates with one of them a step further, towards the inside of its range."""
+        """The law's coordinates with coordinate `k` perturbed by a step that stays in its range."""
         c, found = self.law.coordinates[k], own.copy()
         if c.name == "bulk_ratio":
             x = float(np.exp(-own[k]))
@@ -178,7 +180,7 @@ class LawCurves:
         )
 
     def _material(self, own: Array) -> Material:
-        """With the shear modulus of all simulations."""
+        """Material at the law's coordinates, scaled to the shear modulus of all simulations (SHEAR)."""
         found = own.copy()
         for k, c in enumerate(self.law.coordinates):
             if c.name == "bulk_ratio":
@@ -207,8 +209,10 @@ class LawCurves:
 
 
 def nearest_modulus(material: str, records: Sequence[Record], curves: Sequence[Curve]) -> float:
-    """Shear modulus [Pa] whose forces are nearest to those of a material's records; 100 Pa at least. curves :
-    of each record, over the shear modulus."""
+    """Least-squares shear modulus [Pa] of a material's records, at least 100 Pa.
+
+    curves : force over shear modulus of each record.
+    """
     mine = [(r, c.at(r.depth)) for r, c in zip(records, curves, strict=True) if r.material == material]
     top = sum(float(unit @ r.force) for r, unit in mine)
     bottom = sum(float(unit @ unit) for _, unit in mine)

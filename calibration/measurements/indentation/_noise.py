@@ -1,11 +1,10 @@
-"""Noise of indentation: errors of each point, the simulation's mesh error, and first touch.
+"""Noise model of indentation: errors of single points, mesh error of the simulation, error of first touch.
 
-Mesh error as measured on flat and round indenters to 4 mm, K/G 300, against another solver
-(studies/indentation, 2026-11-23): on quadratic hexahedra the force is off by up to 0.7 % at refinement 1 and
-by 1 to 2 % at 0.7, more at depths below 0.4 radii, where few cells touch. It wanders as more cells come to
-touch, thus with the width of the contact, which grows as the square root of radius times depth, up and down
-once a cell; and each geometry has a deviation of its own. All are taken to fall with the square of the cell
-size.
+The mesh error was measured on flat and hemispherical indenters up to 4 mm at K/G 300 against another solver
+(studies/indentation, 2026-11-23): with quadratic hexahedra the force error is up to 0.7 % at refinement 1 and
+1 to 2 % at 0.7, more at depths below 0.4 radii, where few cells are in contact. It oscillates as cells come
+into contact, with a period of one cell in contact width, sqrt(radius * depth); and each geometry has a
+deviation of its own. All are assumed to decrease with the square of the cell size.
 """
 
 from __future__ import annotations
@@ -24,27 +23,27 @@ from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation._scene import Geometry
 
 Array = NDArray[np.float64]
-# Elastic forces over the modulus at depths (k,), as (k,) or (k, m), -> forces at a record's points [N].
+# Function from elastic forces over the modulus at depths (k,), shape (k,) or (k, m), to forces at a record's
+# points [N].
 Follow = Callable[[Callable[[Array], Array]], Array]
 
-# Relative sd at refinement 1: common to all indentations, and of each point by itself (contact points that
-# come and go, the curve between its frames).
+# Relative sd at refinement 1: common to all indentations, and independent for each point (contact points that
+# open and close, interpolation between frames).
 TOGETHER, SCATTER = 0.011, 0.001
-# (relative sd, correlation length in width of contact over the indenter's radius) at refinement 1: up and
-# down once a cell, and a geometry's own deviation at nearly all depths.
+# (relative sd, correlation length in contact width over the indenter's radius) at refinement 1: oscillation
+# with the cells, and a geometry's own deviation at nearly all depths.
 WANDERING = ((0.0036, 0.04), (0.0027, 0.5))
-SHALLOW = 0.4  # over the indenter's radius: depth below which scatter and wandering grow
+SHALLOW = 0.4  # depth over the indenter's radius below which scatter and wandering grow
 NEGLIGIBLE = 1e-6  # modes with less than this fraction of the largest variance are left out
-# Relative sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes,
-# and the powers of how far it went back that it has. What a viscous material has stored at a large strain
-# acts on as that strain goes, and a force made of the elastic one knows no strains: an error of a tenth of
-# this, whose powers partly cancel (studies/indentation/over-time.md).
+# sd of the force in retraction, over the largest force and the fraction of the modulus that relaxes, and its
+# exponents of the fraction of retraction. Stress that a viscoelastic material stored at a large strain
+# persists as that strain decreases, which a force derived from the elastic curve does not describe: an error
+# of a tenth of this, since the powers partly cancel (studies/indentation/over-time.md).
 RETRACTION, RETRACTED = 0.3, (1, 2, 3)
 
-GRID = 120  # depths at which wandering is evaluated
-TOUCH = 3.0  # standard deviations of the depth within which a point is close to first touch
-# Mesh error of the force across the indenter, over the force along it, where its path across the surface
-# bends.
+GRID = 120  # number of depths at which wandering is evaluated
+TOUCH = 3.0  # distance from first touch, in standard deviations of the depth, up to which a point is close
+# Mesh error of the force across the indenter over the force along it, where the path over the surface bends.
 ACROSS = 0.01
 
 
@@ -52,19 +51,22 @@ ACROSS = 0.01
 
 
 def scatter(depth: Array, radius: float, refinement: float | Array) -> Array:
-    """Relative sd of the simulated force at depths (k,), independent from point to point.
+    """Relative sd of the simulated force at depths (k,) [m], independent from point to point.
 
     Parameters
     ----------
-    radius : of the indenter [m].
-    refinement : of the mesh; one number, or one for each depth.
+    depth : [m], shape (k,).
+    radius : radius of the indenter [m].
+    refinement : refinement of the mesh; one number, or one for each depth.
     """
     return np.asarray(SCATTER / refinement**2 * _shallow(depth, radius))
 
 
 def wandering_modes(depth: Array, radius: float, refinement: float | Array) -> Array:
-    """One sd of each of m independent modes of the wandering, relative to the force at depths (k,); shape
-    (k, m). Parameters as in `scatter`."""
+    """Independent modes of the wandering, one sd each, relative to the force at depths (k,); shape (k, m).
+
+    Parameters as in `scatter`.
+    """
     size = _shallow(depth, radius) / refinement**2
     width = refinement * np.sqrt(depth / radius)
     apart = width[:, None] - width[None, :]
@@ -75,7 +77,7 @@ def wandering_modes(depth: Array, radius: float, refinement: float | Array) -> A
 
 
 def _shallow(depth: Array, radius: float) -> Array:
-    """1 at large depth, 10 at most at first touch."""
+    """Factor on the mesh error at shallow depth: 1 at large depth, about 10 at first touch."""
     shallow = SHALLOW * radius
     return np.asarray(np.sqrt(1.0 + (shallow / np.maximum(depth, 0.1 * shallow)) ** 2))
 
@@ -91,15 +93,16 @@ def noise_of(
     follow: Sequence[Follow],
     relaxing: Sequence[float],
 ) -> Noise:
-    """Noise of all forces along the indenter, then of all across it.
+    """Noise of all forces along the indenter, followed by all forces across it.
 
     Parameters
     ----------
-    curves : of the records, without effects.
-    forces, slopes : simulated force [N] and its slope [N/m] at the records' depths.
-    follow : elastic forces against depth -> forces at the records' points: at their depths, or along their
-        courses where the material remembers.
-    relaxing : fraction of the instantaneous modulus that each record's material loses in time.
+    records : the records.
+    curves : curves of the records, without effects.
+    forces, slopes : simulated force [N] and its slope [N/m] at the points of each record.
+    follow : for each record, function from elastic forces against depth to forces at its points: at their
+        depths, or along its course for a viscoelastic material.
+    relaxing : fraction of the instantaneous modulus of each record's material that relaxes.
     """
     along = [point_sd(r, c, f, s) for r, c, f, s in zip(records, curves, forces, slopes, strict=True)]
     across = [
@@ -112,10 +115,13 @@ def noise_of(
 
 
 def point_sd(record: Record, curve: Curve, force: Array, slope: Array) -> Array:
-    """Standard deviation of each point by itself [N], shape (k,): of the load cell, of the depth through the
-    slope, of first touch close to it, and of the simulation."""
+    """Independent standard deviation of each point [N], shape (k,).
+
+    It combines errors of the load cell, of the depth through the slope, of contact close to first touch, and
+    of the simulation.
+    """
     through_depth = slope * record.depth_error
-    # close to first touch a record may touch or not, which the slope does not say
+    # close to first touch a record can be in contact or not, which the slope does not represent
     near = np.abs(record.depth) < TOUCH * record.depth_sd
     kink = np.where(near, 2.0 * record.depth_sd * float(slope[near].max(initial=0.0)), 0.0)
     own = np.abs(force) * scatter(
@@ -139,12 +145,12 @@ def nuisances(
     follow: Sequence[Follow],
     relaxing: Sequence[float],
 ) -> tuple[Array, list[str]]:
-    """One standard deviation of each nuisance in simulated less measured [N], shape (points, n), and names.
+    """Nuisances of simulated minus measured force, one sd each [N], shape (points, n), and their names.
 
-    In this order: the mesh error common to all indentations; of each geometry its wandering; of each record
-    its first touch (positive where it is deeper than recorded), the noise that smoothing leaves in the depth
-    of its phases, and where its material relaxes the error of its force in retraction. Parameters as in
-    `noise_of`.
+    In this order: the mesh error common to all indentations; the wandering of each geometry; for each record
+    the error of first touch (positive if it is deeper than recorded) and the noise that smoothing leaves in
+    the depth of its phases; and for each record of a viscoelastic material the error of its force in
+    retraction. Parameters as in `noise_of`.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     rows = [np.arange(int(a), int(b)) for a, b in pairwise(starts)]
@@ -161,7 +167,7 @@ def nuisances(
 
     for geometry in dict.fromkeys(r.geometry for r in records):
         mine = [k for k, r in enumerate(records) if r.geometry == geometry]
-        # records of one geometry have one curve, apart from its continuation by a deeper one
+        # records of one geometry share a curve, up to its extension to larger depths
         curve = max((curves[k] for k in mine), key=lambda c: c.finer)
         where = np.concatenate([rows[k] for k in mine])
         label = ", ".join(records[k].name for k in mine)
@@ -191,17 +197,17 @@ def nuisances(
 
 
 def _refinement(depth: Array, curve: Curve, geometry: Geometry) -> Array:
-    """Refinement of the mesh that a curve's forces at depths (k,) come from."""
+    """Refinement of the mesh of a curve's forces at depths (k,)."""
     return np.where(depth <= curve.finer, FINE, COARSE) * geometry.refinement
 
 
 def _modes(deepest: float, curve: Curve, geometry: Geometry) -> tuple[Array, Array]:
-    """A grid of depths (g,), and wandering modes there (g, m): on a grid, since records are long."""
+    """A grid of depths (g,) and the wandering modes there (g, m), for interpolation at long records."""
     grid = np.linspace(0.0, float(np.sqrt(deepest)), GRID)[1:] ** 2
     return grid, wandering_modes(grid, geometry.rod.radius, _refinement(grid, curve, geometry))
 
 
 def _wandered(modes: tuple[Array, Array], curve: Curve, depth: Array) -> Array:
-    """What modes on a grid change the elastic force over the modulus by at depths (k,), shape (k, m)."""
+    """Change of the elastic force over the modulus by modes on a grid, at depths (k,); shape (k, m)."""
     own = np.maximum(depth, 0.0)
     return np.column_stack([np.interp(own, modes[0], mode) for mode in modes[1].T]) * curve.at(depth)[:, None]

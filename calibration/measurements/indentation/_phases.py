@@ -1,7 +1,7 @@
-"""Phases of a record: loading, holds and unloading, and the depth of each without its reading noise.
+"""Segmentation of a record into loading, holds and unloading; smoothing of the depth in each phase.
 
-Strokes are those of `calibration.measurements._records`; holds are split off them, and boundaries are moved
-to where straight lines on either side fit a noisy depth best.
+Strokes are those of `calibration.measurements._records`; holds are split off, and the boundaries are moved to
+where straight lines on either side fit a noisy depth best.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ from calibration.measurements._records import strokes
 
 Array = NDArray[np.float64]
 
-TURN = 0.02  # fraction of the record's range of depth that a real turn goes back by
-NOISE = 6.5  # standard deviations of the depth that are no turn
-# samples by which noise may have moved a boundary, and those on either side from which it is found
+TURN = 0.02  # least reversal at a turning point, as a fraction of the record's range of depth
+NOISE = 6.5  # the same, in standard deviations of the depth
+# samples by which a boundary may be moved, and samples on either side that are used for this
 MOVED, WINDOW = 6, 14
-ENDS, NEAR, CALM = 7, 0.5, 5  # samples at the ends of a stroke, distance that counts as there, median window
-# Squared deviations of the depth by which lines without a hold must be worse than with it: a hold has two
-# numbers for its ends and one for its depth, chosen among many alternatives.
+ENDS, NEAR, CALM = 7, 0.5, 5  # samples at a stroke's ends, distance (in tolerances) to an end, median window
+# Increase of the squared deviations of the depth, in sd^2, that justifies a hold: it has three parameters
+# (two ends and a depth), chosen among many alternatives.
 MORE = 15.0
-REST = 0.15  # fraction of a stroke's time that it must stand still at its end to be a hold
+REST = 0.15  # least duration of a hold, as a fraction of the time of the stroke's motion
 
-HIGHEST = 6  # degree of a phase's depth in time
-LEAST = 8  # samples that a phase needs to be smoothed
-AGREES = 1.3  # rms of the depth about the smooth one, over the stated noise
+HIGHEST = 6  # highest polynomial degree of a phase's depth in time
+LEAST = 8  # least number of samples of a phase that is smoothed
+AGREES = 1.3  # largest rms of the depth about the smooth one, over the stated noise
 
 _NAMES = {1.0: "loading", 0.0: "hold", -1.0: "unloading"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Phase:
-    """A part of a record in which the indenter moves one way, or rests.
+    """A part of a record in which the indenter moves in one direction, or rests.
 
     Attributes
     ----------
-    points : its samples in the record.
+    points : slice of its samples.
     direction : +1 loading, 0 hold, -1 unloading.
     cycle : number of the loading that it belongs to, from 1.
     """
@@ -55,7 +55,7 @@ class Phase:
 
 
 def phases_of(trial: PokeTrial) -> list[Phase]:
-    """Phases in the order of the record."""
+    """Phases of a trial in the order of the record."""
     depth, time = trial.record.depth, trial.record.time
     tolerance = max(TURN * float(np.ptp(depth)), NOISE * trial.depth_sd)
     found: list[Phase] = []
@@ -69,7 +69,7 @@ def phases_of(trial: PokeTrial) -> list[Phase]:
         for low, high, moves in ((0, first, 0.0), (first, last, direction), (last, b - a, 0.0)):
             if high <= low:
                 continue
-            # a rest at the end of the stroke before continues at this stroke's start
+            # a hold at the end of the preceding stroke continues at this stroke's start
             if moves == 0.0 and found and found[-1].direction == 0.0:
                 found[-1] = replace(found[-1], points=slice(found[-1].points.start, a + high))
             else:
@@ -83,17 +83,23 @@ def phases_of(trial: PokeTrial) -> list[Phase]:
 def smooth_depth(
     time: Array, depth: Array, phases: Sequence[Phase], sd: float
 ) -> tuple[Array, tuple[int, ...]]:
-    """Depth without its reading noise. An indenter is driven smoothly, and forces simulated at noisy depths
-    would carry that noise into everything that is fitted to the measured ones.
+    """Smooth the depth in each phase by a polynomial in time.
+
+    An indenter is driven smoothly, and forces simulated at noisy depths would carry that noise into the fit.
 
     Parameters
     ----------
-    sd : of one reading of the depth [m].
+    time, depth : samples of the record [s], [m], shape (k,).
+    phases : phases of the record.
+    sd : standard deviation of one reading of the depth [m].
 
     Returns
     -------
-    Depth [m], shape (k,): in each phase the polynomial in time of the lowest degree that agrees with the
-    stated noise; and these degrees, -1 where none agrees, and the depth keeps its noise.
+    depth : ndarray, shape (k,)
+        Smoothed depth [m].
+    degrees : tuple of int
+        Degree of each phase, the lowest that agrees with the stated noise. It is -1, and the depth is
+        unchanged, if none does, if the phase is too short, or if `sd` is 0.
     """
     found, degrees = depth.copy(), []
     for p in phases:
@@ -110,8 +116,16 @@ def smooth_depth(
 
 
 def remaining_noise(time: Array, samples: int, degree: int) -> Array:
-    """One standard deviation of each coefficient of a smoothed phase, at some of its times (k,), over the
-    noise of one sample; shape (k, degree + 1)."""
+    """Error modes of a smoothed phase at some of its times (k,), one sd each; shape (k, degree + 1).
+
+    They are the Legendre polynomials with the sd of their coefficients, relative to the noise of one sample.
+
+    Parameters
+    ----------
+    time : times in the phase [s], shape (k,).
+    samples : number of samples of the phase.
+    degree : degree of its polynomial.
+    """
     low, high = float(time.min()), float(time.max())
     unit = 2.0 * (time - low) / (high - low) - 1.0 if high > low else np.zeros(time.size)
     each = np.sqrt((2.0 * np.arange(degree + 1) + 1.0) / samples)
@@ -122,15 +136,17 @@ def remaining_noise(time: Array, samples: int, degree: int) -> Array:
 
 
 def _moving(depth: Array, time: Array, tolerance: float) -> tuple[int, int]:
-    """First sample of a stroke that moves and first one that has arrived; rests too short to be holds belong
-    to the stroke."""
+    """Index of the first moving sample of a stroke, and of the first sample at rest at its end.
+
+    Rests that are too short for a hold belong to the stroke.
+    """
     from scipy.ndimage import median_filter
 
     size = depth.size
     if size < 4:
         return 0, size
-    # medians of several samples: the first and the last alone are extremes of the noise where a stroke begins
-    # and ends at a rest, and a rest about them would seem to move
+    # medians of several samples: if a stroke begins and ends at rest, its first and last samples are extremes
+    # of the noise, and the rest would seem to move relative to them
     some = max(1, min(ENDS, size // 8))
     start, end = float(np.median(depth[:some])), float(np.median(depth[-some:]))
     near = NEAR * tolerance
@@ -149,8 +165,11 @@ def _moving(depth: Array, time: Array, tolerance: float) -> tuple[int, int]:
 
 
 def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[Phase]:
-    """Boundaries moved to where they are; then holds too short, and holds that noise of `sd` on the strokes
-    beside them explains, are given to these strokes, and boundaries are moved again."""
+    """Refine the boundaries and remove spurious holds.
+
+    Holds that are too short, or that noise of `sd` on the adjacent strokes explains, are merged into these
+    strokes; after each merge the boundaries are refined again.
+    """
     found = _sharper(phases, time, depth)
     while True:
         needless = next((k for k in range(len(found)) if not _needed(found, k, time, depth, sd)), None)
@@ -160,8 +179,10 @@ def _settled(phases: list[Phase], time: Array, depth: Array, sd: float) -> list[
 
 
 def _needed(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -> bool:
-    """True if a phase is a stroke, or a hold without which the strokes beside it, extended to their best
-    common turning point, fit worse than noise explains, and which lasts."""
+    """True if a phase is a stroke, or a hold that is long enough and improves the fit beyond noise.
+
+    The fit without the hold is that of the adjacent strokes, extended to their best common turning point.
+    """
     hold = phases[k]
     beside = [q for q in phases[max(k - 1, 0) : k + 2] if q.direction != 0.0]
     if hold.direction != 0.0 or not beside:
@@ -183,7 +204,7 @@ def _needed(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -
 
 
 def _without(phases: list[Phase], k: int) -> list[Phase]:
-    """The samples of a hold go to the stroke before it, or half of them where there is one on either side."""
+    """Remove hold `k`: its samples go to the adjacent stroke, half to each if there are two."""
     start, stop = phases[k].points.start, phases[k].points.stop
     cut = start if k == 0 else stop if k + 1 == len(phases) else (start + stop) // 2
     found = [replace(p) for p in phases]
@@ -199,7 +220,7 @@ def _duration(phase: Phase, time: Array) -> float:
 
 
 def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
-    """The same with each boundary where two lines that meet there, level in a hold, fit the depth best."""
+    """Move each boundary to the best fit of the depth by two lines that meet there, constant in a hold."""
     found = list(phases)
     for k in range(len(found) - 1):
         a, b = found[k], found[k + 1]
@@ -216,7 +237,7 @@ def _sharper(phases: list[Phase], time: Array, depth: Array) -> list[Phase]:
 
 
 def _bent_misfit(time: Array, depth: Array, at: float, a: Phase, b: Phase) -> float:
-    """Squared misfit of a line with a bend at a time, level on the side of a hold."""
+    """Sum of squared residuals of a line with a kink at time `at`, constant on the side of a hold."""
     before, after = np.minimum(time - at, 0.0), np.maximum(time - at, 0.0)
     columns = [np.ones(time.size)]
     columns += [side for side, p in ((before, a), (after, b)) if p.direction != 0.0]
@@ -225,6 +246,6 @@ def _bent_misfit(time: Array, depth: Array, at: float, a: Phase, b: Phase) -> fl
 
 
 def _line_misfit(time: Array, depth: Array, *, level: bool) -> float:
-    """Squared misfit of a line, of a level one for a hold."""
+    """Sum of squared residuals of a line, or of a constant (`level`)."""
     t, d = time - time.mean(), depth - depth.mean()
     return float(d @ d - (0.0 if level else (t @ d) ** 2 / (t @ t)))

@@ -1,4 +1,4 @@
-"""The record of one indentation, thinned, with its history: phases, deepest depth before, cycles."""
+"""Records of indentations: thinned, with their history (phases, largest earlier depth, cycles)."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from calibration.measurements.indentation._scene import (
 
 Array = NDArray[np.float64]
 
-LEAST = 5  # points that a record needs
-# A piece of the way that takes PAUSE times as long as the median piece is a hold.
+LEAST = 5  # least number of points of a record
+# Of PIECES equal parts of the travel, one that takes PAUSE times as long as the median is a hold.
 PIECES, PAUSE = 50, 5.0
-MOST = 50  # points that are kept of a phase: more are averaged in bins of neighbours
+MOST = 50  # largest number of points of a phase: more are averaged in bins of neighbours
 
 _ARRAYS = (
     "time",
@@ -47,32 +47,33 @@ _ARRAYS = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """The points of one trial, in the order in which they were measured; arrays (k,) unless stated.
+    """Points of one trial in the order of measurement; arrays have shape (k,) unless stated.
 
     Attributes
     ----------
-    name : of the trial.
-    blocks : names of its block, by size and with its material.
+    name : name of the trial.
+    material, specimen : of the trial; the specimen is the material's name if the trial names none.
+    blocks : names of its block, by size, and by material and size.
     geometry : block, indenter and contact point.
     time : [s].
-    depth : from first touch [m], negative above the surface.
-    force : along the indenter [N].
-    across : force across it, along `Geometry.across` [N], shape (k, 2); None where the lab has no vectors.
-    count : samples in each point.
-    own_sd : of the force [N], without the part that the depth's error adds.
-    depth_error : of each point's depth [m], where it keeps its noise.
-    depth_sd : of the depth of one sample, and of first touch [m].
+    depth : depth from first touch [m], negative above the surface.
+    force : force along the indenter [N].
+    across : forces across it, along `Geometry.across` [N], shape (k, 2); None if the lab has no vectors.
+    count : number of samples in each point.
+    own_sd : standard deviation of the force [N], without the contribution of the depth's error.
+    depth_error : standard deviation of each point's depth [m]; 0 if the depth was smoothed.
+    depth_sd : standard deviation of the depth of one sample, and of first touch [m].
     phase : number of the phase.
-    labels : of the phases.
-    degrees : of the polynomials that the phases' depths were smoothed by; -1 for none.
+    labels : labels of the phases.
+    degrees : degrees of the polynomials by which the phases' depths were smoothed; -1 for none.
     direction : +1 loading, 0 hold, -1 unloading.
     cycle : number of the loading, from 1.
-    peak : deepest depth at this contact point of this specimen, before and up to each point [m].
-    cycle_peak : deepest depth of its cycle up to each point [m].
-    unloaded : 1 after the first unloading there, 0 before.
-    estimated : the lab states no error of the force.
-    ranges : see `calibration.measurements.Record`; of the depth as the lab recorded it.
-    course : for materials that remember; None where it was made for others.
+    peak : largest depth at this contact point of this specimen so far, including earlier trials [m].
+    cycle_peak : largest depth of its cycle up to each point [m].
+    unloaded : 1 after the first unloading at this contact point, 0 before.
+    estimated : True if the lab states no error of the force.
+    ranges : see `calibration.measurements._model.Record`; the depth is as recorded by the lab.
+    course : loading history, for viscoelastic materials; None otherwise.
     """
 
     name: str
@@ -122,7 +123,7 @@ class Record:
 
     @property
     def deepest(self) -> float:
-        """[m], at least 0.1 mm."""
+        """Largest depth [m], at least 0.1 mm."""
         return max(float(self.depth.max()), 1e-4)
 
     @property
@@ -131,11 +132,11 @@ class Record:
 
     @property
     def reloaded(self) -> bool:
-        """It was loaded again after an unloading, in this record or in an earlier one."""
+        """True if it was loaded again after an unloading, in this record or in an earlier one."""
         return bool((self.cycle > 1).any() or self.unloaded[0] > 0.0)
 
     def only(self, kept: NDArray[np.bool_]) -> Record:
-        """Some of its points. The force of a material that relaxes depends on all earlier ones."""
+        """Record of a subset of the points (mask); its course keeps the whole loading history."""
         arrays = {name: getattr(self, name)[kept] for name in _ARRAYS}
         across = None if self.across is None else self.across[kept]
         course = None if self.course is None else self.course.only(kept)
@@ -148,9 +149,18 @@ def records_of(
     *,
     courses: bool = False,
 ) -> list[Record]:
-    """One record a trial. Indentations of one named specimen at one contact point are taken in the order of
-    the file: a later one remembers how deep the earlier ones went. courses : for a material that relaxes:
-    holds count by their time, and each record begins at rest."""
+    """Records of trials, one per trial.
+
+    Indentations of one named specimen at one contact point are taken in the order of the file: `peak` and
+    `unloaded` include the earlier ones.
+
+    Parameters
+    ----------
+    trials : the trials.
+    geometry : function from a trial to its geometry.
+    courses : True for a viscoelastic material: records have their course, which begins at rest, and the bins
+        of holds are spaced by time.
+    """
     found: list[Record] = []
     seen: dict[object, float] = {}
     for t in trials:
@@ -165,16 +175,19 @@ def records_of(
 def part_of(
     records: Sequence[Record], *, max_depth: float | None, first_loading: bool
 ) -> tuple[list[Record], tuple[str, ...]]:
-    """Records as far as they are compared.
+    """Restrict records to the points that are compared.
 
     Parameters
     ----------
-    max_depth : nothing deeper [m]; None for any depth.
-    first_loading : only up to the first hold or reversal after first touch.
+    records : the records.
+    max_depth : largest depth [m]; None for any depth.
+    first_loading : if True, only points up to the first hold or reversal after first touch.
 
     Returns
     -------
-    The records, and a sentence for each that was shortened.
+    records : list of Record
+    sentences : tuple of str
+        One for each record that was shortened.
     """
     sentences, shortened = [], []
     for r in records:
@@ -194,8 +207,7 @@ def part_of(
 
 
 def _first_loading(record: Record) -> NDArray[np.bool_]:
-    """Points up to the end of the first loading that goes below the surface, or to a hold on its way, shape
-    (k,)."""
+    """Mask (k,) of the points up to the end of the first loading below the surface, or to a hold in it."""
     pushed = (record.direction > 0.0) & (record.depth > 0.0)
     if not pushed.any():
         return pushed
@@ -209,13 +221,16 @@ def _first_loading(record: Record) -> NDArray[np.bool_]:
 
 
 def _pause(time: Array, peak: Array, tolerance: float) -> int | None:
-    """Points before a hold on the way to a depth, if there is one: where a piece of the way takes far too
-    long. `phases_of` has no such holds: it takes them for a part of the stroke.
+    """Number of points before a hold within a loading; None if there is none.
+
+    A hold is a part of the travel that takes much longer than the median (PIECES, PAUSE). `phases_of` counts
+    such holds as part of the stroke.
 
     Parameters
     ----------
-    peak : deepest depth so far [m].
-    tolerance : depth by which it may wander without going anywhere [m].
+    time : [s], shape (k,).
+    peak : largest depth so far [m], shape (k,).
+    tolerance : scatter of the depth without motion [m].
     """
     grows = np.concatenate([[True], np.diff(peak) > 0.0])
     way = float(peak[-1] - peak[0])
@@ -231,8 +246,11 @@ def _pause(time: Array, peak: Array, tolerance: float) -> int | None:
 
 
 def check_pushed(records: Sequence[Record]) -> None:
-    """InputError for a record that says nothing of stiffness: it has hardly any point, does not go below the
-    surface, or does not push at its deepest."""
+    """InputError for a record that does not constrain the stiffness.
+
+    It has fewer than LEAST points, does not go below the surface, or its mean force at the largest depths is
+    not positive.
+    """
     for r in records:
         if r.points < LEAST:
             raise InputError(

@@ -1,4 +1,4 @@
-"""A measured indentation as a simulated scene: contact point, travel to first touch, geometry."""
+"""Simulated scene of a measured indentation: contact point, travel to first touch, geometry."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from tisim import Block, Material, Poke, Rod, material_from_moduli
 
 Array = NDArray[np.float64]
 
-# A start this close to the top counts as on it [m].
+# A start within this distance of the top counts as on it [m].
 ON_TOP = 1e-5
-# Radius of a flat indenter's round edge over its radius: the data format does not give it; that of
-# `tisim.Rod`.
+# Radius of a flat indenter's round edge over its radius, as in `tisim.Rod`; the data format does not have it.
 EDGE = 0.4
-FRICTION = 0.6  # prior coefficient of friction between indenter and block
-BULK_RATIO = 300.0  # K/G: held, since indentations of one indenter do not separate it from the modulus
-SPACING = 0.125e-3  # of frames [m]: some five a wave of the mesh error
+FRICTION = 0.6  # assumed coefficient of friction between indenter and block
+BULK_RATIO = 300.0  # fixed K/G, since indentations by one indenter do not separate it from the modulus
+SPACING = 0.125e-3  # spacing of frames [m]: about five per period of the mesh error
 SHEAR = 1e4  # shear modulus of simulated indentations [Pa]; the force is proportional to it
 
 
@@ -29,12 +28,14 @@ def approach(trial: PokeTrial) -> float:
 
     Returns
     -------
-    Travel [m]: 0 for a start on the block's top, where depth counts from first touch; for a start above it,
-    the distance to the top along the indenter's axis.
+    float
+        Travel [m]: 0 for a start on the block's top, from which depth is counted; for a start above it, the
+        distance to the top along the indenter's axis.
 
     Raises
     ------
-    InputError : the start is inside the block.
+    InputError
+        If the start is inside the block.
     """
     above = trial.start[2] - trial.block.size[2]
     if above < -ON_TOP:
@@ -54,17 +55,21 @@ def poke_scene(
     refinement: float = 1.0,
     edge_radius: float | None = None,
 ) -> Poke:
-    """The scene of a trial, its axis through the record's start.
+    """Scene of a trial, with the indenter's axis through the record's start.
 
     Parameters
     ----------
-    depth : from first touch [m].
-    refinement : of the mesh, as in `tisim.Poke`.
-    edge_radius : of a flat indenter [m]; None for 0.4 of its radius.
+    trial : the trial.
+    material : material of the block.
+    depth : depth from first touch [m].
+    friction : coefficient of friction between indenter and block.
+    refinement : refinement of the mesh, as in `tisim.Poke`.
+    edge_radius : radius of the edge of a flat indenter [m]; None for 0.4 of its radius.
 
     Raises
     ------
-    InputError : the inclusion is given as a mesh, which a `Poke` cannot have yet.
+    InputError
+        If the inclusion is given as a mesh, which `Poke` does not support.
     """
     if trial.inclusion_mesh is not None:
         raise InputError(
@@ -86,21 +91,22 @@ def poke_scene(
 
 
 def block_names(trial: PokeTrial) -> tuple[str, str]:
-    """Names of a trial's block for people: by its size, and with its material."""
+    """Names of a trial's block for reports: by size, and by material and size."""
     size = " x ".join(f"{1e3 * x:g}" for x in trial.block.size)
     return f"block {size} mm", f"{trial.material} block {size} mm"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Geometry:
-    """What decides the force over the shear modulus. Indentations of equal geometry share a simulation.
+    """All parameters of the force over the shear modulus. Indentations of equal geometry share a simulation.
 
     Attributes
     ----------
+    block, rod : block and indenter.
     site : contact point on the block's top, x and y [m].
-    direction : of the indenter's travel.
-    friction : coefficient between indenter and block.
-    refinement : by which all its meshes are finer than usual.
+    direction : direction of the indenter's travel.
+    friction : coefficient of friction between indenter and block.
+    refinement : factor on the refinement of all its meshes.
     """
 
     block: Block
@@ -118,8 +124,10 @@ class Geometry:
 
     @property
     def across(self) -> Array:
-        """Unit vectors across the indenter, shape (2, 3); the first in the plane of its tilt (of x and z
-        where it is upright)."""
+        """Unit vectors across the indenter, shape (2, 3).
+
+        The first is in the plane of its tilt (of x and z if it is upright).
+        """
         axis = self.axis
         level = np.array([axis[0], axis[1], 0.0])
         first = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(level) < 1e-9 else level
@@ -128,7 +136,7 @@ class Geometry:
         return np.stack([first, np.cross(axis, first)])
 
     def scene(self, depth: float, *, refinement: float = 1.0) -> Poke:
-        """The baseline's scene to a depth [m]; refinement : of the mesh."""
+        """Scene of the baseline to a depth [m]. refinement : refinement of the mesh."""
         return Poke(
             material=reference_material(),
             site=self.site,
@@ -143,7 +151,7 @@ class Geometry:
 
 
 def reference_material() -> Material:
-    """The material of simulated indentations; forces scale with the shear modulus."""
+    """Material of simulated indentations; forces scale with the shear modulus."""
     return material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=BULK_RATIO * SHEAR)
 
 
@@ -154,8 +162,10 @@ def geometry_of(
     edge_radius: float | None = None,
     refinement: float = 1.0,
 ) -> Geometry:
-    """Parameters as in `poke_scene` and `Geometry`. InputError for an inclusion given as a mesh, which a
-    `Poke` cannot have."""
+    """Geometry of a trial; parameters as in `poke_scene` and `Geometry`.
+
+    InputError for an inclusion given as a mesh, which `Poke` does not support.
+    """
     scene = poke_scene(trial, reference_material(), depth=1e-3, friction=friction, edge_radius=edge_radius)
     return Geometry(
         block=scene.block,

@@ -1,5 +1,4 @@
-"""What a lab can do next with indentation: other protocols at the same contact points, other indenters, and
-direct measurements."""
+"""Next experiments for indentation: other protocols at the same contact points, other indenters, gauges."""
 
 from __future__ import annotations
 
@@ -14,11 +13,11 @@ from calibration.measurements.indentation._record import Record
 
 Array = NDArray[np.float64]
 
-POINTS = 40  # of a stroke
-SPEED = 1e-3  # [m/s], where a record has none
-HOLD = 60.0  # [s]
-OTHER_ROD = 1.6  # as wide
-SHALLOWER = 0.8  # of the depth, with another rod: what its simulation still reaches
+POINTS = 40  # points of a stroke
+SPEED = 1e-3  # speed [m/s] if a record has none
+HOLD = 60.0  # duration of a hold [s]
+OTHER_ROD = 1.6  # factor on the indenter's radius
+SHALLOWER = 0.8  # factor on the depth with another indenter, within reach of its simulation
 
 
 IndentationTest = Test[Record, PokeTrial]
@@ -33,13 +32,15 @@ def made(
     hold: float = 0.0,
     rod: float = 1.0,
 ) -> PokeTrial:
-    """A trial at a record's contact point; its errors are the record's, its force is still to be predicted.
+    """Trial at a record's contact point, with the record's errors; its force is 0, to be predicted.
 
     Parameters
     ----------
-    depths : that the indenter goes to in turn, from the surface [m].
+    r : the record.
+    name : name of the test, appended to the record's.
+    depths : successive depths of the indenter, from the surface [m].
     faster : factor on the record's speed.
-    hold : at the first depth [s].
+    hold : duration of a hold at the first depth [s].
     rod : factor on the indenter's radius.
     """
     speed = faster * _speed(r)
@@ -85,7 +86,10 @@ def _again(
     hold: float = 0.0,
     rod: float = 1.0,
 ) -> Callable[[Sequence[Record]], Sequence[PokeTrial]]:
-    """depths : that the indenter goes to [m], from the record's deepest depth and the indenter's radius."""
+    """Function from records to one new trial for each.
+
+    depths : function from the record's largest depth and the indenter's radius [m] to the depths of `made`.
+    """
 
     def trials(records: Sequence[Record]) -> Sequence[PokeTrial]:
         return [

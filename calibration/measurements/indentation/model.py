@@ -1,8 +1,8 @@
-"""Indentation tests of all materials together, effects nested in their simulated forces.
+"""Measurement model of indentation tests of all materials together, with effects in the simulated forces.
 
-The force along the indenter (and across it, where the lab has vectors) is compared at the recorded depths of
-the whole record: loading, holds, unloading, later cycles. Errors are those that the lab states, the depth's
-through the slope, and the simulation's own mesh error (`_noise.py`).
+The force along the indenter (and across it, if the lab has vectors) is compared at the recorded depths of the
+whole record: loading, holds, unloading, later cycles. Errors are those stated by the lab, that of the depth
+times the slope, and the mesh error of the simulation (`_noise.py`).
 """
 
 from __future__ import annotations
@@ -50,32 +50,36 @@ LEAST = 3  # points of a record that a law must reach
 
 
 class IndentationModel(MeasurementModel):
-    """Baseline: neo-Hookean, nearly incompressible, one shear modulus a specimen; trials that name no
-    specimen share one a material. Each geometry is simulated once, and once for each change of it that a
-    search needs. A baseline of a law has that law's curves (`LawCurves`), simulated by `update_nuisances`; of
-    a law with viscosity forces are followed along each record's course (`_memory_force`).
+    """Measurement model of indentation tests.
+
+    The baseline is neo-Hookean and nearly incompressible, with one shear modulus per specimen; trials of a
+    material that name no specimen share one. Each geometry is simulated once, and once for each change that a
+    search needs. A baseline of one law uses the curves of that law (`LawCurves`), which `update_nuisances`
+    simulates; with viscosity, forces are integrated along each record's course (`_memory_force`).
 
     Parameters
     ----------
-    experiment : its indentations are used.
-    effects : by name; see `calibration.diagnosis.effects.indentation`.
-    workers : processes, as in `tisim.simulate`.
-    baseline : in place of the neo-Hookean one.
-    friction : coefficient between indenter and block, a belief.
-    edge_radius : of flat indenters [m]; None for 0.4 of their radius.
-    max_depth : nothing deeper is compared [m].
-    first_loading : nothing after the first hold or reversal is compared.
-    refinement : by which all meshes are finer than usual.
+    experiment : experiment with indentations; other trials are ignored.
+    effects : effects by name; see `calibration.diagnosis.effects.indentation`.
+    workers : number of processes, as in `tisim.simulate`.
+    baseline : baseline in place of the neo-Hookean one.
+    friction : assumed coefficient of friction between indenter and block.
+    edge_radius : radius of the edge of flat indenters [m]; None for 0.4 of their radius.
+    max_depth : largest depth that is compared [m]; None for any depth.
+    first_loading : if True, nothing after the first hold or reversal is compared.
+    refinement : factor on the refinement of all meshes.
 
     Attributes
     ----------
-    noise : before `update_nuisances`, the load cell's alone.
+    noise : noise; before `update_nuisances`, that of the load cell only.
     left_out : a sentence for each record that is not compared as a whole.
 
     Raises
     ------
-    InputError : there is no indentation, or one that cannot be simulated.
-    ValueError : a simulation has no equilibrium.
+    InputError
+        If there is no indentation, or one that cannot be simulated.
+    ValueError
+        If a simulation has no equilibrium.
     """
 
     kind = "indentation"
@@ -121,8 +125,11 @@ class IndentationModel(MeasurementModel):
         self._set_candidates()
 
     def _measured_in(self, trials: Sequence[PokeTrial]) -> None:
-        """Take the records of these trials. Rows: one a point along the indenter, of all records; then two a
-        point across it, of the records that have them."""
+        """Set the records of these trials, their rows and the noise.
+
+        Rows: one per point along the indenter, for all records; then two per point across it, for the records
+        that have these forces.
+        """
         compared, not_compared = self._part(records_of(trials, self._geometry, courses=self._remembers))
         self.records, self.left_out = compared, not_compared
         if self._fits_law:  # simulated where nuisances are taken
@@ -137,15 +144,17 @@ class IndentationModel(MeasurementModel):
         self._elastic: list[Array] = []
 
     def _row_blocks(self) -> list[tuple[int, int]]:
-        """Record and number of rows of each block of rows, in their order."""
+        """Index of the record and number of rows of each block of rows, in their order."""
         along = [(k, r.points) for k, r in enumerate(self.records)]
         return along + [(k, 2 * r.points) for k, r in enumerate(self.records) if r.across is not None]
 
     # -- forces --
 
     def start(self) -> Array:
-        """Moduli of the curves nearest to the first loadings. ValueError where a specimen pulls the indenter
-        in."""
+        """Start coordinates (n,) from the least-squares moduli of the first loadings.
+
+        ValueError if the modulus of a specimen would not be positive.
+        """
         found = {}
         for name in self.baseline.specimens:
             top = bottom = 0.0
@@ -169,7 +178,7 @@ class IndentationModel(MeasurementModel):
         return [self._along(state, r) for r in self.records]
 
     def acting(self, state: State, record: Any) -> dict[tuple[str, float | None, float | None], float]:
-        """As in the base; variants that are chords of one effect are one form."""
+        """As in the base class; variants of an effect with `chords` are one form."""
         found: dict[tuple[str, float | None, float | None], float] = {}
         for (name, position, variant), a in super().acting(state, record).items():
             form = (name, position, None if self.effects[name].chords else variant)
@@ -177,7 +186,7 @@ class IndentationModel(MeasurementModel):
         return found
 
     def _prepare(self, states: Sequence[State]) -> None:
-        """Simulate together what these states need."""
+        """Simulate, in one batch, the curves that these states need."""
         self.forward.prepare([(r, self.acting(s, r)) for s in states for r in self.records])
 
     def _along(self, state: State, record: Record) -> Array:
@@ -193,8 +202,10 @@ class IndentationModel(MeasurementModel):
         return self.forward.across(record, curve, shear_modulus, acting, self._spectrum(record, state.u))
 
     def _spectrum(self, record: Record, u: Array) -> Spectrum | None:
-        """By which a record's material relaxes; None for one that does not. ValueError where its parts refuse
-        these coordinates."""
+        """Relaxation spectrum of a record's material; None if it is elastic.
+
+        ValueError if the coordinates are invalid for its parts.
+        """
         if not self._remembers:
             return None
         return spectrum_of(self.baseline.law, self.baseline.law_coordinates(record.material, u))
@@ -229,12 +240,15 @@ class IndentationModel(MeasurementModel):
         return difference_step(effect, candidate.variant if effect.chords else effect.chord, now, first)
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
-        """Take noise and, of a law, its curves at a state; of these the state's modulus does not count where
-        it is rough, but the one nearest to the records.
+        """Update the noise and, for a baseline of one law, its curves at a state.
+
+        With `rough`, the noise of such a baseline is evaluated at the least-squares modulus of the records in
+        place of the state's.
 
         Raises
         ------
-        ValueError : the law has no equilibrium there, or one of hardly any point of a record.
+        ValueError
+            If the law has no equilibrium there, or fewer than LEAST points of a record are simulated.
         """
         for material, curves_of_law in self._of_law.items():
             curves_of_law.take(self.baseline.law_coordinates(material, state.u))
@@ -269,13 +283,13 @@ class IndentationModel(MeasurementModel):
         self.noise = replace(noise, sd=np.where(used, noise.sd, np.inf), kept=self.noise.kept)
 
     def _simulated(self) -> list[NDArray[np.bool_]]:
-        """Points of each record that the simulations of its law reached."""
+        """Mask of the points of each record within the simulated depth of its law."""
         if not self.baseline.whole:
             return [np.ones(r.points, dtype=bool) for r in self.records]
         return [r.depth <= self._of_law[r.material].of(r).reached * (1.0 + 1e-9) for r in self.records]
 
     def shortcomings(self) -> list[str]:
-        """Which records the simulations of a law did not reach all of."""
+        """A sentence for each record with points beyond the simulated depth of its law."""
         found: list[str] = []
         if not all(curves.taken for curves in self._of_law.values()):
             return found
@@ -291,8 +305,7 @@ class IndentationModel(MeasurementModel):
     # -- experiments --
 
     def predicted_in(self, test: IndentationTest, state: State) -> Self | None:
-        """The same specimens in a new test; None where the block has no room for it, or no equilibrium is
-        found."""
+        """Model of the same specimens in a new test; None if it cannot be set up or has no equilibrium."""
         trials = test.of_each(self.records)
         if not trials:
             return None
@@ -306,8 +319,10 @@ class IndentationModel(MeasurementModel):
         return new
 
     def measuring(self, trials: Sequence[PokeTrial]) -> Self:
-        """The same specimens in other trials, which are seen beside those that there are: coordinates and
-        candidates stay."""
+        """Copy of the model for other trials of the same specimens.
+
+        Coordinates and candidates stay; `visible` is for both sets of trials together.
+        """
         some = copy(self)
         some._measured_in(trials)
         some.visible = self._visible([*self.records, *some.records])
@@ -316,7 +331,7 @@ class IndentationModel(MeasurementModel):
     # -- lack of fit, folds, scores --
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        """By trial, by material, by phases of one label, and in fifths of each record."""
+        """Fold labels by trial, material, phase label, and fifth of each record."""
         found: dict[str, list[str]] = {}
         for k, size in self._row_blocks():
             r = self.records[k]
@@ -335,11 +350,11 @@ class IndentationModel(MeasurementModel):
         return {name: np.vstack([raw, np.zeros((across, raw.shape[1]))]) for name, raw in along.items()}
 
     def registered(self, state: State) -> list[Array]:
-        """As in the base, along the indenter only."""
+        """As in the base class, along the indenter only."""
         return self._along_rows(super().registered(state))
 
     def point_sds(self) -> list[Array]:
-        """Standard deviation of each point by itself along the indenter [N], of each record."""
+        """Independent standard deviations of the points of each record along the indenter [N]."""
         return self._along_rows([self.noise.sd[self.row_record == k] for k in range(len(self.records))])
 
     def _along_rows(self, rows: Sequence[Array]) -> list[Array]:
@@ -348,8 +363,7 @@ class IndentationModel(MeasurementModel):
     # -- for reports --
 
     def remarks(self) -> list[str]:
-        """What was not simulated, where the errors come from, which order was assumed, which effects the
-        catalogue lacks."""
+        """Sentences on points left out, estimated errors, assumed order of trials, and missing effects."""
         found = list(self.left_out)
         guessed = [r for r in self.records if r.estimated]
         if guessed:
@@ -383,7 +397,7 @@ class IndentationModel(MeasurementModel):
         )
 
     def shown(self, k: int) -> Shown:
-        """Along the indenter; rows across it come after."""
+        """Force along the indenter of record `k`; rows across it, which follow, are not displayed."""
         r = self.records[k]
         rows = int(np.count_nonzero(self.row_record == k))
         return Shown(

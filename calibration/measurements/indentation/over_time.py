@@ -1,4 +1,4 @@
-"""Indentation over time: relaxation alone, since the strain differs from place to place."""
+"""Time-dependent fits of indentation: relaxation only, since the strain is not homogeneous."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from calibration.parameters import ProtocolWindow
 
 
 def window(experiment: Experiment) -> ProtocolWindow:
-    """Of the indentations of an experiment."""
+    """Range of times and number of peaks that the indentations of an experiment cover."""
     return window_of([t for t in experiment.trials if isinstance(t, PokeTrial)])
 
 

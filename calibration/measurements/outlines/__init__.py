@@ -1,4 +1,4 @@
-"""Outlines of beams against simulated ones; `.model.OutlineModel` is the model of fits and diagnoses."""
+"""Traced outlines of beams compared with simulations; `.model.OutlineModel` is the measurement model."""
 
 from calibration.measurements.outlines._admitted import Admitted, admitted
 from calibration.measurements.outlines._edges import Feet, edges, feet

@@ -1,4 +1,4 @@
-"""What the lab admits not to know of its beams: radius, free length, density, each with its sd."""
+"""Dimensions and densities of beams that the lab states with a standard deviation."""
 
 from __future__ import annotations
 
@@ -11,12 +11,20 @@ from tisim import Beam, Circle
 
 Quantity = Literal["radius", "width", "height", "length", "density"]
 
-STEP = 0.005  # of a finite difference, relative to the quantity
+STEP = 0.005  # finite-difference step, relative to the quantity
 
 
 @dataclass(frozen=True, kw_only=True)
 class Admitted:
-    """A quantity that trials (by index) share; its sd and the step of a finite difference, in its unit."""
+    """An uncertain quantity that trials share.
+
+    Attributes
+    ----------
+    name : name of the nuisance.
+    quantity : radius, width, height or length [m], or density [kg/m3].
+    trials : indices of the trials.
+    sd, step : standard deviation and finite-difference step, in the quantity's unit.
+    """
 
     name: str
     quantity: Quantity
@@ -25,7 +33,7 @@ class Admitted:
     step: float
 
     def moved(self, beam: Beam) -> Beam:
-        """The beam with the quantity one step larger."""
+        """Beam with the quantity increased by one step."""
         if self.quantity == "length":
             return replace(beam, length=beam.length + self.step)
         if self.quantity == "density":
@@ -35,7 +43,10 @@ class Admitted:
 
 
 def admitted(trials: Sequence[BeamTrial], belief: MaterialBelief) -> list[Admitted]:
-    """One entry for each dimension of a specimen's section, each free length, and the material's density."""
+    """Uncertain quantities (sd above 0) of one material's trials.
+
+    One for each dimension of a specimen's section, each trial's free length, and the material's density.
+    """
     found: list[Admitted] = []
     specimens: dict[str, list[int]] = {}
     for i, t in enumerate(trials):

@@ -1,11 +1,11 @@
-"""Photographed beams that creep, from curves of elastic ones: the correspondence principle.
+"""Creep of photographed beams from solutions of elastic beams, by the correspondence principle.
 
-A beam that hangs from time 0 on under a load that stays looks at time t very nearly like an elastic one whose
-modulus is one over the creep compliance, G_eff(t) = G_inf / J(t) (exactly so at small rotations: W. N.
-Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976, chapter 5). Of
-a law that its two small-strain moduli settle, all photographs of a trial lie on one curve over ln G_eff, and
-next to linearly on 1 / (K/G_eff): a few dozen elastic beams serve a whole fit. What large rotations add is
-`OutlineModel`'s correction by a beam that does creep, taken where a fit stands.
+A beam under a constant load from time 0 has at time t very nearly the shape of an elastic beam whose modulus
+is the inverse of the creep compliance, G_eff(t) = G_inf / J(t) (exactly at small rotations: W. N. Findley,
+J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976, chapter 5). For a law
+that is determined by its two small-strain moduli, all photographs of a trial lie on one curve over ln G_eff,
+and depend almost linearly on 1 / (K/G_eff): a few dozen elastic beams are sufficient for a whole fit.
+`OutlineModel.update_nuisances` corrects the error at large rotations by a viscoelastic beam.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from tisim.parts import Spectrum
 
 Array = NDArray[np.float64]
 
-MESH = 0.08  # of ln G between beams of a curve: interpolated by cubics, to 1e-6 of the deflection
+MESH = 0.08  # step of ln G between beams of a curve; the error of cubics is 1e-6 of the deflection
 BULK_RATIOS = (300.0, 100.0)  # K/G_eff of the two curves
-_REACH = np.array([-1, 0, 1, 2])  # beams to either side of a place on a curve that a cubic goes through
+_REACH = np.array([-1, 0, 1, 2])  # offsets of the four beams of the cubic interpolation
 
 
 def compliance(spectrum: Spectrum, time: Array) -> Array:
-    """Strain at times (t,) [s] after a unit stress is put on, in parts of what its law's modulus gives.
+    """Creep compliance at times (t,) [s], relative to the compliance of the law's modulus.
 
-    Each branch relaxes the strain behind it, tau_i dv_i/dt = e - v_i, with e = (1 + sum g_i v_i) / G_0: these
-    equations are linear, with a matrix that is symmetric in sqrt(g_i tau_i) v_i.
+    The internal strains follow tau_i dv_i/dt = e - v_i, with e = (1 + sum g_i v_i) / G_0. These equations are
+    linear, with a symmetric matrix in the variables sqrt(g_i tau_i) v_i.
     """
     there = spectrum.strengths > 0.0
     g, tau = np.asarray(spectrum.strengths)[there], np.asarray(spectrum.times)[there]
@@ -49,7 +49,7 @@ def compliance(spectrum: Spectrum, time: Array) -> Array:
 
 
 def settled_by_moduli(baseline: Baseline) -> bool:
-    """True if the model is of one viscous law that its shear modulus and K/G settle."""
+    """True if the baseline is one viscoelastic law that is determined by its shear modulus and K/G."""
     parts = {c.name for p in baseline.law.parts for c in p.coordinates}
     own = {c.name for c in baseline.law.coordinates} - parts
     viscous = any(p.field == "viscosity" for p in baseline.law.parts)
@@ -58,19 +58,26 @@ def settled_by_moduli(baseline: Baseline) -> bool:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CreepCurves:
-    """Curves of elastic beams of all trials, solved where first asked for; photographs : all; workers :
-    processes (None: all cores)."""
+    """Curves of elastic beams of all trials, solved on demand.
+
+    Attributes
+    ----------
+    scenes : scenes of the trials.
+    photographs : all photographs.
+    simulator : simulator of the beams.
+    workers : number of processes; None for all cores.
+    """
 
     scenes: Scenes
     photographs: Sequence[TracedPhotograph]
     simulator: Simulator
     workers: int | None
-    # coefficients of a photograph, by its first row, K/G of BULK_RATIOS and number of the modulus
+    # coefficients of a photograph by its first row, index in BULK_RATIOS and number of the modulus
     _known: dict[tuple[int, int, int], Array] = field(default_factory=dict, init=False, repr=False)
     _solved: set[tuple[int, int, int]] = field(default_factory=set, init=False, repr=False)
 
     def values(self, photographs: Sequence[TracedPhotograph], states: Sequence[State]) -> list[Array]:
-        """As `SolutionCache.values`, of photographs of states without effects."""
+        """As `SolutionCache.values`, for given photographs and states without effects."""
         places = [[self._place(p, s) for p in photographs] for s in states]
         self._solve(
             {
@@ -87,7 +94,7 @@ class CreepCurves:
         ]
 
     def _place(self, photograph: TracedPhotograph, state: State) -> tuple[float, float]:
-        """ln G_eff in units of MESH, and K/G_eff, of a photograph."""
+        """ln G_eff in units of MESH, and K/G_eff, for a photograph at a state."""
         baseline, trial = self.scenes.baseline, photograph.trial
         own = baseline.law_coordinates(trial.material, state.u)
         moduli = baseline.law.moduli(own)
@@ -97,7 +104,7 @@ class CreepCurves:
         return float(np.log(shear)) / MESH, moduli.bulk_modulus / shear
 
     def _solve(self, wanted: set[tuple[int, int, int]]) -> None:
-        """Beams (trial, index of K/G, index of modulus) that are not known yet, stiff ones first."""
+        """Solve the missing beams (trial, index of K/G, number of the modulus), stiff ones first."""
         missing = sorted(wanted - self._solved, key=lambda key: (key[0], key[1], -key[2]))
         beams = [
             self.scenes.elastic(trial, self._material(j, n), self.simulator.fidelity)
@@ -119,7 +126,7 @@ class CreepCurves:
         return material_from_moduli(law, shear_modulus=shear, bulk_modulus=BULK_RATIOS[j] * shear)
 
     def _at(self, photograph: TracedPhotograph, x: float, bulk_ratio: float) -> Array:
-        """Coefficients of a photograph (m,) [m], at a place between the beams of its curves."""
+        """Interpolated coefficients of a photograph [m], shape (m,), at a point of `_place`."""
         n = int(np.floor(x))
         cubic = _lagrange(x - n)
         both = [
@@ -132,7 +139,7 @@ class CreepCurves:
 
 
 def _lagrange(x: float) -> Array:
-    """Weights (4,) of the values at _REACH, at x from 0 to 1."""
+    """Lagrange weights (4,) of the values at _REACH, for x in [0, 1]."""
     weights = [
         np.prod([(x - other) / (node - other) for other in _REACH if other != node]) for node in _REACH
     ]

@@ -1,4 +1,4 @@
-"""What a lack of fit of outlines might look like: smooth bends of edges that photographs share."""
+"""Discrepancy basis of outlines: smooth deformations of edges that photographs share."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from calibration.measurements.outlines._photographs import TracedPhotograph
 
 Array = NDArray[np.float64]
 
-BEND = 4  # highest degree
+BEND = 4  # highest polynomial degree
 
 
 def discrepancies(
     photographs: Sequence[TracedPhotograph], trials: Sequence[BeamTrial]
 ) -> Mapping[str, Array]:
-    """Smooth bends of edges, shared in several ways, in the coefficients.
+    """Sets of columns in the coefficients of all photographs, shape (rows, k).
 
-    trial edges : each edge of each trial, degrees up to BEND, the same in all its photographs. trial
-    bends : both edges of each trial together, which is what bending does. support bends : as trial bends,
-    the same for trials of one length and support. drifts : as trial bends, growing with the logarithm of
-    time.
+    trial edges : for each edge of each trial, polynomials of degree 0 to BEND, equal in all its photographs.
+    trial bends : for both edges of each trial together, as in bending.
+    support bends : as trial bends, common to all trials of one length and support.
+    drifts : as trial bends, in proportion to the logarithm of time; trials with photographs at several times.
     """
     times = np.array([p.time for p in photographs])
     sets: dict[str, list[Array]] = {
@@ -52,8 +52,11 @@ def discrepancies(
 def _bend(
     photographs: Sequence[TracedPhotograph], weights: Array, degree: int, sides: tuple[int, int]
 ) -> Array:
-    """A polynomial of one degree along the edges: upper and lower are given with opposite normals or not
-    just as distances are, so that both alike mean a shift of the whole section."""
+    """Legendre polynomial along the edges, in the coefficients of all photographs, shape (rows,).
+
+    weights : factor for each photograph. sides : factors for the upper and the lower edge; equal factors
+    shift the whole section, since the distances of both edges have the same sign convention.
+    """
     whole = np.zeros(photographs[-1].rows.stop)
     for p, weight in zip(photographs, weights, strict=True):
         if weight == 0.0:

@@ -1,4 +1,4 @@
-"""A simulated beam as the tracer sees it: its two edges as fine polylines, distances along their normals."""
+"""Edges of a simulated beam as fine polylines; closest-point projection of traced points onto them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,20 @@ from tisim.mesh import outline
 Array = NDArray[np.float64]
 
 PIECES = (
-    24  # straight pieces an element: the chord of a strongly bent one 7 mm long is off by 0.3 micrometres
+    24  # straight pieces per element: the chord error of a strongly bent element of 7 mm is 0.3 micrometres
 )
 
 
 @dataclass(frozen=True, eq=False)
 class Feet:
-    """Where measured points meet an edge: signed distance [m] (positive outside the edge's left, (k,)),
-    unit normals (k, 2) and feet (k, 2) [m]."""
+    """Closest-point projection of k measured points onto an edge.
+
+    Attributes
+    ----------
+    distance : signed distance [m], positive on the left of the edge, shape (k,).
+    normal : unit normals of the edge, shape (k, 2).
+    foot : projected points [m], shape (k, 2).
+    """
 
     distance: Array
     normal: Array
@@ -28,7 +34,7 @@ class Feet:
 
 
 def edges(result: Result) -> tuple[Array, Array]:
-    """Upper and lower edge of the free part of a beam, (m, 2) each: x, z [m], from the clamp to the end."""
+    """Upper and lower edge of the free part of a beam, x, z [m] from the clamp to the end, (m, 2) each."""
     scene = result.scene
     assert isinstance(scene, Beam)
     seen = outline(result.mesh, result.positions[-1])
@@ -39,7 +45,7 @@ def edges(result: Result) -> tuple[Array, Array]:
 
 
 def _fine(nodes: Array) -> Array:
-    """Parabolas through end, middle and end of each element, as a polyline."""
+    """Polyline of the parabolas through the three nodes of each element edge."""
     a, b, c = nodes[0:-2:2, None], nodes[1:-1:2, None], nodes[2::2, None]
     t = (np.arange(PIECES) / PIECES)[None, :, None]
     line = a * (1 - t) * (1 - 2 * t) + b * 4 * t * (1 - t) + c * t * (2 * t - 1)
@@ -47,7 +53,7 @@ def _fine(nodes: Array) -> Array:
 
 
 def feet(points: Array, edge: Array) -> Feet:
-    """Feet of measured points (k, 2) on an edge (m, 2); past either end the last piece goes on straight."""
+    """Project measured points (k, 2) onto an edge (m, 2), which is extended straight beyond its ends."""
     pieces = np.diff(edge, axis=0)
     length = np.linalg.norm(pieces, axis=1)
     along = pieces / length[:, None]

@@ -1,4 +1,4 @@
-"""How an effect enters photographed beams: the scene, or the picture of it."""
+"""Effects in photographed beams: they change the simulated scene, or its image."""
 
 from __future__ import annotations
 
@@ -19,8 +19,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """What an effect may look at besides the scene: the trial, when the photograph was taken [s], and where
-    in the specimen it sits (part of the free length)."""
+    """Arguments of an effect besides the scene.
+
+    Attributes
+    ----------
+    trial : the trial.
+    time : time of the photograph since release [s].
+    position : position in the specimen, as a fraction of the free length; None for an effect without one.
+    """
 
     trial: BeamTrial
     time: float
@@ -39,16 +45,17 @@ def any_simulator(simulator: Simulator) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class OutlineEffect(EffectModel):
-    """`applies_to` is asked of a photograph's trial.
+    """An effect in photographed beams; `applies_to` takes the trial of a photograph.
 
     Attributes
     ----------
-    bend : the scene with the effect in it.
-    image : where the photograph shows points (k, 2) [m] of the scene.
-    timed : photographs of one trial differ by it.
-    instead : for a fault of the simulator, the scene without it; the amplitude is the fraction of the way
-        there.
-    faulty : which simulators may have it.
+    bend : function of (scene, amplitude, situation) to the scene with the effect.
+    image : function of (points (k, 2) [m], amplitude, situation) to their positions in the photograph; None
+        if it does not change the image.
+    timed : True if photographs of one trial at different times differ by it.
+    instead : for an error of the simulator, function to the scene without it; the amplitude is the fraction
+        of the change to that scene.
+    faulty : function that is True for simulators that can have it.
     """
 
     bend: Callable[[Beam, float, Situation], Beam] = untouched
@@ -59,21 +66,21 @@ class OutlineEffect(EffectModel):
 
     @property
     def bends(self) -> bool:
-        """True if it changes the scene, and not only its picture."""
+        """True if it changes the scene, not only its image."""
         return self.bend is not untouched
 
     def acts_on(self, record: Any) -> bool:
-        """True if a trial, or the trial of a photograph, can have it."""
+        """True if a trial, or the trial of a photograph, can have the effect."""
         return self.applies_to(getattr(record, "trial", record))
 
     def labels(self, record: Any) -> tuple[str, ...]:
-        """Any group of a trial may be named, by a rig's file too."""
+        """Trial, material and specimen: any of these can be named, also by a rig file."""
         trial: BeamTrial = getattr(record, "trial", record)
         return (trial.id, trial.material, trial.specimen or trial.material)
 
 
 def with_moduli(material: Material, *, shear: float, bulk: float) -> Material:
-    """The material with other moduli [Pa]; what it has without a unit (a stiffening) stays."""
+    """Material with other moduli [Pa]; dimensionless parameters (a stiffening) stay."""
     law = laws.get(material.law)
     plain = {n: material.parameters[n] for n, (unit, _) in law.parameters.items() if unit != "Pa"}
     return replace(material, parameters={**law.from_moduli(shear, bulk), **plain})

@@ -1,9 +1,9 @@
-"""The noise of a traced outline: correlated along the contour, and one registration draw a photograph.
+"""Noise model of a traced outline: error correlated along the contour, and registration of the photograph.
 
 Contour error along the normal: C_ij = sd^2 exp(-(s_i - s_j)^2 / (2 l^2)) on each edge (`measured/FORMAT.md`),
-plus a white floor of FLOOR sd. Without a floor this kernel claims that neighbouring points agree to less
-than a micrometre, and the likelihood would weigh the roughness of any mesh or tracing. At 0.02 the nine
-clean beams of a bench that another solver made are most likely, and have a reduced chi-square near 1.
+plus white noise of FLOOR sd. Without it this kernel implies that neighbouring points agree to less than a
+micrometre, so that the likelihood is sensitive to the roughness of any mesh or tracing. FLOOR = 0.02 has the
+largest likelihood for nine clean beams simulated by another solver; their reduced chi-square is then near 1.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ DEGREE = 9
 
 
 def contour_root(outline: TracedOutline) -> Array:
-    """Lower Cholesky factor of the contour error's covariance [m], (k, k), upper edge first."""
+    """Lower Cholesky factor of the contour error's covariance [m], shape (k, k), upper edge first."""
     blocks = []
     for edge in (outline.upper, outline.lower):
         s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
@@ -39,9 +39,11 @@ def contour_root(outline: TracedOutline) -> Array:
 
 
 def smooth_basis(outline: TracedOutline) -> Array:
-    """Orthonormal polynomials along each edge, (k, m): away from the clamps, what a parameter changes is
-    smooth, while an element's own waves are not. The likelihood weighs waves of 2 micrometres, and without
-    this would hold a parameter fast by how its mesh ripples."""
+    """Orthonormal polynomials along each edge, shape (k, m).
+
+    Away from the clamps the effect of a parameter is smooth, in contrast to the oscillations of elements. The
+    likelihood is sensitive to oscillations of 2 micrometres, by which a parameter would seem identified.
+    """
     blocks = []
     for edge in (outline.upper, outline.lower):
         s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
@@ -52,7 +54,7 @@ def smooth_basis(outline: TracedOutline) -> Array:
 
 
 def registration_columns(feet: Feet, registration: Registration) -> Array:
-    """What one sd of shift x, shift z, roll and scale adds to the distances [m], (k, 4)."""
+    """Change of the distances by one sd of shift x, shift z, roll and scale [m], shape (k, 4)."""
     n, q = feet.normal, feet.foot
     return np.column_stack(
         [
@@ -66,28 +68,36 @@ def registration_columns(feet: Feet, registration: Registration) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Nuisances:
-    """Unit-normal nuisances b that enter whitened residuals linearly: r = r0 - columns b.
+    """Standard normal nuisances b that enter whitened residuals linearly: r = r0 - columns b.
 
-    names (m,); columns (k, m). `profile` takes b at its most likely value for each r0.
+    Attributes
+    ----------
+    names : names of the nuisances, (m,).
+    columns : shape (k, m).
     """
 
     names: tuple[str, ...]
     columns: Array
 
     def estimate(self, whitened: Array) -> Array:
-        """Most likely b, (..., m), for residuals (..., k)."""
+        """Most likely b (..., m) for residuals r0 (..., k)."""
         normal = self.columns.T @ self.columns + np.eye(len(self.names))
         return np.asarray(np.linalg.solve(normal, (whitened @ self.columns).T).T)
 
     def profile(self, whitened: Array) -> Array:
-        """(..., k + m): residuals with b taken out, and b itself. Its squared sum is the chi-square of the
-        residuals under the covariance I + columns columns^T."""
+        """Residuals without the most likely b, followed by b, shape (..., k + m).
+
+        The sum of squares is the chi-square of r0 under the covariance I + columns columns^T.
+        """
         b = self.estimate(whitened)
         return np.concatenate([whitened - b @ self.columns.T, b], axis=-1)
 
 
 def sentence(outlines: Sequence[TracedOutline], uncorrected: str) -> str:
-    """What the noise consists of, for people. uncorrected : why the mesh's error is not; "" where it is."""
+    """Description of the noise, for reports.
+
+    uncorrected : reason why the mesh error is not corrected; "" if it is.
+    """
     from calibration.pages import significant
 
     def span(values: list[float]) -> str:

@@ -1,8 +1,8 @@
-"""What the lab admits not to know, as columns by name: where each photograph lies, radius, free length,
-density, rig; and what a simulation may get wrong next to a clamp.
+"""Nuisances as named columns: registration, section, free length, density, rig, simulation at the clamps.
 
-A column is what one sd more of its quantity adds to measured less simulated distances, by the sign that
-`Noise` expects: r = e + columns b."""
+A column is the change of the distances (measured minus simulated) if the true quantity is one sd larger than
+simulated, as in `Noise`: r = e + columns b.
+"""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from tisim import Beam, Result, simulate
 Array = NDArray[np.float64]
 Named = list[tuple[str, Array]]
 
-# [m]: meshes that agree elsewhere to 0.02 mm differ by this next to the singular corner of a clamp
+# sd [m] next to the singular corner of a clamp, where meshes that agree elsewhere to 0.02 mm differ by this
 CORNER_SD = 8e-5
 
 
 def registrations(
     photographs: Sequence[TracedPhotograph], results: Sequence[Result], scenes: Scenes, state: State
 ) -> Named:
-    """What one sd of each photograph's shift, roll and scale does to the coefficients [m]."""
+    """Change of the coefficients by one sd of each photograph's shift, roll and scale [m]."""
     columns = []
     for p, r in zip(photographs, results, strict=True):
         both = feet_of(p, r, scenes.images(p.beam, state, time=p.time))
@@ -44,9 +44,14 @@ def registrations(
 
 
 def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], state: State) -> Named:
-    """What one sd of each radius, free length and density that is stated with a sd does to the coefficients.
+    """Change of the coefficients by one sd of each dimension, free length and density stated with a sd [m].
 
-    base: those of `results` [m], the answer of `state`, which has no effect that differs in time.
+    Parameters
+    ----------
+    solutions : solutions of the photographs.
+    base : coefficients of `results` [m].
+    results : simulated beams at `state`, one per photograph.
+    state : a state without effects that depend on time.
     """
     scenes, parts, beams = solutions.scenes, [], []
     first = {p.beam: r for p, r in zip(reversed(solutions.photographs), reversed(results), strict=True)}
@@ -56,7 +61,7 @@ def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], st
             touched = [mine[i] for i in n.trials if mine[i] in first]
             parts.append((n, touched))
             for i in touched:
-                solved = first[i].scene  # whatever the simulator, as the answer was solved
+                solved = first[i].scene  # as it was solved, for any simulator
                 assert isinstance(solved, Beam)
                 beams.append(n.moved(solved))
     at_rest = all(b.solver.method == "static" for b in beams)
@@ -75,8 +80,10 @@ def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], st
 
 
 def doubts(solutions: SolutionCache, base: Array, state: State) -> Named:
-    """What one sd of each direction of what is known of the rig does to the coefficients [m]; base: those of
-    the state. ValueError where a beam has no equilibrium then."""
+    """Change of the coefficients by one sd of each independent direction of the rig's setup [m].
+
+    base : coefficients at the state. ValueError if a beam then has no equilibrium.
+    """
     setup = solutions.scenes.setup
     columns = []
     for name, off in [] if setup is None else setup.doubts():
@@ -86,7 +93,7 @@ def doubts(solutions: SolutionCache, base: Array, state: State) -> Named:
 
 
 def corners(photographs: Sequence[TracedPhotograph]) -> Named:
-    """What the simulation may get wrong next to a clamp, the same in all photographs of a trial [m]."""
+    """Error of the simulation next to a clamp, equal in all photographs of a trial [m]."""
     columns = []
     for trial in dict.fromkeys(p.beam for p in photographs):
         mine = [p for p in photographs if p.beam == trial]

@@ -1,4 +1,4 @@
-"""Traced photographs of beams, and where their points lie against a simulated beam."""
+"""Traced photographs of beams, and distances of their points from a simulated beam."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 Image = Callable[[Array], Array]
 
 
-# Points nearer to a clamp than this part of the half height are left out. Up to some halves of it a squeezed
-# section shows, and the corner's singularity: what dies away over these lengths, in half heights, is kept
-# beside the polynomials, which could not follow it.
+# Points nearer to a clamp than CORNER half heights are left out. Near the clamp a squeezed section and the
+# singularity of the corner are visible: functions that decay over DECAYS half heights are added to the
+# polynomials, which could not represent them.
 CORNER = 0.08
 DECAYS = (0.5, 0.2)
 
@@ -32,13 +32,14 @@ class TracedPhotograph:
 
     Attributes
     ----------
-    trial : of the beam; beam : its index among the trials of the model.
-    time : after its release [s].
-    basis : orthonormal, of what is smooth along each edge, and of what dies away from each clamp, shape (k,
-    m).
-    corners : the latter, of height 1 at the clamp, in coefficients, shape (m, c).
-    covariance : of the contour's error in these coefficients [m2], shape (m, m).
-    rows : of its coefficients among those of all photographs.
+    trial : trial of the beam.
+    beam : index of the trial among those of the model.
+    time : time since its release [s].
+    outline : traced outline of k points, without those next to clamps.
+    basis : orthonormal basis of polynomials along each edge and of decays from each clamp, shape (k, m).
+    corners : coefficients of the decays, of height 1 at the clamp, shape (m, c).
+    covariance : covariance of the coefficients by the contour's error [m2], shape (m, m).
+    rows : slice of its coefficients among those of all photographs.
     """
 
     trial: BeamTrial
@@ -74,16 +75,17 @@ class TracedPhotograph:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SeenPhotograph:
-    """A photograph against its simulated beam.
+    """A photograph with its simulated beam.
 
     Attributes
     ----------
-    photograph : the traced one.
-    feet : of its points on the upper and on the lower edge, as the camera shows them.
-    simulated : upper and lower edge of the beam, as the camera shows them, (m, 2) each [m].
-    raw, left : distances of all points [m], (k,), the mesh's error corrected: as traced, and with the most
-        likely nuisances removed.
-    result : the simulated beam; images : what the camera does to it.
+    photograph : the traced photograph.
+    feet : projections of its points onto the upper and the lower edge, in the image.
+    simulated : upper and lower edge of the beam in the image [m], shape (m, 2) each.
+    raw : distances of all points, corrected for the mesh error [m], shape (k,).
+    left : `raw` without the most likely nuisances [m], shape (k,).
+    result : the simulated beam.
+    images : maps from the scene to the image.
     """
 
     photograph: TracedPhotograph
@@ -96,14 +98,16 @@ class SeenPhotograph:
 
 
 def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = CORNER) -> TracedOutline:
-    """The outline without the points nearer to a clamp than `zone` half heights of the section; InputError
-    where fewer than 3 an edge are left."""
+    """Outline without the points nearer to a clamp than `zone` half heights of the section.
+
+    InputError if fewer than 3 points of an edge remain.
+    """
     section = trial.section
     half = section.radius if isinstance(section, Circle) else section.height / 2.0
     end = trial.free_length if trial.supports == "clamped-clamped" else np.inf
 
     def kept(edge: Array) -> Array:
-        # where the far end is held, x of the free part at rest and bent agree there
+        # a clamped far end has the same x at rest and in the deformed state
         return edge[(edge[:, 0] > zone * half) & (edge[:, 0] < end - zone * half)]
 
     upper, lower = kept(outline.upper), kept(outline.lower)
@@ -116,7 +120,7 @@ def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = 
 
 
 def photographs_of(trials: Sequence[BeamTrial]) -> list[TracedPhotograph]:
-    """All traced photographs. InputError where an outline has too few points away from the clamps."""
+    """All traced photographs. InputError if an outline has too few points away from the clamps."""
     found: list[TracedPhotograph] = []
     first = 0
     for i, t in enumerate(trials):
@@ -145,7 +149,7 @@ def photographs_of(trials: Sequence[BeamTrial]) -> list[TracedPhotograph]:
 
 
 def _corners(outline: TracedOutline, trial: BeamTrial) -> Array:
-    """What dies away from each clamp along each edge, of height 1 there, (k, c)."""
+    """Exponential decays from each clamp along each edge, of height 1 at the clamp, shape (k, c)."""
     section = trial.section
     half = section.radius if isinstance(section, Circle) else section.height / 2.0
     ends = (0.0, trial.free_length) if trial.supports == "clamped-clamped" else (0.0,)
@@ -160,23 +164,23 @@ def _corners(outline: TracedOutline, trial: BeamTrial) -> Array:
 
 
 def shown(line: Array, images: Sequence[Image]) -> Array:
-    """Points (k, 2) of the scene as the camera shows them."""
+    """Map points (k, 2) of the scene to the image."""
     for image in images:
         line = image(line)
     return line
 
 
 def feet_of(photograph: TracedPhotograph, result: Result, images: Sequence[Image] = ()) -> list[Feet]:
-    """Feet of its points on the upper and on the lower edge of a simulated beam, as the camera shows them."""
+    """Projections of a photograph's points onto the upper and the lower edge of a beam, in the image."""
     upper, lower = (shown(line, images) for line in edges(result))
     return [feet(photograph.outline.upper, upper), feet(photograph.outline.lower, lower)]
 
 
 def distances(both: Sequence[Feet]) -> Array:
-    """Signed distances [m] of upper and lower points."""
+    """Signed distances [m] of the upper, then the lower points, shape (k,)."""
     return np.concatenate([f.distance for f in both])
 
 
 def coefficients(photograph: TracedPhotograph, result: Result, images: Sequence[Image] = ()) -> Array:
-    """Smooth part of its distances from a simulated beam, by the basis [m], (m,)."""
+    """Coefficients of a photograph's distances from a simulated beam in its basis [m], shape (m,)."""
     return np.asarray(photograph.basis.T @ distances(feet_of(photograph, result, images)))

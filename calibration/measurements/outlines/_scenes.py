@@ -1,4 +1,4 @@
-"""From a state to the beams that it stands for: each trial's scene with the effects that reach it."""
+"""Scenes of a state: the beam of each trial, with the effects that apply to it."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from tisim import Beam, Course, Material, material_from_moduli
 Array = NDArray[np.float64]
 Form = tuple[str, float | None]  # an effect and its position
 
-# Without stiffening it is the neo-Hookean law, as a fit has it: at strains of 0.7 and this K/G one that takes
-# volume in another way (Yeoh's) has another modulus, by an eighth of its sd.
+# Without stiffening this is the neo-Hookean law of a fit. A law with another volumetric term (Yeoh's) has, at
+# strains of 0.7 and this K/G, a modulus that differs by an eighth of its sd.
 LAW = "stiffening-neo-hookean"
-BULK_RATIO = 300.0  # K/G, as fits expect it
+BULK_RATIO = 300.0  # K/G, the centre of its prior in fits
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,9 +34,12 @@ class Scenes:
 
     Attributes
     ----------
-    baseline : gives each trial's specimen its material.
-    pose : what is done to every scene at last, for experiments that are only considered.
-    setup : what is known of rig and camera, applied to every scene and picture before any effect.
+    experiment : the experiment.
+    trials : trials of beams.
+    baseline : material of each trial's specimen.
+    effects : effects by name.
+    pose : function that is applied to each scene last, for hypothetical experiments; None for none.
+    setup : known setup of rig and camera, applied to each scene and image before any effect; None for none.
     """
 
     experiment: Experiment
@@ -47,7 +50,7 @@ class Scenes:
     setup: Setup | None = None
 
     def inside(self, trial: int, state: State) -> dict[Form, float]:
-        """Amplitudes of the effects that are in a trial."""
+        """Amplitudes of the effects in a trial, by effect and position."""
         t = self.trials[trial]
         found: dict[Form, float] = {}
         for c, a in state.amplitudes.items():
@@ -56,11 +59,11 @@ class Scenes:
         return {kind: a for kind, a in found.items() if a != 0.0}
 
     def beam(self, trial: int, state: State, *, time: float, fidelity: Fidelity) -> Beam:
-        """A trial's beam, `time` [s] after its release; of a viscous material one that hangs from then on."""
+        """Beam of a trial, `time` [s] after its release; with viscosity, a beam under load from time 0."""
         t = self.trials[trial]
         beam = self.plain(t, state.u, fidelity)
         inside = self.inside(trial, state)
-        # what changes the law goes before what changes its moduli, everything else in the catalogue's order
+        # the effect that changes the law precedes those that change its moduli; else the catalogue's order
         order = list(self.effects)
         for name, position in sorted(inside, key=lambda k: (k[0] != "strain-stiffening", order.index(k[0]))):
             situation = Situation(trial=t, time=time, position=position)
@@ -69,7 +72,7 @@ class Scenes:
         return beam if beam.material.viscosity is None else hanging(beam, (time,))
 
     def images(self, trial: int, state: State, *, time: float) -> list[Image]:
-        """What the camera does to the picture of a trial."""
+        """Maps from the scene of a trial to its image, in order."""
         t = self.trials[trial]
         found: list[Image] = [] if self.setup is None else [partial(self.setup.image, trial=t)]
         for (name, position), a in self.inside(trial, state).items():
@@ -80,8 +83,7 @@ class Scenes:
         return found
 
     def key(self, trial: int, state: State, *, time: float) -> tuple[object, ...]:
-        """What a photograph's scene depends on: equal keys, equal scenes, but for the times at which a
-        viscous beam is photographed."""
+        """Key of a photograph's scene: scenes of equal keys differ only in frame times of viscous beams."""
         bending = {k: a for k, a in self.inside(trial, state).items() if self.effects[k[0]].bends}
         timed = any(self.effects[name].timed for name, _ in bending)
         material = self.material(self.trials[trial], state.u)
@@ -90,11 +92,11 @@ class Scenes:
         return (trial, material.law, values, material.viscosity, inside, time if timed else None)
 
     def plain(self, trial: BeamTrial, u: Array, fidelity: Fidelity) -> Beam:
-        """The beam of a trial without effects, ideal but for what is known of the rig."""
+        """Beam of a trial without effects, with the known setup of the rig."""
         return self._ideal(trial, self.material(trial, u), fidelity)
 
     def elastic(self, trial: int, material: Material, fidelity: Fidelity) -> Beam:
-        """The beam of a trial, by its index, without effects, of a material that does not creep."""
+        """Beam of a trial (by index) without effects, with an elastic material."""
         beam = self._ideal(self.trials[trial], material, fidelity)
         return beam if self.pose is None else self.pose(beam, self.trials[trial])
 
@@ -105,7 +107,7 @@ class Scenes:
         return beam if self.setup is None else self.setup.bend(beam, trial)
 
     def material(self, trial: BeamTrial, u: Array) -> Material:
-        """What a trial's beam is made of."""
+        """Material of a trial's beam."""
         specimen = trial.specimen or trial.material
         if self.baseline.whole:
             return self.baseline.material(specimen, u)
@@ -114,7 +116,7 @@ class Scenes:
 
 
 def hanging(beam: Beam, times: Sequence[float]) -> Beam:
-    """A beam that hangs from time 0 on, without inertia, with a frame at each of these times [s], rising."""
+    """Beam under its load from time 0, quasi-static, with a frame at each of these increasing times [s]."""
     return replace(beam, course=Course(frames=tuple(times)).jump(1.0).hold(times[-1]))
 
 

@@ -1,5 +1,4 @@
-"""Solutions of states: scenes that photographs or states share are solved once, faults of the simulator are
-blended."""
+"""Solutions of states: shared scenes are solved once; corrections of simulator errors are interpolated."""
 
 from __future__ import annotations
 
@@ -22,7 +21,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolutionCache:
-    """Simulated beams of some photographs; workers : processes (None: all cores)."""
+    """Simulated beams of photographs.
+
+    Attributes
+    ----------
+    scenes : scenes of the trials.
+    photographs : photographs to simulate.
+    simulator : simulator of the beams.
+    workers : number of processes; None for all cores.
+    """
 
     scenes: Scenes
     photographs: Sequence[TracedPhotograph]
@@ -31,20 +38,24 @@ class SolutionCache:
 
     @property
     def surrogate(self) -> SolutionCache:
-        """The one whose derivatives guide a search: this one, unless its simulator names another."""
+        """Solutions whose derivatives guide a search: this object, unless its simulator has a surrogate."""
         return (
             self if self.simulator.surrogate is None else replace(self, simulator=self.simulator.as_surrogate)
         )
 
     def corrected_by(self, name: str) -> SolutionCache:
-        """The one whose beams show the correction of a fault of the simulator: this one if they are then at
-        rest, else the surrogate."""
+        """Solutions from which the correction of a simulator error is computed.
+
+        This object if the corrected beams are static, else the surrogate.
+        """
         beam = self.scenes.beam(0, self._any, time=1.0, fidelity=self.simulator.fidelity)
         return self if self._corrected(beam, name).solver.method == "static" else self.surrogate
 
     def values(self, wanted: Sequence[State]) -> list[Array]:
-        """Smooth coefficients of the distances of all photographs [m], (points,) for each state; NaN where a
-        photograph's beam has no equilibrium."""
+        """Coefficients of the distances of all photographs [m], shape (points,), for each state.
+
+        NaN for photographs whose beam has no equilibrium.
+        """
         found = [
             self.values_of(results, one) for one, results in zip(wanted, self.solve(wanted), strict=True)
         ]
@@ -66,7 +77,7 @@ class SolutionCache:
         return found
 
     def values_of(self, results: Sequence[Result | None], state: State) -> Array:
-        """Smooth coefficients of the distances from simulated beams [m], (points,)."""
+        """Coefficients of the distances from simulated beams [m], shape (points,); NaN without a result."""
         return np.concatenate(
             [
                 np.full(p.basis.shape[1], np.nan)
@@ -77,9 +88,9 @@ class SolutionCache:
         )
 
     def solve(self, wanted: Sequence[State], *, instead: str | None = None) -> list[list[Result | None]]:
-        """One result a photograph for each state, None where it has no equilibrium.
+        """One result per photograph for each state; None if it has no equilibrium.
 
-        instead: the simulator's fault without which the beams are to be simulated.
+        instead : name of a simulator error without which the beams are simulated.
         """
         beams: list[Beam] = []
         known: dict[tuple[object, ...], int] = {}
@@ -104,8 +115,10 @@ class SolutionCache:
         ]
 
     def answer(self, state: State) -> Sequence[Result]:
-        """One result a photograph, without those faults of the simulator that the state names. ValueError
-        where a beam has no equilibrium."""
+        """One result per photograph; the first simulator error of an amplitude above 0.5 is corrected.
+
+        ValueError if a beam has no equilibrium.
+        """
         corrected = [n for n, part in self._faults(state).items() if part > 0.5]
         own = self.corrected_by(corrected[0]) if corrected else self
         found = own.solve([state], instead=corrected[0] if corrected else None)[0]
@@ -116,10 +129,10 @@ class SolutionCache:
     def fine(
         self, state: State, reference: Fidelity, *, one_by_one: bool = False
     ) -> tuple[Sequence[Result], str]:
-        """One result a photograph on a finer mesh; none, and why, where a beam has no equilibrium there.
+        """One result per photograph on a finer mesh; if a beam has no equilibrium, none and the reason.
 
-        one_by_one : the longest first, since that one fails if any, and no others after one that failed: a
-        beam without equilibrium costs a hundred times one that has it.
+        one_by_one : if True, solve the longest beam first, which fails if any does, and stop at the first
+        failure: a beam without equilibrium costs a hundred times one that has it.
         """
         trials = self.scenes.trials
         longest = sorted(range(len(trials)), key=lambda i: -trials[i].free_length)
@@ -139,7 +152,7 @@ class SolutionCache:
         return [r for p in self.photographs if (r := at_time(found[p.beam], p.time)) is not None], ""
 
     def _faults(self, state: State) -> dict[str, float]:
-        """Parts of the simulator's faults that are taken away."""
+        """Amplitudes of the corrections of simulator errors, by effect."""
         parts: dict[str, float] = {}
         for c, a in state.amplitudes.items():
             parts[c.effect] = parts.get(c.effect, 0.0) + a
@@ -156,7 +169,7 @@ class SolutionCache:
 
 
 def at_time(result: Result | None, time: float) -> Result | None:
-    """A beam with a course as it is at a time [s] of one of its frames; one without is always the same."""
+    """Result of a beam with a course at the frame nearest to a time [s]; others are returned unchanged."""
     if result is None or result.time is None or getattr(result.scene, "course", None) is None:
         return result
     k = int(np.argmin(np.abs(result.time - time)))
@@ -164,7 +177,7 @@ def at_time(result: Result | None, time: float) -> Result | None:
 
 
 def _photographed(beam: Beam, times: set[float]) -> Beam:
-    """A beam with frames at the times of its photographs [s], where it changes with time at all."""
+    """Beam with frames at the times of its photographs [s], if it has a course."""
     return beam if beam.course is None else hanging(beam, sorted(times))
 
 
@@ -173,7 +186,7 @@ def complete(results: Sequence[Result | None]) -> TypeGuard[Sequence[Result]]:
 
 
 def simulated(beams: Sequence[Beam], run: object, workers: int | None) -> list[Result | None]:
-    """Results, None for a beam that has no equilibrium or that cannot be: a search tries odd ones too."""
+    """Results of beams; None for a beam without equilibrium, or an invalid one, which a search may try."""
     assert callable(run)
     try:
         results: list[Result] = run(beams, workers=workers)

@@ -1,7 +1,7 @@
 """The paper's objective: the overlap (Dice) of simulated beams with bodies swept along measured mid lines.
 
-Not a likelihood: it knows no tracing error, no registration and no nuisance, so it has no error bars, and a
-cost of it cannot be added to a chi-square. It is here to compare with what was published.
+It is not a likelihood: it has no model of tracing error, registration or nuisances, so it gives no
+uncertainty, and its cost cannot be added to a chi-square. It is for comparison with published results.
 """
 
 from __future__ import annotations
@@ -25,20 +25,27 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# The cost counts Dice lost in steps of SCALE^2 = 1e-4: what a 20 mm beam loses by 1.6 micrometres of sideways
-# shift. A search that stops when costs agree to 0.5 has the sum over all photographs to 5e-5.
+# The unit of the cost is a loss of Dice of SCALE^2 = 1e-4, as by a sideways shift of 1.6 micrometres of a
+# 20 mm beam. A search that stops when costs agree to 0.5 has the sum over all photographs to 5e-5.
 SCALE = 1e-2
 
-# Two rings: with the search's single ring the section is a body of its own, 6 parabolas round.
+# Two rings: with the search's single ring the section has only 6 parabolas around, a visibly different shape.
 DICE_FIDELITY = Fidelity()
-# Flat triangles along each side of a curved facet: 12 sides of 4 lose 0.29 % of the area, nearly alike
-# whatever the material, so that they lower a Dice by up to 0.0014 and leave its place alone.
+# Flat triangles along each side of a curved facet: 12 sides of 4 lose 0.29 % of the area, nearly independent
+# of the material: they lower a Dice by up to 0.0014 and do not move its optimum.
 _SUBDIVIDE = 4
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredBody:
-    """One traced photograph of a trial as a body: the rest section swept along its mid line [m]."""
+    """Body of a traced photograph: the rest section swept along its mid line [m].
+
+    Attributes
+    ----------
+    name : trial and time of the photograph.
+    trial : index of the trial.
+    body : surface of the body.
+    """
 
     name: str
     trial: int
@@ -46,13 +53,23 @@ class MeasuredBody:
 
 
 class DiceObjective:
-    """Traced outlines of one material's beams as overlaps of bodies; a `calibration.inference.Objective`.
+    """Overlap of bodies for the traced outlines of one material; a `calibration.inference.Objective`.
 
-    residual of a photograph: sqrt(1 - Dice) / SCALE, so that the squared sum is that of (1 - Dice) / SCALE^2.
-    It is no smooth function of the parameters where a body fits exactly: search it, never polish it by
-    Gauss-Newton. Specimens are taken as the lab states them, density included; photographs as they lie.
-    fidelity: of the simulated beams. InputError where the density is not stated, no trial has an outline, or
-    an outline gives no body.
+    The residual of a photograph is sqrt(1 - Dice) / SCALE, so that the sum of squares is that of
+    (1 - Dice) / SCALE^2. It is not smooth in the parameters where a body fits exactly: use a search, not
+    Gauss-Newton. Specimens are as the lab states them, including density; photographs are not registered.
+
+    Parameters
+    ----------
+    trials : trials of the material; those without an outline are ignored.
+    belief : the material's entry in the experiment, with its density.
+    fidelity : discretisation of the simulated beams.
+    workers : number of processes, as in `tisim.simulate`.
+
+    Raises
+    ------
+    InputError
+        If the density is not stated, no trial has an outline, or an outline gives no body.
     """
 
     def __init__(
@@ -79,19 +96,21 @@ class DiceObjective:
 
     @property
     def points(self) -> int:
-        """Photographs."""
+        """Number of photographs."""
         return len(self.measured)
 
     def size(self) -> int:
         return len(self.measured)
 
     def residuals(self, materials: Sequence[Material]) -> Array:
-        """(batch, photographs): sqrt(1 - Dice) / SCALE; NaN as `overlaps`."""
+        """sqrt(1 - Dice) / SCALE, shape (batch, photographs); NaN as in `overlaps`."""
         return np.asarray(np.sqrt(1.0 - self.overlaps(materials)) / SCALE)
 
     def overlaps(self, materials: Sequence[Material]) -> Array:
-        """Dice of each photograph (batch, photographs). A whole row is NaN where a beam of that material has
-        no equilibrium, or hangs so far that its surface crosses itself and bounds no body."""
+        """Dice of each photograph, shape (batch, photographs).
+
+        A row is NaN if a beam of that material has no equilibrium, or a surface that intersects itself.
+        """
         found = np.full((len(materials), len(self.measured)), np.nan)
         for k, results in enumerate(self._simulate(materials)):
             if not all(r.ok for r in results):
@@ -115,9 +134,9 @@ class DiceObjective:
 
 
 def measured_bodies(trial: BeamTrial, *, index: int = 0) -> list[MeasuredBody]:
-    """A body for each traced photograph of a trial, without what the grips hold (as tisim's beams are).
+    """Bodies of a trial's traced photographs, without the parts in the grips (as tisim's beams).
 
-    InputError, with the trial's name, where an outline has no mid line to sweep along.
+    InputError, with the trial's name, if an outline has no mid line.
     """
     found = []
     for c in trial.captures:

@@ -1,4 +1,4 @@
-"""What a lab can do next with beams: other photographs of the same specimens, and direct measurements."""
+"""Next experiments for beams: other photographs of the same specimens, and direct measurements."""
 
 from __future__ import annotations
 
@@ -25,8 +25,13 @@ def _as_it_is(beam: Beam, trial: BeamTrial) -> Beam:
 class Photographs:
     """Photographs of the same specimens in another pose.
 
-    sentence: what to do. trial: how a trial changes, None where it cannot be done with it. pose: what that
-    does to the specimen's own faults, in the scene. time [s] of the photograph since release.
+    Attributes
+    ----------
+    name : of the experiment.
+    sentence : instruction for the lab.
+    trial : function from a trial to the changed trial; None if it cannot be done.
+    pose : function of (scene, trial) that transforms the specimen's imperfections in the scene.
+    time : time of the photograph since release [s].
     """
 
     name: str
@@ -43,8 +48,11 @@ def _turned(beam: Beam, _: BeamTrial) -> Beam:
 
 
 def _swapped(beam: Beam, trial: BeamTrial) -> Beam:
-    """What was at x from the clamp comes to L - x; of a cantilever what its grip held comes free, so that it
-    comes to L - x less the grip, and its free end is held."""
+    """Scene with the ends of the specimen swapped: a point at x from the clamp moves to L - x.
+
+    The gripped part of a cantilever becomes free and its free end is gripped: x moves to L - x - grip length.
+    A void that would lie in the grip is left out.
+    """
     s = beam.imperfections
     held = trial.grip_length if cantilever(trial) else 0.0
     at = trial.free_length - held - s.void.position if s.void else 0.0
@@ -68,7 +76,7 @@ def _hung(trial: BeamTrial) -> BeamTrial | None:
 
 
 def _deeper(trial: BeamTrial) -> BeamTrial | None:
-    """Pushed deeper into its grip; a shorter one has not enough in the grip to be pulled out."""
+    """Cantilever pushed deeper into its grip; None if it is too short, since it cannot be pulled out."""
     fits = cantilever(trial) and trial.free_length > OTHER_LENGTH
     return replace(trial, free_length=OTHER_LENGTH) if fits else None
 
@@ -77,7 +85,7 @@ def _loaded(trial: BeamTrial) -> BeamTrial | None:
     return replace(trial, tip_force=(0.0, 0.0, -TIP_MASS * GRAVITY)) if cantilever(trial) else None
 
 
-# The cheapest first: the first that settles the matter is advised.
+# The cheapest first: the first that separates the explanations is recommended.
 EXPERIMENTS: tuple[Photographs | Gauge, ...] = (
     Gauge(
         name="weigh",

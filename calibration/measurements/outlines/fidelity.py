@@ -1,4 +1,4 @@
-"""How a trial's beam is simulated: the beams that a search solves, and fine ones."""
+"""Discretisation of a trial's beam: for a search, and for references."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ from tisim import Beam, Material, Solver
 
 @dataclass(frozen=True, kw_only=True)
 class Fidelity:
-    """How beams are simulated in a search: `tisim.Beam`'s element, layer [m], rings and solver."""
+    """Discretisation of a beam.
+
+    Attributes
+    ----------
+    element : element type of `tisim.Beam`.
+    layer : axial element size [m].
+    rings : number of radial elements.
+    solver : solver settings.
+    """
 
     element: str = "default"
     layer: float = 0.007
@@ -18,18 +26,18 @@ class Fidelity:
     solver: Solver = field(default_factory=lambda: Solver(tolerance=1e-6))
 
 
-# The beams that a search solves (14 core-ms each), and those that bodies are compared by (`paper_table`). Few
-# iterations: a beam that has an equilibrium takes 4, and one that has none costs 50 times as much anyway.
-# What the search's mesh gets wrong (1.2 % of the deflection at most, waves of 10 to 20 micrometres along a
-# strongly bent edge) is small and hardly depends on the material, but nine photographs' likelihood sees it:
-# `simulators.CORRECTING` are the beams that correct it. The error of REFERENCE is a fifth of that at most (15
-# micrometres on the 100 mm beam).
+# COARSE is for a search (14 core-ms per beam), REFERENCE for the comparison of bodies (`paper_table`). The
+# number of iterations is small: a beam with an equilibrium takes 4, and one without costs 50 times as much
+# anyway. The error of COARSE (up to 1.2 % of the deflection, oscillations of 10 to 20 micrometres along a
+# strongly bent edge) is small and hardly depends on the material, but the likelihood of nine photographs is
+# sensitive to it: it is corrected by the beams of `simulators.CORRECTING`. The error of REFERENCE is at most
+# a fifth of it (15 micrometres on the 100 mm beam).
 COARSE = Fidelity(rings=1, solver=Solver(max_iterations=12))
 REFERENCE = Fidelity(layer=0.00175, rings=3, solver=Solver(max_iterations=12))
 
 
 def beam_scene(trial: BeamTrial, material: Material, *, density: float, fidelity: Fidelity) -> Beam:
-    """A trial as the lab states it, in a material; density [kg/m3] replaces the material's."""
+    """Scene of a trial as the lab states it; `density` [kg/m3] replaces the material's."""
     return Beam(
         material=replace(material, density=density),
         length=trial.free_length,

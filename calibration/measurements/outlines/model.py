@@ -1,8 +1,8 @@
-"""Photographed beams of all materials together, with effects nested in their FEM.
+"""Measurement model of photographed beams of all materials together, with effects in their FEM simulation.
 
-What is compared is the smooth part of the distances between traced points and simulated edges: for each edge
-of each photograph the coefficients of polynomials, whitened by the contour's noise as the lab states it
-together with all nuisances (registration, radius, free length, density, what the mesh's correction leaves).
+It compares the smooth part of the distances between traced points and simulated edges: for each edge of each
+photograph the coefficients of polynomials, whitened by the contour error that the lab states and all
+nuisances (registration, radius, free length, density, remaining mesh error).
 """
 
 from __future__ import annotations
@@ -54,27 +54,32 @@ EACH_EDGE = 40  # points of a made outline
 
 
 class OutlineModel(MeasurementModel):
-    """Baseline: neo-Hookean and nearly incompressible, one modulus a specimen; trials that name no specimen
-    share one a material. `update_nuisances` comes before residuals.
+    """Measurement model of photographed beams.
+
+    The baseline is neo-Hookean and nearly incompressible, with one modulus per specimen; trials of a material
+    that name no specimen share one. Call `update_nuisances` before `residuals`.
+
+    The misfit of this kind is measured minus simulated: the distance of traced points from simulated edges.
 
     Parameters
     ----------
-    experiment : its traced beams are used.
-    effects : by name; see `calibration.diagnosis.effects.outlines`. Those that the simulator cannot have are
-        left out.
-    simulator : whose faults are looked for too.
-    workers : as in `tisim.simulate`.
+    experiment : experiment with traced beams; other trials are ignored.
+    effects : effects by name; see `calibration.diagnosis.effects.outlines`. Those that the simulator cannot
+        have are left out.
+    simulator : simulator of the beams, whose errors are diagnosed too.
+    workers : number of processes, as in `tisim.simulate`.
     pose : see `Scenes`.
-    baseline : whose coordinates are to be understood: of another model of the same specimens, or of a fit.
-    setup : what is known of rig and camera, applied to every scene and picture; its doubts are nuisances.
+    baseline : baseline in place of the default: of another model of the same specimens, or of a fit.
+    setup : known setup of rig and camera, applied to each scene and image; its uncertainties are nuisances.
 
     Attributes
     ----------
-    uncorrected : why the mesh's error is not corrected; "" where it is.
+    uncorrected : reason why the mesh error is not corrected; "" if it is.
 
     Raises
     ------
-    InputError : no beam was traced, or a density is missing.
+    InputError
+        If no beam was traced, or a density is missing.
     """
 
     kind = "outlines"
@@ -144,8 +149,11 @@ class OutlineModel(MeasurementModel):
         return None if self._creep is None else self.start()
 
     def start(self) -> Array:
-        """The modulus of each specimen, of a coarse scan, that comes nearest to its outlines. From stiff to
-        soft, and no further than past the nearest: beams far too soft are dear, or have no equilibrium."""
+        """Start coordinates (n,): for each specimen the best modulus of a coarse scan.
+
+        The scan goes from stiff to soft and ends after the best modulus, since beams that are far too soft
+        are expensive or have no equilibrium. ValueError if a specimen has no equilibrium.
+        """
         names = self.baseline.specimens
         best, found = dict.fromkeys(names, np.inf), dict.fromkeys(names, float(SCAN[0]))
         left = set(names)  # specimens that the last modulus brought nearer
@@ -166,8 +174,10 @@ class OutlineModel(MeasurementModel):
         return self.baseline.start(found)
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
-        """Nuisances and the correction of the mesh's error, taken at a state; rough : without the correction,
-        to find out where to take it."""
+        """Update nuisances and the correction of the mesh error at a state.
+
+        rough : if True, without the correction. ValueError if a beam has no equilibrium.
+        """
         # effects that differ in time are left out: what is taken here hardly depends on the modulus
         lasting = {c: a for c, a in state.amplitudes.items() if not self.effects[c.effect].timed}
         calm = replace(state, amplitudes=lasting)
@@ -189,8 +199,11 @@ class OutlineModel(MeasurementModel):
         self._updated = True
 
     def _corrected(self, state: State, base: Array, coarser: Fidelity, finer: Fidelity) -> tuple[Array, str]:
-        """What the mesh of the search misses [m], (rows,), by Richardson's extrapolation of second order in
-        the number of rings; zero, and why, where a reference has no equilibrium."""
+        """Correction of the search's mesh error [m], shape (rows,), and "" or the reason why it is zero.
+
+        It is a Richardson extrapolation of second order in the number of rings; zero if a reference has no
+        equilibrium.
+        """
         if self.baseline.whole and self.uncorrected:
             return np.zeros(len(base)), self.uncorrected  # a law that has none here is not tried again
         values = []
@@ -207,7 +220,7 @@ class OutlineModel(MeasurementModel):
         return self._from(self._used(), states)
 
     def _from(self, solutions: SolutionCache, states: Sequence[State]) -> Array:
-        """By some simulated beams; NaN for photographs that none of them is of."""
+        """Misfit by given solutions, shape (batch, rows); NaN for photographs that they do not include."""
         if not self._updated:
             raise RuntimeError("call update_nuisances of an OutlineModel before use")
         found = np.full((len(states), len(self.row_record)), np.nan)
@@ -221,12 +234,12 @@ class OutlineModel(MeasurementModel):
         return found
 
     def _used(self) -> SolutionCache:
-        """Of the photographs that are compared."""
+        """Solutions of the photographs that are compared."""
         used = [p for p in self.records if self.noise.used[p.rows].any()]
         return replace(self.solutions, photographs=used)
 
     def _beside(self, state: State) -> list[tuple[State, Mapping[int, NDArray[np.bool_]]]]:
-        """All moduli at once: each specimen has photographs of its own."""
+        """As in the base class; all moduli are perturbed at once, as each photograph shows one specimen."""
         if self.baseline.whole:
             return super()._beside(state)
         owner = [self.baseline.specimens.index(p.specimen) for p in self.records]
@@ -235,7 +248,10 @@ class OutlineModel(MeasurementModel):
         return [(moved, {k: of_row == k for k in range(len(self.names))})]
 
     def _differences(self, state: State, candidates: Sequence[Candidate]) -> tuple[Array, Array, Array]:
-        """By the surrogate where the simulator has one; corrections of its own faults by itself."""
+        """As in the base class; if the simulator has a surrogate, derivatives are from the surrogate.
+
+        Columns of simulator errors that are corrected by the simulator itself use the simulator.
+        """
         solutions = self._used()
         surrogate = solutions.surrogate
         if surrogate is solutions:
@@ -261,12 +277,12 @@ class OutlineModel(MeasurementModel):
         return base, by_u, columns
 
     def _own(self, name: str) -> bool:
-        """True if an effect corrects what the simulator lacks beside its surrogate."""
+        """True if an effect is a simulator error whose correction is computed without the surrogate."""
         solutions = self.solutions
         return self.effects[name].instead is not None and solutions.corrected_by(name) is solutions
 
     def predicted_in(self, design: Photographs, state: State) -> Self | None:
-        """The same specimens photographed anew, as a state predicts it; None where they cannot be."""
+        """Model of the same specimens in new photographs, as a state predicts them; None if not possible."""
         kept = {t.id: changed for t in self.trials if (changed := design.trial(t)) is not None}
         if not kept:
             return None
@@ -279,7 +295,7 @@ class OutlineModel(MeasurementModel):
         return new
 
     def measuring(self, experiment: Experiment, pose: Callable[[Beam, BeamTrial], Beam]) -> Self:
-        """The same specimens in other photographs, simulated as they are: coordinates stay."""
+        """Model of the same specimens in other photographs, without mesh correction; coordinates stay."""
         return type(self)(
             experiment,
             effects=self.effects,
@@ -292,7 +308,7 @@ class OutlineModel(MeasurementModel):
     def _photographed(
         self, empty: Experiment, trials: dict[str, BeamTrial], design: Photographs, state: State
     ) -> Experiment | None:
-        """The experiment as the state predicts it; None where it has no equilibrium."""
+        """Experiment with the outlines that a state predicts; None if a beam has no equilibrium."""
         scenes = replace(self.scenes, trials=[trials.get(t.id, t) for t in self.trials], pose=design.pose)
         index = [i for i, t in enumerate(self.trials) if t.id in trials]
         fidelity = self.simulator.fidelity
@@ -309,19 +325,19 @@ class OutlineModel(MeasurementModel):
         return replace(empty, trials=tuple(photographed))
 
     def registered(self, state: State) -> list[Array]:
-        """Distances of each photograph's points [m], the most likely nuisances removed. ValueError where a
-        beam has no equilibrium."""
+        """Distances of each photograph's points without the most likely nuisances [m].
+
+        NaN for photographs that are not compared. ValueError if a beam has no equilibrium.
+        """
         return self.left_of(self.seen(state))
 
     def left_of(self, seen: Sequence[SeenPhotograph]) -> list[Array]:
-        """Distances of each photograph's points [m], the most likely nuisances removed; NaN where it is not
-        compared."""
+        """As `registered`, from `seen`: distances of each photograph's points [m], NaN if not compared."""
         left = {id(s.photograph): s.left for s in seen}
         return [left.get(id(p), np.full(len(p.basis), np.nan)) for p in self.records]
 
     def seen(self, state: State) -> list[SeenPhotograph]:
-        """The photographs that are compared, against the beams of a state. ValueError where one has no
-        equilibrium."""
+        """The compared photographs with the beams of a state. ValueError if a beam has no equilibrium."""
         used = self._used()
         results = used.answer(state)
         smooth = np.full(len(self.row_record), np.nan)
@@ -349,22 +365,22 @@ class OutlineModel(MeasurementModel):
         return found
 
     def results(self, state: State) -> Sequence[Result]:
-        """One result a photograph. ValueError where a beam has no equilibrium."""
+        """One result per photograph (`SolutionCache.answer`). ValueError if a beam has no equilibrium."""
         return self.solutions.answer(state)
 
     def _measured_points(self) -> int:
-        """Traced points of the photographs that are compared."""
+        """Number of traced points of the photographs that are compared."""
         return sum(len(p.basis) for p in self._used().photographs)
 
     def of_trial(self, trial: int) -> NDArray[np.bool_]:
-        """Rows of the photographs of a trial, by its index, shape (rows,)."""
+        """Mask (rows,) of the rows of a trial's photographs; trial : index."""
         return np.array([p.beam == trial for p in self.records])[self.row_record]
 
     def shortcomings(self) -> list[str]:
         return [self.uncorrected] if self.uncorrected else []
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        """By length and support, by material, and by when photographs were taken."""
+        """Fold labels by length and support, by material, and by the number of the photograph."""
         found: dict[str, list[str]] = {}
         for k, p in enumerate(self.records):
             nth = sum(q.beam == p.beam for q in self.records[:k])

@@ -1,4 +1,4 @@
-"""Photographed beams over time: they hang from time 0 on, without inertia, and creep."""
+"""Time-dependent fits of photographed beams: quasi-static creep under the load from time 0."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from calibration.parameters import ProtocolWindow, part_kind
 
 
 def window(experiment: Experiment) -> ProtocolWindow:
-    """From the first photograph of a beam to the last. What relaxes earlier is gone in all of them."""
+    """Times of the first and last photograph; faster relaxation is complete in all photographs."""
     times = _times(experiment)
     return ProtocolWindow(first=min(times, default=0.0), last=max(times, default=0.0), peaks=0)
 
 
 def check(experiment: Experiment, specs: Sequence[str]) -> None:
-    """InputError where all photographs were taken at one time: they show one modulus."""
+    """InputError if a part needs time and all photographs are of one time, which shows one modulus only."""
     timed = [s for s in specs if part_kind(s).needs_time]
     if timed and len(set(_times(experiment))) < 2:
         raise InputError(

@@ -1,4 +1,4 @@
-"""How trials really stood before the camera, where that is known to differ from what the lab says."""
+"""Setup of rig and camera as known from a rig file, if it differs from the lab's description."""
 
 from __future__ import annotations
 
@@ -15,9 +15,12 @@ Array = NDArray[np.float64]
 
 
 class Setup(Protocol):
-    """What is known of a rig and its camera. It has to go through pickle, since fits run in processes.
+    """Known setup of a rig and its camera. It must be picklable, since fits run in processes.
 
-    digest: sha256 of what it says. sentence: it in words, for cards and reports.
+    Attributes
+    ----------
+    digest : SHA-256 of its content.
+    sentence : description for cards and reports.
     """
 
     @property
@@ -27,10 +30,10 @@ class Setup(Protocol):
     def sentence(self) -> str: ...
 
     def bend(self, beam: Beam, trial: BeamTrial) -> Beam:
-        """The scene of a trial as its rig really holds it."""
+        """Scene of a trial in the actual rig."""
 
     def image(self, points: Array, trial: BeamTrial) -> Array:
-        """Where the trial's photographs show points of the scene, (k, 2) of x, z [m]."""
+        """Positions in the trial's photographs of points of the scene, x, z [m], shape (k, 2)."""
 
     def doubts(self) -> Sequence[tuple[str, Setup]]:
-        """The same setup one standard deviation off, by a name, for each independent direction."""
+        """Named setups that differ by one standard deviation, one for each independent direction."""

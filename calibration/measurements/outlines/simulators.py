@@ -1,4 +1,4 @@
-"""The simulators whose faults can be looked for: ours, and three that are wrong in a way of their own."""
+"""Simulators whose errors can be diagnosed: the default one, and three with a known deficiency each."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy as np
 from calibration.measurements.outlines.fidelity import COARSE, REFERENCE, Fidelity
 from tisim import Beam, Result, Solver, Status, paper_stop, simulate
 
-# The beams that correct those of the search, where the correction of a bench of nine beams is 12 of chi. What
-# they miss is in their rings (2, 3 and 4 give 10.3, 12.0 and 12.5, thinner layers next to nothing) and falls
-# with the square of their number: it is extrapolated from two of them. Next to a clamp beams stay too stiff,
-# by 0.09 mm of grip on average over four clean cases of another solver (0.12 without the extrapolation).
+# Beams for the correction of the search's mesh error, which for a bench of nine beams is 12 in chi. Their
+# remaining error depends on the number of rings (2, 3 and 4 give 10.3, 12.0 and 12.5; thinner layers change
+# almost nothing) and decreases with its square: it is extrapolated from two numbers. Next to a clamp beams
+# remain too stiff, by 0.09 mm of grip on average over four clean cases of another solver (0.12 without the
+# extrapolation).
 CORRECTING = (
     Fidelity(layer=0.005, rings=2, solver=REFERENCE.solver),
     Fidelity(layer=0.005, rings=3, solver=REFERENCE.solver),
@@ -31,11 +32,14 @@ class Simulator:
 
     Attributes
     ----------
-    fidelity : of the beams that a search solves.
-    reference : of those that correct their mesh's error, with fewer and with more rings; None: no correction.
-    run : as `tisim.simulate`.
-    surrogate : beams in equilibrium whose derivatives guide a search, where its own are dear and jump; None:
-        its own.
+    name : name on the command line and in reports.
+    sentence : description for reports.
+    fidelity : discretisation of the beams of a search.
+    reference : discretisations for the correction of the mesh error, with fewer and with more rings; None for
+        no correction.
+    run : function with the signature of `tisim.simulate`.
+    surrogate : discretisation of static beams whose derivatives guide a search, if its own beams are
+        expensive and not smooth; None for its own.
     """
 
     name: str
@@ -47,7 +51,7 @@ class Simulator:
 
     @property
     def as_surrogate(self) -> Simulator:
-        """The simulator whose derivatives guide a search."""
+        """Simulator whose derivatives guide a search."""
         return (
             self
             if self.surrogate is None
@@ -56,9 +60,10 @@ class Simulator:
 
 
 def _stopped(scenes: Sequence[Beam], *, workers: int | None) -> list[Result]:
-    """Beams released from the straight shape, as they are where the paper's rule stops them.
+    """Dynamic simulation of beams released from the straight shape, stopped by the paper's rule.
 
-    How long that takes is known of none before; like beams take about as long as the first of them.
+    The duration is not known in advance; that of the first beam of each length and support is used as a guess
+    for the others.
     """
     found: list[Result] = [
         replace(r, status=Status.UNFINISHED) for r in simulate([_static(b) for b in scenes], workers=workers)
@@ -76,8 +81,15 @@ def _stopped(scenes: Sequence[Beam], *, workers: int | None) -> list[Result]:
 def _released(
     scenes: Sequence[Beam], durations: dict[int, float], found: list[Result], workers: int | None
 ) -> dict[int, float]:
-    """Puts stopped beams into `found`, each run for its duration or, where that does not stop it, for twice
-    as long and so on. Returns when the rule stopped each [s]; the longest duration where it never did."""
+    """Simulate beams until the rule stops them, and store their results in `found`.
+
+    A run that is not stopped within its duration is repeated with twice the duration, up to _LONGEST.
+
+    Returns
+    -------
+    dict of int to float
+        Time at which the rule stopped each beam [s]; _LONGEST if it did not.
+    """
     lasted = dict.fromkeys(durations, _LONGEST)
     waiting = dict(durations)
     while waiting:
@@ -97,7 +109,7 @@ def _released(
 
 
 def _longer(duration: float, times: float) -> float:
-    """In whole windows of the rule, so that frames divide them."""
+    """Product of duration and factor, rounded up to whole windows of the rule, at most _LONGEST [s]."""
     return min(_LONGEST, _WINDOW * float(np.ceil(duration * times / _WINDOW)))
 
 
@@ -105,8 +117,8 @@ def _static(beam: Beam) -> Beam:
     return replace(beam, solver=COARSE.solver)
 
 
-_WINDOW = 0.05  # [s]; the rule asks for three
-_SHORTEST, _LONGEST = 4 * _WINDOW, 4.0  # [s] that a run may take to be stopped
+_WINDOW = 0.05  # window of the rule [s], which needs three
+_SHORTEST, _LONGEST = 4 * _WINDOW, 4.0  # shortest and longest duration of a run [s]
 _MARGIN = 1.2
 _DYNAMIC = Solver(method="implicit", tolerance=1e-4, time_step=5e-3, mass_damping=0.1, stiffness_damping=0.01)
 

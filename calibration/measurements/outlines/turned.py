@@ -1,4 +1,4 @@
-"""Photographed beams to turn around: the measured outline over the simulated body, a photograph a frame."""
+"""Interactive 3D view of photographed beams: measured outline and simulated body, a frame per photograph."""
 
 from __future__ import annotations
 
@@ -14,16 +14,18 @@ from tisim.view import Field, Surface, View, outlines
 
 Array = NDArray[np.float64]
 
-MOST = 36  # photographs of a page
-MEASURED = (0.835, 0.369, 0.0, 1.0)  # vermilion of the other pictures
-THICK = 0.004  # radius of the drawn outline, in lengths of the beam
+MOST = 36  # largest number of photographs on a page
+MEASURED = (0.835, 0.369, 0.0, 1.0)  # vermilion of the other figures
+THICK = 0.004  # radius of the drawn outline over the beam's length
 AROUND = 6
-POINTS = 60  # of an edge
+POINTS = 60  # points of an edge
 
 
 def turned(seen: Sequence[SeenPhotograph], *, title: str) -> View:
-    """Simulated bodies as the camera shows them, and the traced outlines, nuisances removed, in their middle
-    plane; evenly chosen where there are more than MOST."""
+    """View of the simulated bodies in the image, with the traced outlines in their mid plane.
+
+    Nuisances are removed from the outlines. Of more than MOST photographs an even selection is shown.
+    """
     chosen = np.unique(np.round(np.linspace(0, len(seen) - 1, min(len(seen), MOST))).astype(int))
     surfaces, labels = [], []
     for frame, k in enumerate(chosen):
@@ -64,7 +66,7 @@ def _body(s: SeenPhotograph, frame: int) -> Surface:
 
 
 def _measured(s: SeenPhotograph, frame: int) -> Surface:
-    """Both traced edges as tubes."""
+    """Both traced edges as thin tubes."""
     radius = THICK * s.photograph.trial.free_length
     start = 0
     points: list[Array] = []
@@ -87,7 +89,7 @@ def _measured(s: SeenPhotograph, frame: int) -> Surface:
 
 
 def _tube(line: Array, radius: float) -> tuple[Array, NDArray[np.int32]]:
-    """Vertices (v, 3) and triangles of a thin tube along a line (k, 2) in the plane y = 0."""
+    """Vertices (v, 3) and triangles (t, 3) of a thin tube along a line (k, 2) in the plane y = 0."""
     along = np.gradient(line, axis=0)
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
     k = len(line)

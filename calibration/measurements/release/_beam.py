@@ -1,7 +1,7 @@
-"""The reduced beam: Galerkin's method on a planar beam with shear (Reissner) whose axis does not stretch.
+"""Reduced model of a beam: Galerkin's method for a planar, inextensible beam with shear (Reissner).
 
-Its shapes hold the statics of a short thick cantilever exactly and its lowest modes closely. The equilibrium
-is solved with finite rotations; `_vibration` adds the motion about it, `_fem` what three dimensions add.
+Its shape functions contain the statics of a short thick cantilever exactly, and its lowest modes closely. The
+equilibrium is solved with finite rotations; `_vibration` adds the motion about it, `_fem` corrections by FEM.
 """
 
 from __future__ import annotations
@@ -19,43 +19,45 @@ Pair = tuple[float, float]
 
 SHEAR_COEFFICIENTS = {"rectangle": 15.0 / 17.5, "circle": 0.9}  # Cowper's, at a Poisson ratio of 1/2
 YOUNG = 3.0  # Young's modulus over the shear modulus of an incompressible material
-POINTS = 12  # of the Gauss quadrature along the beam
+POINTS = 12  # Gauss points along the beam
 _ITERATIONS, _TOLERANCE = 30, 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
 class BeamParameters:
-    """A beam along x in one clamp, in the plane (x, z), as the cameras see it; effects change these. SI.
+    """Parameters of a beam along x with one clamp, in the plane (x, z), and of its cameras; SI units.
+
+    Effects change these parameters.
 
     Attributes
     ----------
-    section : of the beam.
-    shear_modulus : [Pa], with E = 3 G, in a vibration of angular frequency 1 / `reference_time`.
+    section : cross section.
+    shear_modulus : storage modulus at the angular frequency 1 / `reference_time` [Pa]; E = 3 G.
     density : [kg/m3].
     length : free length [m].
     relaxation_time : stiffness-proportional damping [s].
     mass_damping : mass-proportional damping [1/s].
     reference_time : see `shear_modulus` [s].
-    branches : further relaxation, (fraction of `shear_modulus`, time [s]) each; `shear_modulus` stays.
-    grip_depth : length inside the clamp that is free too [m]; the root is at x = -grip_depth.
+    branches : further relaxation branches, (fraction of `shear_modulus`, time [s]) each.
+    grip_depth : length inside the clamp that is free as well [m]; the root is at x = -grip_depth.
     gravity : (x, z) [m/s2].
     tip_force : (x, z) [N].
     tip_mass : mass that moves with the tip [kg].
     load_height : height on the end face at which tip force and mass act [m].
-    clamp_compliance : rotation of the clamp by the moment [rad/Nm].
-    clamp_sag : displacement of the clamp by the force [m/N].
-    curvature : of the stress-free beam [1/m].
+    clamp_compliance : rotation of the clamp per moment [rad/(N m)].
+    clamp_sag : displacement of the clamp per force [m/N].
+    curvature : curvature of the stress-free beam [1/m].
     stiffening : c2 / c1 of the strain energy.
     axial_gradient : relative change of the modulus along x [1/m], zero in the middle.
-    stiff_root : length next to the clamp that in effect does not bend, since the clamp also holds the form of
-        the section [m]; beam theory lacks it, `_fem` finds it.
-    extra_inertia : relative excess of all mass in motion, but not in weight.
-    image_scale : relative excess of the displacements that the cameras show.
-    camera_roll : rotation of their frame [rad].
-    clock_rate : relative excess of the time that has passed over the time that they show.
-    held_below : drop of the tip, in the shape of its equilibrium, at which it was held [m]; displacements are
-        counted from there.
-    rubbing : deflection of the tip that dry friction of what hangs would hold [m].
+    stiff_root : effective rigid length next to the clamp [m], since the clamp also prevents deformation of
+        the section; beam theory lacks it, `_fem` determines it.
+    extra_inertia : relative excess of the inertia over the mass of the weight.
+    image_scale : relative excess of the displacements in the images.
+    camera_roll : rotation of the cameras' frame [rad].
+    clock_rate : relative excess of true time over the cameras' time.
+    held_below : drop of the tip, in the shape of the equilibrium, at which the beam was held [m];
+        displacements are relative to that shape.
+    rubbing : deflection of the tip that the dry friction of the hung mass could hold [m].
     """
 
     section: Circle | Rectangle
@@ -87,13 +89,14 @@ class BeamParameters:
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """Timoshenko's cantilever of unit length at n points, under each of k loads: a tip force, a tip moment,
-    and distributed loads p = 1, x, x^2. Unit: the tip force is one.
+    """Timoshenko cantilever of unit length at n points, under k loads of unit size.
+
+    The loads are a tip force, a tip moment, and distributed loads p = 1, x, x^2.
 
     Attributes
     ----------
-    rotation : of the section, the integral of the moment, shape (k, n).
-    moment, shear : shape (k, n).
+    rotation : rotation of the section, the integral of the moment, shape (k, n).
+    moment, shear : bending moment and shear force, shape (k, n).
     """
 
     rotation: Array
@@ -102,7 +105,7 @@ class Shapes:
 
 
 def _polynomials() -> list[tuple[Polynomial, Polynomial, Polynomial]]:
-    """Rotation, moment and shear force of each load."""
+    """Polynomials of rotation, moment and shear force for each load."""
     found = []
     one, x = Polynomial([1.0]), Polynomial([0.0, 1.0])
     for shear in (one, *((1.0 - x ** (m + 1)) / (m + 1) for m in range(3))):
@@ -124,7 +127,7 @@ _COEFFICIENTS = _coefficients()
 
 
 def shapes_at(x: Array) -> Shapes:
-    """Shapes at x (n,), fractions of the length."""
+    """Shape functions at x (n,), fractions of the length."""
     powers = np.vander(x, _COEFFICIENTS.shape[2], increasing=True).T
     rotation, moment, shear = _COEFFICIENTS @ powers
     return Shapes(rotation, moment, shear)
@@ -138,8 +141,8 @@ class Section:
     ----------
     area : [m2].
     inertia : second moment of area about y [m4].
-    fourth : fourth moment over the second [m2].
-    shear_coefficient : Cowper's.
+    fourth : ratio of the fourth to the second moment of area [m2].
+    shear_coefficient : Cowper's shear coefficient.
     """
 
     area: float
@@ -149,7 +152,7 @@ class Section:
 
 
 def section_of(shape: Circle | Rectangle) -> Section:
-    """Moments of a circle or a rectangle."""
+    """Moments of a circular or rectangular section."""
     if isinstance(shape, Circle):
         r = shape.radius
         return Section(
@@ -168,7 +171,7 @@ def section_of(shape: Circle | Rectangle) -> Section:
 
 
 def _gauss() -> tuple[Array, Array, Array]:
-    """Gauss points on (0, 1), their weights, and the matrix (n, n) that integrates from 0 to each point."""
+    """Gauss points on (0, 1), weights, and the matrix (n, n) of integration from 0 to each point."""
     x, w = np.polynomial.legendre.leggauss(POINTS)
     x, w = 0.5 * (x + 1.0), 0.5 * w
     powers = np.vander(x, increasing=True)
@@ -182,7 +185,7 @@ _ENDS = shapes_at(np.array([0.0, 1.0]))
 
 
 class ReducedBeam:
-    """Matrices of a beam in its shapes. A coordinate q_k [N] is the force that makes shape k."""
+    """Forces and matrices of a beam in its shape functions; a coordinate q_k [N] is the force of shape k."""
 
     def __init__(self, parameters: BeamParameters) -> None:
         s, cut = parameters, section_of(parameters.section)
@@ -192,14 +195,14 @@ class ReducedBeam:
         self.shearing = cut.shear_coefficient * s.shear_modulus * cut.area
         L = self.span
         self.softness = 1.0 / (1.0 + s.axial_gradient * (GAUSS_POINTS * L - 0.5 * L))  # over the mean
-        self.bend = L * _INSIDE.moment * self.softness / self.bending  # curvature by coordinate
+        self.bend = L * _INSIDE.moment * self.softness / self.bending  # curvature per coordinate
         self.gamma = _INSIDE.shear * self.softness / self.shearing
         root_moment, root_shear = L * _ENDS.moment[:, 0], _ENDS.shear[:, 0]
         yields = s.clamp_compliance - s.stiff_root / self.bending
         self.root_rotation = yields * root_moment
         self.clamp_rotation = s.clamp_compliance * root_moment
         self.root_sag = s.clamp_sag * root_shear
-        # a softer part bends more: the rotation is an integral of the curvature
+        # with a variable modulus the rotation is the numerical integral of the curvature
         self.rotation = self.root_rotation[:, None] + L * self.bend @ _UPTO.T
         self.end_rotation = self.root_rotation + L * self.bend @ GAUSS_WEIGHTS
         stiff = self.bending / self.softness
@@ -219,7 +222,7 @@ class ReducedBeam:
         self.section = s.section
 
     def forces(self, q: Array) -> tuple[Array, Array]:
-        """Elastic forces (k,) at coordinates q, less those of the loads, and their derivatives (k, k)."""
+        """Elastic minus load forces (k,) at coordinates q (k,), and their derivatives (k, k)."""
         kappa = q @ self.bend
         elastic = self.elastic @ q + self.bend @ (self.cubic * kappa**3) - self.curved
         stiff = self.tangent(q)
@@ -276,7 +279,7 @@ class ReducedBeam:
         return np.asarray((1.0 + self.parameters.extra_inertia) * found)
 
     def equilibrium(self) -> Array:
-        """Static equilibrium (k,). ValueError where Newton's method finds none."""
+        """Coordinates of the static equilibrium (k,). ValueError if Newton's method does not converge."""
         q = np.zeros(len(self.elastic))
         scale = float(np.abs(self.forces(q)[0]).max()) or 1.0
         for _ in range(_ITERATIONS):

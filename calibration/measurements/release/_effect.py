@@ -1,4 +1,4 @@
-"""How an effect enters a cantilever release: the parameters of the reduced beam."""
+"""Effects in cantilever releases: they change the parameters of the reduced beam."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class ReleaseEffect(EffectModel):
 
     Attributes
     ----------
-    alter : the parameters with the effect in them, from those without it, the amplitude and the variant.
+    alter : function of (parameters, amplitude, variant) to the parameters with the effect.
     """
 
     alter: Callable[[BeamParameters, float, float | None], BeamParameters]
 
 
 def hung(record: Record) -> bool:
-    """A mass hangs on the free end."""
+    """True if a mass hangs on the free end."""
     return record.loaded

@@ -1,4 +1,4 @@
-"""Corrections of the reduced beam by FEM: at the static equilibrium of each trial, and of its frequency."""
+"""Corrections of the reduced beam by FEM: static equilibrium and frequency of each trial."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from tisim import Beam, Material, Result, Solver, simulate
 Array = NDArray[np.float64]
 
 BULK_RATIO = 300.0  # K/G
-LAYERS, RINGS = (5, 10), (1, 2)  # coarse and fine
-USUAL = 0.06  # of the height: length of a beam that the clamp keeps from bending, before FEM is run
-PERIODS, STEPS = 4.0, 64  # periods that FEM simulates, and its time steps in one
-_WIDEST = 0.25  # of the height
+LAYERS, RINGS = (5, 10), (1, 2)  # axial and radial elements of the coarse and the fine mesh
+USUAL = 0.06  # stiff root over the height of the section, before FEM is run
+PERIODS, STEPS = 4.0, 64  # periods that FEM simulates, and time steps per period
+_WIDEST = 0.25  # largest |stiff root| over the height of the section
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Correction:
-    """What three dimensions add to the reduced beam.
+    """Correction of the reduced beam by FEM.
 
     Attributes
     ----------
-    stiff_root : with which the tip of the reduced beam has FEM's equilibrium [m].
-    extra_inertia : relative, with which it has FEM's frequency.
-    markers : displacement at equilibrium, FEM less reduced, shape (m, 2) [m].
-    drop : of the tip at equilibrium [m].
+    stiff_root : value for which the tip of the reduced beam has FEM's equilibrium [m].
+    extra_inertia : relative value for which the reduced beam has FEM's frequency.
+    markers : displacement at equilibrium, FEM minus reduced beam [m], shape (m, 2).
+    drop : drop of the tip at equilibrium [m].
     """
 
     stiff_root: float
@@ -44,7 +44,7 @@ class Correction:
 
 
 def beam_of(record: Record, material: Material, *, fine: bool) -> Beam:
-    """The trial's beam for FEM."""
+    """FEM scene of a record's trial; fine : use the fine mesh."""
     t = record.trial
     return Beam(
         material=material,
@@ -69,10 +69,17 @@ def corrections(
     *,
     workers: int | None,
 ) -> tuple[list[Correction], list[str]]:
-    """One correction a record, and what went wrong; the usual one where FEM or its match has no answer.
+    """Corrections, one per record, and a sentence for each failure.
 
-    Beams of one form, markers and load are simulated once. materials (without memory), their shear moduli
-    shears [Pa] and relaxation_times [s] are of each record.
+    If FEM or the match fails, the correction is that of `uncorrected`. Records of one specimen with equal
+    geometry, markers and load are simulated once.
+
+    Parameters
+    ----------
+    records : the records.
+    materials, shears, relaxation_times : elastic material, its shear modulus [Pa] and the relaxation time [s]
+        of each record.
+    workers : number of processes; None for all cores.
     """
     kinds: dict[object, list[int]] = {}
     for k, r in enumerate(records):
@@ -100,7 +107,7 @@ def corrections(
 
 
 def uncorrected(record: Record, *, usual: bool = True) -> Correction:
-    """Beam theory, with the stiff root that clamps usually have, or none."""
+    """Correction of a record without FEM: the usual stiff root, or with `usual` False plain beam theory."""
     return Correction(
         stiff_root=USUAL * _height(record) if usual else 0.0,
         extra_inertia=0.0,
@@ -126,7 +133,7 @@ def _matched(
     for result in (coarse, fine, moving):
         if not result.ok:
             raise ValueError(f"{result.status}: {result.message}")
-    # FEM's load is spread over the face: what the arm of a load adds is the reduced beam's own affair
+    # FEM distributes the load over the face: the effect of its height is in the reduced beam only
     parameters = replace(
         record.parameters, shear_modulus=shear, relaxation_time=relaxation_time, load_height=0.0
     )
@@ -136,7 +143,7 @@ def _matched(
     reduced = beam_markers(rough, q, record.positions).displacement[record.outer, :, 1].mean(axis=0)
     first, last = 0.75 * record.period, PERIODS * record.period
     rates = [ringdown(moving.load, z, first=first, last=last).frequency for z in (tips, reduced)]
-    # BDF2 of a step dt lowers an angular frequency w by the part (w dt)^2 / 3
+    # BDF2 with a step dt lowers an angular frequency w by the fraction (w dt)^2 / 3
     slowed = (2.0 * np.pi * rates[0] * record.period / STEPS) ** 2 / 3.0
     aim = _plane(fine, positions)[:, -1]
     exact = _with_root(record, parameters, aim)
@@ -149,12 +156,15 @@ def _matched(
 
 
 def _plane(result: Result, positions: Array) -> Array:
-    """Displacement of markers in x and z, shape (m, f, 2) [m]."""
+    """Displacement of markers in x and z [m], shape (m, f, 2)."""
     return marker_displacements(result, positions)[:, :, [0, 2]]
 
 
 def _with_root(record: Record, parameters: BeamParameters, aim: Array) -> BeamParameters:
-    """The parameters with the stiff root that brings the reduced beam's tip to FEM's, of markers (m, 2)."""
+    """Parameters with the stiff root for which the reduced beam's tip agrees with FEM.
+
+    aim : displacement of the markers by FEM [m], shape (m, 2). ValueError if there is no such stiff root.
+    """
     drop = float(-aim[record.outer, 1].mean())
     widest = _WIDEST * _height(record)
 
@@ -167,7 +177,7 @@ def _with_root(record: Record, parameters: BeamParameters, aim: Array) -> BeamPa
 
 
 def _equilibrium(parameters: BeamParameters, record: Record) -> tuple[Array, float]:
-    """Markers at the equilibrium of the reduced beam (m, 2), and the drop of its tip."""
+    """Displacement of markers at the equilibrium of the reduced beam (m, 2), and the drop of its tip [m]."""
     q = ReducedBeam(parameters).equilibrium()
     moved = beam_markers(parameters, q[None], record.positions).displacement[:, 0]
     return moved, float(-moved[record.outer, 1].mean())

@@ -1,4 +1,4 @@
-"""The forward map of cantilever releases: coordinates besides the moduli, and the rows of each record."""
+"""Forward map of cantilever releases: coordinates other than the moduli, simulated rows of each record."""
 
 from __future__ import annotations
 
@@ -19,32 +19,33 @@ from tisim.parts import Spectrum
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-RELEASE = 0.01  # [s], and
-START = 0.1  # fraction of the way to equilibrium, that one unit of a trial's own coordinates is
-RELEASE_SD, START_SD = 0.03, 0.2  # of their priors [s], [-]
-RELAXATION_TIME, RELAXATION_SD = 2e-3, 3.0  # [s], and sd of its logarithm
-WITH_CLAMP, WITH_CLAMP_SD = 0.5, 0.5  # fraction by which markers next to a clamp move with it
-# Of ln G from one load to another: the error of the reduced beam (its frequency against FEM's: 0.1 to 0.3 %),
-# and one unit of the coordinate. It moves the phase of the last periods by so much that it is no linear
-# nuisance.
+# unit of a trial's own coordinates: release time [s], and start as a fraction of the equilibrium
+RELEASE = 0.01
+START = 0.1
+RELEASE_SD, START_SD = 0.03, 0.2  # sd of their priors [s], [-]
+RELAXATION_TIME, RELAXATION_SD = 2e-3, 3.0  # centre [s] of the prior, and sd of the logarithm
+WITH_CLAMP, WITH_CLAMP_SD = 0.5, 0.5  # centre and sd of the fraction by which markers move with the clamp
+# Error of ln G between loads: the unit of the coordinate, and the sd, from the error of the reduced beam (its
+# frequency differs from FEM's by 0.1 to 0.3 %). Its effect on the phase of the last periods is too large for
+# a linear nuisance.
 LOAD, LOAD_SD = 0.02, 0.003
-# Periods by which a vibration may get out of phase until its end; further out, a search does not find back.
+# Largest phase difference at the end of the vibration, in periods; beyond it a search does not converge.
 OUT_OF_PHASE = 0.4
-REMEMBERED = 400
-DRAG_SD = 3.0  # by what hangs on a beam, of the damping in proportion to mass [1/s]
+REMEMBERED = 400  # cached results
+DRAG_SD = 3.0  # sd of the mass-proportional damping by the hung mass [1/s]
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Own:
-    """A record's own unknowns.
+    """Unknowns of one record.
 
     Attributes
     ----------
     release_time : [s].
-    start : fraction of the way to equilibrium from which the beam was released.
+    start : shape at the release, as a fraction of the equilibrium.
     with_clamp : fraction by which markers next to the clamp move with it.
-    drag : damping in proportion to mass by what hangs on the beam [1/s].
+    drag : mass-proportional damping by the hung mass [1/s].
     """
 
     release_time: float
@@ -55,18 +56,20 @@ class Own:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """Extras of a baseline, in this order: ln of each material's relaxation time / 1 s, unless its law has a
-    spectrum (`tisim.Prony`), which damps as well; of each trial its release time (in 10 ms after the first
-    guess) and start (in tenths of the way to equilibrium); the reduced beam's error at each load but the
-    first (in 2 % of the modulus); where the law has a spectrum, of each trial with a hung mass the damping by
-    how it hangs, which is no property of the material; of each specimen with markers next to the clamp the
-    fraction by which these move with the clamp.
+    """Extras of a baseline for cantilever releases.
+
+    In this order: ln(relaxation time / 1 s) of each material, unless its law has a spectrum (`tisim.Prony`),
+    which causes damping itself; for each trial the release time (unit 10 ms, relative to the first guess) and
+    the start (unit 0.1 of the equilibrium); the reduced beam's error at each load except the first (unit
+    0.02 in ln G); if the law has a spectrum, for each trial with a hung mass the damping by the suspension,
+    which is not a property of the material; for each specimen with markers next to the clamp, the fraction by
+    which they move with the clamp.
 
     Attributes
     ----------
-    baseline : with these extras.
+    baseline : baseline with these extras.
     trials, loads : names.
-    dragged : trials with a damping by what hangs.
+    dragged : trials with a damping by the hung mass.
     near : specimens with markers next to the clamp.
     """
 
@@ -78,7 +81,7 @@ class Coordinates:
 
     @classmethod
     def of(cls, records: Sequence[Record], plain: Baseline) -> Coordinates:
-        """Coordinates of these records, besides those of a plain baseline."""
+        """Add the extras of these records to a plain baseline."""
         trials = tuple(r.name for r in records)
         loads = tuple(dict.fromkeys(r.load for r in records))
         dragged = tuple(r.name for r in records if r.loaded and viscous(plain))
@@ -101,17 +104,19 @@ class Coordinates:
         return cls(baseline=plain.with_extras(extras), trials=trials, loads=loads, dragged=dragged, near=near)
 
     def shear_modulus(self, record: Record, u: Array) -> float:
-        """Shear modulus of a record's beam [Pa], with the error of its load: the long-time one where its
-        material has a spectrum."""
+        """Shear modulus of a record's beam [Pa], including the error of its load.
+
+        It is the long-time modulus if the material has a spectrum.
+        """
         error = LOAD * float(u[self.of_load(record.load)]) if record.load != self.loads[0] else 0.0
         return self.baseline.shear_modulus(record.specimen, u) * float(np.exp(error))
 
     def relaxation_time(self, record: Record, u: Array) -> float:
-        """Relaxation time of a record's material [s]; 0 where it has a spectrum."""
+        """Relaxation time of a record's material [s]; 0 if it has a spectrum."""
         return 0.0 if viscous(self.baseline) else float(np.exp(u[self.of_material(record.material)]))
 
     def spectrum(self, record: Record, u: Array) -> Spectrum:
-        """Relaxation of a record's material, over its long-time modulus."""
+        """Relaxation spectrum of a record's material, relative to its long-time modulus."""
         if not viscous(self.baseline):
             return ELASTIC
         found = self.baseline.material(record.specimen, u).viscosity
@@ -119,7 +124,7 @@ class Coordinates:
         return found.spectrum()
 
     def own(self, record: Record, u: Array) -> Own:
-        """When and from where a record's beam was released, and how far its markers move with the clamp."""
+        """Unknowns of a record at coordinates u (n,)."""
         first = self.of_trial(record)
         fraction = 0.0
         if record.specimen in self.near:
@@ -134,12 +139,16 @@ class Coordinates:
     def constrained(
         self, records: Sequence[Record], compared: Rows, vibrating: Rows, row_record: NDArray[np.intp]
     ) -> Rows:
-        """Coordinates (n,) that some rows constrain. A trial's own are constrained by its vibration alone.
+        """Mask (n,) of the coordinates that given rows constrain.
+
+        The coordinates of a trial are constrained by its free vibration only; those of markers next to the
+        clamp count as constrained always.
 
         Parameters
         ----------
-        compared : rows that are left, shape (rows,).
-        vibrating : rows of the free vibration, shape (rows,).
+        records : the records.
+        compared : mask of the rows in use, shape (rows,).
+        vibrating : mask of the rows of the free vibration, shape (rows,).
         row_record : index of the record of each row, shape (rows,).
         """
         found = np.zeros(len(self.baseline.names), dtype=bool)
@@ -159,7 +168,7 @@ class Coordinates:
         return found
 
     def depended_on(self, record: Record) -> Rows:
-        """Coordinates (n,) that the simulation of a record depends on."""
+        """Mask (n,) of the coordinates on which the simulation of a record depends."""
         found = self.baseline.informed_by(record, whole_material=False)
         found[self.of_material(record.material)] |= not viscous(self.baseline)
         first = self.of_trial(record)
@@ -173,23 +182,23 @@ class Coordinates:
         return found
 
     def of_material(self, material: str) -> int:
-        """Index of a material's relaxation time, where it has no spectrum."""
+        """Index of a material's relaxation time, if it has no spectrum."""
         return self.baseline.first_extra + self.baseline.materials.index(material)
 
     def of_trial(self, record: Record) -> int:
-        """Index of the first of a trial's own coordinates."""
+        """Index of the first coordinate of a record's trial."""
         begin = self.baseline.first_extra
         if not viscous(self.baseline):
             begin += len(self.baseline.materials)
         return begin + 2 * self.trials.index(record.name)
 
     def of_load(self, load: str) -> int:
-        """Index of the error at a load that is not the first."""
+        """Index of the error at a load other than the first."""
         end = len(self.baseline.names) - len(self.near) - len(self.dragged)
         return end - len(self.loads) + self.loads.index(load)
 
     def _of_drag(self, record: Record) -> int:
-        """Index of the damping by what hangs on a trial's beam."""
+        """Index of the damping by the hung mass of a trial."""
         end = len(self.baseline.names) - len(self.near)
         return end - len(self.dragged) + self.dragged.index(record.name)
 
@@ -199,15 +208,17 @@ class Coordinates:
 
 
 def viscous(baseline: Baseline) -> bool:
-    """True if a baseline is of a law with a relaxation spectrum."""
+    """True if the baseline's law has a relaxation spectrum."""
     return any(p.field == "viscosity" for p in baseline.law.parts)
 
 
 def at_frequency(
     long_time: float, spectrum: Spectrum, reference_time: float
 ) -> tuple[float, tuple[Pair, ...]]:
-    """Storage modulus of a material at the angular frequency 1 / `reference_time`, and the branches that are
-    parts of it (`BeamParameters.branches`), from its long-time modulus [Pa] and spectrum."""
+    """Storage modulus [Pa] at the angular frequency 1 / `reference_time`, and branches relative to it.
+
+    The branches are those of `BeamParameters.branches`. long_time : long-time modulus [Pa].
+    """
     ratio = np.asarray(spectrum.times) / reference_time
     strengths = np.asarray(spectrum.strengths)
     storage = float(spectrum.equilibrium + np.sum(strengths * ratio**2 / (1.0 + ratio**2)))
@@ -222,10 +233,12 @@ class ForwardMap:
 
     Attributes
     ----------
-    corrections : of each record, by FEM.
-    reference_time : of all beams [s]; see `BeamParameters`.
-    changed : by the experiment that is predicted; where it changes the beam, its vibration may be out of
-        phase with the record's.
+    records : the records.
+    coordinates : definition of u.
+    corrections : correction of each record by FEM.
+    reference_time : reference time of all beams [s]; see `BeamParameters`.
+    changed : function to the parameters in a predicted experiment; unless it is `unchanged`, the vibration
+        need not be in phase with the record's.
     """
 
     records: Sequence[Record]
@@ -256,8 +269,11 @@ class ForwardMap:
         return self.coordinates.own(self.records[k], u)
 
     def rows(self, k: int, parameters: BeamParameters, own: Own) -> Array:
-        """Rows of a record [m], without nuisances; remembered, since most coordinates are of other records.
-        ValueError where the beam has no stable equilibrium, or gets out of phase."""
+        """Simulated rows of record `k` [m], without nuisances.
+
+        Results are cached, since most coordinates belong to other records. ValueError if the beam has no
+        stable equilibrium, or its vibration gets out of phase with the record.
+        """
         key = (k, parameters, own)
         if key not in self._known:
             if len(self._known) >= REMEMBERED:
@@ -268,13 +284,13 @@ class ForwardMap:
         return self._known[key]
 
     def tip_height(self, k: int, parameters: BeamParameters, own: Own, time: Array) -> Array:
-        """Mean height (t,) [m] of a record's outer markers, at times after the first guess of its release."""
+        """Mean height of record `k`'s outer markers [m], shape (t,), at times since the guessed release."""
         r = self.records[k]
         moved = self._displacements(k, parameters, own, time + r.release_time - own.release_time)
         return np.asarray(moved[r.outer, :, 1].mean(axis=0))
 
     def _displacements(self, k: int, parameters: BeamParameters, own: Own, since: Array) -> Array:
-        """Displacement of a record's markers (m, t, 2) [m], at times since the release by the lab's clock."""
+        """Displacement of record `k`'s markers (m, t, 2) [m]; since : time [s] by the lab's clock."""
         r, correction = self.records[k], self.corrections[k]
         time = since * (1.0 + parameters.clock_rate)
         motion = free_vibration(parameters, start=own.start)
@@ -303,8 +319,11 @@ class ForwardMap:
 
 
 def start_of(forward: ForwardMap) -> Array:
-    """Coordinates (n,) with the moduli whose vibration is as fast as the measured one, the relaxation time of
-    its damping ratio, and the release nearest to the data. ValueError where a beam has no equilibrium."""
+    """Start coordinates (n,) of a fit.
+
+    Moduli match the measured frequencies, relaxation times the damping ratios; release times minimise the
+    squared misfit. ValueError if a beam has no equilibrium.
+    """
     records, coordinates = forward.records, forward.coordinates
     baseline = coordinates.baseline
     moduli = {}
@@ -313,7 +332,7 @@ def start_of(forward: ForwardMap) -> Array:
         logs = [np.log(_modulus(r, forward.corrections[0].stiff_root)) for r in mine]
         moduli[name] = float(np.exp(np.mean(logs)))
     u = baseline.start(moduli)
-    if viscous(baseline):  # the modulus that the vibration shows is not the long-time one
+    if viscous(baseline):  # the vibration determines the storage modulus, not the long-time one
         ratio = at_frequency(1.0, coordinates.spectrum(records[0], u), forward.reference_time)[0]
         u = baseline.start({name: shear / ratio for name, shear in moduli.items()})
     for name in baseline.materials if not viscous(baseline) else ():
@@ -332,7 +351,7 @@ def start_of(forward: ForwardMap) -> Array:
 
 
 def _modulus(record: Record, stiff_root: float) -> float:
-    """Shear modulus [Pa] whose reduced beam vibrates as fast as the record."""
+    """Shear modulus [Pa] for which the reduced beam has the record's frequency."""
     shear = 1e5
     usual = replace(record.parameters, stiff_root=stiff_root)
     for _ in range(40):

@@ -16,16 +16,16 @@ from calibration.measurements.release._vibration import beam_markers, free_vibra
 Array = NDArray[np.float64]
 
 # Standard deviations.
-FRAME = float(np.radians(2.0))  # of the cameras' frame against the beam's, a trial [rad]
-POSITION = 1e-3  # of a marker on the beam, in x and z [m]
-ZERO = 2e-3  # of a marker's displacement before the release, which its first sample knows better [m]
-TWIST = 0.02  # of the tip about the beam's axis at equilibrium: no mass hangs exactly in the middle [rad]
-CORRECTION = 0.2  # fraction of the markers' correction by FEM
+FRAME = float(np.radians(2.0))  # rotation of the cameras' frame relative to the beam's, per trial [rad]
+POSITION = 1e-3  # position of a marker on the beam, in x and z [m]
+ZERO = 2e-3  # zero of a marker's displacement [m]; its first sample determines it better
+TWIST = 0.02  # twist of the tip at equilibrium, since a mass does not hang exactly in the middle [rad]
+CORRECTION = 0.2  # error of the FEM correction of markers, as a fraction of it
 EQUILIBRIUM = (
-    0.003  # fraction of the equilibrium by which the reduced beam may err beside its vibration, a load
+    0.003  # error of the reduced beam's equilibrium relative to its vibration, as a fraction, per load
 )
-# Drop of the tip by which a beam that is held by hand is not straight, in the shape of its equilibrium [m]: a
-# nuisance of fits over time, where the modulus at rest is another than that of the vibration.
+# Drop of the tip of a beam that is held by hand and not straight, in the shape of its equilibrium [m]: a
+# nuisance of time-dependent fits, where the static modulus differs from that of the vibration.
 HELD = 3e-4
 
 
@@ -38,16 +38,17 @@ def nuisance_columns(
     *,
     over_time: bool = False,
 ) -> tuple[Array, list[str]]:
-    """One standard deviation of each nuisance, shape (rows, k) [m], and their names, "" for most.
+    """Nuisance columns, one standard deviation each [m], shape (rows, k), and their names ("" for most).
 
-    What changes the frequency is no nuisance: it moves the phase of the last periods by more than is linear.
-    A length, a section or a density other than stated is an effect, or goes into the modulus.
+    A quantity that changes the frequency is not a nuisance: its effect on the phase of the last periods is
+    not linear. Errors of length, section or density are effects, or are absorbed by the modulus.
 
     Parameters
     ----------
-    parameters, release_times, corrections : of each record.
-    simulated : rows of a record, by its index, with these parameters.
-    over_time : the materials have a relaxation spectrum.
+    records : the records.
+    parameters, release_times, corrections : one per record.
+    simulated : function from the index of a record and parameters to its simulated rows.
+    over_time : True if the materials have a relaxation spectrum.
     """
     starts = np.cumsum([0, *(r.points for r in records)])
     shared: dict[object, Array] = {}
@@ -95,7 +96,7 @@ def nuisance_columns(
 
 
 def _rotated(record: Record, parameters: BeamParameters, release_time: float) -> tuple[Array, Array]:
-    """Cosine and sine, row by row, of the rotation of what carries the marker."""
+    """Cosine and sine of the rotation of each row's marker, shape (rows,)."""
     q = free_vibration(parameters).coordinates(record.time - release_time)
     rotations = beam_markers(parameters, q, record.positions).rotation
     none = np.zeros((len(record.positions), 2))
@@ -105,11 +106,12 @@ def _rotated(record: Record, parameters: BeamParameters, release_time: float) ->
 
 
 def discrepancies(records: Sequence[Record]) -> Mapping[str, Array]:
-    """Sets of columns (rows, k) [m].
+    """Discrepancy basis: sets of columns (rows, k) [m].
 
-    drifts : of each trial's tip, polynomials in the logarithm of time. vibrations : of each trial's tip, at
-    its frequency and twice that, growing and decaying. markers : of each marker, a constant and a logarithm
-    of time.
+    drifts : for the outer markers of each trial, polynomials in the logarithm of time.
+    vibrations : for the outer markers, oscillations at the frequency and twice the frequency with several
+        envelopes.
+    markers : for each marker, a constant and a logarithm of time.
     """
     columns = Columns([r.points for r in records])
     for k, r in enumerate(records):

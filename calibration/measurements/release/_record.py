@@ -1,4 +1,4 @@
-"""Records of cantilever releases: markers held, in free vibration and at equilibrium, in means of samples."""
+"""Records of cantilever releases: marker displacements before release, in vibration and at equilibrium."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Rows = NDArray[np.bool_]
 
-# A marker has been released once it has moved by so many standard deviations, and by this fraction of its way
-# to equilibrium.
+# A marker counts as released after it has moved by MOVED standard deviations and by this fraction of its
+# displacement at equilibrium.
 MOVED, FURTHER = 10.0, 0.1
-FIRST, LAST = 1.2, 12.0  # periods since the release between which the free vibration is compared
-FEWEST = 3.0  # of them that a record must hold
-BIN = 6.0  # means a period, at least
-BLOCKS = 8  # of what comes after the vibration, even in the logarithm of time
-NEAR = 0.5  # heights of the section: markers so near to the clamp may sit on it
-DIRECTIONS_DIFFER = 1e-3  # by which a tip force may differ from gravity's direction as a hung mass [rad]
+FIRST, LAST = 1.2, 12.0  # range of the free vibration that is compared, in periods since the release
+FEWEST = 3.0  # least number of these periods in a record
+BIN = 6.0  # least number of means per period
+BLOCKS = 8  # number of means after the vibration, equidistant in the logarithm of time
+NEAR = 0.5  # distance from the clamp, in heights of the section, within which markers may sit on the clamp
+DIRECTIONS_DIFFER = 1e-3  # largest angle between the tip force of a hung mass and gravity [rad]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sampled:
-    """Means of one marker's samples.
+    """Means of one marker's samples in b groups.
 
     Attributes
     ----------
-    index : of its samples among the record's times.
-    starts : where each group of samples begins, shape (b,).
-    counts : samples in each group, shape (b,).
-    measured : mean displacement of each group in x and z, shape (b, 2) [m].
+    index : indices of its samples among the record's times.
+    starts : first sample of each group, an index into `index`, shape (b,).
+    counts : number of samples in each group, shape (b,).
+    measured : mean displacement of each group in x and z [m], shape (b, 2).
     """
 
     index: Index
@@ -48,29 +48,31 @@ class Sampled:
     measured: Array
 
     def means(self, values: Array) -> Array:
-        """Means (b, 2) of values (t, 2) at all of the record's times."""
+        """Means (b, 2) of values (t, 2) given at all times of the record."""
         return np.asarray(np.add.reduceat(values[self.index], self.starts, axis=0) / self.counts[:, None])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """The markers of one trial. Its rows are, for each marker in x and then in z, the sample before the
-    release and the means after it.
+    """The markers of one trial.
+
+    Its rows are, for each marker in x and then in z, the sample before the release and the means after it.
 
     Attributes
     ----------
-    parameters : of its beam, but for modulus and damping.
-    names : of the m markers.
+    trial : the trial.
+    parameters : parameters of its beam, without modulus and damping.
+    names : names of the m markers.
     positions : (x, z) of each marker on the straight beam [m].
-    across : y of each marker, shape (m,) [m].
-    near_clamp : markers that may sit on the clamp, shape (m,).
-    time : of all samples that are used, shape (t,) [s].
+    across : y of each marker [m], shape (m,).
+    near_clamp : True for markers that may sit on the clamp, shape (m,).
+    time : times of the samples of all markers [s], shape (t,).
     sampled : means of each marker's samples.
-    held : displacement in the first sample, before the release, shape (m, 2) [m]; NaN where it is not known.
-    release_time : first guess [s].
-    period : of the free vibration [s].
-    damping_ratio : of the free vibration.
-    equilibrium : displacement in the last fifth of the record, shape (m, 2) [m].
+    held : displacement in the first sample, before the release [m], shape (m, 2); NaN if unknown.
+    release_time : first guess of the release time [s].
+    period : period of the free vibration [s].
+    damping_ratio : damping ratio of the free vibration.
+    equilibrium : mean displacement in the last fifth of the record [m], shape (m, 2).
     sd : standard deviation of one sample [m].
     """
 
@@ -103,7 +105,7 @@ class Record:
 
     @property
     def relaxation_time(self) -> float:
-        """Of the stiffness-proportional damping that has this damping ratio [s]."""
+        """Relaxation time of the stiffness-proportional damping with this damping ratio [s]."""
         return self.damping_ratio * self.period / np.pi
 
     @property
@@ -112,7 +114,7 @@ class Record:
 
     @property
     def load(self) -> str:
-        """The load on the free end, for people."""
+        """Label of the load on the free end."""
         return f"{1e3 * self.parameters.tip_mass:.3g} g hung" if self.loaded else "own weight"
 
     @cached_property
@@ -133,12 +135,12 @@ class Record:
 
     @property
     def behind_face(self) -> Rows:
-        """Markers behind the clamp's face, which sit on it for sure, shape (m,)."""
+        """True for markers behind the clamp's face, which certainly sit on the clamp, shape (m,)."""
         return np.array([x < 0.0 for x, _ in self.positions])
 
     @property
     def outer(self) -> Rows:
-        """Markers of the outer half, shape (m,)."""
+        """True for markers of the outer half of the beam, shape (m,)."""
         return np.array([x > 0.5 * self.parameters.length for x, _ in self.positions])
 
     @cached_property
@@ -147,8 +149,13 @@ class Record:
         return 2 * sum(1 + len(s.starts) for s in self.sampled)
 
     def rows(self, of_time: Callable[[int], Array], held: Array) -> Array:
-        """Rows of all markers from the displacement (t, 2) of a marker, by its index, at the record's times,
-        and that before the release, (m, 2)."""
+        """Rows of all markers from their displacements.
+
+        Parameters
+        ----------
+        of_time : function from a marker's index to its displacement at the record's times, shape (t, 2).
+        held : displacement before the release, shape (m, 2).
+        """
         parts = []
         for i, s in enumerate(self.sampled):
             means = s.means(of_time(i))
@@ -165,7 +172,7 @@ class Record:
         return np.concatenate(parts)
 
     def measuring(self, rows: Array) -> Record:
-        """The record with other values in its rows."""
+        """Record with other measured values in its rows; unknown ones before the release stay unknown."""
         held, sampled, first = self.held.copy(), [], 0
         for i, s in enumerate(self.sampled):
             n = 1 + len(s.starts)
@@ -176,7 +183,7 @@ class Record:
         return replace(self, held=held, sampled=tuple(sampled))
 
     def longer(self, factor: float) -> Record:
-        """The record as if it had gone on, after its free vibration, for `factor` times as long."""
+        """Record whose part after the free vibration lasts `factor` times as long."""
         if factor == 1.0:
             return self
         since = self.time - self.release_time
@@ -185,8 +192,10 @@ class Record:
         return replace(self, time=time)
 
     def labels(self) -> tuple[Index, Index, Array]:
-        """Marker, axis (0 x, 1 z) and mean time since the guessed release [s] of each row; NaN for the sample
-        before the release."""
+        """Marker, axis (0 x, 1 z) and mean time since the guessed release [s] of each row.
+
+        The time is NaN for the sample before the release.
+        """
         marker, axis, time = [], [], []
         for i, s in enumerate(self.sampled):
             mean = s.means(np.column_stack([self.time, self.time]))[:, 0] - self.release_time
@@ -198,7 +207,7 @@ class Record:
         return np.concatenate(marker), np.concatenate(axis), np.concatenate(time)
 
     def deviations(self) -> Array:
-        """Standard deviation of each row by white noise [m]; inf where there is no measurement."""
+        """Standard deviation of each row by white noise [m]; inf for rows without a measurement."""
         parts = []
         for i, s in enumerate(self.sampled):
             for axis in range(2):
@@ -208,7 +217,7 @@ class Record:
 
 
 def hung_mass(trial: BeamTrial) -> float:
-    """Mass whose weight is the trial's tip force [kg]; InputError where that does not pull along gravity."""
+    """Mass whose weight is the trial's tip force [kg]; InputError if the force is not along gravity."""
     force, gravity = np.asarray(trial.tip_force), np.asarray(trial.gravity)
     pull, g = float(np.linalg.norm(force)), float(np.linalg.norm(gravity))
     if pull == 0.0:
@@ -222,7 +231,7 @@ def hung_mass(trial: BeamTrial) -> float:
 
 
 def stated_density(trial: BeamTrial, belief: MaterialBelief) -> float:
-    """Density [kg/m3]; InputError where the lab does not state it."""
+    """Density [kg/m3]; InputError if the lab does not state it."""
     if belief.density is None:
         raise InputError(
             f"experiment.yaml: materials.{trial.material}.density_kg_m3: expected, since its weight bends"
@@ -232,7 +241,7 @@ def stated_density(trial: BeamTrial, belief: MaterialBelief) -> float:
 
 
 def stated_noise(trial: BeamTrial) -> float:
-    """Standard deviation of a marker's displacement [m]; InputError where the lab does not state it."""
+    """Standard deviation of a marker's displacement [m]; InputError if the lab does not state it."""
     if trial.marker_sd is None or not trial.marker_sd > 0.0:
         raise InputError(
             f"experiment.yaml: trials.{trial.id}.marker_sd_mm: expected above 0 to weigh markers by"
@@ -241,7 +250,7 @@ def stated_noise(trial: BeamTrial) -> float:
 
 
 def chosen_markers(trial: BeamTrial, names: Sequence[str] | None) -> tuple[Marker, ...]:
-    """Markers of these names (None: all); InputError where there is none."""
+    """Markers of these names (None for all); InputError if there are none, or a name is unknown."""
     known = {m.name: m for m in trial.markers}
     if not known:
         raise InputError(f"experiment.yaml: trials.{trial.id}.markers: expected markers, got none")
@@ -255,14 +264,13 @@ def chosen_markers(trial: BeamTrial, names: Sequence[str] | None) -> tuple[Marke
 
 
 def records_of(experiment: Experiment) -> list[Record]:
-    """One record for each trial with markers; InputError names what one of them lacks."""
+    """Records of all trials with markers; the InputError for an incomplete trial names what it lacks."""
     trials = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
     return [_record(t, experiment) for t in trials]
 
 
 def not_swinging(trial: BeamTrial, experiment: Experiment) -> str:
-    """Why a trial with markers has no free vibration to compare, in the words of `records_of`; "" where it
-    has one."""
+    """Reason (the message of `records_of`) why a trial with markers has no record; "" if it has one."""
     try:
         _record(trial, experiment)
     except InputError as problem:
@@ -312,7 +320,7 @@ def _record(trial: BeamTrial, experiment: Experiment) -> Record:
     for m, close in zip(trial.markers, near, strict=True):
         plane = m.displacement[:, [0, 2]]
         sampled.append(_means(m.time - release_time, plane, np.searchsorted(every, m.time), period, where))
-        # a marker at the clamp may slip at the release: only its motion is compared
+        # a marker at the clamp can slip at the release: only its motion is compared
         still = m.time[0] < moved - interval and not close
         held.append(plane[0] if still else np.full(2, np.nan))
         equilibrium.append(plane[m.time > m.time[-1] - 0.2 * (m.time[-1] - release_time)].mean(axis=0))
@@ -335,7 +343,7 @@ def _record(trial: BeamTrial, experiment: Experiment) -> Record:
 
 
 def _first_moved(trial: BeamTrial, sd: float) -> float | None:
-    """Time at which a marker of the outer half has clearly moved [s]; None where none does."""
+    """First time at which a marker of the outer half has clearly moved [s]; None if none moves."""
     signs = []
     for m in trial.markers:
         if m.position[0] > 0.5 * trial.free_length:
@@ -348,8 +356,11 @@ def _first_moved(trial: BeamTrial, sd: float) -> float | None:
 
 
 def _means(time: Array, plane: Array, index: Index, period: float, where: str) -> Sampled:
-    """Groups of a marker's samples: even in time during the free vibration, and even in the logarithm of time
-    after it."""
+    """Means of a marker's samples over groups.
+
+    Groups are equidistant in time during the free vibration, and in the logarithm of time after it.
+    InputError for fewer than ten samples in the vibration.
+    """
     vibrating = np.flatnonzero((time > FIRST * period) & (time <= LAST * period))
     later = np.flatnonzero(time > LAST * period)
     if vibrating.size < 10:
@@ -368,5 +379,5 @@ def _means(time: Array, plane: Array, index: Index, period: float, where: str) -
 
 
 def reference_time(records: Sequence[Record]) -> float:
-    """One over the angular frequency of records' vibrations, their geometric mean [s]."""
+    """Geometric mean of the records' periods over 2 pi [s]."""
     return float(np.exp(np.mean(np.log([r.period for r in records])))) / (2.0 * np.pi)

@@ -1,7 +1,7 @@
-"""Free vibration of a beam that is released, and how markers on it move.
+"""Free vibration of a released beam, and the motion of markers on it.
 
-The motion is linear about the static equilibrium, mode by mode with the viscoelastic memory of the material,
-and goes to the markers through the finite kinematics of the reduced beam (`_beam`).
+The motion is linear about the static equilibrium, in uncoupled viscoelastic modes; markers follow by the
+finite kinematics of the reduced beam (`_beam`).
 """
 
 from __future__ import annotations
@@ -29,20 +29,19 @@ _G6, _W6 = (0.5 * (v + s) for v, s in zip(np.polynomial.legendre.leggauss(_ALONG
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FreeVibration:
-    """Solved motion: modes y_i(t) = offset_i + Re sum_j amplitudes_ij exp(rates_ij t) about an equilibrium.
+    """Solution of the motion, y_i(t) = offset_i + Re sum_j amplitudes_ij exp(rates_ij t) for mode i.
 
     Attributes
     ----------
-    parameters : of the beam.
-    equilibrium : coordinates (k,) where the beam would rest if nothing relaxed any further than at the
-        reference time.
-    modes : one a column, shape (k, k).
+    parameters : parameters of the beam.
+    equilibrium : coordinates of the equilibrium with the storage modulus at the reference time, shape (k,).
+    modes : modes as columns, shape (k, k).
     rates : [1/s], shape (k, j).
     amplitudes : shape (k, j).
-    offset : of the modes, by relaxation, shape (k,).
-    frequencies : of the undamped modes [Hz], shape (k,).
-    rubbed : part of the first mode's first amplitude by which dry friction holds the beam; it takes as much
-        from its swing in each quarter of a period.
+    offset : displacement of the modes by relaxation, shape (k,).
+    frequencies : frequencies of the undamped modes [Hz], shape (k,).
+    rubbed : deflection that dry friction can hold, as a fraction of the first mode's initial amplitude; the
+        amplitude decreases by as much in each quarter of a period.
     """
 
     parameters: BeamParameters
@@ -65,8 +64,10 @@ class FreeVibration:
         return self.equilibrium + (y + self.offset) @ self.modes.T
 
     def _left_by_friction(self, t: Array) -> Array:
-        """Of the first mode's swing, beside what decays anyway, shape (t,). Its amplitude A follows
-        dA/dt = -d A - 4 f r, with d its damping, f its frequency and r what friction holds."""
+        """Factor on the first mode's oscillation by dry friction, shape (t,).
+
+        The amplitude A follows dA/dt = -d A - 4 f r, with damping d, frequency f and r = `rubbed`.
+        """
         first = self.rates[0][np.argmax(np.abs(self.rates[0].imag))]
         damping, frequency = -float(first.real), abs(float(first.imag)) / (2.0 * np.pi)
         grown = np.expm1(damping * t) / damping if damping > 0.0 else t
@@ -74,8 +75,10 @@ class FreeVibration:
 
 
 def free_vibration(parameters: BeamParameters, *, start: float = 0.0) -> FreeVibration:
-    """The beam released at rest from `start` times its equilibrium. ValueError where it has no equilibrium,
-    or none that is stable."""
+    """Free vibration of a beam released at rest from `start` times its equilibrium.
+
+    ValueError if there is no stable equilibrium, or the relaxed stiffness of a mode is not positive.
+    """
     beam = ReducedBeam(parameters)
     q = beam.equilibrium()
     elastic = beam.tangent(q)
@@ -88,7 +91,7 @@ def free_vibration(parameters: BeamParameters, *, start: float = 0.0) -> FreeVib
     held = modes.T @ (beam.elastic @ q + beam.bend @ (beam.cubic * (q @ beam.bend) ** 3) - beam.curved)
     parts = np.array([p for p, _ in parameters.branches])
     times = np.array([t for _, t in parameters.branches])
-    # storage modulus of the branches at the reference: it belongs to the modulus there
+    # the storage modulus of the branches at the reference time is included in the shear modulus
     slow = (times / parameters.reference_time) ** 2
     last = 1.0 - float(np.sum(parts * slow / (1.0 + slow)))
     first = last + float(parts.sum())
@@ -107,7 +110,7 @@ def free_vibration(parameters: BeamParameters, *, start: float = 0.0) -> FreeVib
     rest = (1.0 - last) * held / relaxed
     begin = np.zeros((k, 2 + b))
     begin[:, 0] = (start - 1.0) * (modes.T @ mass @ q) - rest
-    # held straight for long, the material's memory is of that shape
+    # the beam was held for a long time, so that the branches are relaxed in the initial shape
     begin[:, 2:] = begin[:, :1]
     rates, vectors = np.linalg.eig(system)
     weights = np.linalg.solve(vectors.astype(complex), begin[:, :, None].astype(complex))[:, :, 0]
@@ -128,8 +131,8 @@ class MarkerMotion:
 
     Attributes
     ----------
-    displacement : x and z, shape (m, t, 2) [m].
-    rotation : of the section or clamp that carries them, shape (m, t) [rad].
+    displacement : displacement in x and z [m], shape (m, t, 2).
+    rotation : rotation of the section or clamp that carries them [rad], shape (m, t).
     """
 
     displacement: Array
@@ -139,7 +142,7 @@ class MarkerMotion:
 def beam_markers(
     parameters: BeamParameters, coordinates: Array, positions: Sequence[tuple[float, float]]
 ) -> MarkerMotion:
-    """Markers at (x, z) of the straight beam, as if on rigid stalks; coordinates (t, k)."""
+    """Motion of markers at (x, z) of the straight beam, as if on rigid stalks; coordinates (t, k)."""
     beam = ReducedBeam(parameters)
     moved = np.zeros((len(positions), len(coordinates), 2))
     turns = np.zeros((len(positions), len(coordinates)))
@@ -160,7 +163,7 @@ def beam_markers(
 def clamp_markers(
     parameters: BeamParameters, coordinates: Array, positions: Sequence[tuple[float, float]]
 ) -> MarkerMotion:
-    """The same of markers that sit on the clamp."""
+    """Motion of markers that sit on the clamp; arguments as in `beam_markers`."""
     beam = ReducedBeam(parameters)
     theta, sag = coordinates @ beam.clamp_rotation, coordinates @ beam.root_sag
     moved = np.zeros((len(positions), len(coordinates), 2))
@@ -171,7 +174,7 @@ def clamp_markers(
 
 
 def _along(beam: ReducedBeam, coordinates: Array, s: float) -> tuple[Array, Array]:
-    """Rotation and shear (t, n) at quadrature points between the clamp and s [m]."""
+    """Rotation and shear (t, n) at the quadrature points between the root and s [m]."""
     at = s / beam.span * _G6
     if beam.parameters.axial_gradient == 0.0:
         turn = beam.root_rotation[:, None] + beam.span**2 * shapes_at(at).rotation / beam.bending
@@ -183,7 +186,7 @@ def _along(beam: ReducedBeam, coordinates: Array, s: float) -> tuple[Array, Arra
 
 
 def _rotation_at(beam: ReducedBeam, s: float) -> Array:
-    """Rotation by each coordinate at s [m], (k,)."""
+    """Rotation per coordinate at s [m], shape (k,)."""
     part = s / beam.span
     if beam.parameters.axial_gradient == 0.0:
         return np.asarray(

@@ -1,4 +1,4 @@
-"""What a lab can do next with released beams: release them otherwise, and measure directly."""
+"""Next experiments for cantilever releases: repeated releases, and direct measurements."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from calibration.measurements._design import Gauge
 from calibration.measurements.release._beam import BeamParameters
 
-HEAVIER = 0.05  # [kg] more on the free end
-LONGER, FURTHER = 1.3, 10.0  # times as long a beam, and as long a record
+HEAVIER = 0.05  # additional mass on the free end [kg]
+LONGER, FURTHER = 1.3, 10.0  # factors on the length of the beam and on the duration of the record
 
 
 def unchanged(parameters: BeamParameters) -> BeamParameters:
-    """The beam as it was."""
+    """Parameters of the beam without a change."""
     return parameters
 
 
@@ -23,8 +23,10 @@ class RepeatedRelease:
 
     Attributes
     ----------
-    changed : the parameters of each beam in it, effects included, from those of the release before.
-    duration : how many times as long the record goes on after its free vibration.
+    name : name of the experiment.
+    sentence : instruction for the lab.
+    changed : function from the parameters of a beam in the earlier release, including effects, to new ones.
+    duration : factor on the duration of the record after its free vibration.
     """
 
     name: str

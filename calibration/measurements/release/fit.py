@@ -1,4 +1,4 @@
-"""The fit of a law and the damping to markers, by damped least squares with few simulations."""
+"""Fit of a law and of damping to marker displacements, by least squares with few simulations."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from tisim import Material
 
 Array = NDArray[np.float64]
 
-# Of differences, in spreads: a vibration of a dozen periods is linear in its frequency only so far.
+# Finite-difference step, in spreads: a vibration of a dozen periods is linear in its frequency only so far.
 STEP = 0.01
-NO_ANSWER = 1e6  # residual of a candidate that has none
-ACCURACY = 1e-4  # relative change of chi-square, and of the coordinates, that ends the search
+NO_ANSWER = 1e6  # residual of a point without a solution
+ACCURACY = 1e-4  # relative tolerance on chi-square and on the coordinates
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionFit:
-    """A fitted law with its damping.
+    """Result of a fit of a law and its damping.
 
     Attributes
     ----------
-    material, damping : at the optimum.
-    values : of the coordinates by name [SI].
-    sd : their standard deviations by name (of the logarithm where the coordinate has one), widened by
-        sqrt(chi_square / points) where that is above 1. They take residuals for independent from sample to
-        sample, which a simulator's own error is not.
-    covariance : of the coordinates, shape (n, n).
-    chi_square : under the stated marker noise, without the prior.
+    material, damping : material and damping at the optimum.
+    values : values of the coordinates by name [SI].
+    sd : standard deviations of the coordinates by name (of the logarithm for logarithmic ones), multiplied by
+        sqrt(chi_square / points) if that is above 1. Residuals are assumed independent from sample to sample,
+        which does not hold for the simulator's error.
+    covariance : covariance of the coordinates, with the same factor, shape (n, n).
+    chi_square : chi-square for the stated marker noise, without the prior.
     points : number of measured components.
-    simulations : how many were run.
-    converged, message : how the search ended.
+    simulations : number of evaluations of the objective.
+    converged, message : outcome of the search.
     """
 
     material: Material
@@ -59,18 +59,22 @@ def fit_motion(
     damping: Damping | None = None,
     most: int = 12,
 ) -> MotionFit:
-    """Fit a law and, where the motion is used, both Rayleigh coefficients.
+    """Fit a law and, if the motion is used, both Rayleigh coefficients.
 
     Parameters
     ----------
-    shear : small-strain shear modulus to start from [Pa], near enough that the simulated vibration does not
-        lose a period to the measured one (a fit of the static equilibrium gives it).
-    damping : to start from.
-    most : linearisations. A search that stops there says so in `converged` and `message`.
+    objective : the trial's objective.
+    parametrisation : the law in search coordinates.
+    shear : start of the small-strain shear modulus [Pa], close enough that the simulated vibration does not
+        differ by a period from the measured one (a fit of the static equilibrium gives it).
+    damping : start of the damping.
+    most : largest number of evaluations by the search, without those for derivatives; if it is reached,
+        `converged` is False.
 
     Raises
     ------
-    InputError : the start, or a run beside it, has no answer.
+    InputError
+        If the start, or a point of a finite difference, has no solution.
     """
     coordinates = list(parametrisation.coordinates)
     u = list(parametrisation.start(shear=shear))
@@ -106,7 +110,7 @@ def fit_motion(
         v = np.asarray(v)
         if v.tobytes() not in kept:
             kept[v.tobytes()] = batch(v[None])[0]
-        # a step to where there is no answer is refused as any step uphill is
+        # a step to a point without a solution is rejected as any uphill step
         return np.nan_to_num(kept[v.tobytes()], nan=NO_ANSWER)
 
     def jacobian(v: ArrayLike) -> Array:

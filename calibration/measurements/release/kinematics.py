@@ -1,4 +1,4 @@
-"""How markers on a simulated body move: on its surface, or on a rigid stalk that stands on it."""
+"""Kinematics of markers on a simulated body: on its surface, or on a rigid stalk that is fixed to it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tisim import Mesh, Result
 
 Array = NDArray[np.float64]
 
-FLUSH = 1e-9  # distances from the surface within this much of the nearest are one contact [m]
+FLUSH = 1e-9  # facets whose distance exceeds the smallest one by less than this share the projected point [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,9 +20,9 @@ class Motion:
 
     Attributes
     ----------
-    displacement : shape (m, f, 3) [m].
-    turn : R - 1 of what carries each marker, shape (m, f, 3, 3): a marker at X + e in place of X is displaced
-        by turn @ e more.
+    displacement : [m], shape (m, f, 3).
+    turn : R - 1 with the rotation R at each marker, shape (m, f, 3, 3); a marker at X + e instead of X has
+        the additional displacement turn @ e.
     """
 
     displacement: Array
@@ -30,21 +30,21 @@ class Motion:
 
 
 def marker_displacements(result: Result, positions: ArrayLike) -> Array:
-    """Displacement of markers from the unloaded pose in each frame of a result, shape (m, f, 3) [m].
+    """Displacement of markers from the unloaded pose in each frame of a result [m], shape (m, f, 3).
 
-    positions : in the unloaded pose, shape (m, 3) [m]. See `marker_motion`.
+    positions : positions in the unloaded pose [m], shape (m, 3). See `marker_motion`.
     """
     return marker_motion(result, positions).displacement
 
 
 def marker_motion(result: Result, positions: ArrayLike) -> Motion:
-    """Displacement and turn of markers in each frame of a result.
+    """Displacement and rotation of markers in each frame of a result.
 
-    A marker's foot is the nearest point of the body's surface, and moves as its facet interpolates. A marker
-    that stands off it is carried as by a rigid stalk, turned as the surface turns at the foot: by the
-    least-squares rotation (polar factor) of the facet's tangents and normal, which is exact where the surface
-    bends as the elements do. A foot on an edge takes the mean of its facets.
-    ValueError where the mesh has no facet set "surface".
+    The projection of a marker onto the body's surface moves with its facet's interpolation. A marker off the
+    surface is on a rigid stalk that rotates with the surface at the projected point: by the least-squares
+    rotation (polar factor) of the facet's tangents and normal, which is exact if the surface bends as the
+    elements do. A projection onto an edge uses the mean of its facets. ValueError if the mesh has no facet
+    set "surface".
     """
     mesh = result.mesh
     if "surface" not in mesh.facet_sets:
@@ -53,7 +53,7 @@ def marker_motion(result: Result, positions: ArrayLike) -> Motion:
     moved = np.zeros((len(wanted), len(result.positions), 3))
     turns = np.zeros((len(wanted), len(result.positions), 3, 3))
     for i, at in enumerate(wanted):
-        # half models: the other half moves as the mirror image
+        # half models: the other half moves as a mirror image
         mirror = np.ones(3)
         for axis in mesh.symmetry:
             mirror["xyz".index(axis)] = -1.0 if at["xyz".index(axis)] < 0.0 else 1.0
@@ -64,7 +64,7 @@ def marker_motion(result: Result, positions: ArrayLike) -> Motion:
 
 
 def _one(mesh: Mesh, x: Array, at: Array) -> tuple[Array, Array]:
-    """Displacement (f, 3) and turn (f, 3, 3) of one marker."""
+    """Displacement (f, 3) and R - 1 (f, 3, 3) of one marker."""
     facets = mesh.facet_sets["surface"]
     corners, split = _corners(facets)
     points, local = nearest_on_triangles(at, mesh.nodes[corners])
@@ -83,7 +83,7 @@ def _one(mesh: Mesh, x: Array, at: Array) -> tuple[Array, Array]:
 
 
 def _frame(tangents: Array) -> Array:
-    """Two tangents (f, 2, 3) and the unit normal, as columns (f, 3, 3)."""
+    """Two tangents, given as (f, 2, 3), and the unit normal as columns, shape (f, 3, 3)."""
     normal = np.cross(tangents[:, 0], tangents[:, 1])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     return np.stack([tangents[:, 0], tangents[:, 1], normal], axis=2)
@@ -97,15 +97,17 @@ def _rotation(gradient: Array) -> Array:
 
 
 def _corners(facets: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:
-    """Flat triangles of the facets, and how many each facet makes."""
+    """Flat triangles of the facets, and their number per facet."""
     if facets.shape[1] == 4:
         return np.stack([facets[:, [0, 1, 2]], facets[:, [0, 2, 3]]], axis=1).reshape(-1, 3), 2
     return facets[:, :3], 1
 
 
 def _shape(width: int, part: int, l: Array) -> tuple[Array, Array]:
-    """Shape functions (width,) of a facet at area coordinates l (3,) of its flat triangle number `part`, and
-    their derivatives along that triangle's two sides (2, width)."""
+    """Shape functions (width,) of a facet, and their derivatives along two sides of a triangle (2, width).
+
+    They are evaluated at area coordinates l (3,) of the facet's flat triangle number `part`.
+    """
     along = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
     if width == 6:
         n = np.concatenate([l * (2 * l - 1), [4 * l[0] * l[1], 4 * l[1] * l[2], 4 * l[2] * l[0]]])
@@ -117,7 +119,7 @@ def _shape(width: int, part: int, l: Array) -> tuple[Array, Array]:
 
 
 def nearest_on_triangles(at: Array, triangles: Array) -> tuple[Array, Array]:
-    """Points of triangles (t, 3, 3) nearest to a point (3,), shape (t, 3), and their area coordinates."""
+    """Closest points (t, 3) of triangles (t, 3, 3) to a point (3,), and their area coordinates (t, 3)."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     e1, e2, d = b - a, c - a, at - a
     g11, g12, g22 = (np.einsum("ti,ti->t", p, q) for p, q in ((e1, e1), (e1, e2), (e2, e2)))
@@ -125,7 +127,7 @@ def nearest_on_triangles(at: Array, triangles: Array) -> tuple[Array, Array]:
     det = g11 * g22 - g12**2
     u, v = (g22 * h1 - g12 * h2) / det, (g11 * h2 - g12 * h1) / det
     best = np.column_stack([1.0 - u - v, u, v])
-    gap = np.where((best >= 0.0).all(axis=1), 0.0, np.inf)  # those outside are on an edge
+    gap = np.where((best >= 0.0).all(axis=1), 0.0, np.inf)  # projections outside move to an edge
     for i, j in ((0, 1), (1, 2), (2, 0)):
         p, q = triangles[:, i], triangles[:, j]
         t = np.clip(np.einsum("ti,ti->t", at - p, q - p) / np.einsum("ti,ti->t", q - p, q - p), 0.0, 1.0)

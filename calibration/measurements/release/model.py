@@ -1,9 +1,9 @@
-"""Cantilever releases of all trials together, effects nested in a reduced beam.
+"""Measurement model of cantilever releases of all trials together, with effects in a reduced beam.
 
-What is compared are displacements of markers in the plane of the vibration: before the release, in free
-vibration (from one period after the release on, since no hand lets go in an instant) and near equilibrium, in
-means of neighbouring samples. Their noise is the lab's marker error; nuisances are marginalised: the cameras'
-frame, markers' positions and zeros, a twist, what FEM adds to the reduced beam.
+It compares displacements of markers in the plane of the vibration, in means of neighbouring samples: before
+the release, in free vibration (from FIRST periods after the release, since a release by hand is not
+instantaneous) and near equilibrium. Their noise is the lab's marker error; nuisances are marginalised: the
+cameras' frame, positions and zeros of markers, a twist, the correction of the reduced beam by FEM.
 """
 
 from __future__ import annotations
@@ -40,21 +40,24 @@ MOVED = 0.05  # of ln G, after which FEM is run again
 
 
 class ReleaseModel(MeasurementModel):
-    """Baseline: neo-Hookean, nearly incompressible, one modulus a specimen (trials that name none share one a
-    material) and one relaxation time a material (damping in proportion to stiffness). `Coordinates` lists the
-    others.
+    """Measurement model of cantilever releases.
+
+    The baseline is neo-Hookean and nearly incompressible, with one modulus per specimen (trials of a material
+    that name none share one) and one relaxation time per material (stiffness-proportional damping).
+    `Coordinates` lists the other coordinates.
 
     Parameters
     ----------
-    experiment : its beams with markers are used.
-    effects : by name; see `calibration.diagnosis.effects.release`.
-    baseline : in place of that.
-    workers : processes of FEM; None for all cores.
-    fem : correct the reduced beam by FEM; False leaves plain beam theory.
+    experiment : experiment with beams with markers; other trials are ignored.
+    effects : effects by name; see `calibration.diagnosis.effects.release`.
+    baseline : baseline in place of the neo-Hookean one.
+    workers : number of processes for FEM; None for all cores.
+    fem : if True, correct the reduced beam by FEM; if False, use plain beam theory.
 
     Raises
     ------
-    InputError : there is no beam with markers, or one lacks something.
+    InputError
+        If there is no beam with markers, or a trial is incomplete.
     """
 
     kind = "release"
@@ -107,14 +110,14 @@ class ReleaseModel(MeasurementModel):
         self._set_candidates()
 
     def _measured_in(self, records: Sequence[Record]) -> None:
-        """Take these records."""
+        """Set the records, their rows and the noise."""
         self.records = records
         self.row_record = np.repeat(np.arange(len(records)), [r.points for r in records])
         self.noise = Noise.independent(np.concatenate([r.deviations() for r in records]), symmetric=True)
 
     @property
     def corrections(self) -> Sequence[Correction]:
-        """By FEM, of each record."""
+        """Correction of each record by FEM."""
         return self.forward.corrections
 
     # -- forward map --
@@ -127,12 +130,14 @@ class ReleaseModel(MeasurementModel):
         return u
 
     def start(self) -> Array:
-        """The modulus whose vibration is as fast as the measured one, the damping of its ratio, and the
-        release nearest to the data. ValueError where a beam has no equilibrium."""
+        """Start coordinates (n,) from frequencies, damping ratios and release times (`start_of`).
+
+        ValueError if a beam has no equilibrium.
+        """
         return start_of(self.forward)
 
     def parameters(self, k: int, state: State) -> BeamParameters:
-        """Of a record's beam, with the state's effects in it."""
+        """Parameters of record `k`'s beam with the state's effects."""
         found = self.forward.baseline_parameters(k, state.u)
         for (name, _, variant), amplitude in self.acting(state, self.records[k]).items():
             if amplitude != 0.0:
@@ -140,11 +145,11 @@ class ReleaseModel(MeasurementModel):
         return self.forward.changed(found)
 
     def simulated(self, k: int, state: State) -> Array:
-        """Rows of a record [m], without nuisances. ValueError where its beam has no equilibrium."""
+        """Simulated rows of record `k` [m], without nuisances. ValueError if its beam has no equilibrium."""
         return self.forward.rows(k, self.parameters(k, state), self.forward.own(k, state.u))
 
     def tip_height(self, k: int, state: State, time: Array) -> Array:
-        """Mean height (t,) [m] of a record's outer markers, at times after the first guess of its release."""
+        """Mean height of record `k`'s outer markers [m], shape (t,), at times since the guessed release."""
         return self.forward.tip_height(k, self.parameters(k, state), self.forward.own(k, state.u), time)
 
     def _misfit(self, states: Sequence[State]) -> Array:
@@ -156,7 +161,7 @@ class ReleaseModel(MeasurementModel):
         return self.coordinates.depended_on(record)
 
     def _left(self, k: int, state: State) -> Array:
-        """Simulated less measured rows of a record; NaN where its beam has no answer, or no row is used."""
+        """Simulated minus measured rows of record `k`; NaN without a solution, or if no row is used."""
         r = self.records[k]
         if not self.noise.used[self.row_record == k].any():
             return np.full(r.points, np.nan)
@@ -168,7 +173,10 @@ class ReleaseModel(MeasurementModel):
     # -- noise, lack of fit, folds --
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
-        """Take the nuisances and the corrections by FEM at a state; rough : without running FEM."""
+        """Update the nuisances and, unless `rough`, the corrections by FEM at a state.
+
+        FEM is run only if moduli or other coordinates of the law changed by more than MOVED.
+        """
         every = range(len(self.records))
         beams = [self.parameters(k, state) for k in every]
         at = np.concatenate([np.log([b.shear_modulus for b in beams]), self._shape(state)])
@@ -196,7 +204,7 @@ class ReleaseModel(MeasurementModel):
         self.noise = self.noise.with_nuisances(columns, names)
 
     def _shape(self, state: State) -> Array:
-        """Coordinates of the baseline's laws other than moduli and K/G, which change what FEM adds."""
+        """Coordinates of the law other than moduli, K/G and parts, which affect the FEM correction."""
         b = self.baseline
         kept = [k for k, c in enumerate(b.law.coordinates) if c.start is not None and c.name != "bulk_ratio"]
         kept = [
@@ -208,7 +216,7 @@ class ReleaseModel(MeasurementModel):
         return np.concatenate(found)
 
     def _elastic(self, record: Record, shear: float, state: State) -> Material:
-        """A record's material without memory, of a shear modulus [Pa]."""
+        """Elastic material of a record with a shear modulus [Pa]."""
         b = self.baseline
         own = b.law_coordinates(record.material, state.u)
         moduli = np.array([c.start is None for c in b.law.coordinates])
@@ -225,7 +233,7 @@ class ReleaseModel(MeasurementModel):
         return discrepancies(self.records)
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
-        """By load, by trial, and free vibration against what comes after it."""
+        """Fold labels by load, by trial, and by free vibration or approach to equilibrium."""
         late = self._after_vibration()
         owners = [self.records[k] for k in self.row_record]
         return {
@@ -237,25 +245,28 @@ class ReleaseModel(MeasurementModel):
         }
 
     def left_out(self) -> list[str]:
-        """Parts of records that are not compared, a sentence each."""
+        """A phrase for each part of a record that is not compared."""
         names = [r.name for r in self.records if r.loaded and viscous(self.baseline)]
         return [
             f"{n}: the free vibration with its hung mass, which is damped by how it hangs too" for n in names
         ]
 
     def _dragged(self) -> Rows:
-        """Rows of a free vibration with a hung mass, shape (rows,): a spectrum must not explain what a string
-        or a hook rubs off (`studies/release/over_time.md`: a damping ratio that grows as the motion dies)."""
+        """Mask (rows,) of free vibrations with a hung mass.
+
+        A spectrum must not represent the friction of a string or hook (`studies/release/over_time.md`: the
+        damping ratio grows as the motion decays).
+        """
         loaded = np.array([self.records[k].loaded for k in self.row_record])
         time = np.concatenate([r.labels()[2] for r in self.records])
         return loaded & np.isfinite(time) & ~self._after_vibration()
 
     def _after_vibration(self) -> Rows:
-        """Rows after the free vibration, shape (rows,)."""
+        """Mask (rows,) of the rows after the free vibration."""
         return np.concatenate([r.labels()[2] > LAST * r.period for r in self.records])
 
     def unconstrained(self, fold: Rows) -> Rows:
-        """A trial's release and start are constrained by its free vibration alone."""
+        """As in the base class; release and start of a trial are constrained by its free vibration only."""
         time = np.concatenate([r.labels()[2] for r in self.records])
         return ~self.coordinates.constrained(
             self.records,
@@ -265,8 +276,10 @@ class ReleaseModel(MeasurementModel):
         )
 
     def point_noise(self) -> list[PointNoise]:
-        """From the samples themselves: a vibration is smooth from one to the next, means of a sixth of a
-        period are not."""
+        """As in the base class, but from the samples of the markers.
+
+        A vibration is smooth from sample to sample, but not between means over a sixth of a period.
+        """
         found = []
         for r in self.records:
             each = [roughness(m.displacement[:, axis]) for m in r.trial.markers for axis in (0, 2)]
@@ -287,7 +300,7 @@ class ReleaseModel(MeasurementModel):
     # -- advice and reports --
 
     def predicted_in(self, test: RepeatedRelease, state: State) -> Self | None:
-        """The same specimens in a repeated release, nuisances drawn anew; None where it cannot be done."""
+        """Model of the same specimens in a repeated release, with predicted data; None if not possible."""
         some = copy(self)
         some._measured_in([r.longer(test.duration) for r in self.records])
         some.forward = replace(self.forward, records=some.records, changed=test.changed)
@@ -300,7 +313,7 @@ class ReleaseModel(MeasurementModel):
         return some
 
     def remarks(self) -> list[str]:
-        """What was left out, what was taken for granted, what the verdict is good for."""
+        """Sentences on data left out, on assumptions, and on the use of the verdict."""
         records = self.records
         found = [
             f"of each trial the first {FIRST:g} periods after the release are left out, since no hand lets go"

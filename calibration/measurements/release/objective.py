@@ -1,7 +1,7 @@
-"""The fit's objective of a cantilever release: whitened residuals of one trial, in motion and at equilibrium.
+"""Objective for fits of a cantilever release by FEM: whitened residuals of one trial.
 
-The beam is simulated by FEM, from its straight rest shape. `ReleaseModel` (`model.py`) compares all trials
-with a reduced beam instead.
+The beam is released from its straight rest shape; its motion and its static equilibrium are compared.
+`ReleaseModel` (`model.py`) compares all trials with a reduced beam instead.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from tisim import Beam, Material, Result, Solver, simulate
 Array = NDArray[np.float64]
 Stage = Literal["motion", "settled"]
 
-MOVED = 10.0  # standard deviations by which a marker that is released has moved
-EARLY, LATE = 5, 2  # samples before and after that between which the release is searched
+MOVED = 10.0  # displacement, in standard deviations, of a marker that counts as released
+EARLY, LATE = 5, 2  # samples before and after that time between which the release is searched
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,8 +40,8 @@ class Damping:
 
     Attributes
     ----------
-    mass : proportional to mass [1/s].
-    stiffness : proportional to stiffness [s].
+    mass : coefficient of the mass [1/s].
+    stiffness : coefficient of the stiffness [s].
     """
 
     mass: float = 0.0
@@ -50,15 +50,16 @@ class Damping:
 
 @dataclass(frozen=True, kw_only=True)
 class Fidelity:
-    """How the beam is simulated; `studies/release` states what the defaults leave on a measured beam.
+    """Discretisation of the beam; `studies/release` states the error of the defaults on a measured beam.
 
     Attributes
     ----------
     layer : axial element size [m].
-    rings : radial elements.
+    rings : number of radial elements.
     time_step : [s].
-    tolerance : of the static equilibrium.
-    motion_tolerance : of each time step (1e-4 moves the measured beam's end by 7e-9 m against 1e-6).
+    tolerance : tolerance of the static equilibrium.
+    motion_tolerance : tolerance of each time step (between 1e-4 and 1e-6 the measured beam's end differs by
+        7e-9 m).
     """
 
     layer: float = 0.020
@@ -70,15 +71,15 @@ class Fidelity:
 
 @dataclass(frozen=True, kw_only=True)
 class Nuisances:
-    """Standard deviations of what is not known of a trial; 0 leaves one out.
+    """Standard deviations of the nuisances of a trial; 0 leaves a nuisance out.
 
     Attributes
     ----------
-    position : of each coordinate of a marker [m].
-    frame : of the rotation about each axis between the frame of the displacements and the beam's [rad];
-        gravity keeps its stated direction.
-    offset : of a constant displacement of each marker from the release on [m], in the motion only: with a
-        large one only the vibration is compared.
+    position : each coordinate of a marker [m].
+    frame : rotation about each axis of the displacements' frame relative to the beam's [rad]; gravity keeps
+        its stated direction.
+    offset : constant displacement of each marker after the release [m], in the motion only; with a large
+        value only the vibration is compared.
     """
 
     position: float = 1e-3
@@ -88,16 +89,17 @@ class Nuisances:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Match:
-    """One candidate beside the data; of each marker in the objective's order.
+    """Comparison of a simulated material with the data; markers are in the objective's order.
 
     Attributes
     ----------
-    release : time of the release on the data's clock [s].
-    time : of the motion, shape (t,) [s].
-    measured, predicted : displacement in the motion, shape (t, 3) [m]; `predicted` is without nuisances.
-    settled_measured, settled_predicted : displacement at static equilibrium, shape (m, 3) [m].
-    nuisances : most likely values, in their standard deviations, by name.
-    residuals : whitened, shape (size,).
+    release : time of the release on the data's clock [s]; NaN without motion.
+    time : times of the motion for each marker [s], shape (t,).
+    measured, predicted : displacement of each marker in the motion [m], shape (t, 3); `predicted` is without
+        nuisances, and empty without motion.
+    settled_measured, settled_predicted : displacement at static equilibrium [m], shape (m, 3).
+    nuisances : most likely values by name, in their standard deviations.
+    residuals : whitened residuals, shape (size,).
     """
 
     release: float
@@ -111,28 +113,29 @@ class Match:
 
 
 class MarkerObjective:
-    """Markers of one trial against a beam that is released from its straight rest shape.
+    """Whitened residuals of the markers of one trial, for a beam released from its straight rest shape.
 
-    Meets `calibration.inference.problem.Objective`. The mean at equilibrium has the marker's own standard
-    deviation, not less: what a simulation leaves there is no noise that averages out.
+    It implements `calibration.inference.problem.Objective`. The mean at equilibrium has the standard
+    deviation of one sample, since the simulation's error is not reduced by averaging.
 
     Parameters
     ----------
-    trial : with markers.
-    belief : what the lab states of its material.
-    markers : names to use; None for all.
+    trial : trial with markers.
+    belief : the lab's entry for its material.
+    markers : names of the markers to use; None for all.
     stages : "motion", "settled" (static equilibrium), or both.
-    window : duration of the motion from the first sample on [s]; the samples after it are averaged and
-        compared with the static equilibrium.
-    tip_mass : mass that moves with the free face [kg]; None takes the tip force for a hung mass.
-    damping : that `residuals(materials)` takes; a search for it has `coordinates` (see `fit_motion`).
-    nuisances : standard deviations of what is not known of the trial.
-    fidelity : of the simulation.
-    workers : processes; None for all cores.
+    window : duration of the motion from the first sample on [s]; later samples are averaged and compared with
+        the static equilibrium.
+    tip_mass : mass that moves with the free face [kg]; None for the mass whose weight is the tip force.
+    damping : damping of `residuals(materials)`; `fit_motion` fits it, with `coordinates`.
+    nuisances : standard deviations of the nuisances.
+    fidelity : discretisation of the simulation.
+    workers : number of processes; None for all cores.
 
     Raises
     ------
-    InputError : the trial lacks something, which the message names.
+    InputError
+        If the trial is incomplete; the message names what it lacks.
     """
 
     coordinates = (
@@ -180,7 +183,7 @@ class MarkerObjective:
 
     @property
     def points(self) -> int:
-        """Measured components: the count for a reduced chi-square."""
+        """Number of measured components, for a reduced chi-square."""
         motion = 3 * sum(int(u.sum()) for u in self._used) * ("motion" in self.stages)
         return motion + 3 * len(self.markers) * ("settled" in self.stages)
 
@@ -199,9 +202,11 @@ class MarkerObjective:
         return tuple(names)
 
     def residuals(self, materials: Sequence[Material], damping: Sequence[Damping] | None = None) -> Array:
-        """Whitened residuals (batch, size), nuisances and release at their best, the nuisances' own values
-        last; NaN where a run has no answer (see `failures`). damping : one a material; None takes the
-        objective's."""
+        """Whitened residuals at the best nuisances and release, nuisances last, shape (batch, size).
+
+        NaN if a simulation has no solution (see `failures`). damping : one per material; None for the
+        objective's damping.
+        """
         found = np.full((len(materials), self.size()), np.nan)
         for k, match in enumerate(self.matches(materials, damping)):
             if match is not None:
@@ -211,7 +216,7 @@ class MarkerObjective:
     def matches(
         self, materials: Sequence[Material], damping: Sequence[Damping] | None = None
     ) -> list[Match | None]:
-        """Each candidate beside the data; None where a run has no answer."""
+        """Comparison of each material with the data; None if a simulation has no solution."""
         dampings = [self.damping] * len(materials) if damping is None else list(damping)
         results = simulate(
             [s for m, d in zip(materials, dampings, strict=True) for s in self.scenes(m, d)],
@@ -221,7 +226,7 @@ class MarkerObjective:
         return [self._match(results[k * n : (k + 1) * n]) for k in range(len(materials))]
 
     def scenes(self, material: Material, damping: Damping) -> list[Beam]:
-        """The beam of each stage."""
+        """FEM scene of each stage."""
         t, f = self.trial, self.fidelity
         at_rest = Beam(
             material=replace(material, density=self.density),
@@ -293,7 +298,7 @@ class MarkerObjective:
         )
 
     def _columns(self, i: int, u: Array, turn: Array, after: Array) -> Array:
-        """One standard deviation of each nuisance in marker i's displacement u (t, 3), shape (3 t, k) [m]."""
+        """Change of marker i's displacement u (t, 3) by one sd of each nuisance [m], shape (3 t, k)."""
         s, n, t = self.spread, len(self.markers), len(u)
         found = []
         if s.position:
@@ -312,7 +317,7 @@ class MarkerObjective:
         return [Track(result.load, d, t) for d, t in zip(motion.displacement, motion.turn, strict=True)]
 
     def _release_bounds(self) -> tuple[float, float]:
-        """Between which times the release is searched [s]: just before a marker has clearly moved."""
+        """Range of times in which the release is searched [s], about the first clear motion of a marker."""
         signs = []
         for marker in self.markers:
             zero = marker.displacement[0]
@@ -327,13 +332,13 @@ class MarkerObjective:
 
 @dataclass(eq=False)
 class Track:
-    """A marker between the f frames of a simulation, by cubic splines from the release on.
+    """Motion of a marker, interpolated by cubic splines between the f frames of a simulation.
 
     Attributes
     ----------
-    time : since the release, shape (f,) [s].
-    displacement : shape (f, 3) [m].
-    turn : R - 1 of what carries the marker, shape (f, 3, 3).
+    time : time since the release [s], shape (f,).
+    displacement : [m], shape (f, 3).
+    turn : R - 1 with the rotation R at the marker, shape (f, 3, 3).
     """
 
     time: Array
@@ -348,21 +353,21 @@ class Track:
         self._spline = CubicSpline(np.concatenate([[0.0], self.time]), values, bc_type=(start, "not-a-knot"))
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
-        """Displacement (t, 3), turn (t, 3, 3) and 1 after the release, 0 before (t,), at times since it."""
+        """Displacement (t, 3), R - 1 (t, 3, 3), and 1 after, 0 before the release (t,), at times since it."""
         after = (time > 0.0).astype(float)
         values = self._spline(np.clip(time, 0.0, self.time[-1])) * after[:, None]
         return values[:, :3], values[:, 3:].reshape(-1, 3, 3), after
 
 
 def profiled(residual: Array, columns: Array) -> Array:
-    """min over q of |residual - columns q|^2 + |q|^2: the residuals left (n,), then q (k,).
+    """Minimise |residual - columns q|^2 + |q|^2 over q; return residual - columns q (n,), followed by q (k,).
 
-    The sum of squares is chi-square under the covariance 1 + columns columns^T.
+    The sum of squares is the chi-square for the covariance 1 + columns columns^T.
 
     Parameters
     ----------
-    residual : whitened, shape (n,).
-    columns : one standard deviation of each nuisance in the simulation, whitened, shape (n, k).
+    residual : whitened residuals, shape (n,).
+    columns : whitened change of the simulation by one sd of each nuisance, shape (n, k).
     """
     system = columns.T @ columns + np.eye(columns.shape[1])
     q = np.linalg.solve(system, columns.T @ residual)
@@ -372,9 +377,9 @@ def profiled(residual: Array, columns: Array) -> Array:
 def best_delay(
     residuals: Callable[[float], Array], low: float, high: float, step: float
 ) -> tuple[float, Array]:
-    """The delay in [low, high] with the least sum of squares, to a nanosecond, and the residuals there.
+    """Delay in [low, high] with the least sum of squares, to a nanosecond, and the residuals there.
 
-    A scan in `step` [s] first: a vibration shifted by a period is a local minimum too.
+    It begins with a scan in steps of `step` [s], since a vibration shifted by a period is a local minimum.
     """
 
     def cost(delay: float) -> float:

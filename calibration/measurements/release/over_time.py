@@ -1,4 +1,4 @@
-"""Released bars over time: the free vibration, its damping and the slow way to rest, by one spectrum."""
+"""Time-dependent fits of cantilever releases: vibration, damping and slow approach to equilibrium."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from calibration.measurements._over_time import OverTime
 from calibration.measurements.release._record import not_swinging, records_of
 from calibration.parameters import ProtocolWindow, part_kind
 
-# Times shorter than this part of a vibration's 1 / (angular frequency) damp it as a viscous liquid would:
-# they cannot be told apart.
+# Relaxation times shorter than this fraction of 1 / (angular frequency) act as viscous damping and cannot be
+# separated.
 FASTEST = 0.1
 
 
 def window(experiment: Experiment) -> ProtocolWindow:
-    """From what damps the fastest vibration to the end of the longest record."""
+    """Range of times from FASTEST of the fastest vibration to the end of the longest record."""
     records = records_of(experiment)
     return ProtocolWindow(
         first=FASTEST * min(r.period for r in records) / (2.0 * np.pi),
@@ -28,7 +28,7 @@ def window(experiment: Experiment) -> ProtocolWindow:
 
 
 def check(experiment: Experiment, specs: Sequence[str]) -> None:
-    """InputError for a bar whose markers show no free vibration."""
+    """InputError for a trial with markers that has no record (`not_swinging`), if there are specs."""
     for t in experiment.trials:
         why = not_swinging(t, experiment) if isinstance(t, BeamTrial) and specs else ""
         if why:

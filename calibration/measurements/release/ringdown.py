@@ -13,11 +13,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class RingDown:
-    """The one decaying oscillation that is fitted.
+    """Fit of one decaying oscillation.
 
     Attributes
     ----------
-    frequency : of the damped oscillation [Hz].
+    frequency : frequency of the damped oscillation [Hz].
     damping_ratio : fraction of critical damping.
     centre : mean position 1 s after the release, in the signal's unit.
     creep : motion of the centre per decade of time, in the signal's unit.
@@ -34,8 +34,16 @@ class RingDown:
 def ringdown(time: ArrayLike, signal: ArrayLike, *, first: float = 0.15, last: float = 2.0) -> RingDown:
     """Least squares of centre + creep log10(t) + exp(-c t)(a cos w t + b sin w t) on first <= t <= last.
 
-    time : since the release, shape (t,) [s]. signal : shape (t,). ValueError where fewer than ten samples lie
-    there, or where nothing oscillates.
+    Parameters
+    ----------
+    time : time since the release [s], shape (t,).
+    signal : shape (t,).
+    first, last : range of time [s].
+
+    Raises
+    ------
+    ValueError
+        If fewer than ten samples are in the range, or the signal does not oscillate.
     """
     t, y = np.asarray(time, dtype=float), np.asarray(signal, dtype=float)
     inside = (t >= first) & (t <= last)
@@ -53,7 +61,7 @@ def ringdown(time: ArrayLike, signal: ArrayLike, *, first: float = 0.15, last: f
         B = basis(float(p[0]), float(p[1]))
         return np.asarray(y - B @ np.linalg.lstsq(B, y, rcond=None)[0])
 
-    # the spectrum's peak, finely enough for the search to fall into the right one
+    # scan over frequencies, fine enough for the search to start at the right peak
     tries = np.linspace(2.0 * np.pi / (t[-1] - t[0]), np.pi / float(np.diff(t).max()), 400)
     costs = [float(np.square(left(np.array([1.0 / (t[-1] - t[0]), w]))).sum()) for w in tries]
     start = np.array([2.0 / (t[-1] - t[0]), tries[int(np.argmin(costs))]])

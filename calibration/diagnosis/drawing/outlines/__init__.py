@@ -1,4 +1,4 @@
-"""Pictures of photographed beams for the page of a diagnosis."""
+"""Figures of photographed beams for the page of a diagnosis."""
 
 from dataclasses import replace
 
@@ -13,9 +13,9 @@ from calibration.measurements.outlines.turned import turned
 
 @figures_of.register(OutlineModel)
 def outline_figures(model: OutlineModel, diagnosis: Diagnosis) -> list[Figure]:
-    """Shapes with the misfit magnified, what is left along the beams, and its rms.
+    """Figures of shapes with magnified misfit, of residuals along the beams, and of their rms.
 
-    ValueError where a beam has no equilibrium.
+    ValueError if a beam has no equilibrium.
     """
     seen = explained_photographs(model, diagnosis)
     beams = drawn(model, diagnosis, seen)

@@ -1,4 +1,4 @@
-"""Beams for drawing: traced points where the baseline has them, and what is left before and after."""
+"""Data of beams for drawing: traced points on the baseline's edges, residuals before and after extension."""
 
 from __future__ import annotations
 
@@ -20,10 +20,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnEdge:
-    """One edge of a photograph, k points: foot of each on the baseline's edge (k, 2) with unit normal (k, 2);
-    registered distances (k,) before and, where there is an extension, after; smooth_before, smooth_after
-    (k,): their smooth part, which is what fits compare; smooth_sd (k,): of that, by the contour's error;
-    along (k,): distance from the clamp along the traced edge. All in m."""
+    """One edge of a photograph with k points; lengths in m.
+
+    Attributes
+    ----------
+    foot, normal : projections onto the baseline's edge, and unit normals there, shape (k, 2).
+    before, after : distances without nuisances by the baseline and by the extension (None without one), (k,).
+    smooth_before, smooth_after : their smooth parts, which fits compare, shape (k,).
+    smooth_sd : standard deviation of the smooth part by the contour error, shape (k,).
+    along : distance from the clamp along the traced edge, shape (k,).
+    """
 
     foot: Array
     normal: Array
@@ -48,7 +54,7 @@ class DrawnPhotograph:
         return self.upper, self.lower
 
     def rms(self, when: Literal["before", "after"]) -> tuple[float, int]:
-        """Mean square of the smooth distances [m^2], and count of points."""
+        """Mean square of the smooth distances [m^2], and number of points."""
         parts = [e.smooth_before if when == "before" else e.smooth_after for e in self.edges]
         whole = np.concatenate([p for p in parts if p is not None])
         return float(np.mean(whole**2)), len(whole)
@@ -56,7 +62,7 @@ class DrawnPhotograph:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnTrial:
-    """A beam with its photographs in the order of time; body: the baseline's upper and lower edge, (m, 2)."""
+    """A beam with its photographs in the order of time; body : edges of the baseline, (m, 2) each [m]."""
 
     trial: BeamTrial
     photographs: tuple[DrawnPhotograph, ...]
@@ -68,7 +74,7 @@ class DrawnTrial:
         return f"{name} {1e3 * self.trial.free_length:.4g} mm"
 
     def rms(self, when: Literal["before", "after"]) -> float:
-        """rms of its smooth distances [m]."""
+        """rms of the smooth distances [m]."""
         return rms_of(self.photographs, when)
 
     @property
@@ -77,13 +83,15 @@ class DrawnTrial:
 
     @property
     def largest(self) -> float:
-        """Largest departure of the baseline, single points left out [m]."""
+        """Largest 98 % quantile of |distance| from the baseline over all edges [m]."""
         return max(float(np.quantile(np.abs(e.before), 0.98)) for p in self.photographs for e in p.edges)
 
 
 def in_time(model: OutlineModel, diagnosis: Diagnosis) -> bool:
-    """True if what is to be seen differs from one photograph of a beam to the next: a named effect does, or
-    nothing is named and residuals that grow with time are what departs most."""
+    """True if photographs of a beam are drawn separately, since the misfit depends on time.
+
+    This is so if a named effect depends on time, or the misfit is unexplained and largest in "drifts".
+    """
     chosen = diagnosis.chosen
     if chosen is not None:
         return any(model.effects[name].timed for name in chosen.names)
@@ -91,14 +99,16 @@ def in_time(model: OutlineModel, diagnosis: Diagnosis) -> bool:
 
 
 def rms_of(photographs: Sequence[DrawnPhotograph], when: Literal["before", "after"]) -> float:
-    """rms of the smooth distances of all points [m], as `OutlineModel.distance_rms` counts them."""
+    """rms of the smooth distances of all points [m], as in `OutlineModel.distance_rms`."""
     squares = np.array([p.rms(when) for p in photographs])
     return float(np.sqrt(np.average(squares[:, 0], weights=squares[:, 1])))
 
 
 def explained_photographs(model: OutlineModel, diagnosis: Diagnosis) -> list[SeenPhotograph]:
-    """The photographs against the beams that explain them best: the extended ones, where a cause was found.
-    ValueError where one has no equilibrium."""
+    """Photographs with the beams of the chosen explanation, or of the baseline if there is none.
+
+    ValueError if a beam has no equilibrium.
+    """
     chosen = diagnosis.chosen
     return model.seen(diagnosis.finding.baseline.state if chosen is None else chosen.fit.state)
 

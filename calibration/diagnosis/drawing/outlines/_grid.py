@@ -1,4 +1,4 @@
-"""Panels of beams: materials (or specimens) below each other, lengths and supports beside each other."""
+"""Arrangement of panels of beams: rows of materials, columns of supports and lengths."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ Grid = list[list[DrawnTrial | None]]
 
 
 def grid_of(beams: Sequence[DrawnTrial]) -> tuple[Grid, int]:
-    """Rows of panels, and how many beams found no place: those that depart least.
+    """Rows of panels, and the number of beams left out (those with the smallest residuals).
 
-    One row a material, or more where it has several beams of a kind; one column a kind. Beams that would
-    leave most of such a grid empty stand in their own order.
+    There is one row per material, or several if it has several beams of one support and length, and one
+    column per support and length. If the grid would be mostly empty or too wide, beams are in their own order
+    in up to 3 columns.
     """
     shown = sorted(beams, key=lambda b: -b.largest)[:MOST]
     shown = [b for b in beams if b in shown]
@@ -40,5 +41,5 @@ def _order(kind: str, shown: Sequence[DrawnTrial]) -> tuple[str, float]:
 
 
 def left_out(count: int) -> str:
-    """What a caption says of them."""
+    """Sentence for a caption on beams that are not drawn; "" if there are none."""
     return f" {count} beams that depart less are not drawn." if count else ""

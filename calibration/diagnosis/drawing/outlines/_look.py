@@ -1,4 +1,4 @@
-"""How beams are drawn: shades of time, clamps, a round magnification."""
+"""Drawing of beams: shades of time, clamps, magnification, scale bar."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _AWAY = 0.8  # of half a beam's height that the largest departure is drawn as: e
 
 
 def shade(family: str, nth: int, count: int) -> Any:
-    """The darker the later."""
+    """Shade of the nth photograph of `count`; later ones are darker."""
     return colormaps[family](0.45 + 0.5 * (nth / (count - 1) if count > 1 else 0.7))
 
 
 def magnification(beams: Sequence[DrawnTrial]) -> float:
-    """A round factor, the same for all panels, at which the largest departure is well seen."""
+    """Round magnification for all panels: the largest residual is drawn as up to _AWAY half heights."""
     half = min(0.5 * float(abs(b.body[0][0] - b.body[1][0]).max()) for b in beams)
     largest = max(b.largest for b in beams)
     wanted = _AWAY * half / largest if largest > 0.0 else 1.0
@@ -34,7 +34,7 @@ def magnification(beams: Sequence[DrawnTrial]) -> float:
 
 
 def clamps(axes: Any, beam: DrawnTrial, depth_mm: float) -> None:
-    """The grips that hold a beam, in mm."""
+    """Draw the grips of a beam; depth_mm : their length."""
     upper, lower = (1e3 * line for line in beam.body)
     places = [(upper[0], lower[0], -depth_mm)]
     if beam.trial.supports == "clamped-clamped":
@@ -54,7 +54,7 @@ def clamps(axes: Any, beam: DrawnTrial, depth_mm: float) -> None:
 
 
 def scale_bar(axes: Any, length_mm: float) -> None:
-    """A length in the lower left corner."""
+    """Draw a scale bar in the lower left corner."""
     x, z = axes.get_xlim()[0], axes.get_ylim()[0]
     axes.plot([x, x + length_mm], [z, z], color=INK, lw=2.5, solid_capstyle="butt", clip_on=False)
     axes.annotate(

@@ -1,4 +1,4 @@
-"""What is left along the beams before and after the extension, and its rms beam by beam."""
+"""Figures of the residuals along the beams before and after the extension, and of their rms per beam."""
 
 from __future__ import annotations
 
@@ -23,8 +23,7 @@ MEAN = {MEASURED: COLOURS[0], EXTENDED: COLOURS[1]}
 
 
 def draw_residuals(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figure:
-    """One panel a beam: distance of its middle line, photograph by photograph, and in the mean of these but
-    where they are to be seen apart."""
+    """One panel per beam: distance of its mid line for each photograph, and their mean unless `apart`."""
     grid, missing = grid_of(beams)
     figure = paper(11.0, 0.7 + 1.75 * len(grid))
     panels = figure.subplots(len(grid), len(grid[0]), sharey=True, squeeze=False)
@@ -60,8 +59,7 @@ def draw_residuals(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figur
 
 
 def draw_rms(beams: Sequence[DrawnTrial], diagnosis: Diagnosis, *, noise: float) -> Figure:
-    """rms distance of each beam and of all, before and after, and held out. noise: what the measurement's
-    own error leaves [m]."""
+    """rms distance of each beam and of all: before, after, and held out; noise : rms of noise alone [m]."""
     extended = all(b.extended for b in beams)
     everything = [p for b in beams for p in b.photographs]
     gain = diagnosis.held_out
@@ -109,8 +107,14 @@ def _panel(axes: Any, beam: DrawnTrial, *, apart: bool) -> None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Middles:
-    """Middle lines of a beam's p photographs at k places: at (k,) along the beam; distances before (p, k) and
-    after, sd (k,) of the mean of all photographs by the contour's error. All in m."""
+    """Mid lines of a beam's p photographs at k points; all in m.
+
+    Attributes
+    ----------
+    at : position along the beam, shape (k,).
+    before, after : distances by the baseline and by the extension (None without one), shape (p, k).
+    sd : standard deviation of the mean of all photographs by the contour error, shape (k,).
+    """
 
     at: Array
     before: Array
@@ -132,7 +136,7 @@ def middles(beam: DrawnTrial) -> Middles:
 
 
 def _means(at: Array, beam: DrawnTrial, which: str) -> Array:
-    """Mean of the two edges, a row a photograph."""
+    """Mean of the two edges, shape (photographs, k)."""
     return np.array(
         [
             np.mean([np.interp(at, e.along, getattr(e, which)) for e in p.edges], axis=0)

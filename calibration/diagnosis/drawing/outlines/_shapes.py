@@ -1,4 +1,4 @@
-"""Measured against simulated shapes: the departure from the baseline, magnified along its normal."""
+"""Figure of measured and simulated shapes, with the distance from the baseline magnified along its normal."""
 
 from __future__ import annotations
 
@@ -31,8 +31,10 @@ EDGE = "#6B7480"
 
 
 def draw_shapes(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figure:
-    """One panel a beam, all to one scale, the departures of all magnified alike. apart: what is extended
-    differs from one photograph to the next."""
+    """One panel per beam, all with one scale and one magnification.
+
+    apart : True if the extension is drawn for each photograph, since it depends on time.
+    """
     grid, missing = grid_of(beams)
     factor = magnification(beams)
     depth = 0.06 * max(1e3 * b.trial.free_length for b in beams)
@@ -108,8 +110,10 @@ def _moved(edge: DrawnEdge, factor: float, distance: Any) -> Any:
 
 
 def _mean(beam: DrawnTrial, side: str, factor: float, *, extended: bool) -> Any:
-    """Smooth part of an edge's mean over the photographs, magnified (k, 2) [mm]: as measured, or as the
-    extended simulation has it."""
+    """Smooth part of an edge, magnified, mean over the photographs [mm], shape (k, 2).
+
+    It is that of the measurement, or with `extended` that of the extended simulation.
+    """
     edges: list[DrawnEdge] = [getattr(p, side) for p in beam.photographs]
     at = np.linspace(max(e.along[0] for e in edges), min(e.along[-1] for e in edges), DOTS)
     total = np.zeros((len(at), 2))
@@ -123,7 +127,7 @@ def _mean(beam: DrawnTrial, side: str, factor: float, *, extended: bool) -> Any:
 
 
 def _extents(grid: Grid, factor: float, depth: float) -> tuple[list[Any], list[Any]]:
-    """What each column shows of x and each row of z [mm], in order."""
+    """Range of x of each column and of z of each row [mm]."""
     boxes = [[None if b is None else _box(b, factor, depth) for b in row] for row in grid]
     whole = [[box for box in row if box is not None] for row in boxes]
     columns = [[box for box in column if box is not None] for column in zip(*boxes, strict=True)]
