@@ -1,6 +1,6 @@
 """tisim: many soft bodies at once, by hyperelastic finite elements. SI units.
 
-A scene goes in, a result comes out; a list of scenes keeps all cores busy:
+`simulate` solves one scene, or a list of scenes on all cores:
 
 >>> import tisim
 >>> soft = tisim.material_from_moduli("neo-hookean", shear_modulus=15e3, bulk_modulus=300e3)
@@ -12,10 +12,10 @@ A scene goes in, a result comes out; a list of scenes keeps all cores busy:
 converged: the end sinks by 7 mm
 converged: the end sinks by 69 mm
 
-`tisim.show(result, "beam.html")` writes a page to turn it around, `tisim.picture(result, "beam.png")` draws
-it, `tisim.write(result, "beam.vtu")` exports a frame, `tisim.fields(result)` has stress, strain and stretch,
-`tisim.read("body.inp")` takes a mesh of another program (.inp, .msh, .vtu) with its sets. Laws,
-inclusion shapes and kinds of scenes of one's own are registered: `tisim.laws`, `tisim.inclusions`,
+`tisim.show(result, "beam.html")` writes an interactive page, `tisim.picture(result, "beam.png")` draws an
+image, `tisim.write(result, "beam.vtu")` exports a frame, `tisim.fields(result)` computes stress, strain and
+stretch, and `tisim.read("body.inp")` reads a mesh of another program (.inp, .msh, .vtu) with its sets. Users
+can register their own laws, inclusion shapes and kinds of scenes: see `tisim.laws`, `tisim.inclusions` and
 `tisim.problems`.
 """
 
@@ -25,7 +25,7 @@ from tisim import _extensions
 
 __version__ = "0.1.0"
 
-# the public names, in __init__.pyi, are imported when first asked for: a command's --help needs none
+# the public names, in __init__.pyi, are imported on first use: a command's --help needs none
 __getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
 
 _extensions.load()

@@ -1,4 +1,4 @@
-"""`python -m tisim`: name, version, and what the package offers."""
+"""`python -m tisim`: name, version and contents of the package."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import tisim
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print what tisim is; returns the exit code."""
+    """Print a summary of the package; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tisim", description="What the simulator offers.")
     parser.add_argument("--version", action="version", version=f"tisim {tisim.__version__}")
     parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""Checks of one field of a scene each, which raise a sentence that names the field and what it expects."""
+"""Checks of a scene's fields; each raises a FieldError that names the field and the expected value."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-LARGEST = 10.0  # of any length [m]: beyond it somebody wrote millimetres
+LARGEST = 10.0  # largest length [m]: larger ones are probably millimetres
 
 
 class FieldError(ValueError):
-    """A field of a scene that cannot be.
+    """A field of a scene has an invalid value.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class FieldError(ValueError):
         return FieldError, (self.field, self._expected, self._got)
 
     def within(self, parent: str) -> FieldError:
-        """The same fault, its field a part of `parent`."""
+        """The same error for the field `parent`.`field`."""
         return FieldError(f"{parent}.{self.field}", self._expected, self._got)
 
 

@@ -1,8 +1,8 @@
-"""Files that add laws, inclusion shapes or kinds of scenes, named by an environment variable.
+"""Import of files that add laws, inclusion shapes or kinds of scenes, named by an environment variable.
 
-TISIM_EXTENSIONS holds paths of Python files or names of modules, separated as PATH is. They are imported at
-the end of `import tisim`, in every process, so that the commands of factory, calibration and learn know what
-they register.
+TISIM_EXTENSIONS contains paths of Python files or names of modules, with the separator of PATH. They are
+imported at the end of `import tisim`, in every process, so that what they register is available to the
+commands of factory, calibration and learn.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ VARIABLE = "TISIM_EXTENSIONS"
 
 
 def load() -> None:
-    """Import what the environment names; ImportError, in one sentence, for what cannot be imported."""
+    """Import the extensions; ImportError, in one sentence, if one cannot be imported."""
     for entry in os.environ.get(VARIABLE, "").split(os.pathsep):
         if not entry:
             continue

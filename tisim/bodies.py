@@ -1,4 +1,4 @@
-"""Sections, rigid inclusions, blocks and rods: the shapes that meshes and scenes are made of. SI units."""
+"""Shapes of meshes and scenes: sections, rigid inclusions, blocks and rods. SI units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Circle:
     Attributes
     ----------
     radius : float
-        [m].
+        Radius [m].
     """
 
     radius: float
@@ -28,7 +28,7 @@ class Rectangle:
     Attributes
     ----------
     width, height : float
-        Along y and along z [m].
+        Sizes along y and along z [m].
     """
 
     width: float
@@ -42,9 +42,9 @@ class Block:
     Attributes
     ----------
     size : (float, float, float)
-        [m].
+        Lengths along x, y and z [m].
     inclusion : Inclusion, optional
-        A rigid body embedded in it, bonded; what reaches below z = 0 does not count.
+        A rigid body embedded in the block and bonded to it; its part below z = 0 is ignored.
     """
 
     size: Vector = (0.100, 0.100, 0.032)
@@ -58,10 +58,11 @@ class Rod:
     Attributes
     ----------
     radius, length : float
-        [m].
+        Radius and length [m].
     tip : "flat" or "hemisphere"
+        Shape of the tip.
     edge_radius : float
-        Of the rounded edge of a flat tip [m].
+        Radius of the rounded edge of a flat tip [m].
     """
 
     radius: float = 0.0025
@@ -71,7 +72,7 @@ class Rod:
 
     @property
     def edge(self) -> float:
-        """Radius of the tip's edge whatever the tip is, that of the rod where it is a hemisphere [m]."""
+        """Radius of the tip's edge [m]: `radius` for a hemisphere, else `edge_radius`, at most `radius`."""
         return self.radius if self.tip == "hemisphere" else min(self.edge_radius, self.radius)
 
 

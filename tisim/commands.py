@@ -1,8 +1,8 @@
-"""`tisim VERB`: one door to the commands of all installed packages.
+"""`tisim VERB`: one entry to the commands of all installed packages.
 
-A verb is an entry point of the group `tisim.verbs`, its value a typer application of one command; any
-distribution may add some. Its purpose is the first line of its module's docstring, after the colon. No verb
-is imported before it is run, so that help comes at once.
+A verb is an entry point of the group `tisim.verbs`, whose value is a typer application of one command; any
+distribution may add verbs. The help of a verb is the first line of its module's docstring, after the colon.
+Verbs are imported only when they are run, so that help is printed without delay.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ GROUP = "tisim.verbs"
 
 
 def verbs() -> dict[str, EntryPoint]:
-    """Entry points by verb, those of one package together."""
+    """Entry points by verb, ordered by package and name."""
     found = sorted(entry_points(group=GROUP), key=lambda e: (e.module.partition(".")[0], e.name))
     return {entry.name: entry for entry in found}
 
@@ -46,7 +46,7 @@ def _docstring(module: str) -> str:
 
 
 class _Verb(TyperCommand):
-    """A verb by name and purpose; what it stands for is imported when it is run or completed."""
+    """A verb with its name and purpose; its command is imported when it is run or completed."""
 
     def __init__(self, entry: EntryPoint) -> None:
         super().__init__(
@@ -66,7 +66,7 @@ class _Verb(TyperCommand):
 
 
 class _Verbs(TyperGroup):
-    """The verbs, in the order of their packages."""
+    """Group of the verbs, in the order of their packages."""
 
     @cached_property
     def _known(self) -> dict[str, EntryPoint]:

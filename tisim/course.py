@@ -1,4 +1,4 @@
-"""The course of a test: what is driven, piece by piece in time.
+"""The course of a test: the prescribed value over time, piece by piece.
 
 >>> from tisim.course import Course
 >>> pull = Course(start=1.0).ramp(to=1.5, speed=0.05).hold(60.0).ramp(to=1.0, speed=0.05).hold(60.0)
@@ -19,7 +19,7 @@ from tisim._checks import FieldError, check_number
 
 FRAMES_A_PIECE = 10
 STEPS_A_RAMP = 10
-SAME = 1e-12  # of the duration: times closer than this are one
+SAME = 1e-12  # difference below which two times are equal, relative to the duration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,11 +29,11 @@ class Stop:
     Attributes
     ----------
     time : float
-        [s].
+        Time [s].
     value : float
-        Of what is driven.
+        Prescribed value.
     frame : bool
-        Whether the state there is kept.
+        True if the state is kept as a frame.
     """
 
     time: float
@@ -43,29 +43,30 @@ class Stop:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """The prescribed value of a test over time: straight lines from corner to corner, and jumps.
+    """The prescribed value of a test over time, piecewise linear with jumps; quasi-static, without inertia.
 
-    What it is belongs to the scene: the stretch of a coupon or a compressed cylinder, the depth of a poke
-    [m], the part of a beam's load that acts. Quasi-static: there is no inertia.
+    The value is the stretch of a homogeneous or a compression test, the depth of a poke [m], or the fraction
+    of a beam's load.
 
-    Time steps follow from the course and the material alone. A step is at most `growth` times the time since
-    the last corner plus half of the shortest relaxation time, so that steps are fine after a corner and grow
-    by a constant ratio in a hold; a ramp has at least STEPS_A_RAMP steps; frames and corners are met exactly.
-    The error falls with the square of `growth`. A material without viscosity steps from frame to frame.
+    Time steps follow from the course and the material alone. A step is at most `growth` times the sum of the
+    time since the last corner and half of the shortest relaxation time, so that steps are short after a
+    corner and grow by a constant ratio in a hold. A ramp has at least STEPS_A_RAMP steps, and steps end
+    exactly at frames and corners. The error falls with the square of `growth`. For a material without
+    viscosity there is one step from frame to frame.
 
     Attributes
     ----------
     start : float
         Value at time 0.
     times : tuple of float
-        When each piece ends [s], never falling; a piece that takes no time is a jump.
+        End of each piece [s], never falling; a piece of duration 0 is a jump.
     values : tuple of float
-        What each piece ends at.
+        Value at the end of each piece.
     frames : tuple of float, optional
-        Times at which frames are kept [s], rising. None: FRAMES_A_PIECE a piece, evenly. A frame at the time
-        of a jump is after it.
+        Times at which frames are kept [s], rising. By default FRAMES_A_PIECE equidistant ones per piece. A
+        frame at the time of a jump is after the jump.
     growth : float
-        As above, above 0 and up to 1.
+        Factor of the step length, see above; above 0 and up to 1.
     """
 
     start: float = 0.0
@@ -75,7 +76,7 @@ class Course:
     growth: float = 0.7
 
     def ramp(self, *, to: float, speed: float | None = None, duration: float | None = None) -> Course:
-        """This course, then a straight line to a value at a speed [1/s] (of either sign) or in a time [s]."""
+        """This course, then a ramp to a value, at a speed [value/s] (of either sign) or in a duration [s]."""
         if (speed is None) == (duration is None):
             raise ValueError("course.ramp: expected either a speed or a duration")
         if duration is None:
@@ -84,15 +85,15 @@ class Course:
         return self._then(duration, to)
 
     def jump(self, to: float) -> Course:
-        """This course, then a jump to a value in no time."""
+        """This course, then a jump to a value."""
         return self._then(0.0, to)
 
     def hold(self, duration: float) -> Course:
-        """This course, then a rest at the value it ends at, for so long [s]."""
+        """This course, then a constant value for a duration [s]."""
         return self._then(duration, self._last)
 
     def cycles(self, *, to: float, back: float, speed: float, count: int) -> Course:
-        """This course, then so many times a ramp to a value and a ramp back to another, at a speed [1/s]."""
+        """This course, then `count` times a ramp to `to` and a ramp to `back`, at a speed [value/s]."""
         course = self
         for _ in range(count):
             course = course.ramp(to=to, speed=speed).ramp(to=back, speed=speed)
@@ -112,7 +113,7 @@ class Course:
         return self.values[-1] if self.values else self.start
 
     def value(self, time: float) -> float:
-        """The value at a time [s]; after a jump there."""
+        """The value at a time [s]; at a jump, that after it."""
         at, before = 0.0, self.start
         found = self.start
         for end, value in zip(self.times, self.values, strict=True):
@@ -124,7 +125,7 @@ class Course:
         return found
 
     def check(self, field: str = "course", *, start: float | None = None) -> None:
-        """Raise ValueError, in one sentence, for a course that cannot be; start: where it has to begin."""
+        """Raise FieldError for an invalid course, or one that does not begin at `start` (if given)."""
         if len(self.times) != len(self.values) or not self.times:
             raise FieldError(f"{field}.times", "at least one piece, each with a time and a value", self.times)
         for value in (self.start, *self.values):
@@ -150,15 +151,18 @@ class Course:
     def stops(self, shortest: float | None) -> list[Stop]:
         """The ends of all time steps.
 
-        shortest: the shortest relaxation time of the material [s]; None: it has none, and steps from frame to
-        frame.
+        Parameters
+        ----------
+        shortest : float or None
+            Shortest relaxation time of the material [s]. None, without viscosity, gives steps from frame to
+            frame.
         """
         found = list(self._steps(shortest))
         frames = self._frame_times()
         same = SAME * max(self.duration, 1e-300)
         stops = []
         for i, (time, value) in enumerate(found):
-            last = i + 1 == len(found) or found[i + 1][0] - time > same  # of those at this time
+            last = i + 1 == len(found) or found[i + 1][0] - time > same  # the last stop at this time
             kept = last and bool((np.abs(frames - time) <= same).any())
             stops.append(Stop(time=time, value=value, frame=kept))
         return stops

@@ -1,14 +1,15 @@
 """Stress, strain, stretch and energy of a result, by element and smoothed to nodes.
 
-They are made of the stresses at the points of integration from which the solver sums its forces, the
-pressure of elements that integrate it apart (tet10, hex8, hex20) with them. Of an element:
+They follow from the stresses at the quadrature points that the solver integrates to forces, including the
+pressure of elements that integrate it separately (tet10, hex8, hex20).
 
-- first Piola-Kirchhoff stress, Green-Lagrange strain and energy density are means over its rest volume,
-  Cauchy stress is the mean over its deformed volume: their integrals over the body are the solution's.
-- At nodes, each element's field is first fitted by a linear one (least squares over its points, with their
-  weights: it has the moments of what was integrated, which its single points, of a hex20 with stiffness
-  against change of volume at eight of them, need not show); elements whose gradient is constant keep their
-  mean. Where elements meet, the mean by their volumes counts, without those held rigid in a clamp.
+- By element, first Piola-Kirchhoff stress, Green-Lagrange strain and energy density are means over the rest
+  volume, and the Cauchy stress is the mean over the deformed volume: their integrals over the body equal
+  those of the solution.
+- At nodes, the field of each tet10 and hex20 is first fitted by a linear function (least squares over its
+  points, with their weights). The fit has the moments of the integrated field, which single points do not
+  represent (a hex20 has its volumetric stiffness mainly at eight of them). Other elements keep their mean.
+  The values at a node are averaged over its elements by volume, without those held rigid in a clamp.
 """
 
 from __future__ import annotations
@@ -25,26 +26,26 @@ from tisim.mesh import Mesh, unfold
 from tisim.problems import kind_of
 from tisim.result import Result, frame_index
 
-if TYPE_CHECKING:  # scipy and Taichi are imported when fields are asked for
+if TYPE_CHECKING:  # scipy and Taichi are imported when fields are computed
     from tisim.discretisation.body import DiscretisedBody
 
 Array = NDArray[np.float64]
 
-_HARDLY = 1e-9  # what a rigid element counts where it meets others
-_LINEAR = ("tet10", "hex20")  # elements in which stress varies
+_HARDLY = 1e-9  # weight of a rigid element in the average over elements
+_LINEAR = ("tet10", "hex20")  # element types in which stress varies
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Quantities:
-    """Fields at k places, elements or nodes.
+    """Fields of k elements or nodes.
 
     Attributes
     ----------
     cauchy : ndarray, shape (k, 3, 3)
-        Cauchy stress: force on the deformed area [Pa].
+        Cauchy stress: force per deformed area [Pa].
     first_piola : ndarray, shape (k, 3, 3)
-        First Piola-Kirchhoff stress: force on the rest area, P[i, K] the force along i on an area square to K
-        at rest [Pa].
+        First Piola-Kirchhoff stress: force per rest area [Pa]; P[i, K] is the force along i on an area normal
+        to K at rest.
     green_lagrange : ndarray, shape (k, 3, 3)
         Green-Lagrange strain (F^T F - I)/2.
     energy_density : ndarray, shape (k,)
@@ -58,13 +59,13 @@ class Quantities:
 
     @cached_property
     def von_mises(self) -> Array:
-        """Von Mises' equivalent of the Cauchy stress, shape (k,) [Pa]."""
+        """Von Mises equivalent of the Cauchy stress [Pa], shape (k,)."""
         deviator = self.cauchy + self.pressure[:, None, None] * np.eye(3)
         return np.asarray(np.sqrt(1.5 * np.einsum("kij,kij->k", deviator, deviator)))
 
     @cached_property
     def pressure(self) -> Array:
-        """Minus the mean normal Cauchy stress, shape (k,) [Pa]."""
+        """Pressure, minus the mean normal Cauchy stress [Pa], shape (k,)."""
         return np.asarray(-np.trace(self.cauchy, axis1=1, axis2=2) / 3.0)
 
     @cached_property
@@ -74,7 +75,7 @@ class Quantities:
 
     @cached_property
     def principal_stretches(self) -> Array:
-        """Length over rest length along the principal directions of strain, shape (k, 3), largest first."""
+        """Principal stretches, deformed over rest length, shape (k, 3), in descending order."""
         squares = np.linalg.eigvalsh(np.eye(3) + 2.0 * self.green_lagrange)[:, ::-1]
         return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
@@ -86,14 +87,16 @@ class Fields:
     Attributes
     ----------
     frame : int
+        Number of the frame.
     mesh : Mesh
+        Mesh of the result.
     elements, nodes : Quantities
-        By element (m), and smoothed to nodes (n).
+        Fields by element (m), and smoothed to nodes (n).
     node_forces : ndarray, shape (n, 3)
-        What these stresses pull at the nodes with, the sum of P grad N over the points [N]: 0 at free nodes
-        without load, minus the body's force on its supports at held ones. Of a half model those of the half.
+        Internal nodal forces, the integral of P grad N [N]: 0 at free nodes without load, minus the body's
+        force on its supports at held nodes. For a reduced model they are those of its mesh alone.
     energy : float
-        Stored in the whole body [J].
+        Energy stored in the whole body [J].
     """
 
     frame: int
@@ -111,7 +114,7 @@ def fields(result: Result, frame: int = -1) -> Fields:
     ----------
     result : Result
     frame : int
-        Negative ones count from the end.
+        Index of the frame; negative ones count from the end.
 
     Returns
     -------
@@ -120,19 +123,19 @@ def fields(result: Result, frame: int = -1) -> Fields:
     Raises
     ------
     ValueError
-        For a frame that the result does not have.
+        If the result does not have the frame.
 
     Notes
     -----
-    A material with viscosity or softening remembers: its history is followed from frame to frame, in one time
-    step each, with stresses that change at a constant rate between. Frames that lie far apart in a hold make
-    it coarse (docs/how-to/viewing.md says by how much); `Course(frames=...)` asks for more of them.
+    The history of a material with viscosity or softening is integrated from frame to frame, in one time step
+    each, with stresses that change at a constant rate. It is inaccurate if frames in a hold are far apart
+    (docs/how-to/viewing.md quantifies this); `Course(frames=...)` requests more frames.
     """
     return next(_frames(result, [frame_index(result, frame)]))
 
 
 def fields_of_frames(result: Result) -> Iterator[Fields]:
-    """`fields` of all frames, one after the other; materials that remember are followed once."""
+    """`fields` of all frames in sequence; the history of a material is integrated only once."""
     return _frames(result, range(len(result.positions)))
 
 
@@ -162,7 +165,7 @@ def _frames(result: Result, wanted: Sequence[int]) -> Iterator[Fields]:
 
 
 def fields_at(body: DiscretisedBody, x: Array, frame: int = -1) -> Fields:
-    """Fields of a body at positions x (n, 3) [m], in the state that it has accepted last."""
+    """Fields of a body at positions x (n, 3) [m], in its last accepted state."""
     mesh, ref = body.discretisation.mesh, body.discretisation.reference
     psi, P = body.point_response(x)
     energy = body.stored_energy(x)
@@ -205,7 +208,7 @@ def fields_at(body: DiscretisedBody, x: Array, frame: int = -1) -> Fields:
 
 
 def _fitted(body: DiscretisedBody, values: Array, weights: Array) -> tuple[Array, Array]:
-    """Mean (m, c) of each element's point values (m, q, c), and their linear fit at its nodes (m, a, c)."""
+    """Weighted mean (m, c) of elements' point values (m, q, c), and their linear fit at nodes (m, a, c)."""
     mesh, ref = body.discretisation.mesh, body.discretisation.reference
     total = weights.sum(axis=1)
     total = np.where(total > 0.0, total, 1.0)
@@ -224,7 +227,7 @@ def _fitted(body: DiscretisedBody, values: Array, weights: Array) -> tuple[Array
 
 
 def _at_nodes(mesh: Mesh, corners: Array, volume: Array) -> Array:
-    """Means by volume (n, c) of what elements have at their nodes (m, a, c)."""
+    """Volume-weighted means (n, c) of the elements' values at their nodes (m, a, c)."""
     found, weight = np.zeros((mesh.n_nodes, corners.shape[2])), np.zeros(mesh.n_nodes)
     np.add.at(found, mesh.elements, volume[:, None, None] * corners)
     np.add.at(weight, mesh.elements, np.broadcast_to(volume[:, None], mesh.elements.shape))
@@ -232,21 +235,21 @@ def _at_nodes(mesh: Mesh, corners: Array, volume: Array) -> Array:
 
 
 def mirrored(tensors: Array, name: str) -> Array:
-    """Tensors (..., 3, 3) as a mirror square to an axis ("x", "y" or "z") shows them."""
+    """Tensors (..., 3, 3) reflected in a plane normal to an axis ("x", "y" or "z")."""
     sign = np.ones(3)
     sign["xyz".index(name)] = -1.0
     return np.asarray(tensors * np.outer(sign, sign))
 
 
 def _mirror(mesh: Mesh, tensors: Array) -> None:
-    """On mirror planes, the mean with the other half's."""
+    """Average tensors (n, 3, 3) on mirror planes with those of the other half, in place."""
     for name in mesh.symmetry:
         plane = mesh.node_sets[f"mirror_{name}"]
         tensors[plane] = 0.5 * (tensors[plane] + mirrored(tensors[plane], name))
 
 
 def unfold_quantities(mesh: Mesh, found: Quantities, *, nodes: bool) -> Quantities:
-    """Quantities of a mesh's nodes or elements on the whole body that `tisim.mesh.unfold` makes of it."""
+    """Quantities of a mesh's nodes or elements on the whole body of `tisim.mesh.unfold`."""
     values = {name: getattr(found, name) for name in Quantities.__dataclass_fields__}
     for name in mesh.symmetry:
         copied = np.ones(mesh.n_nodes if nodes else mesh.n_elements, dtype=bool)

@@ -3,9 +3,10 @@
     python -m tisim.precompile                                  # each law, without further parts
     python -m tisim.precompile ogden neo-hookean+prony          # chosen ones: a law, and parts after "+"
 
-A kernel is compiled when it is first used, in seconds, and Taichi writes what it compiled to disk when the
-process ends. Processes that run at the same time therefore compile the same kernels each. Run this once where
-many processes begin together: in a container's image, before a cluster's jobs, before a test run.
+A kernel is compiled at its first use, which takes seconds, and Taichi writes compiled kernels to disk at the
+end of the process. Processes that run at the same time therefore compile the same kernels each. Run this
+command once before many processes start together: in a container's image, before the jobs of a cluster,
+before a test run.
 """
 
 from __future__ import annotations
@@ -30,16 +31,16 @@ PARTS: dict[str, tuple[str, Any]] = {
     "ogden-roxburgh": ("softening", tisim.OgdenRoxburgh(r=2.0, m=1e3)),
     "holzapfel-gasser-ogden": ("fibres", tisim.HolzapfelGasserOgden(direction=(1.0, 0.0, 0.0), k1=1e4)),
 }
-"""Parts that can be named, with the material's field; kernels depend on the part, not on its numbers."""
+"""Parts by name, with the material's field; kernels depend on the type of a part, not on its parameters."""
 
 
 def material(name: str) -> tisim.Material:
-    """A material of the kind that `name` says: a law, then parts after "+" (`ogden+prony`).
+    """Material with the law and parts in `name`, separated by "+" (`ogden+prony`).
 
     Raises
     ------
     ValueError
-        For an unknown law or part; the sentence names those there are.
+        For an unknown law or part; the message lists the known ones.
     """
     law, *parts = name.split("+")
     if law not in tisim.laws.all_names():
@@ -52,24 +53,24 @@ def material(name: str) -> tisim.Material:
 
 
 def precompile(names: Iterable[str] = (), *, workers: int = 1) -> list[str]:
-    """Compile the kernels of materials in other processes, which leave them on disk.
+    """Compile the kernels of materials in other processes, which write them to disk.
 
     Parameters
     ----------
     names : iterable of str
-        Kinds of materials (see `material`); none stands for all laws without further parts.
+        Names of materials (see `material`); if empty, all laws without further parts.
     workers : int
-        Processes; a law's kernels take five seconds and 300 MB.
+        Number of processes; a law's kernels take five seconds and 300 MB.
 
     Returns
     -------
     list of str
-        What was compiled, in the order given.
+        Names of the compiled materials, in the order given.
 
     Raises
     ------
     ValueError
-        For an unknown law or part, or no workers, before anything is compiled.
+        For an unknown law or part, or less than one worker, before anything is compiled.
     """
     if workers < 1:
         raise ValueError(f"--workers: expected 1 or more, got {workers}")
@@ -85,7 +86,7 @@ def precompile(names: Iterable[str] = (), *, workers: int = 1) -> list[str]:
 
 
 def _compile(name: str) -> None:
-    """Call each kernel of a material once: over elements, at a point; explicit steps without state."""
+    """Call each kernel of a material once, those of explicit steps only for a material without history."""
     from tisim.discretisation.body import Discretisation, DiscretisedBody
     from tisim.parts import MaterialPoints
     from tisim.problems.dynamics.explicit import march
@@ -110,7 +111,7 @@ def _compile(name: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command; return its exit code."""
     parser = argparse.ArgumentParser(
         prog="python -m tisim.precompile", description="Compile kernels before they are needed."
     )

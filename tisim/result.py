@@ -1,4 +1,4 @@
-"""Results of simulations: frames, a status that states every failure, and the cost."""
+"""Results of simulations: frames, status and cost."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from tisim.mesh import Mesh
 
 
 class Status(StrEnum):
-    """Outcome of a simulation. Every frame kept is an equilibrium, whatever the status."""
+    """Outcome of a simulation. All frames of a static solution are equilibria, whatever the status."""
 
     CONVERGED = "converged"  # the whole load, depth or duration was reached
-    NOT_CONVERGED = "not-converged"  # Newton failed after all step cuts
-    INVERTED = "inverted-element"  # the next step would turn an element over
-    PENETRATION = "penetration"  # the surface would pass the rod's edge beyond the tolerance
+    NOT_CONVERGED = "not-converged"  # Newton's method failed after all step cuts
+    INVERTED = "inverted-element"  # the next step would invert an element
+    PENETRATION = "penetration"  # the rod would penetrate too far, or a cylinder's side touched a platen
     SINGULAR = "singular"  # the linear solver failed
     DIVERGED = "diverged"  # a dynamic run lost its energy balance or became non-finite
-    UNFINISHED = "unfinished"  # the duration ended before rest, where rest was asked for
+    UNFINISHED = "unfinished"  # a run with until_rest reached its duration before rest
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """Work done.
+    """Cost of a simulation.
 
     Attributes
     ----------
     core_seconds, mesh_seconds : float
-        CPU time of the solve, and of making the mesh [s].
+        CPU time of the solution and of the mesh generation [s].
     steps, newton_iterations, factorisations, linear_iterations, step_cuts : int
-        Counts. Of a poke, iterations are of the tissue near the rod, factorisations of that and of the far
-        tissue.
+        Counts. For a poke, iterations are those of the tissue near the rod, factorisations those of the near
+        and the far tissue.
     """
 
     core_seconds: float = 0.0
@@ -49,25 +49,24 @@ class Cost:
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Result:
-    """The answer to one scene; f frames on a mesh of n nodes. Quantities that its kind lacks are None.
+    """Solution of one scene: f frames on a mesh of n nodes. Quantities that do not apply are None.
 
     Attributes
     ----------
     scene : Scene
     status : Status
     message : str
-        One sentence where the status is not CONVERGED.
+        One sentence if the status is not CONVERGED, else empty.
     mesh : Mesh
-        Rest mesh the answer lives on; of a beam with imperfections, the ideal prism's (see
+        Rest mesh of the solution; for a beam with imperfections that of the ideal prism (see
         `tisim.rest_positions`).
     load : ndarray, shape (f,)
-        What the frames are counted by: fraction of the load of a static beam (1.0 = all), time of a dynamic
-        one [s], depth of a poke [m], stretch of a coupon or a compressed cylinder, part of the load of a beam
-        with a course.
+        Load parameter of the frames: fraction of the load of a static beam (1.0 = all), time of a dynamic
+        beam [s], depth of a poke [m], stretch of a homogeneous or a compression test.
     time : ndarray, shape (f,), or None
-        Time of the frames [s]; scenes with a course, and dynamic ones.
+        Time of the frames [s]; scenes with a course and dynamic scenes.
     dissipated : ndarray, shape (f,), or None
-        Energy that the whole body's material has lost so far [J], damping of the solver's own not counted;
+        Energy dissipated so far by the material of the whole body, without the solver's damping [J];
         materials with viscosity or softening.
     positions : ndarray, shape (f, n, 3)
         Node positions [m].
@@ -78,13 +77,13 @@ class Result:
     rod_tip : ndarray, shape (f, 3), or None
         Centre of the rod's tip [m]; pokes.
     penetration : ndarray, shape (f,), or None
-        Deepest overlap of body and rod, or of side and platen [m]; pokes and compression.
+        Largest overlap of body and rod, or of side and platen [m]; pokes and compression.
     min_jacobian : ndarray, shape (f,)
-        Smallest det F at the integration points.
+        Smallest det F at the quadrature points.
     residual : ndarray, shape (f,)
-        Free nodes' residual relative to the applied load.
+        Residual of the free nodes relative to the applied load; static residual of dynamic scenes.
     nominal_stress : ndarray, shape (f,), or None
-        Force over rest area in the loaded direction [Pa]; coupons and compression.
+        Force over rest area in the loaded direction [Pa]; homogeneous tests and compression.
     cost : Cost
     """
 
@@ -115,7 +114,7 @@ class Result:
         return f"<Result of a {type(self.scene).__name__}: {rows}>"
 
     def _repr_html_(self) -> str:
-        """A small table for notebooks."""
+        """Summary table for notebooks."""
         rows = "".join(
             f"<tr><th style='text-align:left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
             for name, value in self._summary()
@@ -147,7 +146,7 @@ class Result:
 
 
 def frame_index(result: Result, frame: int) -> int:
-    """The frame counted from the start; ValueError where there is none."""
+    """Index of a frame counted from the start; ValueError if the result does not have the frame."""
     count = len(result.positions)
     if not count:
         why = f": {result.message}" if result.message else ""

@@ -1,4 +1,4 @@
-"""Scenes: beams, pokes, coupons and compressed cylinders of one material. SI units."""
+"""Scenes of one material: beams, indentation, homogeneous tests and compressed cylinders. SI units."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ ElementChoice = Literal["default", "tet4", "tet10", "hex8", "hex20"]
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """A constitutive law with its parameters, and what the material has beside it.
+    """A constitutive law with its parameters, and optional viscosity, softening and fibres.
 
-    How they combine is stated in `tisim.parts`.
+    `tisim.parts` states how they combine.
 
     Attributes
     ----------
     law : str
         A name in `tisim.laws.all_names()`.
     parameters : mapping
-        By name as the law's docstring states them, moduli in Pa; a tuple for a series (Ogden).
+        Parameters by name, as in the law's docstring, moduli in Pa; a tuple for a series (Ogden).
     density : float
         Rest density [kg/m3].
     viscosity : tisim.parts.Viscosity, optional
@@ -47,7 +47,7 @@ class Material:
 
     @property
     def has_parts(self) -> bool:
-        """True if the material has viscosity, softening or fibres beside its law."""
+        """True if the material has viscosity, softening or fibres in addition to its law."""
         return self.viscosity is not None or self.softening is not None or self.fibres is not None
 
     @property
@@ -61,14 +61,14 @@ def material_from_moduli(
 ) -> Material:
     """Material of a law with given small-strain moduli.
 
-    Constants that small strains do not determine have the law's plain default; see its `from_moduli`.
+    Constants that do not affect the small-strain moduli have the default of the law's `from_moduli`.
 
     Parameters
     ----------
     law : str
         A name in `tisim.laws.all_names()`.
     shear_modulus, bulk_modulus : float
-        [Pa].
+        Small-strain moduli [Pa].
     density : float
         Rest density [kg/m3].
 
@@ -94,20 +94,21 @@ class Solver:
     Attributes
     ----------
     method : "static", "implicit" or "explicit"
-        Equilibrium, dynamics by BDF2, or dynamics by central differences (both of beams only).
+        Equilibrium, dynamics by BDF2, or dynamics by central differences (dynamics for beams only).
     tolerance : float
-        Equilibrium when the free nodes' residual is below this fraction of the applied load (the rod's force,
-        for a poke), or below what rounding leaves of it.
+        Largest residual of the free nodes in equilibrium, as a fraction of the applied load (for a poke, of
+        the rod's force). For beams it is not below the rounding error of the residual.
     duration : float
         End time of the dynamic methods [s].
     time_step : float
-        Step of the implicit method [s] (the explicit one takes its stable step).
+        Largest step of the implicit method [s]; the explicit method divides it into stable steps.
     mass_damping, stiffness_damping : float
         Rayleigh coefficients [1/s] and [s].
     until_rest : bool
-        The dynamic methods also end when the motion has died down to equilibrium.
+        If True, the dynamic methods end earlier, when the body is at rest in equilibrium.
     max_iterations : int
-        Newton iterations a step (of pokes: as many more after each step refused before it).
+        Newton iterations per step. A step of a poke takes half as many and, if it fails, up to four times as
+        many as a damped motion.
     """
 
     method: Literal["static", "implicit", "explicit"] = "static"
@@ -122,18 +123,18 @@ class Solver:
 
 @dataclass(frozen=True, kw_only=True)
 class Void:
-    """A stretch of a beam in which material is missing: bubbles, a hollow.
+    """A section of a beam in which material is missing, such as bubbles or a cavity.
 
     Attributes
     ----------
     position : float
-        Of its middle along the beam [m].
+        Position of its middle along the beam [m].
     length : float
-        Between the positions where half of `fraction` is missing [m]; the loss integrates to fraction *
-        length.
+        Distance between the positions at which half of `fraction` is missing [m]; the integral of the loss is
+        fraction * length.
     edge : float
-        Length over which the loss sets in at either end, as half a cosine [m], `length` at most: a mesh
-        cannot follow a jump.
+        Length of the transition at each end, half a cosine wave [m], at most `length`: a mesh cannot resolve
+        a jump.
     fraction : float
         Peak loss of the section's stiffness, in bending and stretching, and of its weight, 0 to 0.95.
     """
@@ -146,26 +147,27 @@ class Void:
 
 @dataclass(frozen=True, kw_only=True)
 class Imperfections:
-    """Deviations of a real beam from the ideal prism, zero for the ideal one. x runs along the beam at rest.
+    """Deviations of a beam from the ideal prism, all zero by default. x runs along the beam at rest.
 
     Attributes
     ----------
     curvature : float
-        Stress-free, the axis is an arc in the plane y = 0 that leaves x = 0 along x; positive is bent
-        upwards, to +z [1/m].
+        Curvature of the stress-free axis, an arc in the plane y = 0 that starts at x = 0 along x; positive
+        upwards, towards +z [1/m].
     taper : float
         Relative change of the section's size per metre along x, 0 in the middle of the length [1/m].
     axial_gradient, density_gradient : float
-        The same for the modulus and for the density [1/m].
+        Relative changes of the modulus and of the density per metre along x, 0 in the middle [1/m].
     transverse_gradient : float
         Relative change of the modulus per metre along z, 0 on the axis [1/m].
     skin : float
-        Relative excess of stiffness of the outer layer. The layer is thinner than an element, so its excess
-        is spread over the section as a quadratic of y and z that has the layer's stretching stiffness and
-        its bending stiffnesses about y and z.
+        Relative excess stiffness of the outer layer. The layer is thinner than an element, so its excess is
+        distributed over the section as a quadratic function of y and z with the layer's stretching stiffness
+        and its bending stiffnesses about y and z.
     skin_thickness : float
-        Depth of that layer [m].
+        Thickness of that layer [m].
     void : Void, optional
+        A section with missing material.
     """
 
     curvature: float = 0.0
@@ -180,21 +182,21 @@ class Imperfections:
 
 @dataclass(frozen=True, kw_only=True)
 class ClampImperfections:
-    """Deviations of clamps from ideal ones, each of which holds the section of its end upright and in shape.
+    """Deviations of clamps from ideal ones, which hold the end sections upright and in shape.
 
     Attributes
     ----------
     tilt : float
-        Rotation of the near clamp's face about (0, 0, 0) and y; positive lifts the free end, to +z [rad].
+        Rotation of the near clamp's face about y through (0, 0, 0); positive lifts the free end to +z [rad].
     far_tilt : float
         Rotation of the far clamp's face about (length, 0, 0); positive is a positive slope dz/dx [rad].
     far_shift : (float, float)
         Displacement (dx, dz) of the far clamp [m].
     compliance : float
-        Each clamp turns, besides, by this times the bending moment that it carries, about the middle of its
-        face [rad/(N m)]; found to 1e-4 of the angle.
+        Additional rotation of each clamp about the middle of its face, per bending moment that it carries
+        [rad/(N m)]; solved for to 1e-4 of the angle.
     squeeze : float
-        The held section is lower (z) by this fraction, and wider (y) so that its area stays.
+        Fraction by which the held section's height (z) is reduced; its width (y) grows at constant area.
     """
 
     tilt: float = 0.0
@@ -212,37 +214,36 @@ class Beam:
     ----------
     material : Material
     length : float
-        Free length [m]. May be left out with a mesh of one's own: how far that reaches from its clamp, or
-        from one clamp to the other.
+        Free length [m]. Optional if `mesh` is given: by default the distance from the mesh's clamp to its
+        farthest node, or between its two clamps.
     section : Circle or Rectangle
     supports : "clamped-free" or "clamped-clamped"
     grip_length : float
-        Length held in each grip, all of its nodes fixed [m].
+        Length held in each grip, where all nodes are fixed [m].
     gravity : (float, float, float)
-        [m/s2].
+        Acceleration of gravity [m/s2].
     tip_force : (float, float, float)
         Dead load on the free end face [N].
     tip_mass : float
-        Fixed to the free end face, spread evenly over it [kg]: inertia of the dynamic methods only (mass
-        damping acts on it too); its weight is to be given as a tip_force.
+        Mass distributed uniformly over the free end face [kg]. It adds inertia in the dynamic methods only
+        (mass damping acts on it too); its weight has to be given as a tip_force.
     element : "default", "tet4", "tet10" or "hex8"
-        "default" is the mixed 10-node tetrahedron; "tet4" the paper's.
+        "default" is the mixed 10-node tetrahedron, "tet4" the paper's element.
     mesh : Mesh, optional
-        An own mesh with node sets "clamp" (and "far_clamp"), instead of the structured one; facet set "tip"
-        where a tip force acts.
+        Mesh to use instead of the structured one. It needs node sets "clamp" (and "far_clamp"), and a facet
+        set "tip" for a tip force or mass.
     axial_element_size : float
         Length of the structured elements along the beam [m].
     radial_elements : int
         Number of elements from the axis to the surface.
     imperfections : Imperfections
-        Static beams only. The result's mesh stays the ideal prism's; `tisim.rest_positions` gives the
-        positions of its nodes free of stress.
+        Static beams only. The result's mesh is that of the ideal prism; `tisim.rest_positions` returns the
+        stress-free positions of its nodes.
     clamp_imperfections : ClampImperfections
         Static beams only.
     course : Course, optional
-        The part of the load, weight and tip force, that acts over time, from 0: quasi-static, without
-        inertia. What a viscous material needs unless its motion is asked for; a beam that hangs from time 0
-        on has `Course().jump(1.0).hold(T)`.
+        Fraction of the load (weight and tip force) over time, from 0; quasi-static, without inertia. Required
+        for static beams of a viscous material; a beam loaded at time 0 has `Course().jump(1.0).hold(T)`.
     solver : Solver
     """
 
@@ -269,7 +270,7 @@ class Beam:
         if self.mesh is None:
             raise TypeError("Beam: expected length, the free length [m], or a mesh")
         held = ("clamp",) if self.supports == "clamped-free" else ("clamp", "far_clamp")
-        # what is no mesh, or has no clamps, is refused by the scene's check
+        # the scene's check refuses other objects and meshes without clamps
         free = free_length(self.mesh, held) if isinstance(self.mesh, Mesh) else math.nan
         object.__setattr__(self, "length", free)
 
@@ -282,39 +283,39 @@ class Poke:
     ----------
     material : Material
     site : (float, float)
-        Where the rod's axis meets the rest surface, (x, y) [m].
+        Point at which the rod's axis meets the rest surface, (x, y) [m].
     direction : (float, float, float)
-        Of the push, of any length; up to 45 degrees from -z.
+        Direction of the push, of any length; up to 45 degrees from -z.
     depth : float
-        Travel asked for [m], counted from first touch of the undeformed surface.
+        Travel of the rod from first contact with the undeformed surface [m].
     retract_to : float, optional
-        Depth that the rod is then drawn back to [m], frames kept on the way as well; None: not at all. The
-        surface does not pull at the rod.
+        Depth to which the rod is then retracted [m], with frames on the way; None for no retraction. The
+        surface does not adhere to the rod.
     course : Course, optional
-        The depth over time [m], from 0, in place of `depth`, `retract_to` and `frame_spacing`; what a viscous
-        material needs.
+        Depth over time [m], from 0, in place of `depth`, `retract_to` and `frame_spacing`; required for a
+        viscous material.
     turns : tuple of (float, (float, float, float))
-        Of a poke with a course: times [s] and directions, as `direction`, that the rod turns to. It turns
-        about the place where its axis meets the rest surface, at a constant rate, from `direction` at time 0
-        to the first, from there to the next, and stays at the last; a direction given twice is a rest.
-        Times are ends of the course's pieces, rising. Empty: the direction stays.
+        Times [s] and directions of a rod that rotates; requires a course. The rod rotates at a constant rate
+        about the point where its axis meets the rest surface, from `direction` at time 0 to the first
+        direction, then to the next, and keeps the last one; it stands still between two equal directions.
+        Times rise and are ends of the course's pieces. If empty, the direction is constant.
     block : Block
     rod : Rod
     friction : float
-        Coulomb coefficient (0 slides freely).
+        Coulomb coefficient (0: frictionless).
     frame_spacing : float
-        A frame is kept each time the tip has moved this far [m].
+        Travel of the tip from one frame to the next [m].
     element : "default", "tet4", "tet10", "hex8" or "hex20"
         "default" is the 20-node hexahedron, on a mesh made for the rod.
     mesh : Mesh, optional
-        An own mesh, with node set "base" (fixed) and facet set "top".
+        Mesh to use instead; it needs a node set "base" (fixed) and a facet set "top".
     refinement : float
-        Elements get smaller by this factor (1 = default), 0.5 to 6.
+        Factor by which elements become smaller (1 = default), 0.5 to 6.
     gravity : (float, float, float)
-        [m/s2]; none by default, as in the paper.
+        Acceleration of gravity [m/s2]; none by default, as in the paper.
     solver : Solver
-        Its tolerance is 5e-4 of the rod's force, since contact points that come and go at the rod's edge
-        keep the iteration from doing much better. Only the static method is offered.
+        The default tolerance is 5e-4 of the rod's force, since contact points that open and close at the
+        rod's edge prevent much smaller residuals. Only the static method is available.
     """
 
     material: Material
@@ -344,11 +345,11 @@ class Coupon:
     material : Material
     mode : "uniaxial", "equibiaxial", "planar" or "simple-shear"
     stretches : tuple of float
-        Values of the stretch (simple shear: 1 + gamma), each solved in turn.
+        Values of the stretch (simple shear: 1 + gamma), solved in sequence.
     course : Course, optional
-        The stretch over time, from 1, in place of `stretches`; what a viscous material needs.
+        Stretch over time, from 1, in place of `stretches`; required for a viscous material.
     solver : Solver
-        Only the static method is offered.
+        Only the static method is available.
     """
 
     material: Material
@@ -366,24 +367,24 @@ class Press:
     ----------
     material : Material
     radius, height : float
-        Of the rest shape [m].
+        Radius and height of the rest shape [m].
     platens : "bonded" or "free"
         Bonded: the end faces stick to the platens all over (glued, or rough). Free: they slide without
-        friction; the cylinder stays one, down to a stretch of 0.44 or so, where its surface gets unstable.
-        Coulomb friction, between the two, is not offered.
+        friction, and the body remains a cylinder down to a stretch of about 0.44, where its surface becomes
+        unstable. Coulomb friction, which lies between the two, is not available.
     stretches : tuple of float
-        Height over rest height, all falling from 1 or all rising from 1, each solved in turn.
+        Height over rest height, all falling from 1 or all rising from 1, solved in sequence.
     course : Course, optional
-        The stretch over time, from 1, in place of `stretches`; what a viscous material needs.
+        Stretch over time, from 1, in place of `stretches`; required for a viscous material.
     side : "stick" or "stop"
-        What happens where a bonded cylinder's side folds onto a platen: it stays where it comes down, and
-        carries; or the run ends there, with status PENETRATION.
+        If the side of a bonded cylinder folds onto a platen, either it sticks where it touches and carries
+        load, or the solution ends with status PENETRATION.
     element : "default", "tet4", "tet10" or "hex8"
         "default" is the mixed 10-node tetrahedron.
     refinement : float
-        Elements get smaller by this factor (1 = default), 0.4 to 8.
+        Factor by which elements become smaller (1 = default), 0.4 to 8.
     solver : Solver
-        Only the static method is offered.
+        Only the static method is available.
     """
 
     material: Material

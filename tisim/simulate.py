@@ -1,4 +1,4 @@
-"""The one entry: scenes go in, results come out, many at once."""
+"""`simulate`: the solution of scenes, one or many at once."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from tisim.scene import Scene
 
 Progress = Callable[[float, int], None]
 
-# MKL may otherwise take another path for another alignment of memory, and the bytes would differ; it
-# reads this when it is first called, which is after this import.
+# Otherwise MKL may take different code paths for different memory alignments, and results would differ in
+# their bytes. MKL reads the variable at its first call, which is after this import.
 os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")
 
 
@@ -46,12 +46,13 @@ def simulate(
     scenes : Scene or sequence of Scene
         One scene, or many.
     workers : int, optional
-        Processes to spread the scenes over, each solving one scene at a time on one core. 1 solves in this
-        process. None takes all cores, and this process alone while the work saved so far is less than
-        starting processes costs (about 3 s once; they stay for the next call).
+        Number of processes, each solving one scene at a time on one core. With 1, scenes are solved in this
+        process. None uses all cores, but only this process as long as the time that processes would have
+        saved so far is less than the cost of starting them (about 3 s once; they are kept for later calls).
     on_progress : callable (done, total), optional
-        Called here when a scene is finished, with the number of finished scenes. In this process a scene
-        of several steps (depths, stretches, times) counts by parts on the way: done is a fraction then.
+        Called in this process after each scene, with the number of finished scenes. For a scene of several
+        steps (depths, stretches, times) that is solved in this process, it is also called on the way, with a
+        fractional number.
 
     Returns
     -------
@@ -63,23 +64,24 @@ def simulate(
     TypeError
         If `scenes` is neither a scene nor a sequence.
     ValueError
-        For scenes that cannot be, naming the first by its index, before anything is solved. A scene that has
-        no answer raises nothing: its `Result.status` says so, and its good frames are kept.
+        For invalid scenes, before anything is solved; the message names the first by its index. A scene
+        without a solution raises nothing: its `Result.status` states the failure, and the frames before it
+        are kept.
     RuntimeError
-        If a worker process died twice. One that dies (killed, out of memory) is replaced and its scenes are
-        solved again, once.
+        If a worker process died twice. A worker that dies (killed, out of memory) is replaced, and its scenes
+        are solved again, once.
 
     Notes
     -----
-    Results are the same bytes whatever `workers` is. Beams on one mesh are solved in chains of up to
-    `tisim.parallel.chunks.CHAIN` neighbours in parameters, each started from the one before, so a beam's
-    answer depends on its batch by less than the solver's tolerance (and 1e-4 of the angles of clamps that
-    yield).
+    Results are identical to the byte for any number of workers. Beams on one mesh are solved in chains of up
+    to `tisim.parallel.chunks.CHAIN` neighbours in parameters, each started from the previous one, so that the
+    solution of a beam depends on its batch by less than the solver's tolerance (and 1e-4 of the angles of
+    compliant clamps).
 
-    Memory grows linearly in the batch: a result holds 24 bytes a node and frame (default beam of 100 mm:
+    Memory grows linearly with the batch: a result takes 24 bytes per node and frame (default beam of 100 mm:
     1,015 nodes, 26 kB; poke of 3,500 nodes and 20 frames: 1.7 MB) and shares its mesh with the results of the
-    same beam. Each process holds besides one scene's matrices (beam: 10 MB) and what belongs to the last 16
-    beam meshes (7 MB each), whatever the size of the batch.
+    same beam. In addition each process holds the matrices of one scene (beam: 10 MB) and the data of the last
+    16 beam meshes (7 MB each), for any size of the batch.
     """
     if not isinstance(scenes, Sequence):
         if hasattr(scenes, "__iter__"):
@@ -119,7 +121,7 @@ def _simulate(scenes: list[Any], workers: int | None, on_progress: Progress | No
 
 
 def _same_mesh(scene: Any, mesh: Mesh) -> Mesh:
-    """The scene's own mesh, where `mesh` is a copy of it that came back from another process."""
+    """The mesh supplied with the scene if `mesh` is a copy of it from another process, else `mesh`."""
     own = own_mesh(scene)
     return mesh if own is None or not np.array_equal(own.nodes, mesh.nodes) else own
 
@@ -144,7 +146,7 @@ def _solve_apart(chunks: list[Chunk], workers: int) -> Generator[tuple[Chunk, in
         dead: list[Chunk] = []
         futures = pool.submit(waiting, workers)
         try:
-            if attempt == 0:  # what cannot leave this process is solved while the others work
+            if attempt == 0:  # scenes that cannot be sent are solved here while the workers run
                 yield from _solve_here([chunk for chunk in chunks if chunk.extensions is None])
             for future in as_completed(futures):
                 try:
@@ -154,7 +156,7 @@ def _solve_apart(chunks: list[Chunk], workers: int) -> Generator[tuple[Chunk, in
                     continue
                 for index, result in solved:
                     yield futures[future], index, result
-        except BaseException:  # an error, Ctrl-C, GeneratorExit: nothing goes on behind the caller's back
+        except BaseException:  # an error, Ctrl-C, GeneratorExit: leave nothing running
             pool.stop(futures)
             raise
         if not dead:

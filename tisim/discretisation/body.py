@@ -1,4 +1,4 @@
-"""A mesh's discretisation, shared by all candidates on it, and a body: a material on a discretisation."""
+"""The discretisation of a mesh, shared by all bodies on it, and a body: a material on a discretisation."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from tisim.scene import Material
 
 Array = NDArray[np.float64]
 
-# Bulk modulus that stays pointwise, what W itself resists included, in units of the shear modulus, by
-# element. One pressure a tet10 is too soft in bending without it: against benchmarks/references/beams.json
-# (K/mu 20 to 1000, mu 9 and 40 kPa) the default beams are within -0.43 and +0.61 % with 0 left to W of
-# Ogden, -0.51 and +0.16 % with 2/3, -0.70 and +0.03 % with 1. The Neo-Hookean W has 2/3 of its own.
+# Pointwise bulk modulus by element type, in units of the shear modulus, including the resistance of W itself.
+# Without it a tet10 with one pressure is too soft in bending: against benchmarks/references/beams.json (K/mu
+# 20 to 1000, mu 9 and 40 kPa) the default beams are within -0.43 and +0.61 % with 0 for Ogden's W, -0.51 and
+# +0.16 % with 2/3, -0.70 and +0.03 % with 1. The Neo-Hookean W itself has 2/3.
 POINTWISE = {"tet4": np.inf, "tet10": 2.0 / 3.0, "hex8": 2.0, "hex20": 2.0}
 
 
@@ -33,10 +33,17 @@ NO_STATE = np.zeros((1, 1, 1))
 class Discretisation:
     """Data that depend on mesh and supports only: quadrature, numbering, sparsity, symbolic factor.
 
-    held: boolean (n, 3), components of free nodes that may not move (mirror planes, platens).
-    stiffness, density: (m, q), factors of the material's stiffness and density at the quadrature points, None
-        where all are 1. The energy is linear in the stiffness (the element's mean volumetric strain becomes
-        the mean weighted by it), so the kernels take them as part of their weights.
+    Attributes
+    ----------
+    mesh : the mesh.
+    fixed : indices of fixed nodes.
+    held : True for components of free nodes that are prescribed (mirror planes, platens), shape (n_free, 3).
+    reference : quadrature data of the rest shape.
+    pattern : sparsity of the tangent.
+    solver : direct solver with the symbolic factor.
+    stiffness, density : factors of the material's stiffness and density at the quadrature points, shape
+        (m, q); None if all are 1. The energy is linear in the stiffness, so that the kernels take its factors
+        as part of their weights (the element's mean volumetric strain becomes the mean weighted by them).
     """
 
     mesh: Mesh
@@ -68,14 +75,13 @@ class Discretisation:
 
     @property
     def multiplicity(self) -> float:
-        """Number of copies of the mesh that make the whole body."""
+        """Number of copies of the mesh that make up the whole body."""
         return 2.0 ** len(self.mesh.symmetry)
 
     def nodal_volume(self) -> Array:
-        """Rest volume by node, the integral of each shape function, shape (n,); sums to the volume.
+        """Rest volume by node, the integral of each shape function [m3], shape (n,); sums to the volume.
 
-        Where the discretisation has a density, that of the volume at the material's stated density with as
-        much mass.
+        Factors of the density, if any, are included: nodal mass = nodal volume times the material's density.
         """
         ref, mesh = self.reference, self.mesh
         weights = ref.weights if self.density is None else ref.weights * self.density
@@ -85,7 +91,7 @@ class Discretisation:
         return volume
 
     def hold(self, blocks: Array) -> None:
-        """Decouple the held components: their rows and columns of the matrix become a scaled identity."""
+        """Replace the rows and columns of the held components in blocks (nb, 3, 3) by a scaled identity."""
         if not self.held.any():
             return
         p = self.pattern
@@ -103,11 +109,19 @@ class Discretisation:
 class DiscretisedBody:
     """A material on a discretisation under dead loads: potential, forces, stiffness at positions x (n, 3).
 
-    added_mass (n,): point masses at the nodes, of the dynamic methods [kg].
-    history: state (m, q, k) of points that another body keeps (see `follow`), for a part of a body.
+    If the material depends on its history (`remembers`), forces are those of the present step, which `begin`
+    starts and `accept` ends. A step that is not accepted has no effect on the history.
 
-    Where the material remembers (`history` is not None), forces are those of the present step: `begin` it,
-    take it by `accept`. Without `accept` it leaves nothing behind.
+    Parameters
+    ----------
+    discretisation : Discretisation
+    material : Material
+    dead_load : ndarray of float, shape (n, 3), optional
+        Nodal loads [N]; 0 by default.
+    added_mass : ndarray of float, shape (n,), optional
+        Point masses at the nodes for the dynamic methods [kg]; 0 by default.
+    history : ndarray of float, shape (m, q, k), optional
+        State of points whose history another body keeps (see `follow`), for a part of that body.
     """
 
     def __init__(
@@ -151,7 +165,7 @@ class DiscretisedBody:
         )
         pointwise = float(np.clip(wanted, 0.0, kappa)) if kappa > 0 else kappa
         self._kb, self._kp = bulk_shares(discretisation.mesh.kind, pointwise, kappa)
-        if material.viscosity is not None:  # what there is at once
+        if material.viscosity is not None:  # the instantaneous modulus
             more = material.viscosity.spectrum().instantaneous
             self.moduli = replace(self.moduli, shear_modulus=more * self.moduli.shear_modulus)
 
@@ -174,13 +188,13 @@ class DiscretisedBody:
         return self.features.state_size > 0
 
     def begin(self, dt: float) -> None:
-        """Begin a step of length dt [s] from the last accepted state; 0: at once."""
+        """Begin a step of length dt [s] from the last accepted state; 0 for an instantaneous step."""
         if self.history is not None:
             self.history.begin(dt)
             self._set_scale(self.history.scale)
 
     def accept(self, x: Array) -> None:
-        """Take the present step, which ends at x (n, 3)."""
+        """Accept the present step, which ends at x (n, 3)."""
         if self.history is None:
             return
         ref, shape = self.discretisation.reference, self.history.dissipated.shape
@@ -190,13 +204,13 @@ class DiscretisedBody:
         self._set_scale(self.history.scale)
 
     def follow(self, whole: DiscretisedBody, elements: NDArray[np.bool_]) -> None:
-        """Take over the state of another body of the same material, whose elements (m,) this body has."""
+        """Copy the state of `elements` (m,) of a body of the same material that this body is a part of."""
         if whole.history is not None:
             self.state[:] = whole.state[elements]
             self._set_scale(whole.history.scale)
 
     def take(self, history: History | None) -> None:
-        """Go on from this history, of a body of the same material and mesh, which gives it up."""
+        """Continue from the history of a body of the same material and mesh; it is not copied."""
         self.history = history
         if history is not None:
             self.state = history.state
@@ -206,7 +220,7 @@ class DiscretisedBody:
         self._prm[len(self._prm) - self.features.tail_size] = scale
 
     def dissipated(self) -> float:
-        """Energy that the whole body has lost so far [J]."""
+        """Energy dissipated so far in the whole body [J]."""
         if self.history is None:
             return 0.0
         return float(np.vdot(self._weights, self.history.dissipated)) * self.discretisation.multiplicity
@@ -214,13 +228,13 @@ class DiscretisedBody:
     def point_response(self, x: Array) -> tuple[Array, Array]:
         """Potential (m, q) [J/m3] and first Piola-Kirchhoff stress (m, q, 3, 3) [Pa] at x, by point.
 
-        Of the material as stated: without the discretisation's factor of stiffness. `internal_forces` is the
-        sum of these stresses.
+        They do not include the discretisation's factors of stiffness. `internal_forces` are the integral of
+        these stresses times the factors.
         """
         return self._points(x, self._prm, self.state)
 
     def stored_energy(self, x: Array) -> Array:
-        """Recoverable energy density at the accepted x, (m, q) [J/m3], without the factor of stiffness."""
+        """Recoverable energy density at the accepted x [J/m3], without factors of stiffness, shape (m, q)."""
         if self.history is None or not self.features.viscous:
             return self.point_response(x)[0]
         state, prm = self.state.copy(), self._prm.copy()
@@ -237,7 +251,7 @@ class DiscretisedBody:
         return psi, P.reshape(*weights.shape, 3, 3)
 
     def pressures(self, x: Array, du: Array | None = None) -> Array:
-        """Element pressures kb mean(theta) at x, advanced to first order by du (n, 3), shape (m,) [Pa]."""
+        """Element pressures kb mean(theta) at x, advanced to first order by du (n, 3) [Pa], shape (m,)."""
         ref, out = self.discretisation.reference, np.zeros(self.discretisation.mesh.n_elements)
         if self._kb != 0.0:
             du = np.zeros_like(x) if du is None else du
@@ -247,20 +261,20 @@ class DiscretisedBody:
         return out
 
     def energy(self, x: Array) -> tuple[float, float]:
-        """Potential energy [J] with the dead load, and the smallest det F."""
+        """Potential energy including that of the dead load [J], and the smallest det F."""
         out = np.empty(2)
         self._energy(*self._common(x), out)
         return float(out[0] - np.vdot(self.dead_load, x - self.discretisation.mesh.nodes)), float(out[1])
 
     def internal_forces(self, x: Array) -> tuple[Array, float]:
-        """dEnergy/dx without the dead load, shape (n, 3) [N], and the smallest det F."""
+        """Gradient of the energy without the dead load [N], shape (n, 3), and the smallest det F."""
         out = np.empty(2)
         f = np.zeros_like(x)
         self._forces(*self._common(x), f, out)
         return f, float(out[1])
 
     def forces_and_energy(self, x: Array) -> tuple[Array, float, float]:
-        """`internal_forces` and `energy` in one pass: forces (n, 3) [N], energy [J], smallest det F."""
+        """`internal_forces` and `energy` in one pass: forces (n, 3) [N], energy [J] and smallest det F."""
         out = np.empty(2)
         f = np.zeros_like(x)
         self._forces(*self._common(x), f, out)
@@ -268,9 +282,10 @@ class DiscretisedBody:
         return f, energy, float(out[1])
 
     def stiffness(self, x: Array, pressure: Array | None = None) -> tuple[Array, Array, float]:
-        """Blocks (nb, 3, 3) of the tangent [N/m], internal forces (n, 3), smallest det F.
+        """Blocks (nb, 3, 3) of the tangent [N/m], internal forces (n, 3) [N] and smallest det F.
 
-        pressure (m,): element pressures of the tangent where they are iterated as unknowns of their own.
+        The tangent uses the element pressures `pressure` (m,) [Pa] if they are iterated as independent
+        unknowns, else those at x.
         """
         pressure = self.pressures(x) if pressure is None else pressure
         p = self.discretisation.pattern
@@ -286,5 +301,5 @@ class DiscretisedBody:
 def gravity_load(
     discretisation: Discretisation, density: float, gravity: tuple[float, float, float]
 ) -> Array:
-    """Consistent nodal weight, shape (n, 3) [N]."""
+    """Consistent nodal weight [N], shape (n, 3), for a density [kg/m3] and gravity [m/s2]."""
     return density * discretisation.nodal_volume()[:, None] * np.asarray(gravity, dtype=float)

@@ -1,26 +1,26 @@
-"""Internal variables at material points: viscous stresses, the largest energy so far, energy dissipated.
+"""Internal variables at material points: viscous stresses, largest energy so far, energy dissipated.
 
-Over a step of length dt, in which the isochoric stress S is taken to change at a constant rate, each viscous
-term is integrated exactly (Taylor, Pister and Goudreau, Int. J. Numer. Methods Eng. 2, 1970):
+Over a step of length dt, in which the isochoric stress S is assumed to change at a constant rate, each
+viscous term is integrated exactly (Taylor, Pister and Goudreau, Int. J. Numer. Methods Eng. 2, 1970):
 
     Q_i(n+1) = exp(-h) Q_i(n) + g_i c(h) [S(n+1) - S(n)],    h = dt/tau_i,    c(h) = (1 - exp(-h))/h
 
-(Simo's and Holzapfel's midpoint rule has exp(-h/2) for c(h); the two agree to second order, and c(h) is
-right for dt above tau_i as well.) So a step has the potential s W_iso(C) + 1/2 H : C with
+(The midpoint rule of Simo and of Holzapfel has exp(-h/2) in place of c(h); the two agree to second order, and
+c(h) is accurate for dt above tau_i as well.) A step therefore has the potential s W_iso(C) + 1/2 H : C with
 
     s = g_inf + sum g_i c(h_i),    H = sum [exp(-h_i) Q_i(n) - g_i c(h_i) S(n)]
 
-and all that belongs to a step is s and H, made anew by `begin` from the last accepted state: a step that is
-refused leaves nothing behind.
+A step is defined by s and H alone, which `begin` computes from the last accepted state: a refused step has no
+effect on the history.
 
-Energy: of the work that a term's stress does, w_i, a part is stored. In linear viscoelasticity the stored
-part Y_i = Q_i : Q_i / (4 g_i G) relaxes twice as fast as the stress,
+Energy: a part of the work w_i of a term's stress is stored. In linear viscoelasticity the stored part
+Y_i = Q_i : Q_i / (4 g_i G) relaxes twice as fast as the stress,
 
     dY_i/dt = Q_i : dC/dt / 2 - 2 Y_i / tau_i
 
-and this is what is integrated here, at finite strain too (where a stored energy of Simo's model has no closed
-form), with a dissipation 2 Y_i / tau_i that is not allowed below 0. The balance (work = stored + dissipated)
-therefore closes whatever the strain, and what is dissipated never falls.
+This equation is integrated here at finite strain as well (where the stored energy of Simo's model has no
+closed form), with a dissipation 2 Y_i / tau_i that is bounded below by 0. The balance
+(work = stored + dissipated) is therefore exact at any strain, and the dissipated energy never decreases.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from tisim.parts import Softening, Spectrum
 Array = NDArray[np.float64]
 
 Isochoric = tuple[Array, Array, Array]
-"""C (m, q, 6), S (m, q, 6) [Pa] and the isochoric energy before softening (m, q) [J/m3] at some positions."""
+"""C (m, q, 6), S (m, q, 6) [Pa] and the isochoric energy before softening (m, q) [J/m3]."""
 
-_TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # of each component in a double contraction
+_TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # weight of each component in a double contraction
 
 
 def weight(h: Array) -> Array:
@@ -45,16 +45,16 @@ def weight(h: Array) -> Array:
 
 
 class History:
-    """History of points (m, q), at rest to begin with.
+    """History of the points (m, q), initially at rest.
 
     Attributes
     ----------
     state : ndarray of float, shape (m, q, k)
-        What the kernels read, of the present step.
+        State of the present step that the kernels read: H, then the largest energy so far.
     scale : float
         s of the present step.
     dissipated : ndarray of float, shape (m, q)
-        Energy lost so far [J/m3].
+        Energy dissipated so far [J/m3].
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class History:
             self.begin(0.0)
 
     def begin(self, dt: float) -> None:
-        """A step of length dt [s] from the last accepted state; 0: at once."""
+        """Begin a step of length dt [s] from the last accepted state; 0 for an instantaneous step."""
         self._dt = dt
         if self._spectrum is None:
             return
@@ -86,13 +86,13 @@ class History:
         self.scale = self._spectrum.equilibrium + float(c.sum())
 
     def accept(self, found: Isochoric) -> None:
-        """Take the step; found: at the positions it ends at. The present step is then one of no length."""
+        """Accept the step that ends at the values `found`, and begin a step of length 0."""
         C, S, energy = found
         lost = np.zeros_like(energy)
         if self._spectrum is not None:
             h = self._dt / self._spectrum.times
             c, decay = self._spectrum.strengths * weight(h), np.exp(-h)
-            moved = 0.25 * (C - self._C) * _TWICE  # half of the mean stress' work: (Q + Q')/2 : dC/2
+            moved = 0.25 * (C - self._C) * _TWICE  # the work of the mean stress is (Q + Q')/2 : dC/2
             for i in range(len(h)):
                 Q = decay[i] * self._Q[i] + c[i] * (S - self._S)
                 work = np.einsum("mqk,mqk->mq", self._Q[i] + Q, moved)
@@ -101,7 +101,7 @@ class History:
                 self._stored[i] += work - gone
                 self._lost += gone
                 self._Q[i] = Q
-            # replaced, not written to: the caller's arrays are its own
+            # copied, since the arrays belong to the caller
             self._C, self._S = C.copy(), S.copy()
             lost += self._lost
         if self._softening is not None:
@@ -113,13 +113,13 @@ class History:
 
     @property
     def equilibrium(self) -> float:
-        """Part of the softened energy that is there in the long run; viscous terms count their own work."""
+        """g_inf, the fraction of the dissipation of softening that counts; 1 without viscosity."""
         return 1.0 if self._spectrum is None else self._spectrum.equilibrium
 
     def viscous(self) -> Array:
-        """Viscous stresses by term, (n, m, q, 6) [Pa]."""
+        """Viscous stresses by term [Pa], shape (n, m, q, 6)."""
         return self._Q.copy() if self._spectrum is not None else np.zeros((0, *self.dissipated.shape, 6))
 
     def stored(self) -> Array:
-        """Energy that the viscous terms hold, (m, q) [J/m3]."""
+        """Energy stored in the viscous terms [J/m3], shape (m, q)."""
         return self._stored.sum(axis=0) if self._spectrum is not None else np.zeros(self.dissipated.shape)

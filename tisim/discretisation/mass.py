@@ -1,4 +1,4 @@
-"""Mass of a body: the consistent matrix of the implicit method, the lumped one of the explicit method."""
+"""Mass of a body: consistent matrix for the implicit method, lumped matrix for the explicit method."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 
 
 def consistent_mass(mesh: Mesh, density: float, added: Array | None = None) -> sparse.csr_matrix:
-    """rho integral(N_a N_b) over the mesh, shape (n, n), the same for x, y and z [kg].
+    """rho integral(N_a N_b) over the mesh [kg], shape (n, n), the same for x, y and z.
 
-    added (n,): point masses besides [kg].
+    Point masses `added` (n,) [kg] are added to the diagonal.
     """
     local = _element_masses(mesh, density)
     width = mesh.elements.shape[1]
@@ -30,10 +30,11 @@ def consistent_mass(mesh: Mesh, density: float, added: Array | None = None) -> s
 
 
 def lumped_mass(mesh: Mesh, density: float) -> Array:
-    """Diagonal mass, shape (n,) [kg], with the body's mass in total.
+    """Diagonal mass [kg], shape (n,); sums to the mesh's mass.
 
-    tet10, hex20: an element's consistent diagonal, scaled to its mass (Hinton, Rock & Zienkiewicz,
-    Earthquake Eng. Struct. Dyn. 4, 1976), because row sums are negative at the corners. Else row sums.
+    For tet10 and hex20 it is the element's consistent diagonal, scaled to its mass (Hinton, Rock &
+    Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976), since row sums are negative at the corners; for the
+    other element types the row sums.
     """
     local = _element_masses(mesh, density)
     if mesh.kind in ("tet10", "hex20"):
@@ -47,9 +48,9 @@ def lumped_mass(mesh: Mesh, density: float) -> Array:
 
 
 def facet_mass(mesh: Mesh, facets: NDArray[np.int32], mass: float) -> Array:
-    """A mass spread evenly over facets, lumped, shape (n,) [kg]; sums to `mass`.
+    """Lumped mass of a uniform surface density on facets [kg], shape (n,); sums to `mass`.
 
-    As in `lumped_mass`, by the consistent diagonal: a uniform load's shares are negative at some corners.
+    It is the scaled consistent diagonal, as in `lumped_mass`: row sums are negative at some corners.
     """
     n, area = facet_areas(mesh, facets)
     share = np.zeros(mesh.n_nodes)
@@ -58,13 +59,13 @@ def facet_mass(mesh: Mesh, facets: NDArray[np.int32], mass: float) -> Array:
 
 
 def on_pattern(mass: sparse.csr_matrix, pattern: Pattern) -> Array:
-    """The consistent mass at each block of the stiffness pattern, shape (nb,) [kg]."""
+    """Consistent mass at each block of the stiffness pattern [kg], shape (nb,)."""
     rows = np.repeat(np.arange(len(pattern.free)), np.diff(pattern.indptr))
     return np.asarray(mass[pattern.free[rows], pattern.free[pattern.indices]]).ravel()
 
 
 def _element_masses(mesh: Mesh, density: float) -> Array:
-    """Consistent element matrices, shape (m, a, a) [kg]."""
+    """Consistent element matrices [kg], shape (m, a, a)."""
     points, weights = _fine_quadrature(mesh.kind)
     n, d = shape(mesh.kind, points)
     det = np.linalg.det(np.einsum("eai,qak->eqik", mesh.nodes[mesh.elements], d))
@@ -74,11 +75,11 @@ def _element_masses(mesh: Mesh, density: float) -> Array:
 
 
 def _fine_quadrature(kind: str) -> tuple[Array, Array]:
-    """27 Gauss points, exact to degree 5: the four points of the tet10's stiffness cannot hold N_a N_b."""
+    """27 Gauss points, exact to degree 5; the four points of a tet10's stiffness do not integrate N_a N_b."""
     if kind in HEXAHEDRA:
         return cube_points(3)
     g, w = np.polynomial.legendre.leggauss(3)
-    # a cube collapsed on a corner: Gauss-Jacobi weights (1 - b) and (1 - c)^2 take up its Jacobian
+    # a collapsed cube: the Gauss-Jacobi weights (1 - b) and (1 - c)^2 are its Jacobian
     (gb, wb), (gc, wc) = roots_jacobi(3, 1.0, 0.0), roots_jacobi(3, 2.0, 0.0)
     a, b, c = (0.5 * (1.0 + t.ravel()) for t in np.meshgrid(g, gb, gc, indexing="ij"))
     points = np.column_stack([a * (1.0 - b) * (1.0 - c), b * (1.0 - c), c])

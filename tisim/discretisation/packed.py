@@ -1,4 +1,4 @@
-"""A material as kernels read it: features that are compiled in, numbers, what points remember."""
+"""A material in the form that kernels read: compiled features, parameters, history of points."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def features_of(material: Material) -> Features:
 
 
 def pack(material: Material) -> Array:
-    """The numbers of a material's law, then those of its parts, as `Features.tail_size` counts them."""
+    """Parameters of a material's law, then those of its parts, in the order of `Features.tail_size`."""
     numbers = [laws.get(material.law).pack(material.parameters)]
     soft, fibres = material.softening, material.fibres
     if material.has_parts:
@@ -45,7 +45,7 @@ def pack(material: Material) -> Array:
 
 
 def history_of(material: Material, points: tuple[int, int]) -> History | None:
-    """History of points (m, q) at rest; None for a material that remembers nothing."""
+    """History of points (m, q) at rest; None for a material without viscosity and softening."""
     viscosity = material.viscosity
     if viscosity is None and material.softening is None:
         return None

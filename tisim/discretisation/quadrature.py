@@ -1,11 +1,12 @@
 """Shape functions, quadrature and rest-shape gradients of tet4, tet10, hex8 and hex20 elements.
 
-A hex8 has one point with its mean gradient and the points of the tetrahedra it is cut into. The
-tetrahedra keep it from folding and make it too stiff: few of them are right where it keeps its shape, many
-where a rod's edge folds it. So their part of its energy rises with the worst of its tetrahedra, at the last
-equilibrium, and falls only while the rod is drawn back: were it to stay, the way back would be stiffer than
-the way there. Within a load step it is fixed, and the energy is one function. Any part passes the patch test,
-and a finer mesh, whose elements keep their shape, ends at the small one.
+A hex8 has one point with its mean gradient and the points of the tetrahedra into which it is cut. The
+tetrahedra prevent folding but are too stiff: a small fraction of them is accurate while the element keeps its
+shape, a large one where a rod's edge folds it. Their fraction of the element's energy therefore rises with
+the distortion of the worst tetrahedron at the last equilibrium. It falls only while the rod is retracted;
+otherwise the retraction would be stiffer than the indentation. Within a load step it is constant, so that the
+energy is one function. Any fraction passes the patch test, and on finer meshes, whose elements keep their
+shape, the small fraction applies.
 """
 
 from __future__ import annotations
@@ -30,14 +31,15 @@ Array = NDArray[np.float64]
 _HEX_CORNERS = NODE_PLACES["hex8"]
 _A, _B = 0.5854101966249685, 0.1381966011250105
 _TET10_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
-# Part of a hexahedron's energy that its tetrahedra carry, see `_hexahedra` and `TetrahedralParts`.
+# Fraction of a hexahedron's energy in its tetrahedra, see `_hexahedra` and `TetrahedralParts`.
 TETRAHEDRAL_PART = 0.1
-# The part of tetrahedra in hexahedra whose worst one keeps less than CRUSHED of its share of the volume.
+# That fraction if the worst tetrahedron's share of the volume falls below CRUSHED times its share at rest.
 LARGEST_PART = 1.0
-# Where the part begins to rise, and where it is the largest. Rising earlier, from 0.5 to 0.15, a thin cover
-# over an inclusion, squeezed to half, is 10 % too stiff at the default mesh and 7 % on one 2.6 times finer.
+# Relative share of the volume at which the fraction begins to rise, and at which it is the largest. If it
+# rises earlier, from 0.5 to 0.15, a thin cover over an inclusion, compressed to half, is 10 % too stiff with
+# the default mesh and 7 % with one 2.6 times finer.
 BENT, CRUSHED = 0.3, 0.05
-# Part of a hex20's energy that is integrated at 27 points, the rest at 8: see `_fine_and_coarse`.
+# Fraction of a hex20's energy that is integrated at 27 points, the rest at 8: see `_fine_and_coarse`.
 FINE_PART = 0.3
 
 
@@ -57,10 +59,10 @@ def quadrature(kind: ElementKind) -> tuple[Array, Array]:
 def _fine_and_coarse() -> tuple[Array, Array]:
     """Points (35, 3) and weights (35,) of a hex20: eight Gauss points, then 27, with FINE_PART of the weight.
 
-    At eight points a hex20 has modes that cost no energy; deep under a rod's edge it folds along them, and
-    no equilibrium is found beyond 10 mm. At 27 alone it is too stiff (studies/depth). The sum is exact where
-    each of them is, and passes the patch test. The 27 have but a little of the stiffness against change of
-    volume (`bulk_shares`): all of it there would lock the element.
+    With eight points alone a hex20 has zero-energy modes; deep under a rod's edge it folds along them, and no
+    equilibrium is found beyond 10 mm. With 27 alone it is too stiff (studies/depth). The sum is exact for
+    what both rules integrate exactly, and passes the patch test. The 27 points carry only a small part of the
+    volumetric stiffness (`bulk_shares`), since all of it would lock the element.
     """
     few, many = cube_points(2), cube_points(3)
     weights = np.concatenate([(1.0 - FINE_PART) * few[1], FINE_PART * many[1]])
@@ -101,7 +103,11 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
 class Reference:
     """Quadrature data of a mesh's rest shape.
 
-    values (q, a); gradients (m, q, a, 3) [1/m]; weights (m, q), rest volumes of the points [m3].
+    Attributes
+    ----------
+    values : shape functions at the points, shape (q, a).
+    gradients : gradients of the shape functions in the rest shape [1/m], shape (m, q, a, 3).
+    weights : rest volumes of the points [m3], shape (m, q).
     """
 
     values: Array
@@ -110,7 +116,7 @@ class Reference:
 
 
 def reference(mesh: Mesh) -> Reference:
-    """Rest-shape gradients and weights; ValueError where an element is inside-out at a quadrature point."""
+    """Rest-shape gradients and weights; ValueError if an element is inverted at a quadrature point."""
     if mesh.kind == "hex8":
         return _hexahedra(mesh)
     points, weights = quadrature(mesh.kind)
@@ -132,14 +138,14 @@ def _refuse_inside_out(det: Array) -> None:
 
 
 def _hexahedra(mesh: Mesh) -> Reference:
-    """One point with the element's mean gradient, and ten with those of the tetrahedra it is cut into.
+    """Quadrature data of hex8: one point with the mean gradient, ten with those of the cut tetrahedra.
 
-    Gauss points alone let a hexahedron under a rod's edge fold over between them. The mean gradient
-    (Flanagan and Belytschko 1981) is soft and has hourglass modes; linear tetrahedra are stiff and cannot
-    fold while their det F is positive; the sum takes TETRAHEDRAL_PART of its energy from the second.
-    Averaging both five-tetrahedra cuts favours no diagonal, agrees between neighbours (the patch test
-    holds), and has the volume of the trilinear element exactly. In a wedge, written as a hexahedron with
-    repeated nodes, the tetrahedra that vanish get weight 0.
+    With Gauss points alone, a hexahedron under a rod's edge folds between them. The mean gradient (Flanagan
+    and Belytschko 1981) is soft and has hourglass modes; linear tetrahedra are stiff and cannot fold while
+    their det F is positive. TETRAHEDRAL_PART of the energy is that of the tetrahedra. The average of both
+    five-tetrahedra cuts favours no diagonal, agrees between neighbours (the patch test holds), and has
+    exactly the volume of the trilinear element. In a wedge, represented as a hexahedron with repeated nodes,
+    the tetrahedra that vanish have weight 0.
     """
     points, weights = quadrature("hex8")
     _, d = shape("hex8", points)
@@ -171,11 +177,16 @@ def _hexahedra(mesh: Mesh) -> Reference:
 
 
 def bulk_shares(kind: ElementKind, pointwise: float, whole: float) -> tuple[float, Array]:
-    """Stiffness against the element's mean change of volume, and against that at each point (q,) [Pa].
+    """Bulk stiffness of an element's mean volumetric strain, and of that at each point (q,) [Pa].
 
-    whole: of the material; pointwise: what of it an element bears at all its points without locking. The
-    rest goes into one pressure an element, or, in a hex20, to its eight points (selective reduced
-    integration: Malkus and Hughes 1978).
+    Parameters
+    ----------
+    kind : ElementKind
+    pointwise : float
+        Part of `whole` that applies at all points without locking [Pa]. The rest goes into one pressure per
+        element or, in a hex20, to its eight points (selective reduced integration: Malkus and Hughes 1978).
+    whole : float
+        Bulk stiffness of the material [Pa].
     """
     n = len(quadrature(kind)[1]) if kind != "hex8" else 11
     shares = np.full(n, pointwise)
@@ -186,9 +197,10 @@ def bulk_shares(kind: ElementKind, pointwise: float, whole: float) -> tuple[floa
 
 
 def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]:
-    """Points of a facet of 3, 4, 6 or 8 nodes: shape values (q, a), their slopes (q, a, 2), weights (q,).
+    """Quadrature of a facet of 3, 4, 6 or 8 nodes with `order` points along each side.
 
-    order: points along each side (collapsed Gauss points on triangles).
+    Triangles have collapsed Gauss points. Returns shape functions (q, a), their reference gradients (q, a, 2)
+    and weights (q,).
     """
     g, w = np.polynomial.legendre.leggauss(order)
     u, v = (c.ravel() for c in np.meshgrid(g, g, indexing="ij"))
@@ -217,7 +229,7 @@ def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]
 
 
 def facet_areas(mesh: Mesh, facets: NDArray[np.int32], order: int = 3) -> tuple[Array, Array]:
-    """Shape values (q, a) and rest area of each facet's points (f, q) [m2]."""
+    """Shape functions (q, a) at a facet's points, and the rest areas of the points (f, q) [m2]."""
     n, dn, w = facet_quadrature(facets.shape[1], order)
     tangents = np.einsum("fai,qad->fqdi", mesh.nodes[facets], dn)
     area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2) * w
@@ -225,7 +237,7 @@ def facet_areas(mesh: Mesh, facets: NDArray[np.int32], order: int = 3) -> tuple[
 
 
 def facet_load(mesh: Mesh, facets: NDArray[np.int32]) -> Array:
-    """Consistent share of a uniform traction at each node, shape (n,); sums to the facets' area."""
+    """Consistent nodal loads of a unit traction [m2], shape (n,); they sum to the facets' area."""
     n, area = facet_areas(mesh, facets)
     share = np.zeros(mesh.n_nodes)
     np.add.at(share, facets.ravel(), (area @ n).ravel())
@@ -233,29 +245,35 @@ def facet_load(mesh: Mesh, facets: NDArray[np.int32]) -> Array:
 
 
 class TetrahedralParts:
-    """Weights of a reference (changed in place) by the distortion the hexahedra have had so far."""
+    """Updates the weights of a hex8 reference in place by the distortion that its elements have had so far.
+
+    Attributes
+    ----------
+    mends : bool
+        True if the fraction of tetrahedra may fall again.
+    """
 
     def __init__(self, mesh: Mesh, reference: Reference) -> None:
         self._elements = mesh.elements
         self._weights = reference.weights
         self._volume = reference.weights.sum(axis=1)
-        # each cut fills the hexahedron, so that both count half; 0 where a tetrahedron of a wedge vanishes
+        # each cut fills the hexahedron, so that both count half; 0 for a tetrahedron that vanishes in a wedge
         self._whole = reference.weights[:, 1:] / TETRAHEDRAL_PART
         self._there = self._whole > 0.0
         self._rest = np.where(self._there, 2.0 * self._whole, 1.0)
         self._worst = np.ones(mesh.n_elements)
-        self.mends = False  # whether a part may fall again
+        self.mends = False
 
     def state(self) -> tuple[Array, Array]:
-        """What `restore` goes back to."""
+        """Copy of the present state, for `restore`."""
         return self._worst.copy(), self._weights.copy()
 
     def restore(self, state: tuple[Array, Array]) -> None:
-        """Forget the positions that were taken into account since."""
+        """Return to an earlier state."""
         self._worst[:], self._weights[:] = state
 
     def update(self, x: Array) -> None:
-        """Take positions x (n, 3) into account."""
+        """Update the weights for positions x (n, 3)."""
         corners = x[self._elements][:, HEX_CUTS]
         a, b, c = (corners[:, :, k] - corners[:, :, 0] for k in (1, 2, 3))
         volume = (a * np.cross(b, c)).sum(axis=2) / 6.0

@@ -1,6 +1,6 @@
-"""Rigid inclusions of a soft block: the shapes there are, and how to add one.
+"""Rigid inclusions of a soft block: the registered shapes, and how to add one.
 
-A shape is a frozen dataclass that derives from `Inclusion` and is registered:
+A shape is a registered frozen dataclass that derives from `Inclusion`:
 
 >>> from dataclasses import dataclass
 >>> import numpy as np
@@ -41,8 +41,8 @@ A shape is a frozen dataclass that derives from `Inclusion` and is registered:
 ...     ),
 ... )
 
-From then on blocks take it, the mesh of a poke meets it, and recipes of datasets name it. One of tisim's own
-is a file beside this one and a line at its end.
+After this it can be used in blocks, in the mesh of a poke, and in recipes of datasets. A built-in shape is a
+file in this folder and a line at the end of this one.
 """
 
 from __future__ import annotations

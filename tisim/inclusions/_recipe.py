@@ -1,4 +1,4 @@
-"""Fields by which the recipe of a dataset states an inclusion shape."""
+"""Fields that describe an inclusion shape in the recipe of a dataset."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from tisim.inclusions._shape import Inclusion, Prism
 
 @dataclass(frozen=True)
 class RecipeParameter:
-    """One length that a recipe gives for a shape.
+    """One length of a shape in a recipe.
 
     Attributes
     ----------
     name : str
-        Its name; in a recipe it carries its unit (`radius` is the key `radius_mm`).
+        Name of the parameter; the key in a recipe includes the unit (`radius_mm` for `radius`).
     default : float or None
-        The value where the recipe gives none; None where it must give one.
+        Value if the recipe has none; None if the recipe must have one.
     positive : bool
-        Above 0; else 0 or above.
+        True if the length must be above 0, False if 0 is allowed.
     """
 
     name: str
@@ -29,24 +29,25 @@ class RecipeParameter:
 
 @dataclass(frozen=True, kw_only=True)
 class RecipeShape:
-    """Fields by which the recipe of a dataset states a shape that stands on the base of the block.
+    """Fields that describe a shape on the base of the block in the recipe of a dataset.
 
-    All functions take the parameters by name in one unit of length, whichever, and answer in that unit.
+    All functions take the parameters by name in any one unit of length and return lengths in that unit.
 
     Attributes
     ----------
     name : str
         The shape's `kind` in a recipe ("cube").
     parameters : tuple of RecipeParameter
+        Lengths that a recipe states.
     standing : callable (parameters, x, y, angle) -> Inclusion
-        The shape standing at (x, y), turned by `angle` [rad] about the vertical; its lengths in the unit of
-        the parameters, to be `scaled`.
+        The shape on the base at (x, y), rotated by `angle` [rad] about the vertical; its lengths have the
+        unit of the parameters and still have to be `scaled`.
     reach : callable (parameters) -> float, optional
         Largest distance of its points from the vertical axis through its centre.
     top : callable (parameters) -> float, optional
         Height of its highest point above the base.
     turned : bool
-        Whether the angle changes it.
+        True if the shape depends on the angle.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The inclusion shapes there are, by their kind, and shapes from and to plain numbers."""
+"""Registry of the inclusion shapes by kind, and decoding of shapes from plain numbers."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _Shape = TypeVar("_Shape", bound=type[Inclusion])
 
 
 def register(shape: _Shape, *, recipe: RecipeShape | None = None) -> _Shape:
-    """Add an inclusion shape; also as a decorator.
+    """Add an inclusion shape; also usable as a decorator.
 
     Parameters
     ----------
     shape : type
         A frozen dataclass that derives from `Inclusion`.
     recipe : RecipeShape, optional
-        How recipes of datasets give it; without one they do not offer it.
+        Description of the shape in recipes of datasets; without it recipes cannot use the shape.
 
     Returns
     -------
@@ -36,10 +36,11 @@ def register(shape: _Shape, *, recipe: RecipeShape | None = None) -> _Shape:
     Raises
     ------
     TypeError
-        If it is no frozen dataclass that derives from `Inclusion`, or has no `kind`.
+        If it is not a frozen dataclass that derives from `Inclusion`, has no `kind`, or one of its `angles`
+        is not a field.
     ValueError
-        If another shape has its `kind`, or another recipe its name. The same class registered anew (a
-        module read again) takes its own place.
+        If another shape has its `kind`, or another recipe its name. The same class registered again (from a
+        module that is reloaded) replaces itself.
     """
     sound = isinstance(shape, type) and issubclass(shape, Inclusion) and is_dataclass(shape)
     if not sound or not shape.__dataclass_params__.frozen:  # type: ignore[attr-defined]
@@ -71,7 +72,7 @@ def kinds() -> tuple[str, ...]:
 
 
 def get(kind: str) -> type[Inclusion]:
-    """The class of a kind; ValueError, which names the kinds there are, for another."""
+    """The class of a kind; ValueError, which lists the known kinds, for an unknown one."""
     try:
         return _SHAPES[kind]
     except (KeyError, TypeError):
@@ -79,17 +80,17 @@ def get(kind: str) -> type[Inclusion]:
 
 
 def recipe_shapes() -> dict[str, RecipeShape]:
-    """Shapes that the recipes of datasets may name, by that name: "cube", "sphere", "cylinder", others."""
+    """Shapes for recipes of datasets by their name there: "cube", "sphere", "cylinder", then others."""
     return dict(_RECIPES)
 
 
 def decode(plain: Mapping[str, Any]) -> Inclusion:
-    """The inclusion that `Inclusion.encode` made plain.
+    """The inclusion that `Inclusion.encode` encoded.
 
     Raises
     ------
     ValueError
-        For an unknown kind, missing or unknown fields, or values that are not numbers.
+        For an unknown kind, missing or unknown fields, or invalid values.
     """
     values = dict(plain)
     shape = get(values.pop("kind", ""))
@@ -108,7 +109,7 @@ def decode(plain: Mapping[str, Any]) -> Inclusion:
 
 
 def from_dimensions(kind: str, dimensions: ArrayLike, centre: ArrayLike, angle: float = 0.0) -> Inclusion:
-    """The inclusion with these `dimensions` (further ones are ignored), centre [m] and angle [rad]."""
+    """The inclusion with the given `dimensions` (surplus ones are ignored), centre [m] and angle [rad]."""
     shape = get(kind)
     hints = get_type_hints(shape)
     left = [float(v) for v in np.ravel(np.asarray(dimensions, dtype=float))]

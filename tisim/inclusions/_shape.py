@@ -1,4 +1,4 @@
-"""The inclusion shape: its surface, its box, and its geometry for the mesh generator."""
+"""Interface of an inclusion shape: surface, bounding box, and geometry for the mesh generator."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Prism:
     low, high : float
         Heights of the lower and upper face [m].
     inscribed, circumscribed : float
-        Radii of the circles around the centre's (x, y) inside and outside the plan view [m]; equal for a
-        round one.
+        Radii of the inscribed and circumscribed circle of the plan view about the centre's (x, y) [m]; equal
+        for a circle.
     corners : ndarray of float, shape (c, 2)
         Corners of the plan view [m], convex, counter-clockwise; shape (0, 2) for a circle.
     """
@@ -43,7 +43,7 @@ class Prism:
 
     @staticmethod
     def polygon(corners: ArrayLike, *, centre: ArrayLike, low: float, high: float) -> Prism:
-        """A prism over a convex polygon, counter-clockwise, that holds `centre` (x, y)."""
+        """A prism over a convex, counter-clockwise polygon that contains `centre` (x, y)."""
         corner = np.asarray(corners, dtype=float)
         away = corner - np.asarray(centre, dtype=float)[:2]
         along = np.roll(corner, -1, axis=0) - corner
@@ -79,7 +79,7 @@ class Inclusion(ABC):
     """A rigid body bonded into a block, in the block's coordinates (x, y centred, z = 0 the fixed base).
 
     A subclass is a frozen, keyword-only dataclass. Each of its fields is a length or a triple of lengths
-    [m], or an angle [rad] if `angles` names it. What reaches below the base does not count.
+    [m], or an angle [rad] if `angles` names it. Parts below the base are ignored.
 
     Attributes
     ----------
@@ -97,16 +97,16 @@ class Inclusion(ABC):
 
     @abstractmethod
     def mesh_geometry(self) -> MeshGeometry:
-        """The shape as the mesh generator needs it: a `Prism` or a `Spheroid` around `centre`."""
+        """Geometry for the mesh generator: a `Prism` or a `Spheroid` about `centre`."""
 
     @abstractmethod
     def signed_distance(self, points: ArrayLike) -> Array:
-        """Distance of points from the surface [m], negative inside; shape (..., 3) to (...)."""
+        """Signed distance of points (..., 3) from the surface [m], negative inside, shape (...)."""
 
     @property
     @abstractmethod
     def extent(self) -> Vector:
-        """Half sizes of the axis-parallel box around the shape, about `centre` [m]."""
+        """Half sizes of the axis-parallel bounding box about `centre` [m]."""
 
     @property
     @abstractmethod
@@ -114,7 +114,7 @@ class Inclusion(ABC):
         """Volume of the whole shape [m3]."""
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """True for points inside or on the surface; shape (..., 3) [m] to (...)."""
+        """True for points (..., 3) [m] inside or on the surface, shape (...)."""
         return np.asarray(self.signed_distance(points) <= 0.0)
 
     @property
@@ -124,7 +124,10 @@ class Inclusion(ABC):
         return (x - a, y - b, z - c), (x + a, y + b, z + c)
 
     def plan(self, points: int = 64) -> Array:
-        """The plan view as a polygon, counter-clockwise, shape (k, 2) [m]: for drawings."""
+        """The plan view as a counter-clockwise polygon [m], shape (k, 2), for drawings.
+
+        A circle is approximated by `points` corners.
+        """
         geometry = self.mesh_geometry()
         if isinstance(geometry, Prism) and len(geometry.corners):
             return geometry.corners
@@ -135,7 +138,7 @@ class Inclusion(ABC):
     def check(self) -> None:
         """Raise a ValueError that names the field unless lengths are above 0 and all numbers are finite.
 
-        A shape with rules of its own extends this.
+        Shapes with further conditions extend this method.
         """
         for name, value in _values(self).items():
             if name == "centre":
@@ -150,7 +153,7 @@ class Inclusion(ABC):
                 check_length(name, value)
 
     def scaled(self, factor: float) -> Self:
-        """The same shape with all lengths multiplied: from mm to m with 1e-3."""
+        """The shape with all lengths multiplied by `factor`, for example 1e-3 from mm to m."""
         changed: dict[str, Any] = {}
         for name, value in _values(self).items():
             if name not in self.angles:
@@ -167,7 +170,7 @@ class Inclusion(ABC):
         return tuple(found)
 
     def encode(self) -> dict[str, Any]:
-        """The shape as plain numbers and lists under its fields' names, with its `kind`; see `decode`."""
+        """The shape as a dict of numbers and lists by field, with its `kind`; inverse of `decode`."""
         plain: dict[str, Any] = {"kind": self.kind}
         for name, value in _values(self).items():
             plain[name] = [float(v) for v in value] if np.ndim(value) else float(value)

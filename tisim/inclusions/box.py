@@ -1,4 +1,4 @@
-"""A rigid box, turned about the vertical; a cube in recipes."""
+"""A rigid box, rotated about the vertical; a cube in recipes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tisim.inclusions._shape import Array, Inclusion, Prism, Vector
 
 @dataclass(frozen=True, kw_only=True)
 class BoxInclusion(Inclusion):
-    """Rigid box: size (a, b, c) along its own axes, centre [m], turned by `angle` [rad] about z."""
+    """Rigid box: size (a, b, c) along its own axes and centre [m], rotation `angle` [rad] about z."""
 
     kind: ClassVar[str] = "box"
     angles: ClassVar[tuple[str, ...]] = ("angle",)

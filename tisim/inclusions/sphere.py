@@ -1,4 +1,4 @@
-"""A rigid sphere, which may be sunk into the base."""
+"""A rigid sphere, which may be partly below the base."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results as pictures and files."""
+"""Results as pictures and files, and meshes from files."""
 
 import lazy_loader as _lazy
 

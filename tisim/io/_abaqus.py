@@ -1,8 +1,8 @@
-"""Abaqus and CalculiX input files (.inp) as nodes, elements and sets.
+"""Parser of Abaqus and CalculiX input files (.inp): nodes, elements and sets.
 
-Keywords that are read: *NODE, *ELEMENT, *NSET and *ELSET (also GENERATE, and sets of sets), *SURFACE of
-element faces, *INCLUDE. Those that would move, copy or generate nodes are refused; all others say nothing of
-the mesh. Names are case-insensitive there: they come out in lower case.
+The keywords *NODE, *ELEMENT, *NSET and *ELSET (also GENERATE, and sets of sets), *SURFACE of element faces
+and *INCLUDE are read. Keywords that move, copy or generate nodes are refused; all others do not concern the
+mesh and are ignored. Names are case-insensitive and are converted to lower case.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from tisim.mesh import ElementKind, MeshError
 
 SOLIDS: dict[str, ElementKind] = {"C3D4": "tet4", "C3D10": "tet10", "C3D8": "hex8", "C3D20": "hex20"}
 _VARIANTS = ("", "H", "R", "RH", "I", "IH", "M", "MH", "T", "HS", "S", "MT", "MHT", "HT", "RT", "RHT")
-# shells, membranes, rigid faces: they can name a part of the surface
+# shells, membranes and rigid faces can define a part of the surface
 _FACE_ELEMENTS = ("S3", "S4", "S6", "S8", "STRI", "R3D", "M3D", "SFM3D")
-# corners of the faces S1 to S6, from 0; middle nodes follow from the corners
+# corners of the faces S1 to S6, counted from 0; middle nodes follow from the corners
 FACES = {
     "tet": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
     "hex": ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
@@ -29,7 +29,7 @@ _REFUSED = {
     "NMAP": "nodes that are mapped", "ELGEN": "elements that are generated", "SYSTEM": "a coordinate system",
     "ELCOPY": "elements that are copied", "SUBMODEL": "a part of another model",
 }  # fmt: skip
-_DEEPEST = 10  # of files that include files
+_DEEPEST = 10  # levels of included files
 Names = dict[str, list["int | str"]]
 
 
@@ -44,9 +44,9 @@ class InputFile:
     elements : dict of int to (str, list of int)
         Element type and node labels by label.
     node_sets, element_sets : dict of str to list of int or str
-        Labels and names of other sets.
+        Labels of members and names of included sets, by name.
     surfaces : dict of str to list of (int or str, str)
-        Element or element set, and face ("S1").
+        Pairs of an element or element set and a face ("S1"), by name.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -56,7 +56,7 @@ class InputFile:
     surfaces: dict[str, list[tuple[int | str, str]]] = field(default_factory=dict)
 
     def members(self, sets: Names, name: str, kind: str, seen: tuple[str, ...] = ()) -> list[int]:
-        """Labels in a set, those of the sets that it names included. MeshError for one that is not there."""
+        """Labels in a set and in sets that it includes; MeshError if one is missing or includes itself."""
         if name not in sets or name in seen:
             raise MeshError(f"{kind} {name!r} is named, and there is none")
         found: list[int] = []
@@ -66,7 +66,7 @@ class InputFile:
 
 
 def parse(path: Path) -> InputFile:
-    """Read an input file and those that it includes. MeshError, one sentence, for what is not understood."""
+    """Read an input file and those that it includes; MeshError, in one sentence, if that fails."""
     found = InputFile()
     counts = {"PART": 0, "INSTANCE": 0}
     for where, keyword, options, rows in _blocks(path):
@@ -79,7 +79,7 @@ def parse(path: Path) -> InputFile:
 
 
 def kind_of(element: str) -> ElementKind | None:
-    """tisim's kind of an element type of Abaqus or CalculiX; None for one that tisim does not have."""
+    """Element type of tisim for one of Abaqus or CalculiX; None if there is none."""
     for stem in sorted(SOLIDS, key=len, reverse=True):
         if element.startswith(stem) and element.removeprefix(stem) in _VARIANTS:
             return SOLIDS[stem]
@@ -101,7 +101,7 @@ def _take(
         for row in rows:
             label, point = int(row[0]), [_real(x) for x in row[1:4]]
             point += [0.0] * (3 - len(point))
-            if found.nodes.setdefault(label, point) != point:  # of an assembly, or of another part
+            if found.nodes.setdefault(label, point) != point:  # labels repeat in assemblies of parts
                 raise MeshError(f"*NODE: node {label} is stated twice, in two places")
         _add(found.node_sets, options.get("NSET"), [int(row[0]) for row in rows])
     elif keyword == "ELEMENT":
@@ -128,7 +128,7 @@ def _elements(found: InputFile, options: dict[str, str], rows: list[list[str]]) 
     values = [int(x) for row in rows for x in row if x]
     if kind is None and not element.startswith(_FACE_ELEMENTS):
         raise MeshError(f"elements of type {element}: expected one of {', '.join(SOLIDS)}")
-    if kind is None:  # one row an element
+    if kind is None:  # one row per element
         entries = [[int(x) for x in row if x] for row in rows]
     else:
         width = 1 + int(SOLIDS[next(s for s in SOLIDS if SOLIDS[s] == kind)].strip("tehx"))
@@ -160,18 +160,18 @@ def _labels(rows: list[list[str]], generate: bool) -> list[int | str]:
 
 
 def _label(text: str) -> int | str:
-    """A label or a set's name, without the instance that it belongs to."""
+    """A label or the name of a set, without the prefix of an instance."""
     own = text.strip('"').lower().rpartition(".")[2]
     return int(own) if own.isdigit() else own
 
 
 def _real(text: str) -> float:
-    """A number, also with Fortran's exponent (1.5D-3); 0 where a field is empty."""
+    """A number, also with a Fortran exponent (1.5D-3); 0 for an empty field."""
     return float(text.lower().replace("d", "e") or 0.0)
 
 
 def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
-    """Place, keyword, options and data rows of each block, those of included files in their place."""
+    """Location, keyword, options and data rows of each block; included files are expanded in place."""
     if depth > _DEEPEST:
         raise MeshError(f"{path}: expected at most {_DEEPEST} files that include one another")
     try:
@@ -185,7 +185,7 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, st
         unfinished = ""
         if not text or text.startswith("**"):
             continue
-        if text.startswith("*") and text.endswith(","):  # a keyword line goes on
+        if text.startswith("*") and text.endswith(","):  # a keyword line that is continued
             unfinished = text
             continue
         if not text.startswith("*"):
@@ -208,6 +208,6 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, st
 
 
 def as_arrays(found: InputFile) -> tuple[np.ndarray, dict[int, int]]:
-    """Coordinates (n, 3), and each label's row."""
+    """Coordinates (n, 3) of the nodes, and the row of each label."""
     place = {label: k for k, label in enumerate(found.nodes)}
     return np.array(list(found.nodes.values()), dtype=float).reshape(-1, 3), place

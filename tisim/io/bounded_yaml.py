@@ -1,8 +1,8 @@
-"""YAML that people write: plain values within limits on nesting, aliases and numbers.
+"""Safe loading of YAML: plain values within limits on nesting, aliases and numbers.
 
-A file of a few lines can stand for gigabytes (aliases of aliases), contain itself, or nest until the parser
-runs out of stack. `load` refuses those, and a key that stands twice in a mapping; it reads 1e3 as a number
-(YAML 1.1 wants 1.0e+3) and leaves dates as text.
+A file of a few lines can expand to gigabytes (aliases of aliases), contain itself, or nest until the parser
+overflows its stack. `load` refuses such files, and mappings with a repeated key. It reads 1e3 as a number
+(YAML 1.1 requires 1.0e+3) and keeps dates as text.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Limits:
     Attributes
     ----------
     depth : int
-        Levels of nesting, aliases expanded.
+        Levels of nesting after the expansion of aliases.
     values : int
-        Scalars, lists and mappings, aliases expanded.
+        Number of scalars, lists and mappings after the expansion of aliases.
     """
 
     depth: int = 50
@@ -36,20 +36,20 @@ class Limits:
 
 
 class YamlError(Exception):
-    """A file that is no plain YAML within the limits.
+    """The content is not plain YAML within the limits.
 
     Attributes
     ----------
     problem : str
-        "syntax" (no YAML), "tag" (beyond plain values), "text" (no UTF-8), "key" (a list or mapping as key),
-        "twice" (a key), "depth", "cycle" (an alias within itself), "values" (too many), "number" (too large)
-        or "value" (one that Python cannot hold, or of another tag than it is written).
+        "syntax" (not YAML), "tag" (not plain values), "text" (not UTF-8), "key" (a list or mapping as key),
+        "twice" (a repeated key), "depth" (nested too deeply), "cycle" (an alias within itself), "values" (too
+        many), "number" (too large) or "value" (one that Python cannot represent or that contradicts its tag).
     text : str
-        What is wrong, without the line.
+        Description of the problem, without the line.
     line : int or None
-        Counted from 1.
+        Line of the problem, counted from 1.
     key : str
-        The key that stands twice, "" otherwise.
+        The repeated key, "" otherwise.
     """
 
     def __init__(self, problem: Problem, text: str, line: int | None, key: str = "") -> None:
@@ -58,7 +58,7 @@ class YamlError(Exception):
 
 
 def load(content: bytes, limits: Limits) -> Any:
-    """The values of one YAML document; None where it is empty.
+    """The values of one YAML document; None if it is empty.
 
     Parameters
     ----------
@@ -69,6 +69,7 @@ def load(content: bytes, limits: Limits) -> Any:
     Raises
     ------
     YamlError
+        If the content is not plain YAML within the limits.
     """
     try:
         loader = _Loader(content.decode("utf-8"), limits)
@@ -91,7 +92,7 @@ def load(content: bytes, limits: Limits) -> Any:
 
 
 def as_tuples(values: object) -> object:
-    """The same values with tuples for lists, the form that frozen models hold."""
+    """The values with lists replaced by tuples, as frozen models need."""
     if isinstance(values, dict):
         return {key: as_tuples(value) for key, value in values.items()}
     if isinstance(values, list):
@@ -120,7 +121,7 @@ class _Loader(yaml.SafeLoader):
         try:
             value = super().construct_object(node, deep)
         except (ValueError, OverflowError, TypeError, AttributeError) as error:
-            # digits without end, or a tag (!!timestamp) whose value is none
+            # too many digits, or a tag (!!timestamp) with another type of value
             why = " ".join(str(error).split())[:200] or type(error).__name__
             problem: Problem = "number" if node.tag == "tag:yaml.org,2002:int" else "value"
             raise _fault(problem, f"cannot read the value {_short(node)} ({why})", node) from None
@@ -141,9 +142,10 @@ _Loader.add_implicit_resolver(
 def _measure(
     node: yaml.Node, limits: Limits, known: dict[int, tuple[int, int]], open_nodes: set[int]
 ) -> tuple[int, int]:
-    """Nodes and levels below a node with its aliases expanded; refuses cycles and repeated keys.
+    """Number of nodes and levels of a node with its aliases expanded.
 
-    An alias is the same object as its anchor, so each node is measured once however often it is used.
+    An alias is the same object as its anchor, so that each node is measured only once. YamlError for cycles,
+    repeated keys, or more than the limits.
     """
     if id(node) in known:
         return known[id(node)]

@@ -14,7 +14,7 @@ from tisim.mesh.quality import volumes
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result, frame_index
 
-# Facets as triangles; those of six or eight nodes are cut at their middle nodes.
+# Triangles of facets; those of six or eight nodes are cut at their middle nodes.
 _TRIANGLES = {
     3: ((0, 1, 2),),
     4: ((0, 1, 2), (0, 2, 3)),
@@ -38,21 +38,21 @@ _VTK = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hex
 def surface_triangles(mesh: Mesh) -> NDArray[np.int32]:
     """Triangles of a mesh's boundary, node indices (t, 3), outward.
 
-    A half model is open at its mirror plane; `tisim.mesh.unfold` gives the whole body.
+    A half model is open at its mirror plane; `tisim.mesh.unfold` returns the whole body.
     """
     facets = mesh.facet_sets.get("surface")
     return triangles(boundary_facets(mesh.kind, mesh.elements) if facets is None else facets)
 
 
 def triangles(facets: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Facets of 3, 4, 6 or 8 nodes as triangles (t, 3); collapsed ones (of wedges) are left out."""
+    """Facets of 3, 4, 6 or 8 nodes as triangles (t, 3), without collapsed ones (of wedges)."""
     cut = facets[:, _TRIANGLES[facets.shape[1]]].reshape(-1, 3)
     a, b, c = cut.T
     return np.ascontiguousarray(cut[(a != b) & (b != c) & (c != a)])
 
 
 def checked_path(path: str | Path) -> Path:
-    """The path, in a folder that is there; FileNotFoundError otherwise."""
+    """The path; FileNotFoundError if its folder does not exist."""
     path = Path(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: expected a folder that exists, {path.parent} does not")
@@ -66,17 +66,17 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
     ----------
     result : Result
     path : path
-        Its ending chooses the format. .vtu: the whole body at its deformed positions [m] (half models are
-        unfolded). Point data: `displacement` [m], `rest_position` [m] and one 0/1 mask a node set. Cell data:
-        `volume_ratio` (element volume over rest volume) and, constant over the body, `load` and
-        `support_force` (see `Result`), `time` [s] where there is one and, of a poke, `rod_force` [N],
-        `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length, radius of the tip's edge [m]). Both: the
-        `FIELDS` (`tisim.fields`), whose names end in their units; tensors as nine components, row by row; a
-        result without a scene has none.
-        .pvd: all frames, a .vtu each in a folder of the same name beside it, as ParaView opens them.
+        The extension determines the format. .vtu: the whole body at its deformed positions [m] (half models
+        are unfolded). Point data: `displacement` [m], `rest_position` [m] and one 0/1 mask per node set. Cell
+        data: `volume_ratio` (element volume over rest volume) and, constant over the body, `load` and
+        `support_force` (see `Result`), `time` [s] if the result has one and, for a poke, `rod_force` [N],
+        `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length, radius of the tip's edge [m]). Both have
+        the `FIELDS` (`tisim.fields`), whose names end in their units; tensors have nine components, row by
+        row. A result without a scene has no fields.
+        .pvd: all frames, one .vtu each in a folder of the same name next to it, as ParaView reads them.
         .ply, .stl: the deformed surface as triangles [m].
     frame : int
-        Negative ones count from the end; of a .pvd it has no meaning.
+        Index of the frame; negative ones count from the end. Ignored for a .pvd.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
     Raises
     ------
     ValueError
-        For another ending, or a frame that the result does not have.
+        For another extension, or if the result does not have the frame.
     FileNotFoundError
         If the folder does not exist.
     """
@@ -161,6 +161,6 @@ def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> 
 
 
 def _flat(found: Quantities) -> dict[str, NDArray]:
-    """The `FIELDS` as rows of numbers."""
+    """The `FIELDS` by name, with tensors as rows of nine components."""
     shaped = {name: getattr(found, attribute) for name, attribute in FIELDS.items()}
     return {name: v.reshape(len(v), 9) if v.ndim == 3 else v for name, v in shaped.items()}

@@ -1,4 +1,4 @@
-"""One frame of a result as a PNG, by matplotlib alone: no display and no graphics card needed."""
+"""One frame of a result as a PNG, drawn by matplotlib without a display or graphics card."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tisim.scene import Poke
 
 Array = NDArray[np.float64]
 
-# Facets as polygons, middle nodes in their places.
+# Node order of facets as polygons, with middle nodes between the corners.
 _OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 _COLOURS = "viridis"
 _STEEL = np.array([0.62, 0.65, 0.70])
-_EDGE = 0.82  # brightness of an element's edges against its face
+_EDGE = 0.82  # brightness of an element's edges relative to its face
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,15 +62,16 @@ def picture(
     ----------
     result : Result
     path : path
-        Of the PNG.
+        The PNG file.
     frame : int
-        Negative ones count from the end.
+        Index of the frame; negative ones count from the end.
     cut : bool, optional
-        Leave out the half towards the viewer, to look into the body; the default for pokes, which are cut
-        through the rod's axis. Other bodies are drawn whole, with their rest shape behind.
+        Omit the half towards the viewer, to show the inside; the default for pokes, which are cut through the
+        rod's axis. Other bodies are drawn whole by default, with their rest shape in the background.
     title : str, optional
-        Instead of a line that describes the scene.
+        Title; by default a line that describes the scene.
     dpi : int
+        Resolution [dots per inch].
 
     Returns
     -------
@@ -79,7 +80,7 @@ def picture(
     Raises
     ------
     ValueError
-        For a frame that the result does not have.
+        If the result does not have the frame.
     FileNotFoundError
         If the folder does not exist.
     """
@@ -123,7 +124,7 @@ def picture(
 
 
 def describe(result: Result, frame: int = -1) -> str:
-    """A frame in one line."""
+    """Description of a frame in one line: scene, law, shear modulus, time of a dynamic scene."""
     frame = frame_index(result, frame)
     scene, load = result.scene, float(result.load[frame])
     law = laws.get(scene.material.law)
@@ -140,7 +141,7 @@ def _colour_map() -> Any:
 
 
 def across(direction: Vector | None) -> Array:
-    """Horizontal unit vector across the plane of a push in a direction; the cut is square to it."""
+    """Horizontal unit vector normal to the vertical plane of a push direction, and to the cut."""
     if direction is None or np.hypot(direction[0], direction[1]) < 1e-9:
         return np.array([0.0, 1.0, 0.0])
     d = np.array([direction[0], direction[1], 0.0])
@@ -167,7 +168,7 @@ def _visible_facets(mesh: Mesh, sideways: Array, poke: Poke | None, *, cut: bool
 
 
 def _normals(polygons: Array) -> Array:
-    """Unit normals of polygons (k, p, 3), by their area vector."""
+    """Unit normals (k, 3) of polygons (k, p, 3), from their area vectors."""
     after = np.roll(polygons, -1, axis=1)
     area = np.cross(polygons - polygons[:, :1], after - polygons[:, :1]).sum(axis=1)
     size = np.linalg.norm(area, axis=1, keepdims=True)
@@ -182,7 +183,7 @@ class Sheet:
 
 
 def shaded(polygons: Array, colours: Array, camera: Camera, *, edges: bool) -> Sheet:
-    """The polygons that face the viewer, lit from above his left shoulder."""
+    """The polygons that face the viewer, lit from above the viewer's left shoulder."""
     if polygons.shape[1] in _OUTLINE:
         polygons = polygons[:, _OUTLINE[polygons.shape[1]]]
     normals = _normals(polygons)
@@ -195,7 +196,7 @@ def shaded(polygons: Array, colours: Array, camera: Camera, *, edges: bool) -> S
 
 
 def painted(sheets: list[Sheet], camera: Camera) -> tuple[list[Array], Array, Array]:
-    """All polygons from the farthest to the nearest, flat [mm]."""
+    """Projected polygons [mm] of all sheets from the farthest to the nearest, with face and edge colours."""
     depth = np.concatenate([s.polygons.mean(axis=1) @ camera.towards for s in sheets])
     flat = [p for s in sheets for p in camera.flat(1e3 * s.polygons)]
     order = np.argsort(depth, kind="stable")

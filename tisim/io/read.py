@@ -1,4 +1,4 @@
-"""Meshes that other programs wrote: Abaqus and CalculiX .inp, Gmsh .msh, VTU."""
+"""Reading of meshes of other programs: Abaqus and CalculiX .inp, Gmsh .msh, VTU."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Index = NDArray[np.int64]
 Unit = Literal["m", "cm", "mm", "in"]
 
 METRES: Mapping[str, float] = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
-LARGEST = 10.0  # of a body [m], as of any length of a scene
+LARGEST = 10.0  # largest size of a body [m], as for any length of a scene
 SOLIDS: Mapping[str, ElementKind] = {
     "tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8", "hexahedron20": "hex20",
 }  # fmt: skip
@@ -31,7 +31,16 @@ _SMALLER = ("vertex", "line", "line3", "line4")  # points and edges, which bound
 
 @dataclass
 class _Raw:
-    """A file's contents: solids by kind, sets of nodes, of elements (rows by kind), of facets (corners)."""
+    """Contents of a file.
+
+    Attributes
+    ----------
+    nodes : coordinates, shape (n, 3).
+    solids : node indices of solid elements, by type.
+    node_sets : node indices, by name.
+    element_sets : rows of the solid elements, by name and type.
+    facet_sets : corners of the facets, by name.
+    """
 
     nodes: Array
     solids: dict[str, Index]
@@ -43,35 +52,36 @@ class _Raw:
 def read(path: str | Path, *, unit: Unit = "m", elements: str | None = None) -> Mesh:
     """Read a mesh with its named sets.
 
-    Of a file's element sets, `elements` chooses the body; each is a node set of the mesh besides (the nodes
-    of its elements). A facet set gives a node set of its name too, where there is no other of that name; it
-    is a facet set of the mesh where all of it lies on the boundary. Nodes that no element uses are left out.
+    `elements` chooses the body from the file's element sets. Each element set also becomes a node set of the
+    mesh (the nodes of its elements), and so does each facet set, unless there is a node set of that name. A
+    facet set becomes a facet set of the mesh if all of it lies on the boundary. Nodes that belong to no
+    element are omitted.
 
     - .inp (Abaqus, CalculiX): ``*NODE, *ELEMENT, *NSET, *ELSET, *SURFACE`` (element faces), ``*INCLUDE``;
       names in lower case.
     - .msh (Gmsh 2.2, 4.0 and 4.1): physical groups.
-    - .vtu: arrays of 0 and 1 are sets, by their names less ``set_``: of points, of solids, of facets. A file
-      by `tisim.write` gives its rest shape.
+    - .vtu: arrays of 0 and 1 are sets of points, solids or facets, with their names without ``set_``. For a
+      file of `tisim.write` the rest shape is read.
 
     Parameters
     ----------
     path : path
-        Ends in .inp, .msh or .vtu.
+        A file that ends in .inp, .msh or .vtu.
     unit : {"m", "cm", "mm", "in"}
-        Of the file's coordinates.
+        Unit of the file's coordinates.
     elements : str, optional
-        The element set that is the body; all solid elements where left out.
+        Element set that is the body; by default all solid elements.
 
     Returns
     -------
     Mesh
-        Facet set "surface" is its boundary.
+        Its facet set "surface" is the boundary.
 
     Raises
     ------
     MeshError
-        In one sentence: a file that cannot be read, elements of several kinds or of one that tisim does not
-        have, a set that is not there, an element of no volume, a body of over 10 m.
+        For a file that cannot be read, elements of several or unknown types, a missing set, an element
+        without volume, or a body larger than 10 m; the message is one sentence.
     FileNotFoundError
         If there is no such file.
     """
@@ -107,7 +117,7 @@ def _read_inp(path: Path) -> _Raw:
 
     solids: dict[str, list[Index]] = {}
     home: dict[int, tuple[str, int]] = {}
-    others: dict[int, Index] = {}  # elements of faces: corners
+    others: dict[int, Index] = {}  # corners of elements on faces
     for label, (element, labels) in found.elements.items():
         kind = _abaqus.kind_of(element)
         corners = rows(labels, f"element {label}")
@@ -146,7 +156,7 @@ def _faces(
     entry: int | str,
     face: str,
 ) -> list[Index]:
-    """Corners of the faces that a line of *SURFACE names."""
+    """Corners of the faces in one line of *SURFACE."""
     labels = [entry] if isinstance(entry, int) else found.members(found.element_sets, entry, "element set")
     corners = []
     for label in labels:
@@ -162,14 +172,14 @@ def _faces(
 
 
 def meshio_file(path: Path) -> Any:
-    """A .msh or .vtu as meshio has it. MeshError, one sentence, for what it cannot read."""
+    """A .msh or .vtu file as a meshio mesh; MeshError, in one sentence, if it cannot be read."""
     import meshio
 
-    shown = io.StringIO()  # meshio prints what it thinks of a file, and ends the process at some
+    shown = io.StringIO()  # meshio prints warnings, and ends the process for some files
     try:
         with contextlib.redirect_stdout(shown), contextlib.redirect_stderr(shown):
             return meshio.read(path, file_format="gmsh" if path.suffix.lower() == ".msh" else "vtu")
-    except (Exception, SystemExit) as error:  # its parsers raise whatever a broken file makes them
+    except (Exception, SystemExit) as error:  # its parsers may raise any error on a broken file
         said = " ".join(str(error).split()) or type(error).__name__
         name = "Gmsh mesh (2.2, 4.0 or 4.1)" if path.suffix.lower() == ".msh" else "VTU file"
         raise MeshError(f"expected a {name}, which it is not ({said[:120]})") from None
@@ -184,7 +194,7 @@ def _read_meshio(path: Path) -> _Raw:
     if unknown:
         raise MeshError(f"elements of type {', '.join(sorted(unknown))}: expected {' or '.join(SOLIDS)}")
     raw = _Raw(nodes=points, solids={})
-    start: dict[int, int] = {}  # of a block of solids among its kind
+    start: dict[int, int] = {}  # first row of a block of solids among those of its type
     for k, block in enumerate(m.cells):
         if block.type in SOLIDS:
             kind = SOLIDS[block.type]
@@ -212,7 +222,7 @@ def _read_meshio(path: Path) -> _Raw:
 
 
 def _groups(m: Any) -> dict[str, list[tuple[int, Index]]]:
-    """Cells of a meshio mesh by the name of their set: (block, rows in it)."""
+    """Cells of a meshio mesh by name of their set, as pairs of a block and its rows."""
     found: dict[str, list[tuple[int, Index]]] = {}
     tags = m.cell_data.get("gmsh:physical")
     if tags is not None:
@@ -279,7 +289,7 @@ def _mesh(raw: _Raw, body: str | None) -> Mesh:
 
 
 def _upright(mesh: Mesh) -> Mesh:
-    """The mesh with all volumes positive: elements that are numbered the other way round are turned."""
+    """The mesh with the node order of elements of negative volume reversed; MeshError for zero volume."""
     volume = volumes(mesh)
     flat = ~(np.abs(volume) > 0.0)
     if flat.any():
@@ -299,7 +309,7 @@ def _keys(corners: Index) -> list[tuple[int, ...]]:
 def _on_boundary(
     mesh: Mesh, surface: NDArray[np.int32], name: str, corners: list[Index]
 ) -> NDArray[np.int32] | None:
-    """The set as facets of the mesh, outward; None where some lie inside. MeshError for what is no face."""
+    """The set as outward facets of the mesh; None if some are interior, MeshError if some are not faces."""
     count = 4 if mesh.kind in HEXAHEDRA else 3
     outside = dict(zip(_keys(surface[:, :count].astype(np.int64)), range(len(surface)), strict=True))
     wanted = [tuple(sorted(set(c.tolist()))) for c in corners]
@@ -316,7 +326,7 @@ def _on_boundary(
 
 
 def _facet_nodes(mesh: Mesh, corners: list[Index]) -> Index:
-    """All nodes of faces that are given by their corners, middle nodes included."""
+    """All nodes, including middle nodes, of faces given by their corners."""
     count = 4 if mesh.kind in HEXAHEDRA else 3
     local = np.array(ELEMENT_FACETS[mesh.kind], dtype=np.int64)
     faces = mesh.elements[:, local].reshape(-1, local.shape[1])

@@ -1,1 +1,1 @@
-"""Taichi kernels behind plain NumPy interfaces; nothing here knows what a scene is."""
+"""Taichi kernels with NumPy interfaces, independent of scenes."""

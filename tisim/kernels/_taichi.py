@@ -1,7 +1,7 @@
-"""The one place where Taichi is imported and started, so that a successor can replace it.
+"""Import and start of Taichi, in one module so that it can be replaced.
 
-Kernels run serially on one core: a batch is spread over processes, one scene a core, which makes every
-result independent of the number of workers, bit by bit.
+Kernels run serially on one core. A batch is distributed over processes, one scene per core, so that every
+result is independent of the number of workers, bit by bit.
 """
 
 import contextlib
@@ -20,9 +20,9 @@ import numpy as np
 
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 
-# Of each function that it decorates Taichi asks where the code around it stands. For a module that is being
-# imported that is no file, and `inspect` looks for it in every module there is: a second among thousands. Its
-# own table of files answers at once that no module is there.
+# For each function that it decorates, Taichi looks up the source file of the calling frame. During an import
+# that is not a file, and `inspect` searches all modules for it, which takes a second among thousands. This
+# entry of its table of files states at once that there is no module.
 _importing = os.path.normcase(os.path.abspath("<frozen importlib._bootstrap>"))  # noqa: PTH100 - no path
 inspect.modulesbyfile[_importing] = ""
 
@@ -33,15 +33,14 @@ with warnings.catch_warnings():
     from taichi.lang.ast import ast_transformer_utils
 
 
-# Most of the time that a kernel takes to load from Taichi's cache is Taichi's way through its syntax tree,
-# whose result is the key to what lies there; and half of that way went into what only errors show, and into
-# what is the same each time.
+# Most of the time of loading a kernel from Taichi's cache is Taichi's traversal of the syntax tree, which
+# yields the cache key. Half of that was spent on text that only error messages show, and on repeated work.
 _visit = ast_transformer_utils.Builder.__call__
 _position = ast_transformer_utils.ASTTransformerContext.get_pos_info
 
 
 class _Failed:
-    """Stands in for a visitor whose visit has failed, so that Taichi words the error as it does."""
+    """Replaces a visitor whose visit failed and raises its error again, for Taichi to format the message."""
 
     def __init__(self, error: Exception) -> None:
         self.error = error
@@ -54,8 +53,10 @@ class _Failed:
 
 
 def _visit_unmarked(self: Any, context: Any, node: Any) -> Any:
-    """Build a node without its source position, which Taichi formats for every node of a kernel in case of an
-    error; here it is formatted once there is one."""
+    """Build a node without its source position, which is formatted only after an error.
+
+    Taichi formats it for every node of a kernel.
+    """
     visit = getattr(self, f"build_{type(node).__name__}", None)
     if visit is None:
         return _visit(self, context, node)
@@ -73,10 +74,10 @@ def _position_of_errors(context: Any, node: Any) -> str:
 ast_transformer_utils.Builder.__call__ = _visit_unmarked
 ast_transformer_utils.ASTTransformerContext.get_pos_info = _position_of_errors
 impl.PyTaichi.get_current_src_info = lambda _: ""
-# a function's source is looked up, and each line of it laid out, at each call of it in a kernel
+# Taichi reads and wraps the source of a function at each of its calls in a kernel
 kernel_impl.getsourcelines = functools.cache(kernel_impl.getsourcelines)
 kernel_impl.textwrap = SimpleNamespace(fill=functools.cache(textwrap.fill), dedent=textwrap.dedent)
-# of each whole number NumPy is asked for the limits of its type
+# Taichi asks NumPy for the limits of the type of each integer
 expr._check_in_range = functools.cache(expr._check_in_range)
 expr._clamp_unsigned_to_range = functools.cache(expr._clamp_unsigned_to_range)
 
@@ -84,8 +85,11 @@ _call = kernel_impl.Kernel.__call__
 
 
 def _call_known(self: Any, *given: Any) -> Any:
-    """A kernel's later calls. Taichi works out each time what the arguments are, in 0.3 ms where the law at a
-    hundred points takes a tenth of that; here they need only be what they were, and else Taichi has them."""
+    """Call a kernel; later calls with arguments of the same types skip Taichi's analysis of the arguments.
+
+    That analysis takes 0.3 ms, ten times as long as a law at a hundred points. Calls with other types go to
+    Taichi.
+    """
     known = self.__dict__.get("known")
     if known is None:
         result = _call(self, *given)
@@ -115,8 +119,10 @@ def _call_known(self: Any, *given: Any) -> Any:
 
 
 def _known(kernel: Any) -> tuple[Any, Any, list[tuple[Any, int | None]]] | tuple[()]:
-    """A compiled kernel and what its arguments are: dtype and number of axes, None of a number; empty where
-    it has others than arrays of numbers, real numbers and whole ones, or gives something back."""
+    """Compiled kernel and, for each argument, its dtype and number of axes (None for a scalar).
+
+    Empty if the kernel returns a value, or an argument is neither an array of known type nor a float or int.
+    """
     kinds: list[tuple[Any, int | None]] = []
     for argument in kernel.arguments:
         kind = argument.annotation
@@ -144,7 +150,7 @@ _NUMBERS = {ti.f64: float, ti.i32: int}
 f64 = ti.f64
 i32 = ti.i32
 _started = False
-LONGEST_WRITE = 60.0  # of compiled kernels [s]
+LONGEST_WRITE = 60.0  # longest time to write compiled kernels [s]
 
 
 def ensure_runtime() -> None:
@@ -152,16 +158,16 @@ def ensure_runtime() -> None:
     global _started
     if _started:
         return
-    with contextlib.redirect_stdout(io.StringIO()):  # it prints the backend's name
+    with contextlib.redirect_stdout(io.StringIO()):  # Taichi prints the backend's name
         _init()
     _remove_lock_of_the_dead()
     _started = True
 
 
 def _remove_lock_of_the_dead() -> None:
-    """The lock on compiled kernels of a process that was killed as it wrote them, in a second or less.
+    """Remove an old lock on the cache of kernels, left by a process that was killed while it wrote to it.
 
-    As long as it lies there no process writes any, so that each compiles all its kernels.
+    Writing takes a second or less. While the lock exists no process writes, and each compiles all kernels.
     """
     lock = Path(impl.current_cfg().offline_cache_file_path) / "ticache.lock"
     with contextlib.suppress(OSError):
@@ -175,12 +181,12 @@ def _init() -> None:
         cpu_max_num_threads=1,
         default_fp=ti.f64,
         default_ip=ti.i32,
-        fast_math=False,  # a reassociated sum would make results depend on the compiler's mood
-        offline_cache=True,  # written when a process ends: others that run meanwhile compile for themselves
-        # Half of the time of compiling, for kernels that LLVM makes as fast without it. Taichi's other passes
-        # (advanced_optimization) are worth theirs: 20 % of the kernels' speed.
+        fast_math=False,  # reassociated sums would make results depend on the compiler
+        offline_cache=True,  # written at the end of a process: concurrent processes compile their own kernels
+        # This pass takes half of the compile time, and LLVM's kernels are as fast without it. Taichi's other
+        # passes (advanced_optimization) are worth their time: 20 % of the kernels' speed.
         cfg_optimization=False,
-        # Half of what is left of it: matrices are taken apart before Taichi's passes, not between them.
+        # Halves the remaining time: matrices are split into scalars before Taichi's passes, not between them.
         force_scalarize_matrix=True,
         log_level=ti.WARN,
         verbose=False,

@@ -1,22 +1,22 @@
 """Contact of a facet set with a rigid rod: hardening penalty, Coulomb friction with memory.
 
-The rod is a cylinder with a rounded edge (a hemisphere where the edge radius is the radius), axis `a`
+The rod is a cylinder with a rounded edge (a hemisphere if the edge radius is the radius), axis `a`
 pointing ahead of the tip, centre of the tip `c`. Its signed distance in the meridian plane, with r the
 distance from the axis and s the height ahead of the tip, is that of a rounded box:
 q = (r - (R - e), s + e), d = |max(q, 0)| + min(max(q), 0) - e.
 
-Contact is integrated at many points a facet (at nodes alone the surface tunnels through the edge).
+Contact is integrated at many points per facet (with nodes alone, the edge passes through the surface).
 Energy of a point of rest area A:   A [kn/2 o^2 (1 + (o/h)^4/3) + huber(g)],  with the overlap
 o = max(-d, 0), g the elastic part of the slip and huber(g) = kt/2 g^2 up to the Coulomb limit mu p,
-mu p g - (mu p)^2/(2 kt) beyond: a return mapping whose memory is g at the last converged step, so that a
-sticking point does not creep with the steps. The pressure p = kn o (1 + (o/h)^4) is close to linear below
-the overlap h and grows with its fifth power beyond, so that no pressure takes the surface far into the rod.
-p is frozen during a line search and refreshed at every linearisation: the residual is Coulomb's law without
-lag. The dependence of mu p and of the tangent plane on x makes the tangent
-unsymmetric; that part, a 3 x 3 matrix a point, is kept aside for the linear solver (without it the iteration
-creeps where points slip and where they pass the rounded edge).
-A point that touches first in this step slips for the part of the step that it touches, as the step's
-start value sees it.
+mu p g - (mu p)^2/(2 kt) beyond it. This is a return mapping whose history variable is g at the last converged
+step, so that a sticking point does not creep from step to step. The pressure p = kn o (1 + (o/h)^4) is almost
+linear below the overlap h and grows with the fifth power of o above it, which bounds the penetration.
+p is fixed during a line search and updated at every linearisation: the residual is Coulomb's law without lag.
+The dependence of mu p and of the tangent plane on x makes the tangent unsymmetric. The unsymmetric part, a
+3 x 3 matrix per point, is stored separately for the linear solver (without it convergence is slow where
+points slip and where they pass the rounded edge).
+A point that first touches in this step slips only for the fraction of the step in which it touches, estimated
+from the step's start value.
 
 The kernels read the contact's constants from `law`: kn [Pa/m], kt [Pa/m], mu, h [m].
 """
@@ -39,8 +39,11 @@ _i3 = ti.types.ndarray(dtype=i32, ndim=3)
 
 @ti.func
 def rod_distance(y, rod: ti.template()):
-    """Signed distance d [m], outward normal n, and the two principal curvatures of d's level set with
-    their directions: along the meridian (km, m) and around the axis (kr, n x m). rod: see `pack_rod`."""
+    """Signed distance d [m], outward normal n, principal curvatures km and kr [1/m], and direction t.
+
+    km is the curvature of d's level set along the meridian (direction n x t), kr that around the axis
+    (direction t). For `rod` see `pack_rod`.
+    """
     c = ti.Vector([rod[0], rod[1], rod[2]])
     a = ti.Vector([rod[3], rod[4], rod[5]])
     core = rod[6] - rod[7]
@@ -82,7 +85,7 @@ def penalty(d, law: ti.template()):
 
 @cache
 def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
-    """(measure, energy, assemble) kernels; see each."""
+    """Kernels (measure, energy, assemble); see each of them."""
     ensure_runtime()
 
     @ti.func
@@ -111,17 +114,17 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
 
     @ti.func
     def total_slip(y, z, shift, memory: ti.template(), part: ti.template(), f, q):
-        """Slip since the last step, added to the remembered one; its tangential part is the elastic slip.
+        """Trial slip: that of the last converged step (`memory`) plus that since then.
 
-        z: the point at the last converged step; shift: the rod's displacement there since then; part: of the
-        step in which the point touches, 0 where it has no friction yet.
+        z is the point at the last converged step, shift the rod's displacement there since then, part the
+        fraction of the step in which the point touches (0: no friction).
         """
         g = ti.Vector([memory[f, q, 0], memory[f, q, 1], memory[f, q, 2]])
         return g + part[f, q] * (y - z - shift)
 
     @ti.kernel
     def measure(x: _f2, conn: _i2, shape: _f2, rod: _f1, distance: _f2):
-        """distance (f, q): signed distance of every point [m]."""
+        """Fill distance (f, q), the signed distance of every point from the rod [m]."""
         ti.loop_config(serialize=True)
         for f in range(conn.shape[0]):
             for q in range(shape.shape[0]):
@@ -133,7 +136,7 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
         x: _f2, z: _f2, conn: _i2, shape: _f2, area: _f2, rod: _f1, law: _f1,
         memory: _f3, part: _f2, pressure: _f2, out: _f1,
     ):  # fmt: skip
-        """out[0]: energy [J] with the pressures frozen; out[1]: smallest distance [m]."""
+        """Fill out: energy at fixed pressures in the friction [J], smallest distance [m]."""
         total = 0.0
         least = 1e300
         ti.loop_config(serialize=True)
@@ -163,10 +166,13 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
         memory: _f3, part: _f2, pressure: _f2, slip: _f3, skew: _f3, slot: _i3,
         force: _f2, blocks: _f3, out: _f1,
     ):  # fmt: skip
-        """Refreshes `pressure` (f, q) and `slip` (f, q, 3; the elastic slip after return), adds energy
-        gradient to force (n, 3) and the tangent to blocks. out[0:3]: force of the body on the rod [N],
-        out[3]: smallest distance [m], out[4]: area in contact [m2], out[5]: 1 where friction acts.
-        skew (f, q, 9): what `blocks` lacks of each point's tangent, row by row."""
+        """Add the energy gradient to force (n, 3) and the symmetric part of the tangent to blocks.
+
+        Also fills pressure (f, q) [Pa], slip (f, q, 3), the elastic slip after the return mapping [m], and
+        skew (f, q, 9), the unsymmetric rest of each point's tangent, row by row. out[0:3]: force of the body
+        on the rod [N], out[3]: smallest distance [m], out[4]: area in contact [m2], out[5]: 1 if friction
+        acts at a point, else 0.
+        """
         out[5] = 0.0
         total = ti.Vector([0.0, 0.0, 0.0])
         least = 1e300
@@ -245,10 +251,10 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
 
 
 def pack_rod(tip: Any, axis: Any, radius: float, edge_radius: float, shift: Any, rotation: Any = None) -> Any:
-    """The rod as the kernels read it: tip (3), unit axis (3), radius, edge radius, displacement (3), I - R^T.
+    """The rod for the kernels: tip (3), unit axis (3), radius, edge radius, displacement (3), I - R^T (9).
 
-    shift, rotation: of the tip [m], and R (3, 3) of the rod, since the last converged step; None: it kept
-    its direction.
+    shift is the displacement of the tip [m] and rotation the rotation R (3, 3) of the rod since the last
+    converged step; None if it kept its direction.
     """
     spin = np.zeros(9) if rotation is None else (np.eye(3) - np.asarray(rotation).T).ravel()
     return np.concatenate([tip, axis, [radius, edge_radius], shift, spin]).astype(np.float64)

@@ -1,19 +1,19 @@
 """Taichi kernels of one law over the elements of one mesh: energy, forces, stiffness, law evaluation.
 
-All run serially and take plain NumPy arrays: x (n, 3) positions; conn (m, a) element nodes;
-grad (m, q, a, 3) shape function gradients in the rest shape [1/m]; weight (m, q) rest volumes [m3];
-prm packed law parameters, then those of the material's other parts; kp (q,) pointwise and kb mean volumetric
-stiffness [Pa]; state (m, q, k) what these parts need by point (`tisim.kernels.isochoric.Features`).
+All run serially and take NumPy arrays: positions x (n, 3) [m]; element nodes conn (m, a); shape-function
+gradients in the rest shape grad (m, q, a, 3) [1/m]; rest volumes weight (m, q) [m3]; prm, the packed
+parameters of the law and of the material's other parts; pointwise kp (q,) and mean kb volumetric stiffness
+[Pa]; the points' state (m, q, k) (`tisim.kernels.isochoric.Features`).
 The energy of an element is  sum_q w_q (W + kp_q/2 theta^2) + kb/2 V mean(theta)^2: with kb = 0 the plain
 displacement element, else one with a constant pressure kb mean(theta), condensed ("P2/P0", "Q1/P0").
 
-What is added to again and again (forces, blocks of the tangent) is summed up by element in variables of the
-kernel, not in its arrays: any store into an array may change a shape or an address of another, as far as the
-compiler knows, and each access after it works these out anew, at several times the cost of the sum itself.
+Forces and blocks of the tangent are accumulated by element in local variables of the kernel, not in its
+arrays. The compiler assumes that a store into an array may change the shape or address of any array, and
+computes these again at each access, which costs several times the sum itself.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from functools import cache
 
@@ -36,7 +36,7 @@ MOST_NODES = 20  # of an element
 
 @ti.func
 def load_nodes(x: ti.template(), conn: ti.template(), e, xe: ti.template()):
-    """xe (3 MOST_NODES,): the positions of the element's nodes."""
+    """Copy the positions of the element's nodes to xe (3 MOST_NODES,)."""
     for a in range(conn.shape[1]):
         n = conn[e, a]
         for i in ti.static(range(3)):
@@ -55,7 +55,7 @@ def deformation_gradient(xe: ti.template(), grad: ti.template(), e, q):
 
 @ti.func
 def add_by_node(P, grad: ti.template(), e, q, fe: ti.template()):
-    """fe (3 MOST_NODES,) += P, times the gradient of each node's shape function."""
+    """Add P times the gradient of each node's shape function to fe (3 MOST_NODES,)."""
     for a in range(grad.shape[2]):
         for i in ti.static(range(3)):
             s = 0.0
@@ -66,19 +66,19 @@ def add_by_node(P, grad: ti.template(), e, q, fe: ti.template()):
 
 @ti.func
 def takes_part(grad: ti.template(), e, q, a):
-    """True if node a moves point q."""
+    """True if node a contributes to the deformation at point q."""
     return grad[e, q, a, 0] != 0.0 or grad[e, q, a, 1] != 0.0 or grad[e, q, a, 2] != 0.0
 
 
 @cache
 def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel]:
-    """Taichi functions of a material for use inside kernels: (mean_theta, add_forces)."""
+    """Taichi functions (mean_theta, add_forces) of a material, for use inside kernels."""
     theta, _, stress, _, _ = make_response(law, features)
     load_point = make_load_point(features)
 
     @ti.func
     def mean_theta(xe: ti.template(), grad: ti.template(), weight: ti.template(), e, minj):
-        """Volume-weighted mean of theta, rest volume, smallest det F; theta of a turned point is skipped."""
+        """Volume-weighted mean of theta, rest volume and smallest det F; inverted points have theta = 0."""
         s = 0.0
         v = 0.0
         for q in range(weight.shape[1]):
@@ -102,7 +102,7 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
         kb,
         f: ti.template(),
     ):
-        """f += dEnergy/dx (internal forces), shape (n, 3) [N]; returns energy [J] and smallest det F."""
+        """Add the internal forces dEnergy/dx to f (n, 3) [N]; return energy [J] and smallest det F."""
         total = 0.0
         minj = 1e300
         xe = ti.Vector.zero(f64, 3 * MOST_NODES)
@@ -137,7 +137,7 @@ def force_functions(law: Law, features: Features = NONE) -> tuple[Kernel, Kernel
 
 @cache
 def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Kernel, Kernel, Kernel]:
-    """(energy, forces, stiffness, pressures) kernels of a material, compiled once for any mesh and values."""
+    """Kernels (energy, forces, stiffness, pressures) of a material, compiled once for any mesh and values."""
     ensure_runtime()
     theta, psi_only, _, tangent, _ = make_response(law, features)
     mean_theta, add_forces = force_functions(law, features)
@@ -145,7 +145,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
 
     @ti.kernel
     def energy(x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: _f1, kb: f64, out: _f1):
-        """out: energy [J], smallest det F; the energy means nothing where that is not positive."""
+        """Fill out with energy [J] and smallest det F; the energy is meaningless if that is not positive."""
         total = 0.0
         minj = 1e300
         ti.loop_config(serialize=True)
@@ -171,7 +171,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
     def forces(
         x: _f2, conn: _i2, grad: _f4, weight: _f2, prm: _f1, state: _f3, kp: _f1, kb: f64, f: _f2, out: _f1
     ):
-        """f += dEnergy/dx (internal forces), shape (n, 3) [N]; out as in `energy`."""
+        """Add the internal forces dEnergy/dx to f (n, 3) [N]; out as in `energy`."""
         ti.loop_config(serialize=True)
         for _ in range(1):
             total, minj = add_forces(x, conn, grad, weight, prm, state, kp, kb, f)
@@ -196,13 +196,13 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
         values: _f3,
         out: _f1,
     ):
-        """Adds d2Energy/dx2 into blocks `values` (nb, 3, 3), and dEnergy/dx into f.
+        """Add d2Energy/dx2 to blocks `values` (nb, 3, 3) [N/m] and dEnergy/dx to f (n, 3) [N].
 
-        pressure (m,) [Pa] takes the place of kb mean(theta) in the tangent's geometric part; the forces
-        are exact whatever it is.
-        sparse: 1 where nodes that do not move a point are skipped (tetrahedra in a hexahedron), 0 elsewhere.
-        slot (m, a, b), for a <= b: 4 * block + 0 (add), 1 (add transposed), 2 (both), or -1 (a fixed node).
-        moduli (q, 9, 9) is scratch: an element's tangents at its points.
+        pressure (m,) [Pa] replaces kb mean(theta) in the tangent's geometric part; the forces do not depend
+        on it. sparse is 1 to skip nodes that do not contribute to a point (tetrahedra in a hexahedron), else
+        0. slot (m, a, b), for a <= b: 4 * block + 0 (add), 1 (add transposed), 2 (both), or -1 (a fixed
+        node). moduli (q, 9, 9) is scratch for an element's tangents at its points. out[1] is the smallest
+        det F; out[0] is 0.
         """
         minj = 1e300
         ti.loop_config(serialize=True)
@@ -211,8 +211,8 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
             xe = ti.Vector.zero(f64, 3 * MOST_NODES)
             fe = ti.Vector.zero(f64, 3 * MOST_NODES)
             slopes = ti.Vector.zero(f64, 3 * MOST_NODES)  # of the volume integral of theta
-            # a point's gradients, and a block column of the element's matrix: each component by node, in a
-            # variable of its own, which is what the compiler makes vector instructions of
+            # a point's gradients, and a block column of the element's matrix, by node: one variable per
+            # component, so that the compiler generates vector instructions
             gx = ti.Vector.zero(f64, MOST_NODES)
             gy = ti.Vector.zero(f64, MOST_NODES)
             gz = ti.Vector.zero(f64, MOST_NODES)
@@ -326,7 +326,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
 
     @ti.kernel
     def pressures(x: _f2, du: _f2, conn: _i2, grad: _f4, weight: _f2, kb: f64, pressure: _f1):
-        """pressure (m,): kb mean(theta) at x, advanced to first order by the displacement du [Pa]."""
+        """Fill pressure (m,) [Pa] with kb mean(theta) at x, advanced to first order by displacements du."""
         ti.loop_config(serialize=True)
         for _ in range(1):
             xe = ti.Vector.zero(f64, 3 * MOST_NODES)
@@ -354,7 +354,7 @@ def element_kernels(law: Law, *, features: Features = NONE) -> tuple[Kernel, Ker
 def evaluation_kernel(law: Law, features: Features = NONE) -> Kernel:
     """Kernel that evaluates a material at given F (n, 3, 3): psi (n,), P (n, 3, 3), A (n, 9, 9).
 
-    state (1, n, k): that of the points.
+    state (1, n, k) is that of the points, kappa the pointwise volumetric stiffness [Pa].
     """
     ensure_runtime()
     _, _, _, tangent, _ = make_response(law, features)

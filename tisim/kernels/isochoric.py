@@ -1,11 +1,11 @@
-"""The isochoric part of a law's energy, and what softens it or stands beside it, in Taichi.
+"""The isochoric part of a law's energy, Wbar(C) = W(J^(-2/3) C), its softening and the fibres, in Taichi.
 
-Wbar(C) = W(J^(-2/3) C); 10-vectors of derivatives as the law has them (`tisim.laws.Law`): by I1, I2 and J,
-or by the principal stretches.
+10-vectors of derivatives are those of the law (`tisim.laws.Law`): by I1, I2 and J, or by the principal
+stretches.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,16 +17,16 @@ from tisim.laws import Law
 
 @dataclass(frozen=True, kw_only=True)
 class Features:
-    """Parts of a material that kernels compile in beside its law; their numbers follow the law's in `prm`.
+    """Parts of a material compiled into kernels with its law; their parameters follow the law's in `prm`.
 
     Attributes
     ----------
     viscous : bool
-        Whether points have a tensor of history H.
+        True if points have a history tensor H.
     softening, fibres : Taichi function or None
         Energies of these parts.
     softening_size, fibres_size : int
-        How many numbers each reads.
+        Number of parameters of each.
     """
 
     viscous: bool = False
@@ -41,12 +41,12 @@ class Features:
 
     @property
     def state_size(self) -> int:
-        """Numbers of state a point: H (00, 11, 22, 01, 02, 12), then the largest energy so far."""
+        """Length of a point's state: H (00, 11, 22, 01, 02, 12), then the largest energy so far."""
         return 6 * self.viscous + (self.softening is not None)
 
     @property
     def tail_size(self) -> int:
-        """Numbers after those of the law: s; of softening; of fibres and their unit vector."""
+        """Number of parameters after those of the law: s, softening, fibres, and their unit vector."""
         return 1 + self.softening_size + self.fibres_size + 3 * (self.fibres is not None)
 
 
@@ -54,12 +54,12 @@ NONE = Features()
 
 
 def make_isochoric(law: Law) -> Any:
-    """ti.func of Wbar's 10-vector: of (I1, I2, J, prm), or of (stretches, J, prm) for a law in those."""
+    """Taichi function of Wbar's 10-vector: of (I1, I2, J, prm), or of (stretches, J, prm)."""
     energy = law.energy
 
     @ti.func
     def isochoric_invariants(I1, I2, J, prm: ti.template()):
-        """The law's 10-vector for Wbar(I1, I2, J) = W(J^(-2/3) I1, J^(-4/3) I2, 1)."""
+        """10-vector of Wbar(I1, I2, J) = W(J^(-2/3) I1, J^(-4/3) I2, 1)."""
         a = ti.exp(-2.0 / 3.0 * ti.log(J))
         b = a * a
         i1 = a * I1
@@ -87,7 +87,7 @@ def make_isochoric(law: Law) -> Any:
 
     @ti.func
     def isochoric_stretches(lam, J, prm: ti.template()):
-        """The law's 10-vector for Wbar(l) = W(J^(-1/3) l), by its derivatives in ln l less their means."""
+        """10-vector of Wbar(l) = W(J^(-1/3) l), from the derivatives by ln l minus their means."""
         l = lam * ti.exp(-1.0 / 3.0 * ti.log(J))
         e = energy(l[0], l[1], l[2], prm)
         g = ti.Vector([l[0] * e[1], l[1] * e[2], l[2] * e[3]])
@@ -133,7 +133,7 @@ def make_parts(features: Features) -> tuple[Any, Any, Any, Any, Any]:
 
     @ti.func
     def fibre_terms(C, J, prm: ti.template()):
-        """W_fibres and its derivatives by I4 = a.Ca and J: (W, W4, WJ, W44, WJJ, W4J)."""
+        """W_fibres(J^(-2/3) I4) and its derivatives by I4 = a.Ca and J: (W, W4, WJ, W44, WJJ, W4J)."""
         a = fibre_axis(prm)
         numbers = ti.Vector.zero(ti.f64, ti.static(fibres_size))
         start = prm.shape[0] - 3 - fibres_size
@@ -156,7 +156,7 @@ def make_parts(features: Features) -> tuple[Any, Any, Any, Any, Any]:
 
     @ti.func
     def softened(w, point, prm: ti.template()):
-        """f, f' and f'' of the isochoric energy w."""
+        """Softened energy f and f', f'' at the isochoric energy w."""
         f = ti.Vector([w, 1.0, 0.0])
         if ti.static(softening):
             numbers = ti.Vector.zero(ti.f64, ti.static(soft_size))
@@ -168,7 +168,7 @@ def make_parts(features: Features) -> tuple[Any, Any, Any, Any, Any]:
 
     @ti.func
     def history(point):
-        """H, where there is one."""
+        """History tensor H of a point; for viscous materials only."""
         return ti.Matrix(
             [
                 [point[0], point[3], point[4]],
@@ -183,10 +183,10 @@ def make_parts(features: Features) -> tuple[Any, Any, Any, Any, Any]:
 
     @ti.func
     def extended_terms(C, J, e, iso, prm: ti.template(), point):
-        """The law's 10-vector e with what the parts make of it (iso: that of Wbar), s f' and s f'', W_fibres.
+        """10-vector of law and parts from those of W (`e`) and Wbar (`iso`), s f', s f'' and `fibre_terms`.
 
-        s f' and s f'' are factors of the isochoric energy's slopes and of their products; of W_fibres come
-        the derivatives of `fibre_terms`.
+        s f' multiplies the derivatives of the isochoric energy, s f'' their products. Derivatives of W_fibres
+        and of H : C are not included in the 10-vector.
         """
         t = ti.Vector.zero(ti.f64, 6)
         if ti.static(fibres):
@@ -208,7 +208,7 @@ def _nothing_of(state: ti.template(), e, q):  # noqa: ARG001 - one signature for
 
 
 def make_load_point(features: Features) -> Any:
-    """Taichi function (state, e, q) to what `make_response` calls a point."""
+    """Taichi function (state, e, q) -> `point`, the state of a point for the functions of `make_response`."""
     viscous, softening = features.viscous, features.softening is not None
 
     @ti.func

@@ -1,7 +1,7 @@
-"""The explicit time loop in one Taichi kernel: many steps a launch, the energy balance kept in step."""
+"""The explicit time loop in one Taichi kernel: many steps per launch, with the energy balance."""
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from functools import cache
 
@@ -10,16 +10,16 @@ from tisim.kernels.elements import _f1, _f2, _f4, _i2, force_functions
 from tisim.kernels.isochoric import NONE, Features
 from tisim.laws import Law
 
-# entries of `state`, zeros at first and kept from launch to launch
+# entries of `state`, initially 0 and kept between launches
 SPENT, START, DRIFT, SCALE, KINETIC, MIN_JACOBIAN, STEPS, LOST = range(8)
 STATE_SIZE = 8
 
 
 @cache
 def leapfrog_kernel(law: Law, features: Features = NONE) -> Kernel:
-    """Kernel of a material that takes `steps` leapfrog steps; compiled once for any mesh and values.
+    """Kernel of a material that takes `steps` leapfrog steps; compiled once for any mesh and parameters.
 
-    features: without state.
+    `features` must have no state (neither viscosity nor softening).
     """
     ensure_runtime()
     _, add_forces = force_functions(law, features)
@@ -47,15 +47,19 @@ def leapfrog_kernel(law: Law, features: Features = NONE) -> Kernel:
         steps: i32,
         state: _f1,
     ):
-        """x at a step [m], v at the half step before it [m/s]; f at the step before [N]; all (n, 3).
+        """Advance x at a step [m], v at the half step before it [m/s] and f at the step before [N], (n, 3).
 
-        mass (n, 3) [kg], 0 where a component may not move. dt, dt_before [s]: this and the last step.
-        The energy at a step is H = 1/2 v(-) M v(+) + E(x) - load (x - rest), and what damping took is summed
-        by the trapezoidal rule over half steps: for linear forces their sum is constant to rounding.
-        Above the stable step it stays so while 1/2 v(-) M v(+) runs to minus infinity: both are watched.
-        state: work of damping [J]; H at the start [J]; largest |drift| of the balance [J]; largest energy
-        seen [J]; kinetic energy [J]; smallest det F; steps taken; 1 once the balance is lost.
-        limit: part of the largest energy that drift may reach and kinetic energy may fall below zero by.
+        mass (n, 3) [kg] is 0 for prescribed components; dt and dt_before [s] are this and the last step.
+
+        The energy at a step is H = 1/2 v(-) M v(+) + E(x) - load (x - rest). The work of damping is summed by
+        the trapezoidal rule over half steps. For linear forces H plus this work is constant to rounding.
+        Above the stable step it stays constant while 1/2 v(-) M v(+) goes to minus infinity: both are
+        monitored.
+
+        Entries of state: work of damping [J]; H at the start [J]; largest |drift| of the balance [J]; largest
+        energy so far [J]; kinetic energy [J]; smallest det F; number of steps taken; 1 if the balance is
+        lost. It is lost if the drift exceeds `limit` times the largest energy, the kinetic energy is below
+        minus that, or an element inverts.
         """
         ti.loop_config(serialize=True)
         for _ in range(1):
@@ -102,7 +106,7 @@ def leapfrog_kernel(law: Law, features: Features = NONE) -> Kernel:
                 state[STEPS] = state[STEPS] + 1.0
                 gap = dt
                 last = dt
-                # a release from rest begins with v(-) = -v(+) and no energy to compare with
+                # after a release from rest v(-) = -v(+), and there is no energy to compare with
                 if not (
                     minj > 0.0
                     and state[DRIFT] <= limit * state[SCALE]

@@ -1,10 +1,10 @@
-"""Taichi kernels at the points of integration: energy density and stress, and what a history is made of.
+"""Taichi kernels at the quadrature points: energy density and stress, and the data of a point's history.
 
-Arguments as in `tisim.kernels.elements`, whose forces are the sum of these stresses.
+Arguments are as in `tisim.kernels.elements`, whose forces are the integral of these stresses.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from functools import cache
 
@@ -24,10 +24,10 @@ _i2 = ti.types.ndarray(dtype=i32, ndim=2)
 
 @cache
 def point_kernel(law: Law, features: Features = NONE) -> Kernel:
-    """Kernel that fills psi (m, q) [J/m3] and P (m, q, 9) [Pa], first Piola-Kirchhoff, row by row.
+    """Kernel that fills psi (m, q) [J/m3] and the first Piola-Kirchhoff stress P (m, q, 9) [Pa], row by row.
 
-    The pressure of an element that has one, kb mean(theta), is in both; they are 0 where det F is not
-    positive, as in the forces.
+    Both include the pressure of the element, kb mean(theta), if it has one. They are 0 at points where det F
+    is not positive, as in the forces.
     """
     ensure_runtime()
     theta, _, stress, _, _ = make_response(law, features)
@@ -65,10 +65,10 @@ def point_kernel(law: Law, features: Features = NONE) -> Kernel:
 
 @cache
 def isochoric_kernels(law: Law, features: Features) -> tuple[Kernel, Kernel]:
-    """Kernels (of a mesh, of given F) of what a point's history is made of, see `make_response`.
+    """Kernels (of a mesh, of given F) for the data of a point's history, see `isochoric` of `make_response`.
 
-    C, S (m, q, 6), components 00, 11, 22, 01, 02, 12, S in [Pa]; w (m, q), the isochoric energy before
-    softening [J/m3]. Given deformations F (n, 3, 3) are points of one element.
+    They fill C and S [Pa] (m, q, 6), components 00, 11, 22, 01, 02, 12, and the isochoric energy before
+    softening w (m, q) [J/m3]. Given deformation gradients F (n, 3, 3) are points of one element (m = 1).
     """
     ensure_runtime()
     _, _, _, _, isochoric = make_response(law, features)

@@ -1,19 +1,20 @@
-"""From a law's energy derivatives to first Piola-Kirchhoff stress and its tangent, in Taichi.
+"""First Piola-Kirchhoff stress and its tangent from the derivatives of a law's energy, in Taichi.
 
 Index convention of 9-vectors and 9 x 9 matrices: (i, K) -> 3 i + K, P_iK = dPsi/dF_iK,
 A_(iK)(jL) = d2Psi / dF_iK dF_jL. The volumetric part is added here for all laws: with the pointwise
 stiffness `kp` and a constant pressure `p` of the element, Psi = W + kp/2 theta^2 + p theta.
 
-Where a material has parts beside its law (`tisim.parts`), with Wbar(C) = W(J^(-2/3) C) its isochoric part,
+If a material has parts in addition to its law (`tisim.parts`), with Wbar(C) = W(J^(-2/3) C) its isochoric
+part,
 
     Psi = (W - Wbar) + s f(Wbar + W_fibres) + 1/2 H : (C - I) + kp/2 theta^2 + p theta
 
-f is the softened energy (f(W) = W without softening); s, the same everywhere, and H, by quadrature point, are
-what a time step makes of the viscous history (`tisim.discretisation.history`).
+f is the softened energy (f(W) = W without softening). s, a constant, and H, by quadrature point, follow from
+the viscous history and the length of the time step (`tisim.discretisation.history`).
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from typing import Any
 
@@ -31,7 +32,7 @@ from tisim.laws import Law
 
 
 def make_theta(law: Law) -> Any:
-    """ti.func (I1, J) -> (theta, dtheta/dI1, dtheta/dJ, d2theta/dJ2)."""
+    """Taichi function (I1, J) -> (theta, dtheta/dI1, dtheta/dJ, d2theta/dJ2) of a law."""
     kind = law.theta
 
     @ti.func
@@ -49,10 +50,10 @@ def make_theta(law: Law) -> Any:
 
 
 def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, Any, Any]:
-    """Taichi functions of one material: theta, (psi), (psi, P), (psi, P, A), isochoric. F needs det F > 0.
+    """Taichi functions of one material: theta, psi, (psi, P), (psi, P, A), isochoric; all need det F > 0.
 
-    `point`: a point's state, as `make_load_point` loads it.
-    isochoric: C, the softened isochoric energy's S = 2 df/dC, and the energy Wbar + W_fibres.
+    Their argument `point` is a point's state as `make_load_point` loads it. `isochoric` returns C,
+    S = 2 df/dC of the softened isochoric energy f, and the energy Wbar + W_fibres.
     """
     theta = make_theta(law)
     energy = law.energy
@@ -88,7 +89,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
             w += t[0]
             wj += t[2]
             S += 2.0 * t[1] * a.outer_product(a)
-        S += wj / J * cofactor(C)  # J C^-1, of a C whose determinant is J^2
+        S += wj / J * cofactor(C)  # wj J C^-1, since det C = J^2
         return C, softened(w, point, prm)[1] * S, w
 
     @ti.func
@@ -170,7 +171,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
         gain = 1.0
         bend = 0.0
         t = ti.Vector.zero(ti.f64, 6)
-        P0 = ti.Vector.zero(ti.f64, 9)  # slope of the isochoric energy, where something softens
+        P0 = ti.Vector.zero(ti.f64, 9)  # derivative of the isochoric energy, with softening only
         if ti.static(principal):
             lam, V = stretches(C)
             e = energy(lam[0], lam[1], lam[2], prm)
@@ -201,7 +202,7 @@ def make_response(law: Law, features: Features = NONE) -> tuple[Any, Any, Any, A
                 a, b = ti.static(PAIRS[n])
                 gap = lam[a] - lam[b]
                 flip = 0.5 * (e[4 + a] + e[4 + b]) - e[7 + n]
-                # near repeated stretches the quotient loses its digits; its limit errs by gap^2
+                # near repeated stretches the quotient loses its digits; the error of its limit is gap^2
                 if ti.abs(gap) > 1e-5 * (lam[a] + lam[b]):
                     flip = (e[1 + a] - e[1 + b]) / gap
                 twist = (e[1 + a] + e[1 + b]) / (lam[a] + lam[b])

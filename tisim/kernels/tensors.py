@@ -1,7 +1,7 @@
 """3 x 3 tensors in Taichi: invariants, cofactor, principal stretches."""
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles these functions; their annotations mean something to Taichi only)
+# (Taichi compiles these functions and interprets their annotations)
 
 from tisim.kernels._taichi import ti
 
@@ -52,10 +52,10 @@ def _cos_of_third(r):
 
 @ti.func
 def _frame_of_eigenvector(C):
-    """Rotation whose last column is an eigenvector of C, as far as rounding allows.
+    """Rotation whose last column is an eigenvector of C, up to rounding; the identity if C is isotropic.
 
-    That of the eigenvalue that lies apart from the others, in closed form: the longest product of two rows
-    of C less that eigenvalue (Scherzinger and Dohrmann, Comput. Methods Appl. Mech. Eng. 197, 2008).
+    The eigenvector of the most distinct eigenvalue, in closed form: the longest cross product of two rows of
+    C minus that eigenvalue (Scherzinger and Dohrmann, Comput. Methods Appl. Mech. Eng. 197, 2008).
     """
     V = ti.Matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     mean = (C[0, 0] + C[1, 1] + C[2, 2]) / 3.0
@@ -93,8 +93,8 @@ def _frame_of_eigenvector(C):
 def eigen_symmetric(C):
     """Eigenvalues (3) and eigenvectors (columns) of a symmetric 3 x 3 matrix.
 
-    Jacobi rotations, of which one is left where the closed form has brought it: backward stable, also where
-    eigenvalues repeat. `ti.sym_eig` errs by 6e-6 near the identity.
+    Jacobi rotations from the closed-form `_frame_of_eigenvector`, after which usually one is left. They are
+    backward stable, also for repeated eigenvalues. `ti.sym_eig` has errors of 6e-6 near the identity.
     """
     V = _frame_of_eigenvector(C)
     A = V.transpose() @ C @ V
@@ -132,7 +132,7 @@ def eigen_symmetric(C):
 
 @ti.func
 def invariants(F):
-    """C = F^T F and its I1, I2."""
+    """C = F^T F and its invariants I1 and I2."""
     C = F.transpose() @ F
     I1 = C[0, 0] + C[1, 1] + C[2, 2]
     c2 = (
@@ -152,7 +152,7 @@ def stretches(C):
 
 
 def sign(i: int, j: int) -> int:
-    """eps_ijm of the permutation symbol, m the third index."""
+    """Permutation symbol eps_ijm, m being the third index."""
     return 1 if (j - i) % 3 == 1 else -1
 
 

@@ -1,6 +1,6 @@
-"""Constitutive laws: one file each, one registration each.
+"""Constitutive laws: one file and one registration each.
 
-A law is a `Law` that is registered. A whole one, in a file of one's own (Neo-Hookean, isochoric):
+A law is a registered `Law`. A complete example of a user's own law, in a file (Neo-Hookean, isochoric):
 
 >>> import numpy as np
 >>> from tisim import laws
@@ -25,8 +25,8 @@ A law is a `Law` that is registered. A whole one, in a file of one's own (Neo-Ho
 ... )
 >>> _ = laws.register(mine)
 
-From then on `tisim.Material(law="isochoric-neo-hookean", ...)` is solved, in other processes too.
-`laws.check_law("isochoric-neo-hookean")` compares its derivatives, frame indifference, rest state and moduli.
+After this `tisim.Material(law="isochoric-neo-hookean", ...)` can be solved, in other processes too.
+`laws.check_law("isochoric-neo-hookean")` checks its derivatives, frame indifference, rest state and moduli.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from tisim.laws._law import Law, Moduli, Parameters
 if TYPE_CHECKING:
     from tisim.laws._check import LawReport, check_law, evaluate
 
-# The paper's laws, in its order, then those of tisim that are not searched for by default.
+# The paper's laws, in its order; the other built-in laws are not calibrated by default.
 _PAPER = (
     st_venant_kirchhoff.LAW,
     neo_hookean.LAW,
@@ -69,7 +69,7 @@ _NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
 
 
 def register(law: Law) -> Law:
-    """Add a law; one of the same name that was added before is replaced.
+    """Add a law; an added law of the same name is replaced.
 
     Parameters
     ----------
@@ -83,10 +83,10 @@ def register(law: Law) -> Law:
     Raises
     ------
     TypeError
-        If it is no `Law`.
+        If it is not a `Law`.
     ValueError
-        If its name is taken by a law of tisim's own or not of lower-case letters, digits and hyphens, or if
-        the parameters that `from_moduli` makes do not pass its own check or do not have those moduli.
+        If its name is that of a built-in law or has other characters than lower-case letters, digits and
+        hyphens, or if the parameters of its `from_moduli` fail its check or do not have the given moduli.
     """
     if not isinstance(law, Law):
         raise TypeError(f"law: expected a Law, got {type(law).__name__}")
@@ -105,22 +105,22 @@ def register(law: Law) -> Law:
 
 
 def unregister(name: str) -> None:
-    """Take out a law that was added."""
+    """Remove an added law; other names are ignored."""
     _ADDED.pop(name, None)
 
 
 def added(name: str) -> Law | None:
-    """The law of that name if it was registered from outside, None for tisim's own."""
+    """The law of that name if it was added, None for a built-in one."""
     return _ADDED.get(name)
 
 
 def names() -> tuple[str, ...]:
-    """Names of the laws that are calibrated and compared: the paper's, in its order, then those added."""
+    """Names of the laws that are calibrated and compared: the paper's, in its order, then added ones."""
     return tuple(law.name for law in _PAPER) + tuple(_ADDED)
 
 
 def all_names() -> tuple[str, ...]:
-    """Names of all laws that a scene may have: tisim's own, then those added."""
+    """Names of all laws that a scene may have: the built-in ones, then added ones."""
     return tuple(_BUILT_IN) + tuple(_ADDED)
 
 
@@ -130,7 +130,7 @@ def get(name: str) -> Law:
     Raises
     ------
     ValueError
-        For an unknown name; the sentence names the laws there are.
+        For an unknown name; the message lists the known ones.
     """
     law = _BUILT_IN.get(name) or _ADDED.get(name)
     if law is None:
@@ -139,7 +139,7 @@ def get(name: str) -> Law:
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("LawReport", "check_law", "evaluate"):  # they need NumPy, which a command's help does without
+    if name in ("LawReport", "check_law", "evaluate"):  # they import NumPy, which a command's help avoids
         from tisim.laws import _check
 
         return getattr(_check, name)

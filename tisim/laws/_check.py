@@ -1,4 +1,4 @@
-"""A law at given deformations, and whether its parts belong together."""
+"""Evaluation of a law at given deformations, and checks of its consistency."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from tisim.laws._law import Law, Parameters
 
 Array = NDArray[np.float64]
 
-RATIOS = (5.0, 50.0, 1000.0)  # bulk over shear modulus of the parameters that are checked by default
-STEP = 1e-3  # of difference quotients of fourth order, in F
+RATIOS = (5.0, 50.0, 1000.0)  # bulk over shear modulus of the default parameters of a check
+STEP = 1e-3  # step of fourth-order difference quotients in F
 
 
 def evaluate(law: str | Law, parameters: Parameters, F: ArrayLike) -> tuple[Array, Array, Array]:
@@ -23,16 +23,16 @@ def evaluate(law: str | Law, parameters: Parameters, F: ArrayLike) -> tuple[Arra
     Parameters
     ----------
     law : str or Law
-        A registered law's name, or a law.
+        Name of a registered law, or a law.
     parameters : mapping
-        Its parameters.
+        Parameters of the law.
     F : array_like of float, shape (n, 3, 3)
         Deformation gradients, det F above 0.
 
     Returns
     -------
     psi : ndarray, shape (n,)
-        Energy per rest volume [J/m3], the volumetric part included, zero at rest.
+        Energy per rest volume [J/m3] with the volumetric part, zero at rest.
     P : ndarray, shape (n, 3, 3)
         First Piola-Kirchhoff stress dpsi/dF [Pa].
     A : ndarray, shape (n, 3, 3, 3, 3)
@@ -41,14 +41,14 @@ def evaluate(law: str | Law, parameters: Parameters, F: ArrayLike) -> tuple[Arra
     Raises
     ------
     ValueError
-        In one sentence: unknown law, unsound parameters, wrong shape, or det F not above 0.
+        For an unknown law, invalid parameters, a wrong shape, or det F not above 0, in one sentence.
     """
     law = _law(law)
     law.check(parameters)
     gradients = np.ascontiguousarray(F, dtype=np.float64)
     if gradients.ndim != 3 or gradients.shape[1:] != (3, 3):
         raise ValueError(f"F: expected shape (n, 3, 3), got {gradients.shape}")
-    bad = ~(np.linalg.det(gradients) > 0.0)  # also where F is not finite
+    bad = ~(np.linalg.det(gradients) > 0.0)  # true for NaN as well
     if bad.any():
         raise ValueError(
             f"F: expected det F > 0, which fails for {int(bad.sum())} of {len(bad)},"
@@ -71,11 +71,11 @@ class LawReport:
     Attributes
     ----------
     law : str
-        Its name.
+        Name of the law.
     errors : dict of str to float
         Largest error of each property, relative to its scale.
     limits : dict of str to float
-        What each may be.
+        Largest allowed error of each property.
     """
 
     law: str
@@ -123,33 +123,33 @@ def check_law(
     deformations: int = 12,
     seed: int = 0,
 ) -> LawReport:
-    """Check that the parts of a law belong together, by finite differences and rotations.
+    """Check the consistency of a law by finite differences and rotations.
 
-    Compared are stress and energy, tangent and stress, the law before and after a rotation of space, the rest
-    state, and small-strain moduli, at random deformations: large ones, small ones, and ones with two or three
-    principal stretches alike.
+    The stress is compared with the energy, the tangent with the stress, and the law before and after a
+    rotation of space, at random deformations: large, small, and with two or three (nearly) equal principal
+    stretches. The rest state and the small-strain moduli are checked too.
 
     Parameters
     ----------
     law : str or Law
-        A registered law's name, or a law.
+        Name of a registered law, or a law.
     parameters : sequence of mappings, optional
-        Parameters to check at; by default those of a shear modulus of 30 kPa and bulk moduli of 5, 50 and
-        1000 times that, and the law's `examples`.
+        Parameters at which to check; by default those of a shear modulus of 30 kPa and bulk moduli of 5, 50
+        and 1000 times that, and the law's `examples`.
     deformations : int
-        Number of deformations.
+        Number of deformations for each set of parameters.
     seed : int
-        Of the random deformations.
+        Seed of the random deformations.
 
     Returns
     -------
     LawReport
-        Prints as a table; `faults` names what fails.
+        Prints as a table; `faults` lists the properties that fail.
 
     Raises
     ------
     ValueError
-        For an unknown law or unsound parameters.
+        For an unknown law or invalid parameters.
     """
     law = _law(law)
     plain = [law.from_moduli(3e4, ratio * 3e4) for ratio in RATIOS]
@@ -171,7 +171,7 @@ def check_law(
 
         for F in _deformations(rng, deformations):
             psi, P, A = (v[0] for v in at(F))
-            # energies of the size of the bulk modulus round; that much of a small stress is not resolved
+            # rounding of energies on the scale of the bulk modulus limits the resolution of small stresses
             size = np.abs(P).max() + 1e-4 * K
             note("stress is the energy's derivative", _slope(lambda G: at(G)[0], F) - P, size)
             slope = np.einsum("jLiK->iKjL", _slope(lambda G: at(G)[1], F))
@@ -201,7 +201,7 @@ def _law(law: str | Law) -> Law:
 
 
 def _deformations(rng: np.random.Generator, count: int) -> list[Array]:
-    """Deformation gradients R diag(stretches) Q of four sorts in turn."""
+    """Deformation gradients R diag(stretches) Q of four types in turn, see `check_law`."""
     found = []
     for k in range(count):
         stretches = rng.uniform(0.6, 1.8, 3)
@@ -222,7 +222,7 @@ def _rotation(rng: np.random.Generator) -> Array:
 
 
 def _slope(function: Callable[[Array], Array], F: Array) -> Array:
-    """d function / dF at F (3, 3) by central differences of fourth order, shape (3, 3, *value's shape)."""
+    """Derivative by F (3, 3) by central differences of fourth order, shape (3, 3, *value's shape)."""
     steps = STEP * np.eye(9).reshape(9, 3, 3)
     parts = [function(F + k * steps) for k in (-2, -1, 1, 2)]
     slope = (parts[0] - parts[3] + 8.0 * (parts[2] - parts[1])) / (12.0 * STEP)

@@ -1,8 +1,8 @@
-"""Taichi, imported when it is first needed, and the invariants in which laws state their energies.
+"""Deferred import of Taichi, and the isochoric invariant and 10-vector used by laws.
 
-A law's module uses the `ti` of this module (`from tisim.laws import ti`), with string annotations
-(`from __future__ import annotations`); nothing of Taichi is imported before the law is first evaluated. A
-function decorated by Taichi's own `ti.func` does as well.
+A law's module uses the `ti` of this module (`from tisim.laws import ti`) with string annotations
+(`from __future__ import annotations`), so that Taichi is imported only when the law is first evaluated. A
+function decorated by Taichi's own `ti.func` is accepted as well.
 """
 
 # mypy: disable-error-code="no-untyped-def"
@@ -20,10 +20,10 @@ from typing import Any
 class TaichiFunction:
     """A function for use in kernels, compiled by Taichi when a kernel first calls it.
 
-    It takes its source along when it is pickled, so that a law written in a notebook reaches other processes.
+    Its source is pickled with it, so that a law written in a notebook works in other processes.
     """
 
-    _is_taichi_function = True  # what Taichi's compiler asks of a function that a kernel calls
+    _is_taichi_function = True  # Taichi's compiler requires this of a function that a kernel calls
     _is_real_function = False
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -33,13 +33,13 @@ class TaichiFunction:
 
     @property
     def compiled(self) -> Any:
-        """Taichi's own form of the function."""
+        """The function decorated by Taichi."""
         if self._compiled is None:
             from tisim.kernels._taichi import ti as taichi
 
             names = self._function.__globals__
             annotations = {
-                name: eval(hint, names) if isinstance(hint, str) else hint  # Taichi wants objects
+                name: eval(hint, names) if isinstance(hint, str) else hint  # Taichi needs objects
                 for name, hint in self._function.__annotations__.items()
             }
             self._function.__annotations__ = annotations
@@ -65,12 +65,12 @@ class TaichiFunction:
 
 
 class _Taichi:
-    """The module `taichi`, imported when a name of it is first asked for; `func` alone does not need it."""
+    """The module `taichi`, imported when one of its names other than `func` is first used."""
 
     func = staticmethod(TaichiFunction)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # asked by pickle, doctest and inspect
+        if name.startswith("__"):  # looked up by pickle, doctest and inspect
             raise AttributeError(name)
         from tisim.kernels._taichi import ti as taichi
 
@@ -84,7 +84,7 @@ ti: Any = _Taichi()
 
 
 def lazy(energy: Any) -> TaichiFunction:
-    """The function as a `TaichiFunction`, whether plain, or decorated here or by Taichi."""
+    """The function as a `TaichiFunction`; it may be plain, or decorated here or by Taichi."""
     if isinstance(energy, TaichiFunction):
         return energy
     if getattr(energy, "_is_taichi_function", False):
@@ -94,14 +94,14 @@ def lazy(energy: Any) -> TaichiFunction:
 
 @ti.func
 def first_isochoric(I1, J):
-    """I1bar, and its slope by I1."""
+    """I1bar = J^(-2/3) I1, and its derivative by I1."""
     a = ti.exp(-2.0 / 3.0 * ti.log(J))
     return a * I1, a
 
 
 @ti.func
 def by_invariants(w, d, dd, i1, a, J):
-    """W, its first and its second slope by I1bar = i1 (whose slope by I1 is a), as a law's 10-vector."""
+    """10-vector of w(I1bar) from w, its derivatives d and dd, I1bar = i1, and its derivative a by I1."""
     jac = -2.0 / 3.0 * i1 / J
     return ti.Vector(
         [

@@ -1,4 +1,4 @@
-"""Laws whose parameters are Lame's, mu and lam [Pa]: small strain G = mu, K = lam + 2 mu/3."""
+"""Laws with the Lame parameters mu and lam [Pa]; small strain: G = mu, K = lam + 2 mu/3."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def law_of_lame(
     energy: Any,
     kappa: Callable[[Parameters], float],
 ) -> Law:
-    """A law in invariants, of mu and lam; its energy reads mu."""
+    """A law of the family "invariant" with parameters mu and lam, whose energy reads mu."""
     return Law(
         name=name,
         title=title,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-if TYPE_CHECKING:  # a command's help names the laws: NumPy is imported when one is used
+if TYPE_CHECKING:  # a command's help lists the laws: NumPy is imported when one is used
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
@@ -20,7 +20,7 @@ class Moduli:
     Attributes
     ----------
     shear_modulus, bulk_modulus : float
-        [Pa].
+        Shear and bulk modulus [Pa].
     """
 
     shear_modulus: float
@@ -29,11 +29,11 @@ class Moduli:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Law:
-    """A hyperelastic law, as the kernels need it.
+    """A hyperelastic law in the form that the kernels need.
 
     The energy per rest volume is split into W(C) and a volumetric part U = kappa/2 theta^2 with theta one of
-    ln J, J - 1 or tr E. The split is exact (W + U is the law's energy); it lets an element with a constant
-    pressure take theta by its mean, and only theta.
+    ln J, J - 1 or tr E. The split is exact (W + U is the law's energy); it allows an element with a constant
+    pressure to replace theta, and only theta, by its mean.
 
     W comes in one of two families:
 
@@ -45,16 +45,17 @@ class Law:
     Attributes
     ----------
     name : str
-        What scenes and cards call it: lower case, digits and hyphens.
+        Name in scenes and material cards: lower case, digits and hyphens.
     title : str
-        What people read.
+        Name for display.
     parameters : mapping of str to (str, "scalar" or "series")
         Unit and shape of each parameter.
     family : "invariant" or "principal"
+        Arguments of `energy`.
     theta : "log", "linear" or "trace"
         ln J, J - 1 or tr E.
     energy : Taichi function
-        (I1, I2, J, prm) or (l1, l2, l3, prm) to the 10-vector; prm is the packed array. Decorated by
+        (I1, I2, J, prm) or (l1, l2, l3, prm) -> the 10-vector; prm is the packed array. Decorated by
         `tisim.laws.ti.func` (Taichi is then imported when the law is first evaluated) or by Taichi's own.
     pack : callable (parameters) -> array_like of float, shape (n,)
         The numbers that `energy` reads.
@@ -63,12 +64,11 @@ class Law:
     moduli : callable (parameters) -> Moduli
         Small-strain moduli.
     from_moduli : callable (shear modulus, bulk modulus) -> dict
-        Parameters with these moduli [Pa]; other constants at a plain default.
+        Parameters with these moduli [Pa]; other constants have a default.
     fault : callable (parameters) -> str
-        What is wrong with the parameters beyond numbers and moduli, or "".
+        Fault of the parameters that is not one of numbers or moduli; "" if there is none.
     examples : sequence of mappings
-        Parameters at which `check_law` looks besides those of `from_moduli`: where the law has constants that
-        a plain default leaves at zero.
+        Further parameters for `check_law`, for laws with constants whose default in `from_moduli` is zero.
     """
 
     name: str
@@ -85,7 +85,7 @@ class Law:
     examples: Sequence[Parameters] = ()
 
     def check(self, parameters: Parameters) -> None:
-        """Raise ValueError, in one sentence, unless names, shapes and small-strain moduli are sound."""
+        """Raise ValueError, in one sentence, unless names, shapes, values and moduli are valid."""
         import numpy as np
 
         unknown = sorted(set(parameters) - set(self.parameters))
@@ -120,14 +120,14 @@ class Law:
 
 
 def scalar(parameters: Parameters, name: str) -> float:
-    """One number out of the parameters."""
+    """A scalar parameter by name."""
     import numpy as np
 
     return float(np.asarray(parameters[name], dtype=float))
 
 
 def series(parameters: Parameters, name: str) -> NDArray[np.float64]:
-    """A series out of the parameters, shape (N,)."""
+    """A series parameter by name, shape (N,)."""
     import numpy as np
 
     return np.atleast_1d(np.asarray(parameters[name], dtype=float))

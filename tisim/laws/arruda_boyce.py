@@ -6,13 +6,13 @@
 mu, bulk = K [Pa]; locking = L, the locking stretch (free).
 Small strain: G = 2 mu sum_i i C_i 3^(i-1) / L^(2i-2), K.
 The paper prints I1 in place of I1bar (eq. Psi_AB); that form is not stress-free at rest: its stress there
-is 2 dW/dI1 = G times the identity. At J = 1 the two energies agree, and the printed stress is ours plus a
-pressure 2/3 dW/dI1 I1 times F^-T.
+is 2 dW/dI1 = G times the identity. At J = 1 the two energies agree, and the printed stress is that of this
+law plus a pressure 2/3 dW/dI1 I1 times F^-T.
 SOFA: `ArrudaBoyce`, ParameterSet "mu K": this energy with L^2 = 8, so G = 1.0851 mu.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

@@ -3,30 +3,30 @@
     Psi = mu 3 L / b0 [w(x) - w(x0)] + K/2 (ln J)^2,  w(x) = x b + ln(b / sinh b),  coth b - 1/b = x,
     x = (I1bar / 3)^(1/2) / L,  x0 = 1 / L,  b0 = b(x0)
 
-mu, bulk = K [Pa]; locking = L, the stretch of a chain at which it is straight, above 1. mu is the
-small-strain shear modulus, whatever the locking stretch. Stress-free at rest. The five-term series of this
-energy is the paper's `arruda-boyce`, whose stress is 1 % too small where chains are at 2/3 of their length,
-5 % at 3/4. Past ENDS of their length the chains' force goes on in a straight line, where it is 67 times that
-of Gaussian chains: a search may step there, and what comes to rest there would have broken. Not among the
-paper's laws.
+mu, bulk = K [Pa]; locking = L, the stretch at which a chain is straight, above 1. mu is the small-strain
+shear modulus for any locking stretch. Stress-free at rest. The five-term series of this energy is the paper's
+`arruda-boyce`, whose stress is 1 % too small at 2/3 of the chains' length and 5 % at 3/4. Beyond the fraction
+ENDS of their length, where it is 67 times that of Gaussian chains, the chains' force is extrapolated
+linearly: a line search may evaluate it there, but chains in equilibrium there would have broken. Not among
+the paper's laws.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 
 from tisim.laws._energy import by_invariants, first_isochoric, ti
 from tisim.laws._law import Law, Moduli, Parameters, scalar
 
-ENDS = 0.995  # of the chains' length
-STEPS = 4  # of Newton's method, from a Pade form that is right to 5 %
-LARGEST = 1000.0  # locking stretch: beyond, the chains are Gaussian to rounding errors
+ENDS = 0.995  # fraction of the chains' length above which their force is extrapolated
+STEPS = 4  # of Newton's method, from a Pade form with an error of 5 %
+LARGEST = 1000.0  # locking stretch, beyond which the chains are Gaussian to rounding errors
 
 
 @ti.func
 def _langevin(b):
-    """coth b - 1/b, and its slope."""
+    """Langevin function coth b - 1/b, and its derivative."""
     e = ti.exp(-2.0 * b)
     coth = (1.0 + e) / (1.0 - e)
     return coth - 1.0 / b, 1.0 / (b * b) - 4.0 * e / ((1.0 - e) * (1.0 - e))
@@ -56,7 +56,7 @@ def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for a
     w, b, steep = _chain(x)
     half = 0.5 * prm[0] * x0 / b0
     d = half * b / x
-    # of b / x by I1bar: dx/dI1bar is x0^2 / (6 x)
+    # derivative of b / x by I1bar, with dx/dI1bar = x0^2 / (6 x)
     dd = half * (steep * x - b) / (x * x) * x0 * x0 / (6.0 * x)
     return by_invariants(6.0 * half / (x0 * x0) * (w - at_rest), d, dd, i1, a, J)
 

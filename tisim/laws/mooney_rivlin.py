@@ -1,15 +1,15 @@
 """Mooney-Rivlin, isochoric plus volumetric.
 
-    Psi = C10 (I1bar - 3) + C01 (I2bar - 3) + K/2 (ln J)^2     (paper, eq. Psi_MR, less a constant)
+    Psi = C10 (I1bar - 3) + C01 (I2bar - 3) + K/2 (ln J)^2     (paper, eq. Psi_MR, minus a constant)
 
 with I1bar = J^(-2/3) I1 and I2bar = J^(-4/3) I2. c10, c01, bulk = K [Pa].
 Small strain: G = 2 (C10 + C01), K. Stress-free at rest.
-SOFA: `MooneyRivlin`, ParameterSet "C10 C01 K"; its forces follow this energy (the energy that it reports
-does not: integer division in its exponents).
+SOFA: `MooneyRivlin`, ParameterSet "C10 C01 K"; its forces derive from this energy (the energy that it reports
+differs: integer division in its exponents).
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

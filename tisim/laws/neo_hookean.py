@@ -7,7 +7,7 @@ SOFA: `NeoHookean`, ParameterSet "mu lambda", the same energy.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

@@ -6,14 +6,14 @@
 mu [Pa] and alpha [-]: series of N terms; bulk = K [Pa]. Small strain: G = 1/2 sum mu_p alpha_p, K.
 The paper prints principal stretches li in place of lib (eq. Psi_Ogden); that form is not stress-free at
 rest: its stress there is sum mu_p times the identity. At J = 1 the two energies agree, and the printed
-stress is ours plus a pressure sum mu_p (l1^alpha_p + l2^alpha_p + l3^alpha_p)/3 times F^-T.
+stress is that of this law plus a pressure sum mu_p (l1^alpha_p + l2^alpha_p + l3^alpha_p)/3 times F^-T.
 SOFA (from v25.12): `Ogden`, ParameterSet "mu1 alpha K" of one term,
-mu1/alpha^2 (J^(-alpha/3) tr C^(alpha/2) - 3) + K/2 (ln J)^2: its mu1 is alpha times ours.
+mu1/alpha^2 (J^(-alpha/3) tr C^(alpha/2) - 3) + K/2 (ln J)^2: its mu1 is alpha times the mu of this law.
 Older SOFA computes a stress that is not the derivative of its energy (SOFA issues 5733, 4605).
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tisim.laws._law import Law, Moduli, Parameters, scalar, series
 
 @ti.func
 def energy(l1, l2, l3, prm: ti.template()):
-    """With e_i = ln li and their mean m: W = sum mu/alpha (sum exp(alpha (e_i - m)) - 3)."""
+    """10-vector of W = sum mu/alpha (sum exp(alpha (e_i - m)) - 3), with e_i = ln li and their mean m."""
     e = ti.Vector([ti.log(l1), ti.log(l2), ti.log(l3)])
     e -= (e[0] + e[1] + e[2]) / 3.0
     w = 0.0

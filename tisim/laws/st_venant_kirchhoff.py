@@ -3,13 +3,13 @@
     Psi = lam/2 tr(E)^2 + mu tr(E^2),   E = (C - I)/2        (paper, eq. Psi_StVK)
 
 mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-free at rest.
-In invariants tr E = (I1 - 3)/2 and tr(E^2) = (I1^2 - 2 I2 - 2 I1 + 3)/4. It softens in compression and
-its stress vanishes again before a volume is crushed to nothing: not for deep pokes.
+In invariants tr E = (I1 - 3)/2 and tr(E^2) = (I1^2 - 2 I2 - 2 I1 + 3)/4. The law softens in compression, and
+its stress vanishes as the volume tends to 0: it is not suitable for deep indentation.
 SOFA: `StVenantKirchhoff`, ParameterSet "mu lambda", the same energy.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

@@ -2,14 +2,14 @@
 
     Psi = mu/2 (I1 - 3) - mu (J - 1) + (lam + mu)/2 (J - 1)^2   (paper, eq. Psi_SNH)
 
-mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-free at rest, and finite
-where an element is turned over: tisim's line search keeps J > 0 all the same.
+mu, lam [Pa]: Lame parameters. Small strain: G = mu, K = lam + 2 mu/3. Stress-free at rest, and finite for
+inverted elements; tisim's line search nevertheless keeps J > 0.
 SOFA: `StableNeoHookean`, ParameterSet "mu lambda": the same energy up to a constant, written as
 1/2 [mu (I1 - 3) + (lam + mu)(J - a)^2] with a = 1 + mu/(lam + mu).
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

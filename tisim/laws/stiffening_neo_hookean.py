@@ -1,14 +1,15 @@
-"""Neo-Hookean that stiffens with stretch: Yeoh's second term beside the coupled neo-Hookean energy.
+"""Neo-Hookean that stiffens with stretch: Yeoh's second term added to the coupled neo-Hookean energy.
 
     Psi = mu/2 (I1 - 3) - mu ln J + lam/2 (ln J)^2 + mu/2 stiffening (I1bar - 3)^2
 
 with I1bar = J^(-2/3) I1. mu, lam [Pa]; stiffening [-] is not negative. Without stiffening it is the law
-`neo-hookean`, in volume too, where `yeoh` is another: a diagnosis nests stiffening in the law of a fit. Small
-strain: G = mu, K = lam + 2 mu/3, whatever the stiffening. Stress-free at rest. Not among the paper's laws.
+`neo-hookean` with the same volumetric part, unlike `yeoh`, so that a diagnosis can nest stiffening in the
+fitted law. Small strain: G = mu, K = lam + 2 mu/3 for any stiffening. Stress-free at rest. Not among the
+paper's laws.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

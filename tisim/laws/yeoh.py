@@ -3,12 +3,12 @@
     Psi = mu/2 [(I1bar - 3) + stiffening (I1bar - 3)^2] + K/2 (ln J)^2
 
 with I1bar = J^(-2/3) I1 (Yeoh, Rubber Chem. Technol. 63, 1990). mu, bulk = K [Pa]; stiffening [-] is not
-negative, which keeps the energy convex in I1bar. Small strain: G = mu, K, whatever the stiffening.
+negative, so that the energy is convex in I1bar. Small strain: G = mu, K for any stiffening.
 Stress-free at rest. Not among the paper's laws.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
-# (Taichi compiles `energy`; its annotations mean something to Taichi only)
+# (Taichi compiles `energy` and interprets its annotations)
 
 from __future__ import annotations
 

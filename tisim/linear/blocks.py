@@ -1,6 +1,6 @@
-"""Symmetric matrices of 3 x 3 blocks over the nodes that may move: sparsity, and products.
+"""Symmetric matrices of 3 x 3 blocks over the free nodes: sparsity, and matrices for products.
 
-Only the upper triangle is stored. Products are with the whole matrix, and with what makes it unsymmetric.
+Only the upper triangle is stored. Products use the whole matrix, including an unsymmetric part.
 """
 
 from __future__ import annotations
@@ -17,11 +17,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Upper block triangle in BSR form.
+    """Sparsity of an upper block triangle in BSR form.
 
-    free: indices of the nodes that may move, shape (n,). index: node -> row of the matrix, or -1.
-    indptr (n + 1), indices (nb): block columns in ascending order, the diagonal block first.
-    slot (m, a, b): where element m's pair of nodes goes, see `tisim.kernels.elements`.
+    Attributes
+    ----------
+    free : indices of the free nodes, shape (n,).
+    index : row of each node in the matrix, or -1, shape (n_nodes,).
+    indptr, indices : BSR structure, shapes (n + 1,) and (nb,); columns ascend, the diagonal block is first.
+    slot : position of each pair of an element's nodes, see `tisim.kernels.elements`, shape (m, a, a).
     """
 
     free: Ints
@@ -35,12 +38,12 @@ class Pattern:
         return len(self.indices)
 
     def slots(self, conn: Ints) -> Ints:
-        """Slots of further element-like node lists (contact facets) whose pairs the pattern holds."""
+        """Slots of other node lists `conn` (f, a), such as contact facets, whose pairs are in the pattern."""
         return _slots(self.index, self.indptr, self.indices, conn)
 
 
 def distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Keys (k,) in ascending order, each once; by sorting, in a tenth of the time of `np.unique`'s hashes."""
+    """Distinct keys in ascending order; sorting takes a tenth of the time of the hashes of `np.unique`."""
     ordered = np.sort(keys)
     first = np.ones(len(ordered), dtype=bool)
     np.not_equal(ordered[1:], ordered[:-1], out=first[1:])
@@ -48,7 +51,7 @@ def distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def pattern_of(conn: Ints, n_nodes: int, fixed: Ints) -> Pattern:
-    """Pattern of elements `conn` (m, a) with the nodes `fixed` taken out."""
+    """Pattern of elements `conn` (m, a) without the nodes `fixed`."""
     moving = np.ones(n_nodes, dtype=bool)
     moving[fixed] = False
     used = np.zeros(n_nodes, dtype=bool)
@@ -76,16 +79,20 @@ def _slots(index: Ints, indptr: Ints, indices: Ints, conn: Ints) -> Ints:
     low, high = np.minimum(i, j), np.maximum(i, j)
     keys = np.repeat(np.arange(n, dtype=np.int64), np.diff(indptr)) * n + indices
     block = np.searchsorted(keys, np.where(low < 0, 0, low * n + high))
-    # repeated nodes (wedges) meet themselves off the element's diagonal: add the block and its transpose
+    # repeated nodes (wedges) are paired off the element's diagonal: add the block and its transpose
     diagonal = np.eye(conn.shape[1], dtype=bool)[None]
     mode = np.where(i > j, 1, np.where((i == j) & ~diagonal, 2, 0))
     return np.ascontiguousarray(np.where(low < 0, -1, 4 * block + mode), dtype=np.int32)
 
 
 class FullMatrix:
-    """Fills a sparse matrix over all blocks of a pattern, for products without a kernel's launch.
+    """Fills a sparse matrix over all blocks of a pattern, for products without a kernel launch.
 
-    conn (m, a): node lists (contact facets) whose pairs may have blocks of their own, without symmetry.
+    Parameters
+    ----------
+    pattern : Pattern
+    conn : ndarray of int, shape (m, a)
+        Node lists (contact facets) whose pairs may have additional unsymmetric blocks.
     """
 
     def __init__(self, pattern: Pattern, conn: Ints) -> None:
@@ -108,7 +115,7 @@ class FullMatrix:
         self._place = np.where(there, np.searchsorted(keys, np.where(there, i * n + j, 0)), -1)
 
     def filled(self, blocks: Array, more: Array | None = None) -> sparse.bsr_matrix:
-        """blocks (nb, 3, 3) of the upper triangle; more (m, a, a, 3, 3), added by node pair."""
+        """Matrix of blocks (nb, 3, 3) of the upper triangle, plus `more` (m, a, a, 3, 3) by node pair."""
         data = blocks[self._source]
         data[self._turned] = data[self._turned].transpose(0, 2, 1)
         if more is not None:

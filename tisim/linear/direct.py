@@ -1,8 +1,8 @@
 """Direct solution and static condensation of symmetric block matrices.
 
-PARDISO factorises where MKL is installed, SciPy's SuperLU elsewhere. A condensation leaves Schur's complement
-on a few nodes: PARDISO forms it as it factorises, for little more than the factorisation; SciPy by as many
-solves as there are columns.
+The factorisation is PARDISO's if pypardiso is installed, else that of SciPy's SuperLU. A condensation results
+in a Schur complement on a few nodes. PARDISO forms it during factorisation at little extra cost, SciPy by one
+solve per column.
 """
 
 from __future__ import annotations
@@ -25,11 +25,21 @@ class LinearSolveError(RuntimeError):
 
 
 class DirectSolver:
-    """Factorises block matrices of one sparsity (upper triangle, BSR); analysis is done once.
+    """Factorises block matrices of one sparsity (upper triangle, BSR); the analysis is done once.
 
-    single: factorise in single precision, for use as a preconditioner (PARDISO only).
-    positive: refuse matrices that are not positive definite (PARDISO only).
-    negative: number of negative pivots of the last factor (0 where SuperLU cannot tell).
+    Parameters
+    ----------
+    indptr, indices : ndarray of int
+        BSR structure.
+    single : bool
+        Factorise in single precision, for use as a preconditioner (PARDISO only).
+    positive : bool
+        Refuse matrices that are not positive definite (PARDISO only).
+
+    Attributes
+    ----------
+    negative : int
+        Number of negative pivots of the last factor; always 0 with SuperLU.
     """
 
     def __init__(
@@ -47,7 +57,7 @@ class DirectSolver:
         self.negative = 0
 
     def factorise(self, blocks: Array) -> None:
-        """blocks: (nb, 3, 3). Raises LinearSolveError."""
+        """Factorise blocks (nb, 3, 3); LinearSolveError if that fails."""
         if not HAVE_PARDISO:
             upper = sparse.bsr_matrix((blocks, self._indices, self._indptr)).tocsr()
             full = sparse.triu(upper) + sparse.triu(upper, 1).T
@@ -67,16 +77,21 @@ class DirectSolver:
         self.negative = self._pardiso.negative
 
     def solve(self, rhs: Array) -> Array:
-        """rhs (n, 3) -> (n, 3), with the last factor."""
+        """Solution (n, 3) for rhs (n, 3) with the last factor."""
         if self._pardiso is not None:
             return np.asarray(self._pardiso.solve(rhs))
         return np.asarray(self._lu.solve(rhs.ravel())).reshape(-1, 3)
 
 
 class Condensation:
-    """K over rows F and I, in blocks of 3 (upper triangle, BSR): the rows F eliminated.
+    """Static condensation: K over rows F and I, in blocks of 3 (upper triangle, BSR), with rows F eliminated.
 
-    kept (n,): True for the rows I.
+    Parameters
+    ----------
+    indptr, indices : ndarray of int
+        BSR structure.
+    kept : ndarray of bool, shape (n,)
+        True for the rows I.
     """
 
     def __init__(self, indptr: Ints, indices: Ints, kept: NDArray[np.bool_]) -> None:
@@ -93,7 +108,7 @@ class Condensation:
         self._coupling: Any = None
 
     def factorise(self, blocks: Array) -> NDArray[np.float32]:
-        """blocks (nb, 3, 3) -> S = K_II - K_IF K_FF^-1 K_FI, shape (3 ni, 3 ni). LinearSolveError."""
+        """S = K_II - K_IF K_FF^-1 K_FI, shape (3 ni, 3 ni), of blocks (nb, 3, 3); LinearSolveError."""
         values = blocks.ravel()[self._take]
         if not HAVE_PARDISO:
             return self._by_solves(values)
@@ -122,7 +137,7 @@ class Condensation:
         return np.asarray(full[outer][:, outer].toarray() - eliminated, dtype=np.float32)
 
     def reduce(self, rhs: Array) -> Array:
-        """K_IF K_FF^-1 rhs_F, shape (3 ni,); rhs (n, 3), of which the rows I are not looked at."""
+        """K_IF K_FF^-1 rhs_F, shape (3 ni,); the rows I of rhs (n, 3) are ignored."""
         b = rhs.ravel().copy()
         b[self._kept] = 0.0
         if self._pardiso is not None:

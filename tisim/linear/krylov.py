@@ -1,10 +1,10 @@
 """GMRES in double precision, preconditioned by a single-precision factor of an older matrix.
 
-A factorisation costs some forty solves with it, and a poke's matrix changes slowly: one factor serves
-several Newton iterations and load steps. Friction makes the matrix unsymmetric, so GMRES. Deep under a
-rod it becomes indefinite, where the surface snaps from one fold to another: the factor's inertia says so,
-and the matrix is shifted until it is positive, so that the step leads downhill to a stable equilibrium
-(the shift fades as the iteration comes near one; the residual it is judged by knows nothing of it).
+A factorisation costs about as much as forty solves, and a poke's matrix changes slowly: one factor serves
+several Newton iterations and load steps. GMRES is needed since friction makes the matrix unsymmetric. Deep
+under a rod, where the surface snaps from one fold to another, the matrix becomes indefinite, as the inertia
+of the factor shows. It is then shifted until it is positive definite, so that the step is a descent direction
+towards a stable equilibrium. The shift decreases near equilibrium, and the residual does not include it.
 """
 
 from __future__ import annotations
@@ -23,11 +23,26 @@ SMALLEST_SHIFT, LARGEST_SHIFT = 1e-3, 0.5
 
 
 class FactorGMRES:
-    """Solves with blocks of one pattern; renews its factor once a solve takes over `patience` iterations.
+    """Solver for blocks of one pattern; the factor is renewed after a solve of over `patience` iterations.
 
-    shift: what the factor has on the diagonal besides, in units of its mean: 0 while the matrix is positive
-        and nobody asked for more (`stiffen`, `relax`, `reset`). As it fades, solves are with less than that,
-        and the factor is kept while it serves.
+    Parameters
+    ----------
+    pattern : Pattern
+    joined : callable (blocks) -> blocks, optional
+        Applied to the blocks before they are factorised.
+    patience : int
+        Number of iterations above which the next solve renews the factor.
+    limit : int
+        Largest number of iterations.
+
+    Attributes
+    ----------
+    shift : float
+        Multiple of the identity in the factor, in units of the mean diagonal: 0 while the matrix is positive
+        definite and no shift was requested (`stiffen`, `relax`, `reset`). While the requested shift
+        decreases, the matrix has a smaller shift than the factor, which is kept as long as it serves.
+    factorisations, iterations : int
+        Numbers of factorisations and of GMRES iterations.
     """
 
     def __init__(
@@ -53,16 +68,16 @@ class FactorGMRES:
         return self._wanted < LARGEST_SHIFT
 
     def stiffen(self) -> None:
-        """Ask for a larger shift from the next solve on."""
+        """Request a larger shift from the next solve on."""
         self._wanted = max(8.0 * self._wanted, SMALLEST_SHIFT)
         self._stale = True
 
     def relax(self) -> None:
-        """Let the shift fade from the next solve on."""
+        """Request a smaller shift from the next solve on."""
         self._wanted = self._wanted / 4.0 if self._wanted > SMALLEST_SHIFT else 0.0
 
     def reset(self) -> None:
-        """Ask for no shift."""
+        """Request no shift."""
         self._wanted = 0.0
 
     def solve(
@@ -73,10 +88,22 @@ class FactorGMRES:
         tolerance: float,
         multiply: Callable[[Array], Array],
     ) -> Array:
-        """A^-1 rhs to a relative residual, or as near as `limit` iterations with a new factor come.
+        """A^-1 rhs to a relative residual, or to the result of `limit` iterations with a new factor.
 
-        blocks: what the factor is made of, an approximation of A's symmetric part. multiply: A v of v (3 n,).
-        LinearSolveError from the factor.
+        Parameters
+        ----------
+        blocks : ndarray of float, shape (nb, 3, 3)
+            Approximation of A's symmetric part, to be factorised.
+        rhs : ndarray of float, shape (n, 3)
+        tolerance : float
+            Residual relative to rhs.
+        multiply : callable (v) -> A v
+            Product with vectors of shape (3 n,).
+
+        Raises
+        ------
+        LinearSolveError
+            If the factorisation fails.
         """
         fresh = self._stale
         if fresh:
@@ -111,14 +138,14 @@ class FactorGMRES:
     def _gmres(
         self, rhs: Array, tolerance: float, multiply: Callable[[Array], Array]
     ) -> tuple[Array, int, bool]:
-        """One cycle, right-preconditioned, so that the residual it minimises is the true one."""
+        """One cycle, right-preconditioned, so that it minimises the true residual."""
         beta = float(np.linalg.norm(rhs))
         basis = np.empty((self._limit + 1, rhs.size))
         images = np.empty((self._limit, rhs.size))
         basis[0] = rhs.ravel() / beta
         triangle = np.zeros((self._limit, self._limit))
-        left = [beta]  # the projected right side
-        turns: list[tuple[float, float]] = []  # the rotations that make the projected matrix triangular
+        left = [beta]  # projected right-hand side
+        turns: list[tuple[float, float]] = []  # Givens rotations that make the projected matrix triangular
         for k in range(self._limit):
             images[k] = self._factor.solve(basis[k].reshape(rhs.shape)).ravel()
             v = multiply(images[k])

@@ -1,4 +1,4 @@
-"""MKL PARDISO on symmetric block matrices, by way of the library that pypardiso installs.
+"""MKL PARDISO on symmetric block matrices, with the library that pypardiso installs.
 
 pypardiso's own interface takes scalar CSR matrices and one precision; blocks of three make the analysis
 three times cheaper, and single precision halves the factorisation.
@@ -23,12 +23,12 @@ _POSITIVE, _INDEFINITE = 2, -2
 
 
 class FactorisationError(RuntimeError):
-    """The matrix could not be factorised (indefinite where a positive one is wanted, or singular)."""
+    """The matrix could not be factorised: it is singular, or indefinite though a positive one is required."""
 
 
 def _library() -> Any:
-    # MKL may otherwise take another path for another alignment of memory, and the bytes would differ; it
-    # reads this when it is first called.
+    # Otherwise MKL may take different code paths for different memory alignments, and results would differ
+    # in their bytes. MKL reads the variable at its first call.
     os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")
     path = _file_of_mkl()
     if path is None:
@@ -37,14 +37,14 @@ def _library() -> Any:
         lib = PyPardisoSolver().libmkl
     else:
         lib = ctypes.CDLL(path)
-    lib.MKL_Set_Num_Threads(ctypes.c_int(1))  # one core a scene, see tisim.kernels._taichi
-    return lib["pardiso"]  # a function object of our own: pypardiso has typed its own for CSR
+    lib.MKL_Set_Num_Threads(ctypes.c_int(1))  # one core per scene, see tisim.kernels._taichi
+    return lib["pardiso"]  # a separate function object: pypardiso has typed its own for CSR
 
 
 def _file_of_mkl() -> str | None:
-    """MKL's library by the file list of its package; None where that has none, or where the user names one.
+    """Path of MKL's library from its package's file list; None if there is none or the user specified one.
 
-    pypardiso walks the whole environment for it, twice: 0.8 s of each new process.
+    pypardiso searches the whole environment for it, twice, which takes 0.8 s in each new process.
     """
     if "PYPARDISO_MKL_RT" in os.environ:
         return None
@@ -59,9 +59,19 @@ def _file_of_mkl() -> str | None:
 class Pardiso:
     """A symmetric matrix of 3 x 3 blocks, upper triangle in BSR form: analysed once, factorised often.
 
-    single: factorise in single precision (as a preconditioner).
-    positive: Cholesky, FactorisationError where the matrix is not positive definite; else LDL^T, and
-        `negative` counts the negative pivots.
+    Parameters
+    ----------
+    indptr, indices : ndarray of int32
+        BSR structure.
+    single : bool
+        Factorise in single precision (as a preconditioner).
+    positive : bool
+        Use Cholesky, with a FactorisationError for a matrix that is not positive definite; else LDL^T.
+
+    Attributes
+    ----------
+    negative : int
+        Number of negative pivots of the last LDL^T.
     """
 
     _function: Any = None
@@ -97,7 +107,7 @@ class Pardiso:
         self.negative = 0
 
     def factorise(self, values: NDArray[np.float64]) -> None:
-        """values: blocks (nb, 3, 3)."""
+        """Factorise blocks (nb, 3, 3); FactorisationError if that fails."""
         self._values[:] = values.ravel()
         if not self._analysed:
             self._call(_ANALYSE)
@@ -106,7 +116,7 @@ class Pardiso:
         self.negative = int(self._iparm[22])
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """rhs (n, 3) -> solution (n, 3)."""
+        """Solution (n, 3) for rhs (n, 3)."""
         b: NDArray[Any] = np.ascontiguousarray(rhs, dtype=self._dtype).ravel()
         x = np.zeros_like(b)
         self._call(_SOLVE, b, x)
@@ -139,10 +149,16 @@ class Pardiso:
 
 
 class PardisoSchur(Pardiso):
-    """A symmetric matrix of which some rows are left after the others are eliminated; single precision.
+    """Schur complement of a symmetric matrix, in single precision.
 
-    indptr, indices: scalar CSR, upper triangle (PARDISO has no complements of block matrices). kept: the rows
-    that are left. A solve comes in halves, `forward` and `backward`; what is between them is the caller's.
+    A solve consists of `forward` and `backward`; the caller solves for the kept rows in between.
+
+    Parameters
+    ----------
+    indptr, indices : ndarray of int32
+        Scalar CSR structure, upper triangle (PARDISO has no Schur complements of block matrices).
+    kept : ndarray of bool
+        Rows that are kept.
     """
 
     def __init__(
@@ -156,7 +172,7 @@ class PardisoSchur(Pardiso):
         self._left = int(kept.sum())
 
     def factorise(self, values: NDArray[np.float64]) -> NDArray[np.float32]:  # type: ignore[override]
-        """values (nnz,) -> the complement, (kept, kept)."""
+        """Schur complement, shape (kept, kept), of the matrix with values (nnz,)."""
         self._values[:] = values
         if not self._analysed:
             self._call(_ANALYSE)
@@ -166,11 +182,11 @@ class PardisoSchur(Pardiso):
         return complement
 
     def forward(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """L^-1 rhs (n,); its kept rows: rhs_I - K_IF K_FF^-1 rhs_F."""
+        """Forward substitution L^-1 rhs (n,); its kept rows are rhs_I - K_IF K_FF^-1 rhs_F."""
         return self._half(_FORWARD, rhs)
 
     def backward(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The other half, kept rows as they are."""
+        """Backward substitution (n,), with the kept rows unchanged."""
         return self._half(_BACKWARD, rhs)
 
     def _half(self, phase: int, rhs: NDArray[np.float64]) -> NDArray[np.float64]:

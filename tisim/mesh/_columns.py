@@ -18,7 +18,7 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
-    """Thickness of the layers of elements [m]: at the top, at the base, and the least allowed."""
+    """Thickness of the layers of elements at the top, at the base, and at least [m]."""
 
     top: float
     bottom: float
@@ -26,10 +26,11 @@ class Layers:
 
     @staticmethod
     def of(kind: ElementKind, refinement: float, height: float) -> Layers:
-        """Layers of an element type in a block of this height [m].
+        """Layers for an element type in a block of this height [m].
 
-        Linear ones thinner than 1.2 mm turn over under a rod's edge; quadratic ones as thick as that lift off
-        the flat of a rod beyond 13 mm, and tall ones below them cost no accuracy (studies/depth).
+        Linear elements thinner than 1.2 mm invert under a rod's edge. Quadratic elements as thick as that
+        lift off the flat of a rod at depths beyond 13 mm; tall ones below them cost no accuracy
+        (studies/depth).
         """
         if kind == "hex20":
             bottom = max(0.65 * height, 0.0020)
@@ -49,11 +50,26 @@ def extrude(
     within: Bools | None = None,
     top_points: Floats | None = None,
 ) -> Mesh:
-    """The block over a grid of points (n, 2) and cells (m, 4): hexahedra, wedges over triangles, or
-    tetrahedra from these; linear or quadratic.
+    """The block as an extrusion of a plane grid: hexahedra with wedges over triangles, or tetrahedra.
 
-    side: per point -1 inside the outline, 0 on it, 1 outside; within: cells inside it.
-    top_points: where the columns end on the top face (n, 2); they lean from the inclusion's apex upwards.
+    Parameters
+    ----------
+    points, cells : ndarray, shapes (n, 2) and (m, 4)
+        The plane grid [m].
+    size : (float, float, float)
+        Size of the block [m].
+    refinement : float
+        Factor by which the layers become thinner.
+    kind : ElementKind
+        Type of the elements.
+    outline : Outline, optional
+        The inclusion.
+    side : ndarray of int, shape (n,), optional
+        -1 for points inside the outline, 0 on it, 1 outside.
+    within : ndarray of bool, shape (m,), optional
+        True for cells inside the outline.
+    top_points : ndarray of float, shape (n, 2), optional
+        Ends of the columns on the top face [m]; the columns are inclined above the inclusion's apex.
     """
     height, n = size[2], len(points)
     layers = Layers.of(kind, refinement, height)
@@ -64,7 +80,7 @@ def extrude(
     if outline is not None and side is not None and within is not None:
         low, high = outline.cap(points)
         if outline.dome is not None:
-            # over the dome and under the belly columns of their own, that meet at the outline
+            # separate columns above and below the spheroid, which meet at the outline
             split = side < 0
             low = np.where(split, low, outline.low)
             high = np.where(split, high, outline.high)
@@ -100,14 +116,14 @@ def extrude(
     if kind in HEXAHEDRA:
         mesh = _named("hex8", all_nodes[used], all_elements, size)
         return mesh if kind == "hex8" else curved(mesh, between=None if outline is None else outline.between)
-    # diagonals from the columns inside the outline: the others would leave nodes of a sphere's rim unheld
+    # diagonals start in the columns inside the outline, else nodes on a sphere's rim would not be held
     rank = np.argsort(np.argsort(side, kind="stable")) if side is not None else np.arange(n)
     linear = _named("tet4", all_nodes[used], tetrahedra(all_elements, rank[used % n]), size)
     return linear if kind == "tet4" else to_quadratic(linear)
 
 
 def _hanging(bottom: Floats, height: float, layers: Layers) -> Floats:
-    """Levels from `bottom` (n,) up to the top face, finest there: (n, k + 1)."""
+    """Levels from `bottom` (n,) to the top face, finest there [m], shape (n, k + 1)."""
     room, least = height - float(bottom.min()), height - float(bottom.max())
     k = layer_count(height=room, top=layers.top, bottom=layers.bottom, total=height)
     k = max(1, min(k, int(least / layers.thinnest)))
@@ -117,7 +133,10 @@ def _hanging(bottom: Floats, height: float, layers: Layers) -> Floats:
 
 
 def _rising(top: Floats, height: float, layers: Layers, deepest: float) -> Floats:
-    """Even levels from 0 to `top` (n,), as many as a stack that ends at `deepest` wants: (n, k + 1)."""
+    """Equidistant levels from 0 to `top` (n,) [m], shape (n, k + 1).
+
+    Their number is that of `layer_count` for a stack whose upper end is at height `deepest`.
+    """
     k = layer_count(
         height=float(top.max()),
         top=layers.top,
@@ -133,7 +152,7 @@ def _rising(top: Floats, height: float, layers: Layers, deepest: float) -> Float
 def _named(
     kind: ElementKind, nodes: Floats, elements: NDArray[np.int32], size: tuple[float, float, float]
 ) -> Mesh:
-    """The mesh with its sets: what lies neither on the top nor on a side is held."""
+    """The mesh with its sets; nodes of facets that are neither on the top nor on a side are in "base"."""
     surface = boundary_facets(kind, elements)
     at = nodes[surface]
     top = (at[:, :, 2] == size[2]).all(axis=1)
@@ -154,10 +173,21 @@ def _named(
 
 
 def graded(length: Floats, first: Floats | float, n: int) -> Floats:
-    """Distances of n + 1 points along lines of given lengths, spacing growing by a constant factor.
+    """Positions of n + 1 points along lines, with a spacing that grows by a constant factor of 1 to 8.
 
-    length [m], shape (...); first: first spacing [m], a scalar or of the same shape; where n first spacings
-    overshoot, the spacing is uniform. Returns shape (..., n + 1), from 0 to exactly the length.
+    Parameters
+    ----------
+    length : ndarray of float, shape (...)
+        Lengths of the lines [m].
+    first : float or ndarray of float, shape (...)
+        First spacing [m]; if n first spacings exceed the length, the spacing is uniform.
+    n : int
+        Number of intervals.
+
+    Returns
+    -------
+    ndarray of float, shape (..., n + 1)
+        Positions from 0 to exactly the length [m].
     """
     length = np.asarray(length, dtype=np.float64)
     first = np.minimum(np.broadcast_to(first, length.shape), length / n)
@@ -174,9 +204,9 @@ def graded(length: Floats, first: Floats | float, n: int) -> Floats:
 
 
 def layer_count(*, height: float, top: float, bottom: float, total: float, start: float = 0.0) -> int:
-    """Layers that fill `height` [m] starting `start` below the top, at least one.
+    """Number of layers, at least one, that fill `height` [m] from a depth `start` [m] down.
 
-    The thickness wanted grows linearly from `top` at the top to `bottom` at depth `total` [m].
+    The target thickness grows linearly from `top` at the top to `bottom` at depth `total` [m].
     """
     slope = (bottom - top) / total
     at_start, at_end = top + slope * start, top + slope * (start + height)
@@ -187,9 +217,13 @@ def layer_count(*, height: float, top: float, bottom: float, total: float, start
 def tetrahedra(elements: Ints, column: Ints) -> NDArray[np.int32]:
     """Three tetrahedra for each wedge and six for each hexahedron, shape (t, 4).
 
-    elements: hex8 that stand upright, shape (m, 8), a wedge with its third node repeated.
-    column: per node, the rank of the column it belongs to; a diagonal starts in the column of lower rank,
-    below, so that both elements at a facet cut it the same way.
+    Parameters
+    ----------
+    elements : ndarray of int, shape (m, 8)
+        Upright hex8; wedges repeat their third node.
+    column : ndarray of int, shape (n,)
+        Rank of each node's column. A diagonal starts at the bottom of the column of lower rank, so that both
+        elements at a facet cut it in the same way.
     """
     c = column[elements[:, :4]]
     turn = (c.argmin(axis=1)[:, None] + np.arange(4)) % 4

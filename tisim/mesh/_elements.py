@@ -1,5 +1,8 @@
-"""Reference elements: node places, shape-function gradients, quadrature. Natural coordinates (r, s, t):
-tetrahedra on the unit simplex, hexahedra on [-1, 1]^3, both numbered as VTK numbers them."""
+"""Reference elements: node coordinates, shape-function gradients, quadrature.
+
+Natural coordinates (r, s, t): tetrahedra on the unit simplex, hexahedra on [-1, 1]^3, both in VTK's node
+order.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,10 @@ from numpy.typing import NDArray
 
 from tisim.mesh._mesh import HEXAHEDRA, ElementKind
 
-# tet10: the corners of the edge in whose middle each of nodes 4 to 9 lies
+# tet10: end nodes of the edge whose middle is node 4 to 9
 TET_EDGES = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
 
-# hex20: the same of nodes 8 to 19
+# hex20: the same for nodes 8 to 19
 HEX_EDGES = np.array(
     [*((0, 1), (1, 2), (2, 3), (3, 0)), *((4, 5), (5, 6), (6, 7), (7, 4)), *((0, 4), (1, 5), (2, 6), (3, 7))]
 )
@@ -28,14 +31,14 @@ NODE_PLACES: dict[ElementKind, NDArray[np.float64]] = {
     "hex8": _HEX8,
     "hex20": np.concatenate([_HEX8, _HEX8[HEX_EDGES].mean(axis=1)]),
 }
-# of a quad8: corners, then the edges' middles
+# nodes of a quad8: corners, then the edges' middles
 QUAD_PLACES = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [1, 0], [0, 1], [-1, 0]])
 
 _BARYCENTRIC_GRADIENT = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
 
 def shape_gradients(kind: ElementKind, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Derivatives of the shape functions by (r, s, t) at places (q, 3): shape (q, nodes, 3)."""
+    """Derivatives of the shape functions by (r, s, t) at points (q, 3), shape (q, nodes, 3)."""
     if kind == "tet4":
         return np.broadcast_to(_BARYCENTRIC_GRADIENT, (len(places), 4, 3))
     if kind == "tet10":
@@ -56,10 +59,10 @@ def shape_gradients(kind: ElementKind, places: NDArray[np.float64]) -> NDArray[n
 def serendipity(
     places: NDArray[np.float64], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Quadratic shape functions (q, a) of corners and edges' middles, and their slopes (q, a, d), at places.
+    """Serendipity shape functions (q, a) and their derivatives (q, a, d) at points `places` (q, d).
 
-    In d natural coordinates, with node a at s_a: prod_i (1 + x_i s_ai) / 2^d (sum_i x_i s_ai - d + 1) at a
-    corner; in the middle of an edge along k, (1 - x_k^2) prod_(i != k) (1 + x_i s_ai) / 2^(d - 1).
+    In d natural coordinates, with node a at s_a: prod_i (1 + x_i s_ai) / 2^d (sum_i x_i s_ai - d + 1) for a
+    corner; (1 - x_k^2) prod_(i != k) (1 + x_i s_ai) / 2^(d - 1) for the middle of an edge along k.
     """
     x, s = places[:, None, :], nodes[None]
     d = nodes.shape[1]
@@ -75,12 +78,14 @@ def serendipity(
 
 
 def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places (q, 3) and weights (q,) exact for the volume of a curved element (det J is cubic at most
-    for tet10, quadratic in each coordinate for hex8, of degree five for hex20)."""
+    """Points (q, 3) and weights (q,) that are exact for the volume of a curved element.
+
+    det J is at most cubic for tet10, quadratic in each coordinate for hex8, and of degree five for hex20.
+    """
     if kind == "tet4":
         return np.full((1, 3), 0.25), np.array([1 / 6])
     if kind == "tet10":
-        # degree 3 (Stroud T3:3-1): the centre with a negative weight, and four points around it
+        # degree 3 (Stroud T3:3-1): the centre, with a negative weight, and four points around it
         around = np.full((4, 3), 1 / 6)
         around[np.arange(3), np.arange(3)] = 0.5
         return np.concatenate([np.full((1, 3), 0.25), around]), np.array([-0.8, *[0.45] * 4]) / 6
@@ -96,7 +101,7 @@ def cube_points(order: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return places, np.einsum("i,j,k->ijk", w, w, w).ravel()
 
 
-# The two ways to cut a hexahedron into five tetrahedra, both positive: four corners and a middle each.
+# The two cuts of a hexahedron into five tetrahedra, all positive: four at corners and one in the middle.
 HEX_CUTS = np.array(
     [
         *([0, 1, 3, 4], [2, 3, 1, 6], [5, 4, 6, 1], [7, 6, 4, 3], [1, 6, 3, 4]),
@@ -108,8 +113,11 @@ HEX_CUTS = np.array(
 def cut_hexahedra(
     corners: NDArray[np.float64], volume: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """The tetrahedra of HEX_CUTS of hexahedra with these corners (m, 8, 3) and volumes (m,): edges from the
-    first node (m, 10, 3, 3), six times the volumes (m, 10), and which vanish in a wedge (m, 10)."""
+    """The tetrahedra of HEX_CUTS in hexahedra with corners (m, 8, 3) and volumes (m,).
+
+    Returns edges from the first node (m, 10, 3, 3), six times the volumes (m, 10), and True for tetrahedra
+    that vanish in a wedge (m, 10).
+    """
     tets = corners[:, HEX_CUTS]
     edges = tets[:, :, 1:] - tets[:, :, :1]
     six = np.linalg.det(edges)
@@ -117,8 +125,7 @@ def cut_hexahedra(
 
 
 def is_sound(kind: ElementKind, nodes: NDArray[np.float64], elements: NDArray[np.int32]) -> bool:
-    """True if no element is inverted where the solver integrates: at its quadrature points, and in the
-    tetrahedra into which it cuts a hexahedron."""
+    """True if no element is inverted at the points of `quadrature` or, for hex8, in the cut tetrahedra."""
     places, weights = quadrature(kind)
     det = det_jacobian(kind, nodes, elements, places)
     if det.min() <= 0.0:
@@ -135,13 +142,13 @@ def det_jacobian(
     elements: NDArray[np.int32],
     places: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Determinant of the map from the reference element at each place, shape (m, q) [m3]."""
+    """Determinant of the map from the reference element at points (q, 3) [m3], shape (m, q)."""
     gradient = shape_gradients(kind, places)
     return np.linalg.det(np.einsum("qnk,mni->mqik", gradient, nodes[elements]))
 
 
 def corner_triads(kind: ElementKind) -> NDArray[np.int64]:
-    """Each corner and its three neighbours, right-handed: shape (corners, 4)."""
+    """Each corner and its three neighbours in right-handed order, shape (corners, 4)."""
     if kind not in HEXAHEDRA:
         return np.array([[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [3, 0, 2, 1]])
     ring = [*range(4), 0]

@@ -1,7 +1,7 @@
-"""fTetWild in a process of its own (run as a script: input.npz output.npz).
+"""fTetWild in a separate process (run as a script: input.npz output.npz).
 
-It leaves a file in the current directory, it cannot be stopped from Python, and where it fails it may
-take the process with it.
+It leaves a file in the current directory, cannot be stopped from Python, and may crash the process if it
+fails.
 """
 
 import sys
@@ -19,7 +19,7 @@ def main(source: str, target: str) -> None:
             edge_length_abs=float(data["edge_length"]),
             epsilon=float(data["epsilon"]),
             stop_energy=float(data["stop_energy"]),
-            # a second thread was measured to save no time
+            # a second thread saves no time (measured)
             num_threads=1,
             quiet=True,
         )

@@ -1,4 +1,4 @@
-"""The outline of a rigid inclusion in the plane, and how high its surface stands over a point."""
+"""Outline of a rigid inclusion in the plane, and heights of its surface."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 # material thinner than this between an inclusion and the block's base is meshed as rigid [m]
 THINNEST_GAP = 0.001
 THINNEST_COVER = 0.001
-# of the radius: points nearer to an inclusion's surface are on it
+# relative to the radius: points nearer to an inclusion's surface are on it
 ON_SURFACE = 1e-6
 
 
@@ -32,9 +32,13 @@ class Dome:
 class Outline:
     """The plan view of an inclusion: a circle, or a convex polygon, counter-clockwise.
 
-    centre (2,), radius of the inscribed circle and reach of the circumscribed one [m]; corners: shape (c, 2),
-    none for a circle. low, high: heights of the flat faces [m]; for a spheroid both are the height of the
-    outline. dome: the spheroid, None where the faces are flat.
+    Attributes
+    ----------
+    centre : centre [m], shape (2,).
+    radius, reach : radii of the inscribed and of the circumscribed circle [m].
+    corners : corners of the polygon [m], shape (c, 2); empty for a circle.
+    low, high : heights of the flat faces; for a spheroid both are the height of the outline [m].
+    dome : the spheroid; None for flat faces.
     """
 
     centre: Floats
@@ -58,23 +62,23 @@ class Outline:
         if self.dome is None:
             return self.area * (self.high - self.low)
         half, below = self.dome.half_height, min(self.dome.middle, self.dome.half_height)
-        # of sections pi r2 (1 - t2 / h2) at the height t over the centre
+        # integral of the sections pi r2 (1 - t2 / h2) at the height t above the centre
         return float(np.pi * self.dome.radius**2 * (2 * half / 3 + below - below**3 / (3 * half**2)))
 
     @property
     def apex(self) -> float:
-        """The highest point of the inclusion [m]."""
+        """Height of the highest point of the inclusion [m]."""
         return self.high if self.dome is None else self.dome.half_height + self.dome.middle
 
     def signed(self, points: Floats) -> Floats:
-        """Below 0 inside, 0 on the outline, above 0 outside; the distance [m] but near corners outside."""
+        """Signed distance from the outline [m], negative inside; too small outside near corners."""
         if not len(self.corners):
             away = points - self.centre
             return np.asarray(np.hypot(away[..., 0], away[..., 1]) - self.radius)
         return np.asarray(self._beyond(points).max(axis=-1))
 
     def face(self, points: Floats) -> NDArray[np.int64]:
-        """Which side of the polygon points on the outline lie on; 0 for a circle."""
+        """Index of the polygon's side of points on the outline, shape (n,); 0 for a circle."""
         if not len(self.corners):
             return np.zeros(len(points), dtype=np.int64)
         return np.asarray(self._beyond(points).argmax(axis=-1), dtype=np.int64)
@@ -85,7 +89,7 @@ class Outline:
         return np.asarray(points @ normal.T - np.sum(normal * self.corners, axis=1))
 
     def crossing(self, inside: Floats, outside: Floats) -> Floats:
-        """Where segments from inside points to outside points cross the outline; shapes (n, 2)."""
+        """Points at which segments from inside to outside points cross the outline [m], shapes (n, 2)."""
         low, high = np.zeros(len(inside)), np.ones(len(inside))
         for _ in range(54):
             middle = 0.5 * (low + high)
@@ -94,7 +98,7 @@ class Outline:
         return inside + (0.5 * (low + high))[:, None] * (outside - inside)
 
     def between(self, ends: Floats) -> Floats:
-        """The middles (k, 3) of edges (k, 2, 3) [m]: on the curved surface where both ends lie on it."""
+        """Middles (k, 3) of edges (k, 2, 3) [m], on the curved surface if both ends lie on it."""
         middle = ends.mean(axis=1)
         if len(self.corners):
             return middle
@@ -118,7 +122,7 @@ class Outline:
         return middle
 
     def cap(self, points: Floats) -> tuple[Floats, Floats]:
-        """Heights of the lower and upper surface over points (n, 2); outside, those of the outline [m]."""
+        """Heights of the lower and upper surface at points (n, 2) [m]; outside, those of the outline."""
         low, high = np.full(len(points), self.low), np.full(len(points), self.high)
         if self.dome is not None:
             radius, height = self.dome.radius, self.dome.middle
@@ -132,7 +136,7 @@ class Outline:
 
 
 def outline_of(inclusion: Inclusion, *, size: tuple[float, float, float]) -> Outline:
-    """The outline of an inclusion in a block of that size, or a MeshError that says why it cannot be met."""
+    """Outline of an inclusion in a block of `size` [m]; MeshError if it is invalid or does not fit."""
     try:
         inclusion.check()
     except ValueError as error:
@@ -159,7 +163,7 @@ def outline_of(inclusion: Inclusion, *, size: tuple[float, float, float]) -> Out
 
 
 def _of_spheroid(kind: str, geometry: Spheroid, centre: Floats) -> Outline:
-    """The widest section of a spheroid that lies in the block."""
+    """Outline of the widest section of a spheroid in the block."""
     radius, half, middle = float(geometry.radius), float(geometry.half_height), float(centre[2])
     if middle <= -half + THINNEST_GAP:
         raise MeshError(f"inclusion: the {kind} lies below the block's base (centre z {middle} m)")

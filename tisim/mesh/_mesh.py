@@ -1,4 +1,4 @@
-"""The mesh that every solver works on: nodes, one kind of element, named sets, mirror planes."""
+"""The mesh of all solvers: nodes, elements of one type, named sets, mirror planes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ NODES_PER_FACET: Mapping[FacetKind, int] = MappingProxyType({"tri3": 3, "tri6": 
 # tet10 edges: 4=(0,1) 5=(1,2) 6=(2,0) 7=(0,3) 8=(1,3) 9=(2,3) (the order of VTK_QUADRATIC_TETRA).
 # hex8: 0-3 bottom counter-clockwise seen from above, 4-7 above them (VTK_HEXAHEDRON); a wedge is a
 # hex8 with repeated nodes. hex20: then the edges' middles, 8-11 bottom from 8=(0,1), 12-15 top from 12=(4,5),
-# 16-19 upright from 16=(0,4) (VTK_QUADRATIC_HEXAHEDRON); in a wedge a collapsed edge's middle is its corner.
+# 16-19 upright from 16=(0,4) (VTK_QUADRATIC_HEXAHEDRON); the middle of a collapsed edge, in a wedge, is its
+# corner.
 ELEMENT_FACETS: Mapping[ElementKind, tuple[tuple[int, ...], ...]] = MappingProxyType(
     {
         "tet4": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
@@ -38,9 +39,9 @@ ELEMENT_FACETS: Mapping[ElementKind, tuple[tuple[int, ...], ...]] = MappingProxy
     }
 )
 HEXAHEDRA: tuple[ElementKind, ...] = ("hex8", "hex20")
-# a mask over the nodes (n,), or a function of their positions (n, 3) [m] that gives one
+# a mask over the nodes (n,), or a function of their positions (n, 3) [m] that returns one
 NodeMask = NDArray[np.bool_] | Callable[[NDArray[np.float64]], NDArray[np.bool_]]
-# Nodes of an element in the order that keeps its volume positive when it is seen in a mirror.
+# Order of an element's nodes that keeps its volume positive after a reflection.
 _TURNED = {
     "tet4": (0, 2, 1, 3),
     "tet10": (0, 2, 1, 3, 6, 5, 4, 7, 9, 8),
@@ -57,7 +58,7 @@ class Mesh:
     Attributes
     ----------
     kind : "tet4", "tet10", "hex8" or "hex20"
-        Kind of all elements.
+        Type of all elements.
     nodes : ndarray of float, shape (n, 3)
         Rest positions [m].
     elements : ndarray of int32, shape (m, nodes per element)
@@ -67,13 +68,13 @@ class Mesh:
     facet_sets : mapping of str to ndarray of int32, shape (f, nodes per facet)
         Named facets, outward; "surface" is the whole boundary.
     symmetry : tuple of str
-        Mirror planes the mesh is cut by, as axis names ("y"): the nodes in node_sets["mirror_y"] keep their
-        y; forces and volumes of the whole body are twice those of the mesh.
+        Mirror planes of a reduced mesh, as axis names ("y"): the nodes in node_sets["mirror_y"] keep their y.
+        The body's forces and volumes are those of the mesh times 2 for each plane.
 
     Raises
     ------
     ValueError
-        For arrays of another shape, coordinates that are not finite, or node indices out of range.
+        For arrays of wrong shape, coordinates that are not finite, or node indices out of range.
     """
 
     kind: ElementKind
@@ -130,7 +131,7 @@ def boundary_facets(kind: ElementKind, elements: NDArray[np.int32]) -> NDArray[n
 
 
 def _row_keys(rows: NDArray[np.int64]) -> NDArray[np.int64]:
-    """One number a row, equal for equal rows (entries from -1): far faster to sort than rows."""
+    """One number per row, equal for equal rows (entries >= -1): much faster to sort than rows."""
     keys = rows[:, 0] + 1
     for column in rows.T[1:]:
         base = int(column.max(initial=0)) + 2
@@ -141,13 +142,14 @@ def _row_keys(rows: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 class MeshError(ValueError):
-    """A body cannot be meshed; the message is one sentence that says what to change."""
+    """A body cannot be meshed; the message states in one sentence what to change."""
 
 
 def free_length(mesh: Mesh, held: tuple[str, ...]) -> float:
-    """From the bounding box of a node set that is held to the farthest node, or to the box of another [m].
+    """Free length of a held body [m].
 
-    NaN where a set is not there.
+    With one held node set it is the largest distance of a node from the set's bounding box, with two the
+    distance between their boxes. NaN if a set is missing or empty.
     """
     sets = [mesh.nodes[mesh.node_sets[name]] for name in held if len(mesh.node_sets.get(name, ()))]
     if len(sets) < len(held):
@@ -176,7 +178,7 @@ def with_node_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
     Raises
     ------
     MeshError
-        If the set would be empty, or the mask is not one boolean a node.
+        If the set would be empty, or the mask is not one boolean per node.
     """
     chosen = np.flatnonzero(_mask(mesh, name, mask)).astype(np.int32)
     if not len(chosen):
@@ -185,7 +187,7 @@ def with_node_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
 
 
 def with_facet_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
-    """The mesh with one more facet set: the boundary facets all of whose nodes the mask takes.
+    """The mesh with one more facet set: the boundary facets whose nodes are all in the mask.
 
     Parameters
     ----------
@@ -201,7 +203,7 @@ def with_facet_set(mesh: Mesh, name: str, mask: NodeMask) -> Mesh:
     Raises
     ------
     MeshError
-        If the set would be empty, or the mask is not one boolean a node.
+        If the set would be empty, or the mask is not one boolean per node.
     """
     facets = mesh.facet_sets.get("surface")
     if facets is None:
@@ -223,7 +225,7 @@ def _mask(mesh: Mesh, name: str, mask: NodeMask) -> NDArray[np.bool_]:
 
 
 def unfold(mesh: Mesh, positions: NDArray[np.float64]) -> tuple[Mesh, NDArray[np.float64]]:
-    """The whole body of a mesh cut by mirror planes, and its node positions.
+    """The whole body of a mesh reduced by mirror planes, and its node positions.
 
     Parameters
     ----------
@@ -234,9 +236,10 @@ def unfold(mesh: Mesh, positions: NDArray[np.float64]) -> tuple[Mesh, NDArray[np
     Returns
     -------
     mesh : Mesh
-        The whole body; the nodes of the given mesh come first, in their order. Node and facet sets hold both
-        halves; sets of the mirror planes are dropped.
+        The whole body; the nodes of the given mesh come first, in their order. Node and facet sets contain
+        both halves; sets of the mirror planes are dropped.
     positions : ndarray, shape (..., whole n, 3)
+        Node positions of the whole body [m].
     """
     for name in mesh.symmetry:
         mesh, positions = _unfold_once(mesh, positions, name)

@@ -1,4 +1,4 @@
-"""The plane grid under a rod: a butterfly disc, fine rings over the rod's edge, rings growing to a border."""
+"""Plane grid under a rod: a butterfly disc, fine rings under the rod's edge, graded rings to the border."""
 
 from __future__ import annotations
 
@@ -21,8 +21,11 @@ SAMPLES = 60
 class PlaneGrid:
     """A grid of quadrilaterals in the plane.
 
-    points: shape (n, 2) [m]. cells: shape (m, 4), counter-clockwise.
-    border: indices of the points on the rectangle's border, shape (b,).
+    Attributes
+    ----------
+    points : positions [m], shape (n, 2).
+    cells : point indices, counter-clockwise, shape (m, 4).
+    border : indices of the points on the rectangle's border, shape (b,).
     """
 
     points: Floats
@@ -32,7 +35,7 @@ class PlaneGrid:
 
 @dataclass(frozen=True, kw_only=True)
 class Focus:
-    """A disc (centre, reach [m]) that rays and rings should cross no farther apart than `spacing` [m]."""
+    """A disc in which rays and rings should be at most `spacing` apart: centre, radius `reach` [m]."""
 
     centre: Floats
     reach: float
@@ -40,7 +43,7 @@ class Focus:
 
 
 def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
-    """Unit disc of m x m quadrilaterals inside one ring of 4 m.
+    """Unit disc of m x m quadrilaterals inside one ring of 4 m quadrilaterals.
 
     Returns points (n, 2), cells (c, 4) and the indices of the outer circle's 4 m points, counter-clockwise
     from -135 degrees, evenly spaced.
@@ -48,7 +51,7 @@ def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
     s = np.linspace(-1.0, 1.0, m + 1)
     x, y = np.meshgrid(s, s, indexing="xy")
     square = np.stack([x.ravel(), y.ravel()], axis=1)
-    # rounding the square half way to a circle keeps its corner cells from becoming flat
+    # the core is half way between square and circle, so that its corner cells are not flat
     norm_inf = np.abs(square).max(axis=1)
     angle = np.where(
         np.abs(square[:, 0]) >= np.abs(square[:, 1]),
@@ -68,15 +71,15 @@ def butterfly(m: int) -> tuple[Floats, Ints, Ints]:
 
 
 def band(inner: Ints, outer: Ints) -> Ints:
-    """Quadrilaterals between two closed rings of as many nodes, both counter-clockwise."""
+    """Quadrilaterals between two closed counter-clockwise rings with equal numbers of nodes."""
     return np.stack([inner, outer, np.roll(outer, -1), np.roll(inner, -1)], axis=1)
 
 
 def border_points(site: Floats, half: Floats, n: int, focus: Focus | None = None) -> Floats:
-    """n points on the rectangle |x| <= half[0], |y| <= half[1], counter-clockwise, its corners among them.
+    """n points on the border of |x| <= half[0], |y| <= half[1], counter-clockwise, shape (n, 2).
 
-    They are spread by a mean of the angle seen from the site and of the length along the side, with more of
-    them in the direction of the focus. Returns shape (n, 2).
+    The corners are among them. Their density is the mean of a uniform density in the angle about the site and
+    one in the length along the border, increased in the direction of the focus.
     """
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half
     t = np.linspace(0.0, 1.0, SAMPLES + 1)[None, :, None]
@@ -106,14 +109,14 @@ def border_points(site: Floats, half: Floats, n: int, focus: Focus | None = None
 
 
 def _toward(site: Floats, half: Floats, n: int, focus: Focus, bearing: Floats) -> tuple[float, Floats, float]:
-    """Part of the rays to turn to the focus; the angles of `bearing` off its direction; its half width."""
+    """Fraction of the rays to concentrate on the focus, angles from its direction, its half width [rad]."""
     way = focus.centre - site
     distance = float(np.hypot(*way))
     off = np.abs(np.mod(bearing - np.arctan2(way[1], way[0]) + np.pi, 2 * np.pi) - np.pi)
     if distance < 1.3 * focus.reach:
         return 0.0, off, 1.0
     width = float(np.arcsin(focus.reach / distance)) * 1.15
-    # rays are straight, so bunching them on the border by so much bunches them by a part of it here
+    # rays are straight: a concentration on the border results in a smaller one at the focus
     room = np.where(way > 0, half - site, half + site) / np.maximum(np.abs(way), 1e-12)
     part = max(0.35, 1.0 / float(room.min()))
     wanted = 2.0 * focus.reach / focus.spacing + 1.0
@@ -121,7 +124,7 @@ def _toward(site: Floats, half: Floats, n: int, focus: Focus, bearing: Floats) -
 
 
 def _split_rings(rings: Floats, focus: Focus) -> Floats:
-    """More rings (k, n_theta, 2) where they pass the focus farther apart than its spacing."""
+    """Rings (k, n_theta, 2) with additional ones if they are farther apart at the focus than its spacing."""
     out = [rings[:1]]
     for inner, outer in pairwise(rings):
         way = outer - inner
@@ -148,16 +151,31 @@ def o_grid(
     focus: Focus | None = None,
     turn: float = 0.0,
 ) -> PlaneGrid:
-    """The grid around `site` (x, y) in the rectangle of half sides `half` [m].
+    """The grid around `site` in a rectangle.
 
-    flat: radius of the disc [m]; rings: radii of the fine rings after it, rising, shape (k,); both are
-    stretched by `stretch` along `azimuth` [rad], where a tilted rod cuts the surface in an ellipse.
-    n_theta: rays, a multiple of 4; n_outer: rings from the last fine one to the border.
-    focus: where else the grid should be fine; turn: of the rays around the rod, in parts of their spacing.
+    Parameters
+    ----------
+    site : ndarray of float, shape (2,)
+        Centre of the grid (x, y) [m].
+    half : ndarray of float, shape (2,)
+        Half sides of the rectangle [m].
+    flat, rings : float and ndarray of float, shape (k,)
+        Radius of the disc and rising radii of the fine rings [m].
+    azimuth, stretch : float
+        Direction [rad] in which disc and fine rings are stretched, and the factor: a tilted rod intersects
+        the surface in an ellipse.
+    n_theta : int
+        Number of rays, a multiple of 4.
+    n_outer : int
+        Number of rings from the last fine one to the border.
+    focus : Focus, optional
+        Another part that should be fine.
+    turn : float
+        Rotation of the rays about the rod, as a fraction of their spacing.
     """
     disc, cells, outer = butterfly(n_theta // 4)
     border = border_points(site, half, n_theta, focus)
-    # turn the disc so that its rays meet the border's points most nearly straight on
+    # turn the disc so that its rays are directed at the border's points as closely as possible
     seen = border - site
     bearing = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
     even = 2 * np.pi * np.arange(n_theta) / n_theta

@@ -1,9 +1,9 @@
 """Cross-sections of a beam as plane meshes in (y, z), symmetric about y = 0.
 
-A section's triangles or quadrangles are counter-clockwise seen from +x, and no edge crosses y = 0, so
-the half y >= 0 is a part of the whole. Polygons lose area (a 12-gon inscribed in a circle 4.5 %, and
-twice that in bending), so a circular section is scaled until its mesh has the circle's area; what is
-left in the second moment of area is of second order in the radial error.
+A section's triangles or quadrangles are counter-clockwise seen from +x, and no edge crosses y = 0, so that
+the half y >= 0 is a subset of the whole. An inscribed polygon loses area (a 12-gon 4.5 %, and twice that in
+bending). A circular section is therefore scaled until its mesh has the circle's area; the remaining error of
+the second moment of area is of second order in the radial error.
 """
 
 from __future__ import annotations
@@ -28,8 +28,15 @@ TRIANGLE_WEIGHTS = np.array([9 / 40] + [_WA] * 3 + [_WB] * 3)
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """points (v, 2): corners in (y, z) [m]; cells (c, 3 or 4); edges (e, 2), sorted pairs of points;
-    middles (e, 2): the node in the middle of each edge, on the true curve where the edge is curved."""
+    """A plane mesh of a cross-section.
+
+    Attributes
+    ----------
+    points : corners in (y, z) [m], shape (v, 2).
+    cells : point indices, shape (c, 3) or (c, 4).
+    edges : sorted pairs of points, shape (e, 2).
+    middles : middle node of each edge, on the true curve for curved edges [m], shape (e, 2).
+    """
 
     points: NDArray[np.float64]
     cells: NDArray[np.int64]
@@ -40,7 +47,7 @@ class Section:
 def section_of(
     points: NDArray[np.float64], cells: NDArray[np.int64], *, curved_radius: float | None = None
 ) -> Section:
-    """The section with its edges; the middles of edges on the circle `curved_radius` lie on it."""
+    """Section with its edges; middles of boundary edges on the circle `curved_radius` lie on the circle."""
     pairs = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
     edges, count = np.unique(np.sort(pairs, axis=1), axis=0, return_counts=True)
     middles = points[edges].mean(axis=1)
@@ -52,7 +59,10 @@ def section_of(
 
 
 def circle_triangles(radius: float, rings: int, *, quadratic: bool) -> Section:
-    """Six sectors of rings: ring k has 6 k edges. Half of it has 12 nodes with 1 ring, 35 with 2."""
+    """Disc of triangles in six sectors; ring k has 6 k edges.
+
+    Half of the section has 12 nodes with 1 ring, 35 with 2 (corners and middles of edges).
+    """
     points = [np.zeros((1, 2))]
     for k in range(1, rings + 1):
         angle = np.arange(6 * k) * (np.pi / (3 * k))
@@ -64,7 +74,7 @@ def circle_triangles(radius: float, rings: int, *, quadratic: bool) -> Section:
         for sector in range(6):
             i = [inner + ((k - 1) * sector + j) % n_inner for j in range(k)]
             o = [outer + (k * sector + j) % n_outer for j in range(k + 1)]
-            # the angle runs from +z to +y, clockwise seen from +x: the cells turn the other way
+            # the angle runs from +z to +y, clockwise seen from +x, so the order of the cells is reversed
             cells += [(i[j], o[j + 1], o[j]) for j in range(k)]
             cells += [(i[j], i[j + 1], o[j + 1]) for j in range(k - 1)]
     section = section_of(_clean(np.concatenate(points)), np.array(cells), curved_radius=1.0)
@@ -72,12 +82,12 @@ def circle_triangles(radius: float, rings: int, *, quadratic: bool) -> Section:
 
 
 def circle_quadrangles(radius: float, rings: int) -> Section:
-    """An O-grid: a square core of 2 rings x 2 rings cells with `rings` layers of cells around it."""
+    """Disc as an O-grid: a square core of 2 rings x 2 rings cells and `rings` layers of cells around it."""
     m = 2 * rings
     t = np.linspace(-1.0, 1.0, m + 1)
     y, z = (a.ravel() for a in np.meshgrid(t, t, indexing="ij"))
     core = 0.55 * np.stack([y, z], axis=1)
-    # the core's sides bulge a little, for better angles at its corners
+    # the core's sides bulge slightly, for better angles at its corners
     core *= (1 - 0.12 * np.linalg.norm(core, axis=1) / 0.55)[:, None]
     index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
     cells = [
@@ -97,7 +107,7 @@ def circle_quadrangles(radius: float, rings: int) -> Section:
 
 
 def rectangle(width: float, height: float, rings: int, *, triangles: bool) -> Section:
-    """2 rings x 2 rings cells; the diagonals of triangles point away from the axis."""
+    """Rectangle of 2 rings x 2 rings cells; the diagonals of triangles point away from the axis."""
     t = np.linspace(-0.5, 0.5, 2 * rings + 1)
     y, z = (a.ravel() for a in np.meshgrid(t * width, t * height, indexing="ij"))
     index = np.arange(len(y)).reshape(len(t), len(t))
@@ -114,7 +124,7 @@ def rectangle(width: float, height: float, rings: int, *, triangles: bool) -> Se
 
 
 def half(section: Section) -> Section:
-    """The part y >= 0."""
+    """The half y >= 0 of a section."""
     keep = section.points[section.cells, 0].mean(axis=1) > 0
     used = np.unique(section.cells[keep])
     renumber = np.full(len(section.points), -1)
@@ -131,7 +141,7 @@ def half(section: Section) -> Section:
 def moments(section: Section, *, quadratic: bool) -> tuple[float, float, float]:
     """Area [m2] and second moments of area (integrals of y^2 and of z^2) [m4] of the plane mesh.
 
-    quadratic: with the edges' middles as nodes of 6-node triangles, else with straight edges.
+    If `quadratic`, the edges' middles are nodes of 6-node triangles; else edges are straight.
     """
     cells = section.cells
     if cells.shape[1] == 4:
@@ -170,7 +180,7 @@ def _scaled_to_circle(section: Section, radius: float, *, quadratic: bool) -> Se
 
 
 def _clean(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Round-off of sines about 0 set to 0, so that the mirror plane is found by equality."""
+    """Points with round-off about 0 set to 0, so that the mirror plane is found by equality."""
     return np.where(np.abs(points) < 1e-12 * np.abs(points).max(), 0.0, points)
 
 

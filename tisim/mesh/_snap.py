@@ -1,4 +1,4 @@
-"""Moves the nodes of a plane grid onto an outline, so that no cell lies on both sides of it."""
+"""Adaptation of a plane grid to an outline, so that no cell lies on both sides of it."""
 
 from __future__ import annotations
 
@@ -18,19 +18,24 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 SWEEPS = 12
-# a quadrilateral whose flattest corner has a smaller sine is cut into two triangles where that is better
+# a quadrilateral with a smaller sine at its flattest corner is cut into two triangles if they are better
 FLAT_CORNER = 0.25
-# three nodes on a circle or on one straight side make a sliver; over a corner they make a better triangle
+# least quality of a triangle of three nodes on the outline: a sliver on a circle or side, not at a corner
 WORTH_HAVING = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Snapped:
-    """A grid that meets an outline: points (n, 2), cells (m, 4; a triangle repeats its last node).
+    """A grid that fits an outline.
 
-    side: per point -1 inside, 0 on the outline, 1 outside; within: cells inside, shape (m,).
-    quality: of the worst cell, 1 is best, 0 or less is degenerate or turned over.
-    area: of the cells inside [m2].
+    Attributes
+    ----------
+    points : positions [m], shape (n, 2).
+    cells : point indices, shape (m, 4); triangles repeat their last node.
+    side : -1 for points inside, 0 on the outline, 1 outside, shape (n,).
+    within : True for cells inside, shape (m,).
+    quality : quality of the worst cell; 1 is best, 0 or less is degenerate or inverted.
+    area : area of the cells inside [m2].
     """
 
     points: Floats
@@ -42,9 +47,17 @@ class Snapped:
 
 
 def snap(*, points: Floats, cells: Ints, border: Ints, outline: Outline) -> Snapped | None:
-    """The grid moved onto the outline; None where it is too coarse for that.
+    """The grid fitted to the outline; None if it is too coarse for that.
 
-    points (n, 2); cells (m, 4), quadrilaterals only; border: points that must stay.
+    Parameters
+    ----------
+    points : ndarray of float, shape (n, 2)
+        Positions [m].
+    cells : ndarray of int, shape (m, 4)
+        Quadrilaterals.
+    border : ndarray of int
+        Indices of points that must not move.
+    outline : Outline
     """
     rest = points
     edges = np.unique(np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)), axis=0)
@@ -82,7 +95,7 @@ def snap(*, points: Floats, cells: Ints, border: Ints, outline: Outline) -> Snap
 
 
 def _averaging(points: Floats, edges: Ints) -> csr_array:
-    """The matrix that gives each node the mean over its neighbours, near ones counting more."""
+    """Matrix of the mean over each node's neighbours, weighted by inverse distance."""
     from scipy.sparse import csr_array  # takes longer to import than tisim itself
 
     i, j = edges.T
@@ -93,8 +106,11 @@ def _averaging(points: Floats, edges: Ints) -> csr_array:
 
 
 def _nearest(points: Floats, cells: Ints, taken: Bools, place: Floats) -> int | None:
-    """The free node to move to a place: the nearest in the natural coordinates of the cell around it, so that
-    it moves by no more than half a cell either way however long and thin the cells are."""
+    """The free node to move to a place; None if no node of the cell around it is free.
+
+    It is the nearest in the natural coordinates of the cell, so that it moves by at most half a cell in each
+    direction, however slender the cell is.
+    """
     p = points[cells] - place
     ahead = np.roll(p, -1, axis=1)
     around = (p[..., 0] * ahead[..., 1] - p[..., 1] * ahead[..., 0]).min(axis=1)
@@ -112,8 +128,10 @@ def _nearest(points: Floats, cells: Ints, taken: Bools, place: Floats) -> int | 
 
 
 def _spread(rest: Floats, points: Floats, mean: csr_array, held: Bools) -> Floats:
-    """Lets the free nodes follow the displacements of the held ones: the grading stays, unlike when the
-    positions themselves are averaged."""
+    """Positions with the held nodes' displacements averaged over the free ones.
+
+    Averaging displacements preserves the grading; averaging positions does not.
+    """
     moved = points - rest
     for _ in range(SWEEPS):
         moved = np.where(held[:, None], moved, mean @ moved)
@@ -121,7 +139,10 @@ def _spread(rest: Floats, points: Floats, mean: csr_array, held: Bools) -> Float
 
 
 def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outline: Outline) -> bool:
-    """Moves, in place, one end of every edge that crosses the outline to the crossing, shortest way first."""
+    """Move one end of each edge that crosses the outline to the crossing, in place, shortest way first.
+
+    Returns True if every such edge then has an end on the outline; `on` is updated.
+    """
     distance = np.where(on, 0.0, outline.signed(points))
     distance[np.abs(distance) < 1e-12] = 0.0
     on |= distance == 0.0
@@ -135,8 +156,8 @@ def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outl
     share = np.hypot(*(at - points[inside]).T) / length
     nodes, places = np.concatenate([inside, outside]), np.concatenate([at, at])
     other = np.concatenate([outside, inside])
-    # an inside node with edges through two sides of a polygon would leave the corner between them uncovered
-    # if it moved to one of them: its partners go first
+    # an inside node with edges through two sides of a polygon would, moved to one of them, leave the corner
+    # between them uncovered: the other ends of its edges go first
     face = outline.face(at)
     least, most = np.full(len(points), 99), np.full(len(points), -1)
     np.minimum.at(least, inside, face)
@@ -159,7 +180,7 @@ def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outl
         count[mine] += 1
     left: Bools = on[inside] | on[outside]
     for _ in range(3 if len(outline.corners) else 0):
-        # an edge from one side of a corner, through the inside, out at the corner's other side
+        # edges from one side of a corner through the inside to beyond the other side
         start = np.concatenate([a[on[a] & ~on[b]], b[on[b] & ~on[a]]])
         stop = np.concatenate([b[on[a] & ~on[b]], a[on[b] & ~on[a]]])
         probe = points[start] + 1e-3 * (points[stop] - points[start])
@@ -173,8 +194,8 @@ def _onto(points: Floats, edges: Ints, cells: Ints, held: Bools, on: Bools, outl
 
 
 def _divide(points: Floats, cells: Ints, side: Ints, outline: Outline) -> tuple[Ints, Bools]:
-    """Cuts cells that lie on both sides, or are too flat, into triangles; says which cells lie inside."""
-    # first the corner of a polygon that a cell covers with three nodes on it, the fourth being outside
+    """Cells after cutting those on both sides and those too flat into triangles; True for cells inside."""
+    # first cells that cover a corner of the polygon with three nodes on the outline and the fourth outside
     s = side[cells]
     fourth = s.argmax(axis=1)
     rolled = cells[np.arange(len(cells))[:, None], (fourth[:, None] + np.arange(4)) % 4]
@@ -203,7 +224,7 @@ def _divide(points: Floats, cells: Ints, side: Ints, outline: Outline) -> tuple[
     as_is = np.where(both[cut], -100.0, cell_quality(points, todo))
     stay = as_is >= np.maximum(one, two)
     cells = np.concatenate([quads, todo[stay], best[~stay].reshape(-1, 4)])
-    # in a convex outline a cell lies inside where one node does; a triangle of three nodes on it may
+    # the outline is convex: a cell with a node inside is inside; a triangle with three nodes on it may be
     within = side[cells].min(axis=1) < 0
     rim = (cells[:, 2] == cells[:, 3]) & (side[cells] == 0).all(axis=1)
     within[rim] = _inside(points, cells[rim, :3], outline)
@@ -211,13 +232,13 @@ def _divide(points: Floats, cells: Ints, side: Ints, outline: Outline) -> tuple[
 
 
 def _inside(points: Floats, triangles: Ints, outline: Outline) -> Bools:
-    """True for triangles with nodes on the outline that lie inside it and are not degenerate."""
+    """True for triangles with all nodes on the outline that lie inside it and are not degenerate."""
     good = cell_quality(points, triangles[:, [0, 1, 2, 2]]) > WORTH_HAVING
     return good & (outline.signed(points[triangles].mean(axis=1)) < 0.0)
 
 
 def corner_sines(points: Floats, cells: Ints) -> Floats:
-    """Sines of the angles at the corners of quadrilaterals, shape (m, 4); negative where turned over."""
+    """Sines of the corner angles of quadrilaterals, shape (m, 4); negative if inverted."""
     p = points[cells]
     ahead, back = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
     cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
@@ -232,7 +253,11 @@ def cell_areas(points: Floats, cells: Ints) -> Floats:
 
 
 def cell_quality(points: Floats, cells: Ints) -> Floats:
-    """1 for a square and an equilateral triangle, 0 or less where degenerate; shape (m,)."""
+    """Quality of cells, shape (m,): 1 for a rectangle or an equilateral triangle, 0 or less if degenerate.
+
+    It is the smallest sine of a corner for quadrilaterals, 4 sqrt(3) area / sum of squared sides for
+    triangles.
+    """
     triangle = cells[:, 2] == cells[:, 3]
     out = corner_sines(points, cells).min(axis=1)
     p = points[cells[triangle, :3]]

@@ -1,4 +1,4 @@
-"""Structured meshes of prismatic beams, and a beam's outline as a camera from the side sees it.
+"""Structured meshes of prismatic beams, and a beam's outline in the side view.
 
 A plane section is extruded along x into layers of hexahedra or tetrahedra, graded towards the clamps.
 """
@@ -15,12 +15,12 @@ from tisim.bodies import Circle, Rectangle
 from tisim.mesh._mesh import ElementKind, Mesh, MeshError, boundary_facets
 from tisim.mesh._section import Section, check_positive, circle_quadrangles, circle_triangles, half, rectangle
 
-# Widths of the layers next to a clamp, against the others. In small strains, with one pressure an
-# element, 2 rings and 7 mm layers, the deflection of the 50, 100 and 150 mm beams comes within -0.34 and
-# +0.11 % of a fine mesh for K/mu from 20 to 1000; equal layers are 0.6 to 2.1 % too stiff.
+# Widths of the layers next to a clamp, relative to the others. At small strain, with one pressure per
+# element, 2 rings and 7 mm layers, the deflections of the 50, 100 and 150 mm beams are within -0.34 and
+# +0.11 % of those of a fine mesh for K/mu from 20 to 1000; equal layers are 0.6 to 2.1 % too stiff.
 CLAMP_GRADING = (0.2, 0.5)
 
-# As fine as the paper's cylinder of 100 mm: 7,239 nodes of 4-node tetrahedra (the paper: 7,257).
+# Resolution of the paper's cylinder of 100 mm: 7,239 nodes of 4-node tetrahedra (the paper: 7,257).
 PAPER_RINGS, PAPER_LAYER = 6, 0.1 / 56
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
@@ -54,10 +54,10 @@ def beam_mesh(
     radial_elements : int
         Number of elements from the axis to the surface.
     mirror : bool
-        Only the half y >= 0, with symmetry ("y",).
+        Mesh only the half y >= 0, with symmetry ("y",).
     with_grips : bool
-        Also mesh what the grips hold, x in [-grip_length, 0] and beyond `length` when both ends are clamped.
-        Its nodes are all fixed, so it stores no energy and the answer is the same without.
+        Also mesh the parts in the grips, x in [-grip_length, 0] and beyond `length` if both ends are clamped.
+        All of their nodes are fixed, so they store no energy and do not change the solution.
     grading : tuple of float
         Widths of the layers next to a clamp, as fractions of the width of the others.
 
@@ -71,7 +71,7 @@ def beam_mesh(
     Raises
     ------
     MeshError
-        For lengths, counts or grading that give no mesh.
+        For invalid lengths, counts, supports or grading.
     """
     check_positive(length=length, axial_element_size=axial_element_size)
     if with_grips:
@@ -95,7 +95,7 @@ def beam_mesh(
 
 
 def plane_section(section: Circle | Rectangle, *, kind: ElementKind, radial_elements: int) -> Section:
-    """The whole cross-section as a plane mesh in (y, z), fit for elements of this kind."""
+    """The whole cross-section as a plane mesh in (y, z) for elements of a type."""
     if isinstance(section, Circle):
         check_positive(radius=section.radius)
         if kind == "hex8":
@@ -137,10 +137,10 @@ def _named(
 def layer_ends(
     length: float, layer: float, *, graded_start: bool, graded_end: bool, grading: tuple[float, ...]
 ) -> NDArray[np.float64]:
-    """Positions of the layers' ends on [0, length], shape (layers + 1,).
+    """Positions of the layers' ends on [0, length] [m], shape (layers + 1,).
 
-    grading: widths of the layers next to a clamp, as parts of the width of the others; the number of
-    layers is length / layer, rounded, whatever the grading.
+    `grading` holds the widths of the layers next to a clamp relative to the others. The number of layers is
+    length / layer, rounded; with a graded end it is at least 2, or 3 with two or more graded layers.
     """
     need = len(grading) * (int(graded_start) + int(graded_end)) + 1
     count = max(round(length / layer), min(need, 3))
@@ -161,9 +161,9 @@ def extrude(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Nodes (n, 3) [m] and elements (m, nodes per element), numbered plane by plane along x.
 
-    With "tet10" there is a plane of nodes in the middle of each layer too, and every plane holds the
-    section's corners and its edges' middles: the body is then exactly the quadratic section drawn out,
-    as a quadratic function of (y, z) is reproduced by the 10-node element however the prism is cut.
+    For "tet10" there is also a plane of nodes in the middle of each layer, and every plane has the corners
+    and the edges' middles of the section. The body is then exactly the extruded quadratic section, since the
+    10-node element reproduces quadratic functions of (y, z), however the prism is cut.
     """
     n, layers = len(section.points), len(x) - 1
     if kind == "hex8":
@@ -194,11 +194,11 @@ def _planes(points: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.f
 
 
 def _prism_tetrahedra(section: Section, layers: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Three tetrahedra a prism: section point and plane number of each corner, both (m, 4).
+    """Three tetrahedra per prism: section point and plane number of each corner, both (m, 4).
 
-    The diagonal over a section edge rises from the end with the lower rank to the other, so that
-    neighbours agree; ranks go by (|y|, z), so that the whole beam is the mirror image of its half.
-    The direction alternates from layer to layer, else the mesh would favour twisting one way.
+    The diagonal over a section edge rises from the end of lower rank to the other, so that neighbours agree.
+    Ranks are by (|y|, z), so that the whole beam is the mirror image of its half. The direction alternates
+    from layer to layer, since otherwise the mesh would favour one sense of twist.
     """
     y, z = section.points.T
     rank = np.lexsort((np.round(z, 12), np.round(np.abs(y), 12))).argsort()
@@ -210,7 +210,7 @@ def _prism_tetrahedra(section: Section, layers: int) -> tuple[NDArray[np.int64],
     up = np.where(flip, 1 - upper, upper)
     level = np.arange(layers)[:, None, None, None] + np.broadcast_to(up, point.shape)
     point, level = point.reshape(-1, 4), level.reshape(-1, 4)
-    # x stands for the plane number: only the sign of the volume is wanted
+    # the plane number is used as x: only the sign of the volume matters
     corner = np.concatenate([level[..., None].astype(float), section.points[point]], axis=2)
     negative = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0
     for array in (point, level):
@@ -220,8 +220,13 @@ def _prism_tetrahedra(section: Section, layers: int) -> tuple[NDArray[np.int64],
 
 @dataclass(frozen=True, kw_only=True)
 class Outline:
-    """Polylines from the clamp to the other end, (x, z) [m]: upper and lower edge, and centreline, each
-    (k, 2); x: where their points lie at rest [m], (k,)."""
+    """Outline of a beam in the plane y = 0, from the clamp to the other end.
+
+    Attributes
+    ----------
+    upper, lower, centreline : points (x, z) of the edges and of the centreline [m], shape (k, 2).
+    x : position of the points at rest [m], shape (k,).
+    """
 
     upper: NDArray[np.float64]
     lower: NDArray[np.float64]
@@ -232,8 +237,8 @@ class Outline:
 def outline(mesh: Mesh, positions: NDArray[np.float64]) -> Outline:
     """Outline of a structured beam (`beam_mesh`) at nodal positions (n, 3) [m].
 
-    The points are nodes of the plane y = 0, at every plane of nodes along x; between them the edge is a
-    parabola (tet10) or a line.
+    The points are the nodes of the plane y = 0 at every plane of nodes along x; between them the edge is a
+    parabola (tet10) or a line. MeshError if the mesh is not structured or the shape of `positions` is wrong.
     """
     positions = np.asarray(positions, dtype=np.float64)
     if positions.shape != mesh.nodes.shape:

@@ -12,8 +12,9 @@ from tisim.mesh.refine import to_quadratic
 from tisim.mesh.surface import Units, checked_surface
 from tisim.mesh.tetrahedralise import body_from_surface
 
-# fTetWild makes another mesh each time: one that putting nodes onto the planes turns over or flattens is
-# made anew (the least scaled Jacobian is 0.09 to 0.12 in most, below 0.02 in about one of some hundreds)
+# fTetWild makes a different mesh each time. A mesh in which moving nodes onto the planes inverts or flattens
+# an element is made again (the least scaled Jacobian is 0.09 to 0.12 in most, below 0.02 in about one of some
+# hundreds).
 _ATTEMPTS = 5
 _LEAST_SHAPE = 0.02
 
@@ -32,15 +33,16 @@ def block_around(
     Parameters
     ----------
     surface : path, trimesh.Trimesh or None
-        Closed surface of the rigid inclusion in the block's coordinates; None for a plain block. What reaches
-        below z = 0 does not count, and it may not reach the top or the sides.
+        Closed surface of the rigid inclusion in the block's coordinates; None for a plain block. Parts below
+        z = 0 are ignored; the top and the sides must not be reached.
     size : (float, float, float)
-        Of the block [m].
+        Size of the block [m].
     edge_length, tolerance : float
-        [m], as in `body_from_surface`.
+        As in `body_from_surface` [m].
     units : "m" or "mm"
-        Of the surface's coordinates.
+        Unit of the surface's coordinates.
     kind : "tet4" or "tet10"
+        Type of the elements.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def block_around(
     Raises
     ------
     MeshError
-        In one sentence, for a surface or lengths that give no mesh.
+        If the surface or the lengths do not result in a mesh; the message is one sentence.
     """
     import trimesh  # takes longer to import than tisim itself
 
@@ -78,8 +80,10 @@ def block_around(
 
 
 def _onto_planes(body: Mesh, size: tuple[float, float, float], reach: float) -> Mesh:
-    """The mesh with the nodes of its plane faces, which fTetWild keeps within its tolerance only, exactly
-    on the planes, and with named sets. Slivers that lie in a plane as a whole are left out."""
+    """The mesh with the nodes of its plane faces exactly on the planes, and with named sets.
+
+    fTetWild keeps these nodes only within its tolerance. Slivers whose nodes all lie in a plane are removed.
+    """
     width, depth, height = size
     planes = ((2, 0.0), (2, height), (0, -width / 2), (0, width / 2), (1, -depth / 2), (1, depth / 2))
     elements = body.elements

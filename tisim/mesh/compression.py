@@ -1,4 +1,4 @@
-"""An eighth of an upright cylinder, graded towards the platen's edge, where a bonded one strains most."""
+"""One eighth of an upright cylinder, graded towards the platen's edge, where a bonded one strains most."""
 
 from __future__ import annotations
 
@@ -16,18 +16,34 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 CORE = 0.45  # side of the square core, in radii
-BULGE = 0.12  # how far the core's corner is drawn in, for better angles about it
-OUTER = 0.3  # width of the outermost shell against the innermost one, and of the layer at the platen
+BULGE = 0.12  # fraction by which the core's corner is moved inwards, for better angles about it
+OUTER = 0.3  # ratio of the outermost shell's width to the innermost one's; likewise of the platen's layer
 
 
 def press_mesh(*, radius: float, height: float, kind: ElementKind = "tet10", refinement: float = 1.0) -> Mesh:
     """The part x, y, z >= 0 of a cylinder along z centred on the origin, with symmetry ("x", "y", "z").
 
-    radius, height: of the whole cylinder [m]; refinement: elements get smaller by this factor.
-    The section's mesh has the area of the circle. MeshError where a length is not positive.
+    The section's mesh has the area of the circle.
 
-    node_sets: "top" (z = height / 2), "side" (the mantle), "mirror_x", "mirror_y", "mirror_z".
-    facet_sets: "surface" (top and side), "top", "side".
+    Parameters
+    ----------
+    radius, height : float
+        Radius and height of the whole cylinder [m].
+    kind : "tet4", "tet10" or "hex8"
+        Type of the elements.
+    refinement : float
+        Factor by which the elements become smaller.
+
+    Returns
+    -------
+    Mesh
+        Node sets: "top" (z = height / 2), "side" (the lateral surface), "mirror_x", "mirror_y", "mirror_z".
+        Facet sets: "surface" (top and side), "top", "side".
+
+    Raises
+    ------
+    MeshError
+        If a length or the refinement is not positive.
     """
     check_positive(radius=radius, height=height)
     if not (np.isfinite(refinement) and refinement > 0):
@@ -43,8 +59,8 @@ def press_mesh(*, radius: float, height: float, kind: ElementKind = "tet10", ref
     hexahedra = np.concatenate([cells + base, cells + base + len(points)], axis=2).reshape(-1, 8)
     if kind == "hex8":
         return _named(Mesh(kind="hex8", nodes=nodes, elements=hexahedra), top=z[-1])
-    # Diagonals rise outwards: one then ends in the platen's edge, so no element has faces on the platen and
-    # on the side, and none is flattened where the side folds onto the platen.
+    # Diagonals rise outwards, so that one ends in the platen's edge: no element then has faces on both the
+    # platen and the side, and none is flattened where the side folds onto the platen.
     out = np.round(np.linalg.norm(points, axis=1) / radius, 9)
     rank = np.argsort(np.lexsort((points[:, 0], out)))
     column = np.tile(rank, len(z))
@@ -83,7 +99,7 @@ def _shrinking(count: int) -> Floats:
 
 
 def _area_factor(around: int, *, quadratic: bool) -> float:
-    """By how much the rim's polygon, or its parabolic arcs, must grow to enclose the circle's area."""
+    """Factor by which the rim's polygon, or its parabolic arcs, must grow to enclose the circle's area."""
     step = np.pi / (4 * around)
     part = 0.5 * np.sin(step)
     if quadratic:
@@ -92,7 +108,7 @@ def _area_factor(around: int, *, quadratic: bool) -> float:
 
 
 def _rounded(mesh: Mesh, rim: float) -> Mesh:
-    """Middle nodes of the mantle's edges put on its circle; the mantle's facets stay in upright columns."""
+    """The mesh with the middle nodes of the lateral surface on its circle; facets stay in upright columns."""
     surface = boundary_facets(mesh.kind, mesh.elements)
     corner = np.linalg.norm(mesh.nodes[surface[:, :3], :2], axis=2)
     mantle = np.unique(surface[np.isclose(corner, rim, rtol=1e-9).all(axis=1)])

@@ -1,4 +1,4 @@
-"""The block that a rod pokes, meshed for that rod: fine under its edge, coarse far away."""
+"""Mesh of a block for indentation by a rod: fine under the rod's edge, coarse far away."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tisim.mesh._snap import Snapped, snap
 
 Floats = NDArray[np.float64]
 
-# raised whenever the same poke gets another mesh: labels from two layouts are not mixed in a dataset
+# Version of the mesh, raised when the mesh of a poke changes; a dataset has one version only.
 LAYOUT = 2
 STEEPEST = np.radians(45.5)
-# Grids tried until one meets the inclusion well: (spacing at the inclusion, turn of the rays in parts of
-# their spacing, rings more).
+# Grids tried until one fits the inclusion well: (factor of the spacing at the inclusion, rotation of the rays
+# as a fraction of their spacing, number of additional rings).
 ATTEMPTS = (
     *((1.00, 0.0, 0), (1.00, 0.5, 1), (0.85, 0.25, 0), (0.85, 0.75, 1), (0.92, 0.33, 2), (0.78, 0.0, 0)),
     *((0.78, 0.5, 1), (0.72, 0.67, 0), (0.65, 0.25, 1), (0.65, 0.75, 2), (0.78, 0.1, 3), (0.65, 0.4, 3)),
@@ -27,21 +27,21 @@ ATTEMPTS = (
     *((0.35, 0.5, 2), (0.35, 0.0, 6), (0.30, 0.25, 4), (0.30, 0.8, 7), (1.00, 0.8, 2), (1.00, 0.0, 6)),
     *((0.85, 0.4, 6), (1.00, 0.6, 6)),
 )
-# cells at an inclusion, in parts of the radius of its outline's inscribed circle: some ten nodes on a
-# circle; more for a sphere, whose dome is met by facets too
+# size of cells at an inclusion, relative to the radius of its outline's inscribed circle: about ten nodes on
+# a circle; smaller for a sphere, whose surface is approximated by facets too
 CELL_AT_OUTLINE = 0.65
 CELL_AT_DOME = 0.40
-# a hex20 has nodes in the middle of its edges
+# factor of that size for hex20, which has nodes in the middle of its edges
 COARSER_QUADRATIC = 1.5
-# they grow by this factor where the rod is FAR [m] from the outline
+# factor of that size if the rod is FAR [m] or more from the outline
 COARSER_FAR_AWAY = 1.3
 FAR = 0.020
 GOOD_QUALITY = 0.12
 WORST_QUALITY = 0.01
-# the part of its plan area that an inclusion may lose to the chords of its outline; the edges of hex20 bow
-# out to the outline again, so that its volume decides
+# fraction of its plan area that an inclusion may lose to the chords of its outline; curved edges of hex20
+# recover it, so that their criterion is the volume
 AREA_LOST, AREA_LOST_BOWED = 0.10, 0.15
-# meshed volume over true volume: of prisms, and of spheroids, whose thin gap to the base is filled
+# allowed ratio of meshed to true volume, of prisms and of spheroids, whose thin gap to the base is filled
 VOLUME = (0.95, 1.001)
 VOLUME_OF_DOME = (0.80, 1.14)
 
@@ -55,26 +55,26 @@ def poke_mesh(
     refinement: float = 1.0,
     kind: ElementKind = "hex20",
 ) -> Mesh:
-    """The block meshed for a rod pushed along `direction` at `site` (x, y) [m].
+    """Mesh of the block for a rod pushed along `direction` at `site` (x, y) [m].
 
-    A round inclusion is met by chords and facets: the corners lie on its surface, and its meshed volume is
-    some percent small (where all grids tried are further off, it is that of the nearest). Soft material
-    thinner than 1 mm between an inclusion and the base is meshed as rigid.
+    A round inclusion is approximated by chords and facets: the corners lie on its surface, and its meshed
+    volume is a few percent too small. If no grid is within the tolerance of the volume, the closest one is
+    used. Soft material thinner than 1 mm between an inclusion and the base is meshed as rigid.
 
     Parameters
     ----------
     block : Block
     site : (float, float)
-        Where the rod's axis meets the top, (x, y) [m].
+        Point at which the rod's axis meets the top, (x, y) [m].
     direction : (float, float, float)
-        Of the push, up to 45 degrees from -z.
+        Direction of the push, up to 45 degrees from -z.
     rod : Rod
     refinement : float
-        Spacings get smaller by this factor, 0.5 to 6; at 1 some 2,600 nodes without an inclusion (3,500 of
-        hex8).
+        Factor by which spacings become smaller, 0.5 to 6; with 1 there are about 2,600 nodes without an
+        inclusion (3,500 of hex8).
     kind : "hex20", "hex8", "tet4" or "tet10"
-        Hexahedra have wedges (with repeated nodes) where an inclusion's outline cuts a cell; tetrahedra are
-        cut from the grid of hex8.
+        Type of the elements. Hexahedra include wedges (with repeated nodes) where an inclusion's outline cuts
+        a cell; tetrahedra are cut from the grid of hex8.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def poke_mesh(
     Raises
     ------
     MeshError
-        In one sentence, for arguments out of range or an inclusion that no grid meets.
+        For arguments out of range, or an inclusion that no grid fits; the message is one sentence.
     """
     if kind not in ("hex20", "hex8", "tet4", "tet10"):
         raise MeshError(f"poke mesh: expected kind hex20, hex8, tet4 or tet10, got {kind!r}")
@@ -132,7 +132,7 @@ def poke_mesh(
 def check_indentation(
     *, block: Block, site: tuple[float, float], direction: Vector, rod: Rod, refinement: float
 ) -> None:
-    """Raise the MeshError that `poke_mesh` would raise for arguments out of range; makes no mesh."""
+    """Raise the MeshError of `poke_mesh` for arguments out of range, without making a mesh."""
     size = _checked_size(block)
     _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement)
     if block.inclusion is not None:
@@ -148,8 +148,8 @@ def _raised(
     kind: ElementKind,
     outline: Outline,
 ) -> Mesh | None:
-    """The block's mesh over a plane grid; None where elements turn over."""
-    # above the inclusion the columns lean back to the undisturbed grid, if the cover has room for that
+    """The block's mesh over a plane grid; None if elements are inverted."""
+    # above the inclusion the columns return to the undisturbed grid, if the cover is thick enough
     for top_points in (grid.points, None):
         mesh = extrude(
             points=snapped.points,
@@ -174,7 +174,7 @@ def _meets(snapped: Snapped, outline: Outline, kind: ElementKind) -> bool:
 
 
 def _volume_off(mesh: Mesh, outline: Outline, size: tuple[float, float, float]) -> float:
-    """By how much the inclusion's meshed volume over its own is outside of what is asked; 0 inside."""
+    """Distance of the ratio of the inclusion's meshed and true volume from its allowed range; 0 within it."""
     if mesh.kind != "hex20":
         return 0.0  # straight edges: the plan area has decided
     places, weights = quadrature(mesh.kind)
@@ -192,7 +192,7 @@ def _checked_size(block: Block) -> tuple[float, float, float]:
 
 
 class _Grids:
-    """Checks a poke and makes plane grids for it."""
+    """Checks the arguments of a poke, with a MeshError if one is out of range, and makes plane grids."""
 
     def __init__(
         self,
@@ -218,7 +218,7 @@ class _Grids:
             raise MeshError(f"rod radius: expected a length above 0 [m], got {rod.radius}")
         self.half = 0.5 * np.array(size[:2])
         self.site = np.array(site, dtype=np.float64)
-        # the outermost fine ring and a cell more
+        # the outermost fine ring and one more cell
         reach = 1.8 * rod.radius / float(np.cos(tilt))
         if self.site.shape != (2,) or not np.all(np.abs(self.site) + reach <= self.half):
             raise MeshError(
@@ -231,13 +231,16 @@ class _Grids:
         self.azimuth = float(np.arctan2(push[1], push[0]))
         self.stretch = 1.0 / float(np.cos(tilt))
         self.quadratic = kind == "hex20"
-        if self.quadratic:  # half as many rays and rings: there are nodes between them
+        if self.quadratic:  # about half as many rays and rings, since there are nodes between them
             self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(4, round(8 * refinement))
         else:
             self.n_theta, self.n_outer = 4 * max(3, round(5 * refinement)), max(5, round(9 * refinement))
 
     def make(self, focus: Focus | None, *, turn: float = 0.0, more: int = 0) -> PlaneGrid:
-        """A grid, fine at the focus too; its rays turned by parts of their spacing, with some rings more."""
+        """A grid that is also fine at the focus.
+
+        Its rays are rotated by the fraction `turn` of their spacing, and it has `more` additional rings.
+        """
         return o_grid(
             site=self.site,
             half=self.half,
@@ -245,7 +248,7 @@ class _Grids:
             rings=self.rings,
             azimuth=self.azimuth,
             stretch=self.stretch,
-            # an inclusion's outline wants more rays than the rod
+            # an inclusion's outline needs more rays than the rod
             n_theta=self.n_theta + 4 * (more // 3 + (self.quadratic and focus is not None)),
             n_outer=self.n_outer + more,
             focus=focus,

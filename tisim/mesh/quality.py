@@ -1,6 +1,6 @@
 """Quality of a mesh (volumes, determinants, scaled Jacobians), and smoothing.
 
-Smoothing moves interior nodes of tetrahedra; the boundary stays where it is.
+Smoothing moves interior nodes of tetrahedra; the boundary is unchanged.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ from tisim.mesh._mesh import HEXAHEDRA, Mesh, MeshError, boundary_facets
 
 @dataclass(frozen=True, kw_only=True)
 class Quality:
-    """Figures of a mesh.
+    """Quality measures of a mesh.
 
     Attributes
     ----------
     n_nodes, n_elements : int
+        Numbers of nodes and elements.
     volume : float
-        Of the mesh [m3] (a half model's is half the body's).
+        Volume of the mesh [m3] (that of a half model is half the body's).
     min_det : float
-        Least det J over the nodes of an element, relative to the element's mean det J (1 for a straight
-        tetrahedron, 0 or less where the element is turned over).
+        Smallest det J at a node of an element, relative to the element's mean det J (1 for a straight
+        tetrahedron, 0 or less for an inverted element).
     min_scaled_jacobian, mean_scaled_jacobian : float
         See `scaled_jacobian`.
     """
@@ -39,7 +40,7 @@ class Quality:
 
 
 def volumes(mesh: Mesh) -> NDArray[np.float64]:
-    """Volume of each element [m3], by a quadrature that is exact for curved elements, shape (m,)."""
+    """Volume of each element [m3], shape (m,), by a quadrature that is exact for curved elements."""
     places, weights = quadrature(mesh.kind)
     return det_jacobian(mesh.kind, mesh.nodes, mesh.elements, places) @ weights
 
@@ -47,15 +48,18 @@ def volumes(mesh: Mesh) -> NDArray[np.float64]:
 def nodal_determinants(mesh: Mesh) -> NDArray[np.float64]:
     """det J at each node of each element [m3], shape (m, nodes per element); positive in a valid mesh.
 
-    A collapsed node of a wedge (a hexahedron with repeated nodes) has 0 there.
+    It is 0 at the collapsed nodes of a wedge (a hexahedron with repeated nodes).
     """
     return det_jacobian(mesh.kind, mesh.nodes, mesh.elements, NODE_PLACES[mesh.kind])
 
 
 def scaled_jacobian(mesh: Mesh) -> NDArray[np.float64]:
-    """The least of the corners' triple products of unit edges, shape (m,): 1 for a cube and for a
-    regular tetrahedron (where the product is multiplied by sqrt 2), 0 or less where turned over
-    (Knupp 2000, as in VTK's verdict). Edges with a middle node count as straight."""
+    """Scaled Jacobian of each element, shape (m,) (Knupp 2000, as in VTK's verdict).
+
+    It is the smallest triple product of unit edges at a corner: 1 for a cube and for a regular tetrahedron
+    (whose product is multiplied by sqrt 2), 0 or less for inverted elements. Edges with a middle node are
+    taken as straight.
+    """
     x = mesh.nodes[mesh.elements[:, corner_triads(mesh.kind)]]
     edges = x[:, :, 1:] - x[:, :, :1]
     length = np.linalg.norm(edges, axis=-1, keepdims=True)
@@ -70,7 +74,7 @@ def scaled_jacobian(mesh: Mesh) -> NDArray[np.float64]:
 
 
 def quality(mesh: Mesh) -> Quality:
-    """The figures of a mesh, for a report or a test."""
+    """Quality measures of a mesh."""
     det = nodal_determinants(mesh)
     scaled = scaled_jacobian(mesh)
     volume = volumes(mesh)
@@ -86,10 +90,10 @@ def quality(mesh: Mesh) -> Quality:
 
 
 def smooth(mesh: Mesh, *, rounds: int = 3) -> Mesh:
-    """Move interior nodes of a tet4 mesh to the mean centre of their elements, weighted by volume.
+    """Move interior nodes of a tet4 mesh to the volume-weighted mean of their elements' centres.
 
-    A node moves only where the worst of its elements (mean ratio) gets no worse by the moves around it.
-    Nodes of named node sets stay, so that a gripped volume keeps its end.
+    A node moves only if the worst of its elements (by mean ratio) does not become worse by the moves around
+    it. Nodes of named node sets stay, so that a gripped volume keeps its shape. MeshError for other elements.
     """
     if mesh.kind != "tet4":
         raise MeshError(f"only a tet4 mesh can be smoothed, this one is {mesh.kind}")
@@ -114,7 +118,7 @@ def _round(
     target /= np.where(weight > 0, weight, 1.0)[:, None]
     worst = _worst(mean_ratio(corner), elements, len(nodes))
     moving = free.copy()
-    # each pass takes back the moves around the elements that got too bad; none is left in the end
+    # each pass undoes the moves around elements that became worse, until there are none
     while moving.any():
         moved = np.where(moving[:, None], target, nodes)
         ratio = mean_ratio(moved[elements])
@@ -136,8 +140,10 @@ def _worst(value: NDArray[np.float64], elements: NDArray[np.int32], n_nodes: int
 
 
 def mean_ratio(corner: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Shape of tetrahedra (m, 4, 3): 12 (3 V)^(2/3) over the sum of squared edges, 1 for a regular one,
-    0 or less where turned over (Liu and Joe 1994)."""
+    """Mean ratio of tetrahedra with corners (m, 4, 3), shape (m,) (Liu and Joe 1994).
+
+    It is 12 (3 V)^(2/3) over the sum of squared edges: 1 for a regular one, 0 or less for inverted ones.
+    """
     volume = _volumes(corner)
     pairs = corner[:, [0, 1, 2, 0, 1, 2]] - corner[:, [1, 2, 0, 3, 3, 3]]
     return 12 * np.cbrt((3 * volume) ** 2) * np.sign(volume) / (pairs**2).sum(axis=(1, 2))

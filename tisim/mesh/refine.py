@@ -1,9 +1,9 @@
-"""Finer tetrahedra: local refinement; and quadratic elements from linear ones.
+"""Local refinement of tetrahedra, and quadratic elements from linear ones.
 
-Edges are halved, longest first (Rivara 1984; Plaza and Carey 2000 for tetrahedra): a tetrahedron with an
-edge to halve has its longest edge halved too, which keeps the angles from getting worse with each pass.
-Each tetrahedron is then cut at its marked edges from the longest to the shortest, in one order for the
-whole mesh; so both neighbours cut the face between them alike and no node hangs.
+Edges are bisected, longest first (Rivara 1984; Plaza and Carey 2000 for tetrahedra): if an edge of a
+tetrahedron is bisected, so is its longest edge, which prevents angles from degenerating with each pass. Each
+tetrahedron is then cut at its marked edges from the longest to the shortest, in one order for the whole mesh,
+so that both neighbours cut their common face in the same way and there are no hanging nodes.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from tisim.mesh._elements import HEX_EDGES, NODE_PLACES, TET_EDGES, det_jacobian
 from tisim.mesh._mesh import ElementKind, Mesh, MeshError, boundary_facets
 from tisim.mesh.quality import smooth
 
-# wanted edge length [m] at points (k, 3) [m]
+# target edge length [m] at points (k, 3) [m]
 Size = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
-# of a linear element: the quadratic one with its corners, and the edges in whose middles the new nodes lie
+# for each linear element type: the quadratic type, and the edges whose middles are the new nodes
 _QUADRATIC: dict[ElementKind, tuple[ElementKind, NDArray[np.int64]]] = {
     "tet4": ("tet10", TET_EDGES),
     "hex8": ("hex20", HEX_EDGES),
 }
-# parts of its curve that an edge keeps where all of it would turn an element over
+# fractions of the curvature of an edge, reduced until no element is inverted
 CURVED = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 _TRIANGLE_EDGES = np.array([(0, 1), (1, 2), (2, 0)])
 Projection = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -48,27 +48,27 @@ def refine_around(
     Parameters
     ----------
     mesh : Mesh
-        Of tet4 elements.
-    centre : (float, float, float)
-    radius : float
-        The ball that is fine throughout [m].
+        A mesh of tet4 elements.
+    centre, radius : (float, float, float) and float
+        Centre and radius of the ball that is refined uniformly [m].
     edge_length : float
-        Longest edge wanted in it [m].
+        Longest edge in the ball [m].
     growth : float
-        Increase of the wanted length per distance from the ball.
+        Increase of the longest edge per distance from the ball.
     smoothing : int
         Rounds of `smooth` afterwards (0: none).
     max_nodes : int
+        Largest number of nodes.
 
     Returns
     -------
     Mesh
-        Node and facet sets follow; the boundary keeps its shape.
+        Node and facet sets are extended; the boundary keeps its shape.
 
     Raises
     ------
     MeshError
-        For another element kind, lengths that cannot be, or more than max_nodes nodes.
+        For another element type, invalid lengths, or more than max_nodes nodes.
     """
     if edge_length <= 0 or radius < 0 or growth <= 0:
         raise MeshError("refinement needs a positive edge length and growth and a radius not below 0")
@@ -82,9 +82,10 @@ def refine_around(
 
 
 def refine(mesh: Mesh, *, size: Size, max_nodes: int = 200_000) -> Mesh:
-    """Refine a tet4 mesh until no edge is longer than size(its middle); node and facet sets follow.
+    """Refine a tet4 mesh until no edge is longer than size(its middle); node and facet sets are extended.
 
-    The boundary keeps its shape: its triangles are cut, not moved. Raises MeshError past max_nodes.
+    The boundary keeps its shape: its triangles are cut, not moved. MeshError for another element type or more
+    than max_nodes nodes.
     """
     if mesh.kind != "tet4":
         raise MeshError(
@@ -100,7 +101,7 @@ def refine(mesh: Mesh, *, size: Size, max_nodes: int = 200_000) -> Mesh:
 
 
 def _pass(mesh: Mesh, size: Size) -> Mesh | None:
-    """Halve all edges that are too long, and those that must be with them; None where there is none."""
+    """Bisect all edges that are too long, and those required by them; None if no edge is too long."""
     n = mesh.n_nodes
     pairs = mesh.elements[:, TET_EDGES].astype(np.int64)
     keys, first, place = np.unique(edge_keys(pairs, n), return_index=True, return_inverse=True)
@@ -111,8 +112,8 @@ def _pass(mesh: Mesh, size: Size) -> Mesh | None:
     marked = length > size(middles)
     if not marked.any():
         return None
-    # one order for the whole mesh: by length, equal lengths by number; rounded, so that a mesh's
-    # symmetric edges do not fall one way or the other by round-off
+    # one order for the whole mesh: by length, equal lengths by number; lengths are rounded, so that the order
+    # of symmetric edges does not depend on round-off
     rank = np.empty(len(edges), dtype=np.int64)
     rank[np.lexsort((keys, np.round(length / length.max(), 9)))] = np.arange(len(edges))
     longest = np.take_along_axis(place, rank[place].argmax(axis=1)[:, None], axis=1)[:, 0]
@@ -132,7 +133,7 @@ def _pass(mesh: Mesh, size: Size) -> Mesh | None:
 
 
 class _Cut:
-    """Cuts simplices at marked edges; keys are sorted, ranks say which edge goes first (the highest)."""
+    """Cuts simplices at marked edges with sorted keys; the edge of highest rank is cut first."""
 
     def __init__(self, keys: NDArray[np.int64], rank: NDArray[np.int64], n_nodes: int) -> None:
         self.keys, self.rank, self.n = keys, rank, n_nodes
@@ -155,16 +156,16 @@ class _Cut:
         return np.concatenate(done).astype(np.int32)
 
     def _lookup(self, pairs: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Position among the marked edges, and rank (-1: not marked) of each edge."""
+        """Index among the marked edges and rank of each edge; rank -1 if it is not marked."""
         key = edge_keys(pairs, self.n)
         at = np.minimum(np.searchsorted(self.keys, key), len(self.keys) - 1)
-        # edges with a new node are never cut in the same pass, though their key might match by chance
+        # edges with a new node are not cut in the same pass, even if their key matches by chance
         found = (self.keys[at] == key) & (pairs.max(axis=-1) < self.n)
         return at, np.where(found, self.rank[at], -1)
 
 
 def edge_keys(pairs: NDArray[np.integer], n_nodes: int) -> NDArray[np.int64]:
-    """One number for each edge, whatever its direction; pairs (..., 2)."""
+    """One number for each edge (..., 2), independent of its direction."""
     low, high = pairs.min(axis=-1).astype(np.int64), pairs.max(axis=-1).astype(np.int64)
     return low * n_nodes + high
 
@@ -176,12 +177,12 @@ def facet_edges(facets: NDArray[np.integer]) -> NDArray[np.integer]:
 
 
 def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict[str, NDArray[np.int32]]:
-    """Node sets of a linear mesh extended by the nodes first_new + k in the middle of edges (k, 2).
+    """Node sets of a linear mesh, extended by the nodes first_new + k in the middle of edges (k, 2).
 
-    A set that lies on the boundary passes on only along boundary facets that lie in it as a whole: an
-    edge through the body from the base to the inclusion has both ends held, yet its middle is free. (A
-    facet between two faces of the set, one element from each other, counts as in it.) Any
-    other set (a gripped volume) passes on along every edge with both ends in it.
+    A set on the boundary is extended only along boundary facets that have all nodes in it: an edge through
+    the body from the base to the inclusion has both ends held, but its middle is free. (A facet between two
+    faces of the set that are one element apart counts as in it.) Any other set (a gripped volume) is extended
+    along every edge with both ends in it.
     """
     boundary = boundary_facets(mesh.kind, mesh.elements)
     on_boundary = np.zeros(mesh.n_nodes, dtype=bool)
@@ -203,18 +204,23 @@ def inherited_sets(mesh: Mesh, edges: NDArray[np.int64], first_new: int) -> dict
 def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
     """The mesh with a node in the middle of each edge: tet10 from tet4, hex20 from hex8.
 
-    Corners keep their numbers, sets are extended. An edge that is collapsed, in a wedge, gets no new node:
-    its corner stands for its middle.
+    Corners keep their numbers, and sets are extended. A collapsed edge, in a wedge, gets no new node: its
+    corner is used as its middle.
 
-    project: puts points (k, 3) [m] of the boundary's edges onto the true curved surface. Where that
-    would turn an element over, or nearly (det J below a tenth of the straight element's), the element's
-    edges stay straight.
+    Parameters
+    ----------
+    mesh : Mesh
+        A tet4 or hex8 mesh; MeshError for another element type.
+    project : callable (points) -> points, optional
+        Projects middles (k, 3) [m] of the boundary's edges onto the true curved surface. If this inverts an
+        element, or nearly so (det J below a tenth of the straight element's), the curvature of the element's
+        edges is reduced in steps of a quarter, to 0 if necessary.
     """
     return curved(mesh, between=None if project is None else lambda ends: project(ends.mean(axis=1)))
 
 
 def curved(mesh: Mesh, *, between: Between | None) -> Mesh:
-    """`to_quadratic`; between: middles (k, 3) of the boundary's edges by their ends (k, 2, 3) [m]."""
+    """As `to_quadratic`; `between` maps ends (k, 2, 3) of boundary edges to their middles (k, 3) [m]."""
     if mesh.kind not in _QUADRATIC:
         raise MeshError(f"only a tet4 or hex8 mesh can be made quadratic, this one is {mesh.kind}")
     kind, local = _QUADRATIC[mesh.kind]
@@ -257,7 +263,7 @@ def _straighten(
     middles: NDArray[np.float64],
     straight: NDArray[np.float64],
 ) -> None:
-    """Set back (in place), by and by, the middles of elements that the curve turns over."""
+    """Reduce in place the curvature at the middles of elements that it inverts, step by step."""
     n = len(corners)
     quadratic = _QUADRATIC[kind][0]
     width = len(NODE_PLACES[kind])
@@ -266,7 +272,7 @@ def _straighten(
     places = quadrature(quadratic)[0] if quadratic == "hex20" else NODE_PLACES[quadratic]
     plain = det_jacobian(kind, corners, elements[:, :width], centre)[:, 0]
     bow, parts = middles - straight, np.zeros(len(middles), dtype=np.int64)
-    while True:  # each round makes an edge less curved at least
+    while True:  # each round reduces the curvature of at least one edge
         nodes = np.concatenate([corners, middles])
         det = det_jacobian(quadratic, nodes, elements, places)
         back = np.unique(elements[det.min(axis=1) < 0.1 * plain, width:]) - n

@@ -1,4 +1,4 @@
-"""Closed surfaces to make bodies from: read, converted to metres, and checked."""
+"""Closed surfaces from which bodies are made: read, converted to metres, and checked."""
 
 from __future__ import annotations
 
@@ -13,14 +13,25 @@ from tisim.mesh._mesh import MeshError
 Units = Literal["m", "mm"]
 
 _SCALE = {"m": 1.0, "mm": 1e-3}
-_LARGEST, _SMALLEST = 2.0, 0.5e-3  # extents of a specimen [m] that can be meant
+_LARGEST, _SMALLEST = 2.0, 0.5e-3  # plausible extents of a specimen [m]
 
 
 def checked_surface(surface: Any, *, units: Units = "m", allow_cavities: bool = False) -> Any:
-    """The surface as a trimesh.Trimesh in metres; a MeshError of one sentence where it bounds no body.
+    """The surface as a trimesh.Trimesh in metres.
 
-    surface: path of a file that trimesh reads, or a trimesh.Trimesh.
-    allow_cavities: whether it may be of several pieces, the inner ones turned inwards.
+    Parameters
+    ----------
+    surface : path or trimesh.Trimesh
+        A file that trimesh reads, or a surface.
+    units : "m" or "mm"
+        Unit of the surface's coordinates.
+    allow_cavities : bool
+        Allow several pieces, of which one is outward and the others bound cavities.
+
+    Raises
+    ------
+    MeshError
+        If the surface does not bound a body; the message is one sentence.
     """
     if units not in _SCALE:
         raise MeshError(f"units must be 'm' or 'mm', got {units!r}")
@@ -57,7 +68,7 @@ def checked_surface(surface: Any, *, units: Units = "m", allow_cavities: bool = 
 
 
 def _piece_volumes(shell: Any) -> NDArray[np.float64]:
-    """Volume of each connected piece [m3], negative where it is turned inwards."""
+    """Volume of each connected piece [m3], negative for inward normals."""
     import trimesh
 
     label = trimesh.graph.connected_component_labels(shell.face_adjacency, len(shell.faces))
@@ -111,9 +122,9 @@ def _check_closed(shell: Any, name: str) -> None:
 
 
 def crossing_faces(shell: Any) -> NDArray[np.int64]:
-    """Pairs (k, 2) of faces of a trimesh.Trimesh of which an edge of one passes through the other.
+    """Pairs (k, 2) of faces of a trimesh.Trimesh in which an edge of one passes through the other.
 
-    Pairs that share an edge count as neighbours, and faces that overlap in one plane are not found.
+    Pairs that share an edge are excluded, and coplanar faces that overlap are not found.
     """
     pairs = _near_pairs(np.asarray(shell.triangles))
     faces = np.asarray(shell.faces)
@@ -124,11 +135,11 @@ def crossing_faces(shell: Any) -> NDArray[np.int64]:
 
 
 def _near_pairs(triangles: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Pairs of triangles whose boxes overlap, first < second: a sweep along the longest axis."""
+    """Pairs of triangles whose bounding boxes overlap, first < second, by a sweep along the longest axis."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     axis = int(np.argmax(high.max(axis=0) - low.min(axis=0)))
     order = np.argsort(low[:, axis], kind="stable")
-    # in this order, the boxes that start before box i ends are i + 1 ... stop[i] - 1
+    # in this order, boxes i + 1 ... stop[i] - 1 start before box i ends
     stop = np.searchsorted(low[order, axis], high[order, axis], side="right")
     found = []
     for start in range(0, len(order), 256):
@@ -142,13 +153,13 @@ def _near_pairs(triangles: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _edges_pass(shell: Any, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """True where an edge of face first[k] passes through the inside of face second[k]."""
+    """True if an edge of face first[k] passes through the interior of face second[k], shape (k,)."""
     faces, vertices = np.asarray(shell.faces), np.asarray(shell.vertices)
     corner = vertices[faces[second]]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     area = np.linalg.norm(normal, axis=1)
     unit = normal / np.where(area > 0, area, 1.0)[:, None]
-    # nearer than this to a plane or an edge is touching, not crossing
+    # points nearer than this to a plane or an edge touch it and do not cross it
     slack = 1e-9 * np.linalg.norm(np.ptp(vertices, axis=0))
     hit = np.zeros(len(first), dtype=bool)
     for m in range(3):

@@ -1,7 +1,7 @@
-"""A tetrahedral mesh of what a closed surface holds, by fTetWild (Hu et al. 2020, pytetwild).
+"""A tetrahedral mesh of the body inside a closed surface, by fTetWild (Hu et al. 2020, pytetwild).
 
-fTetWild does not give the same mesh twice, not even in one thread (wildmeshing/fTetWild issue 72): where
-a result must be repeatable to the byte, make the mesh once and keep it.
+fTetWild is not deterministic, not even in one thread (wildmeshing/fTetWild issue 72). If a result must be
+repeatable to the byte, make the mesh once and keep it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tisim.mesh._mesh import Mesh, MeshError, boundary_facets
 from tisim.mesh.refine import to_quadratic
 from tisim.mesh.surface import Units, checked_surface
 
-# A body of more elements than this (a regular tetrahedron holds 0.118 edge lengths cubed) is a mistake.
+# More elements than this are refused (the volume of a regular tetrahedron is 0.118 edge lengths cubed).
 _MOST_ELEMENTS = 5_000_000
 
 
@@ -33,38 +33,38 @@ def body_from_surface(
     time_limit: float = 600.0,
     allow_cavities: bool = False,
 ) -> Mesh:
-    """The body inside a closed surface, as tetrahedra (another mesh of the same kind on each call).
+    """Tetrahedral mesh of the body inside a closed surface; each call may give a different mesh.
 
     Parameters
     ----------
     surface : path or trimesh.Trimesh
         A file that trimesh reads (STL, PLY, OBJ, OFF), or a surface.
     edge_length : float
-        Wanted length of the edges [m].
+        Target length of the edges [m].
     units : "m" or "mm"
-        Of the surface's coordinates.
+        Unit of the surface's coordinates.
     kind : "tet4" or "tet10"
-        "tet10" puts a node in the middle of each (straight) edge.
+        Type of the elements; "tet10" has a node in the middle of each (straight) edge.
     tolerance : float, optional
         Largest distance of the mesh's surface from the given one [m]; edge_length / 50 by default. Smaller
-        takes longer.
+        values take longer.
     stop_energy : float
-        Shape at which the optimisation stops; 3 is a regular tetrahedron, smaller than the default of 10
-        gives better shapes and takes longer.
+        Shape energy at which the optimisation stops; that of a regular tetrahedron is 3. Values below the
+        default of 10 give better shapes and take longer.
     time_limit : float
-        Seconds after which to give up.
+        Time after which meshing is aborted [s].
     allow_cavities : bool
-        The surface may have inner pieces, turned inwards.
+        Allow inner pieces with inward normals.
 
     Returns
     -------
     Mesh
-        With node and facet set "surface", the boundary.
+        Its node set and facet set "surface" are the boundary.
 
     Raises
     ------
     MeshError
-        In one sentence, for a surface or an edge length that gives no body.
+        If the surface or the edge length does not result in a body; the message is one sentence.
     """
     shell = checked_surface(surface, units=units, allow_cavities=allow_cavities)
     extent = float(np.linalg.norm(shell.extents))
@@ -96,7 +96,7 @@ def body_from_surface(
             f"the mesh holds {np.abs(volume).sum() / shell.volume:.2f} times the surface's volume: "
             "ask for a smaller edge length or tolerance"
         )
-    turned = volume < 0  # fTetWild numbers the other way round
+    turned = volume < 0  # fTetWild uses the opposite node order
     elements[turned] = elements[turned][:, [0, 2, 1, 3]]
     boundary = boundary_facets("tet4", elements)
     mesh = Mesh(
@@ -115,7 +115,7 @@ def _run(*, time_limit: float, **data: Any) -> tuple[np.ndarray[Any, Any], np.nd
         np.savez(source, **data)
         script = Path(__file__).with_name("_ftetwild.py")
         try:
-            # -P: this folder's modules must not stand in for others of the same name
+            # -P: this folder's modules must not shadow others of the same name
             done = subprocess.run(
                 [sys.executable, "-P", str(script.resolve()), source.name, target.name],
                 cwd=folder,

@@ -1,1 +1,1 @@
-"""Newton's method, on anything with a potential and on bodies in contact."""
+"""Newton's method, for systems with a potential and for bodies in contact."""

@@ -1,10 +1,10 @@
-"""Newton's method for one depth of a poke: a trust region in place of a plain line search.
+"""Newton's method for one depth of a poke, with a trust region in place of a plain line search.
 
-Deep under a rod the surface folds and snaps: the tangent becomes indefinite or, by friction, nearly
-singular, and Newton's step runs far off along a few modes. Cutting the whole step then stalls all others;
-a multiple of the identity added to the tangent (`FactorGMRES.stiffen`) holds back just these modes. It is
-the implicit step of a viscous motion, so a snap is followed downhill, the residual rising on the way; and
-it fades as steps are taken whole. The residual that ends the iteration knows nothing of it.
+Deep under a rod the surface folds and snaps: the tangent becomes indefinite or, by friction, nearly singular,
+and Newton's step is far too large along a few modes. Scaling the whole step then stalls all other modes; a
+multiple of the identity added to the tangent (`FactorGMRES.stiffen`) limits only these modes. The shifted
+step is the implicit step of a viscous motion, so that a snap is followed to lower energy while the residual
+rises. The shift decreases when full steps are accepted. The residual of the convergence test is without it.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from tisim.result import Status
 
 Array = NDArray[np.float64]
 
-# Largest displacement of a node in one iteration [m]: at first, and ever.
+# Largest displacement of a node in one iteration [m]: initially, and at most.
 RADIUS, LARGEST_RADIUS = 0.3e-3, 0.5e-3
-# Of the rod's force: what the reaction at the fixed nodes may differ from it by.
+# Allowed difference between the rod's force and the reaction at the fixed nodes, as a fraction of the former.
 BALANCE = 0.005
-# Times a residual may grow in a step that lowers the energy.
+# Factor by which the residual may grow in a step that lowers the energy.
 GROWTH = 2.0
 ATTEMPTS = 6
 
 
 class ContactSystem(Protocol):
-    """A `tisim.problems.indentation.system.PokeSystem`: see there, and `tisim.nonlinear.newton.System`."""
+    """Protocol of `tisim.problems.indentation.system.PokeSystem`; compare `tisim.nonlinear.newton.System`."""
 
     linear: FactorGMRES
 
@@ -58,7 +58,7 @@ def contact_newton(
     max_iterations: int,
     kept: bool = True,
 ) -> Outcome:
-    """Equilibrium from x on, see `settled`."""
+    """Equilibrium from x (n, 3) [m] by the criterion `settled`, which explains `tolerance` and `kept`."""
     relative, radius = np.inf, RADIUS
     system.linear.reset()
     for iteration in range(max_iterations + 1):
@@ -84,10 +84,10 @@ def contact_newton(
 
 
 def settled(system: ContactSystem, residual: Array, load: float, *, tolerance: float, kept: bool) -> bool:
-    """Whether |residual| <= tolerance * load.
+    """True if |residual| <= tolerance * load and, for a state to be kept as a frame, the forces balance.
 
-    kept: the state is to be kept as a frame. Then the residual's sum is within BALANCE of the rod's force as
-    well: small residuals of thousands of nodes may all point one way.
+    If `kept`, the sum of the residual must also be below BALANCE times the rod's force (or below
+    tolerance * load): small residuals of thousands of nodes may all have the same direction.
     """
     if float(np.linalg.norm(residual)) > tolerance * load:
         return False
@@ -102,7 +102,7 @@ def _step(
     radius: float,
     forcing: float,
 ) -> tuple[Array | None, Status, float]:
-    """The next x (None if there is none), why there is none, and the next radius."""
+    """The next x (None if no step is accepted), the reason if there is none, and the next radius."""
     linear = system.linear
     start, _ = system.potential(x)
     status = Status.NOT_CONVERGED
@@ -113,7 +113,7 @@ def _step(
         if peak == 0.0:
             return None, Status.NOT_CONVERGED, radius
         slope = float(np.vdot(residual, step))
-        # too long, or uphill, which friction can make it
+        # too long, or an ascent direction, which friction can cause
         if (peak > 2.0 * radius or slope > 0.0) and linear.can_stiffen:
             linear.stiffen()
             held_back = True
@@ -130,7 +130,7 @@ def _step(
                 if _good(system, trial, residual, scale, lower=lower):
                     if scale * peak >= 0.99 * radius:
                         radius = min(2.0 * radius, LARGEST_RADIUS)
-                    # a shift that was needed now is needed in the next iteration as well
+                    # keep a shift that was needed now for the next iteration
                     if not held_back and (scale == 1.0 or scale * peak > 0.25 * radius):
                         linear.relax()
                     return trial, Status.CONVERGED, radius
@@ -142,7 +142,10 @@ def _step(
 
 
 def _good(system: ContactSystem, trial: Array, residual: Array, scale: float, *, lower: bool) -> bool:
-    """True if a trial is accepted, by its residual or, as friction has no potential, by its energy."""
+    """True if a trial is accepted: its residual falls, or it is `lower` in energy and within GROWTH.
+
+    Friction has no potential, so that neither alone is a criterion.
+    """
     size = float(np.linalg.norm(residual))
     new = system.residual_norm(trial)
     return new < (1.0 - 0.1 * scale) * size or (lower and new < GROWTH * size)

@@ -1,6 +1,6 @@
-"""Newton's method with line search for one load level, on anything that has a potential.
+"""Newton's method with line search for one load level of a system that has a potential.
 
-The energy guides the line search, but equilibrium is judged by the force residual alone.
+The line search uses the energy; convergence is judged by the force residual alone.
 """
 
 from __future__ import annotations
@@ -16,14 +16,17 @@ from tisim.result import Status
 
 Array = NDArray[np.float64]
 
-# det F below which an element counts as turned over: St Venant-Kirchhoff has equilibria of no volume at all.
+# det F below which an element counts as inverted: St Venant-Kirchhoff has equilibria of zero volume.
 CRUSHED = 1e-4
 
 
 class System(Protocol):
-    """One load level of a scene. x is (n, 3) over all nodes, residual and step over free nodes.
+    """One load level of a scene. x is (n, 3) over all nodes, residual and step (n_free, 3) over free nodes.
 
-    min_jacobian: smallest det F at the last linearised x.
+    Attributes
+    ----------
+    min_jacobian : float
+        Smallest det F at the last linearised x.
     """
 
     min_jacobian: float
@@ -35,27 +38,38 @@ class System(Protocol):
         """Residual at the free nodes (n_free, 3) [N] with held components zero, and the load scale [N]."""
 
     def step(self, residual: Array, *, forcing: float) -> Array:
-        """Newton step -K^-1 r at the last linearised x, a descent direction; LinearSolveError."""
+        """Newton step -K^-1 r at the last linearised x, a descent direction; LinearSolveError if that fails.
+
+        An iterative solver stops at the relative residual `forcing`.
+        """
 
     def second_step(self, residual: Array) -> Array | None:
-        """Another step to try where the line search refuses the first; None if there is none."""
+        """Another step to try if the line search refuses the first; None if there is none."""
 
     def advance(self, x: Array, step: Array) -> Array:
-        """x with the step added at the free nodes."""
+        """Copy of x with the step added at the free nodes."""
 
     def searches(self) -> bool:
-        """True if the line search uses the potential; else whole steps that invert no element."""
+        """True if the line search uses the potential; False if steps are taken without a line search."""
 
     def residual_norm(self, x: Array) -> float:
-        """Size of the residual at x [N]; the second opinion of the line search."""
+        """Norm of the residual at x [N], for trials that the energy rejects in the line search."""
 
     def largest_step(self) -> float:
-        """Largest displacement of a node one iteration may make [m]."""
+        """Largest displacement of a node in one iteration [m]."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """x, how it ended, the residual relative to the load, iterations taken."""
+    """Result of Newton's method.
+
+    Attributes
+    ----------
+    x : positions [m], shape (n, 3).
+    status : outcome.
+    residual : residual relative to the load.
+    iterations : number of iterations.
+    """
 
     x: Array
     status: Status
@@ -101,11 +115,11 @@ def _scale(system: System, step: Array) -> float:
 def _line_search(
     system: System, x: Array, step: Array, residual: Array, scale: float
 ) -> tuple[Array | None, Status]:
-    if not system.searches():  # the next linearisation sees whether an element has turned over
+    if not system.searches():  # the next linearisation detects inverted elements
         return system.advance(x, scale * step), Status.CONVERGED
     start, _ = system.potential(x)
     slope = float(np.vdot(residual, step))
-    # energy differences below this are rounding; the residual will judge
+    # energy differences below this are rounding errors; the residual decides
     noise = 1e-13 * abs(start) + 1e-18
     size = float(np.linalg.norm(residual))
     turned = False
@@ -115,7 +129,7 @@ def _line_search(
         if min_jacobian > CRUSHED and np.isfinite(energy):
             if energy <= start + 1e-4 * scale * min(slope, 0.0) + noise:
                 return trial, Status.CONVERGED
-            # friction has no potential: a step that lowers the energy too little may still be right
+            # friction has no potential: a step that lowers the energy too little may still be acceptable
             if system.residual_norm(trial) < (1.0 - 0.1 * scale) * size:
                 return trial, Status.CONVERGED
             turned = False

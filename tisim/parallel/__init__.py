@@ -1,1 +1,1 @@
-"""A batch of scenes over processes."""
+"""Batches of scenes on several processes."""

@@ -1,4 +1,4 @@
-"""A batch as chunks: scenes that share a mesh follow one another, neighbours in parameters side by side."""
+"""Division of a batch into chunks of scenes on the same mesh, ordered by their parameters."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from tisim.parallel.threads import one_thread
 from tisim.problems import kind_of
 from tisim.result import Result
 
-# Scenes of a chain start from one another: the cut into chains is part of the answer's bytes, so it must not
-# depend on the number of workers. Eight keep many cores busy and pay for mesh, sparsity and cold start.
+# Scenes of a chain start from one another: the division into chains affects the bytes of the results, so it
+# must not depend on the number of workers. Eight use many cores and amortise mesh, sparsity and first solve.
 CHAIN = 8
 
 
 @dataclass(frozen=True, kw_only=True)
 class Chunk:
-    """Scenes solved one after the other in one process.
+    """Scenes solved in sequence in one process.
 
     Attributes
     ----------
     indices : tuple of int
-        Places of the scenes in the batch.
+        Indices of the scenes in the batch.
     scenes : tuple
     mesh_key : tuple
-        Equal for scenes that live on the same mesh.
+        Equal for scenes on the same mesh.
     seconds : float
-        Rough cost [core-s].
+        Approximate cost [core-s].
     extensions : tuple of Extension or None
-        What a user added that the scenes need; None if it cannot leave this process.
+        Added laws and kinds of scenes that the scenes need; None if they cannot be sent to another process.
     """
 
     indices: tuple[int, ...]
@@ -46,7 +46,7 @@ class Chunk:
 
 
 def make_chunks(scenes: Sequence[Any]) -> list[Chunk]:
-    """Chunks of a batch, the longest first; depends on the scenes alone."""
+    """Chunks of a batch, the most expensive first; they depend on the scenes alone."""
     digests: dict[int, str] = {}
     keys = [_mesh_key(index, scene, digests) for index, scene in enumerate(scenes)]
     order = sorted(range(len(scenes)), key=lambda i: (repr(keys[i]), *_neighbourhood(scenes[i]), i))
@@ -70,7 +70,7 @@ def make_chunks(scenes: Sequence[Any]) -> list[Chunk]:
 
 
 def own_mesh(scene: Any) -> Mesh | None:
-    """The mesh that a scene brings along; None where one is made for it."""
+    """The mesh that the user supplied with a scene; None if one is made for it."""
     return getattr(scene, "mesh", None)
 
 
@@ -93,7 +93,7 @@ def _neighbourhood(scene: Any) -> tuple[Any, ...]:
 
 
 def _portable(scene: Any) -> Any:
-    """The scene with plain parameters, which any mapping may have held and pickle may not take."""
+    """The scene with its parameters as a dict of numbers and tuples: other mappings may not pickle."""
     plain: dict[str, float | tuple[float, ...]] = {}
     for name, value in scene.material.parameters.items():
         plain[name] = tuple(float(v) for v in value) if hasattr(value, "__len__") else float(value)
@@ -116,7 +116,7 @@ _known: OrderedDict[Any, Mesh] = OrderedDict()
 
 
 def _known_mesh(key: Any, mesh: Mesh) -> Mesh:
-    """The object that stood for this mesh before in this process, so that what depends on it is found."""
+    """The first object in this process with this mesh, so that caches keyed by the object are found."""
     found = _known.setdefault(key, mesh)
     _known.move_to_end(key)
     if len(_known) > 8:
@@ -128,9 +128,9 @@ def _no_step(_: float) -> None: ...
 
 
 def solve_chunk(chunk: Chunk, on_step: Callable[[float], None] = _no_step) -> Iterator[tuple[int, Result]]:
-    """(index, result) of each scene as it is solved.
+    """Solve a chunk; yield (index, result) of each scene.
 
-    on_step: called with the fraction of the present scene that is done, by kinds of scenes that count.
+    Kinds of scenes that report their progress call `on_step` with the completed fraction of the scene.
     """
     scenes = chunk.scenes
     own = own_mesh(scenes[0])

@@ -1,4 +1,4 @@
-"""Laws and kinds of scenes that a user added, sent to other processes with the scenes that need them."""
+"""Added laws and kinds of scenes, which are sent to other processes with the scenes that need them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _adopted: dict[str, str] = {}
 
 @dataclass(frozen=True)
 class Extension:
-    """One law or kind of scene, pickled, with the name and digest by which a process knows it."""
+    """A pickled law or kind of scene, with a name and a digest that identify it."""
 
     name: str
     digest: str
@@ -34,8 +34,10 @@ class Extension:
 
 
 def _pickled(thing: Any) -> bytes:
-    """By value, and code with the name of its file: from 3.1.3 on cloudpickle leaves that out, but Taichi
-    compiles a function from its source."""
+    """Pickle by value, and code with its file name, from which Taichi compiles a function.
+
+    cloudpickle omits the file name from version 3.1.3 on.
+    """
     from cloudpickle import cloudpickle  # type: ignore[import-untyped]  # loky needs it as well
 
     by_type = cloudpickle.CloudPickler.dispatch_table
@@ -54,7 +56,7 @@ def _pickled(thing: Any) -> bytes:
 
 
 def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
-    """Registered extensions that these scenes use; None if they cannot be sent to another process."""
+    """Registered extensions that scenes use; None if they cannot be sent to another process."""
     found: dict[str, Any] = {}
     for scene in scenes:
         law, kind = laws.added(scene.material.law), _registry.added(scene)
@@ -72,7 +74,7 @@ def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
 
 
 def adopt(extensions: Sequence[Extension]) -> None:
-    """Register what another process has sent, unless it is registered here already."""
+    """Register extensions that another process has sent, unless they are registered already."""
     for extension in extensions:
         if _adopted.get(extension.name) != extension.digest:
             thing = pickle.loads(extension.pickled)

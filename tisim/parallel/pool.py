@@ -1,4 +1,4 @@
-"""Worker processes, one core each, kept for the next batch."""
+"""Worker processes with one core each, kept for the next batch."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tisim.parallel.extensions import adopt
 from tisim.parallel.threads import one_thread
 from tisim.result import Result
 
-IDLE_SECONDS = 120.0  # that long processes wait for the next batch
-START_SECONDS = 3.0  # to start them: imports, Taichi's runtime and the kernels of a law, on each core
+IDLE_SECONDS = 120.0  # time for which processes wait for the next batch
+START_SECONDS = 3.0  # time to start them: imports, Taichi's runtime and the kernels of a law, on each core
 
-# Set before a worker imports anything: one core a scene, and the same bytes everywhere.
+# Set before a worker imports anything: one core per scene, and identical bytes on each of them.
 _ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
@@ -36,10 +36,11 @@ def cores() -> int:
 
 
 def pays_off(seconds: Sequence[float], count: int) -> bool:
-    """True if processes are worth their start for chunks of these costs [core-s] on `count` cores.
+    """True if processes should be used for chunks of these costs [core-s] on `count` cores.
 
-    Running processes are used. Else the work they would have saved is added up, over calls, and they are
-    started once it exceeds what their start costs: never worse than twice the best that hindsight knows.
+    Running processes are used if they save time. Otherwise the time that they would have saved is summed over
+    calls, and they are started once the sum exceeds the cost of starting them. The total cost is then at most
+    twice that of the best decision in hindsight.
     """
     global _missed
     if min(count, len(seconds)) < 2:
@@ -56,7 +57,7 @@ def pays_off(seconds: Sequence[float], count: int) -> bool:
 
 
 def submit(chunks: Sequence[Chunk], workers: int) -> dict[Future[Solved], Chunk]:
-    """Hand chunks to the worker processes, which are started where they are not there."""
+    """Submit chunks to the worker processes, which are started if necessary."""
     from loky import get_reusable_executor
     from loky.process_executor import BrokenProcessPool
 
@@ -65,7 +66,7 @@ def submit(chunks: Sequence[Chunk], workers: int) -> dict[Future[Solved], Chunk]
     for chunk in chunks:
         try:
             future = executor.submit(_solve, chunk)
-        except BrokenProcessPool as error:  # a worker died while we were still handing out
+        except BrokenProcessPool as error:  # a worker died during the submission
             future = Future()
             future.set_exception(error)
         future.add_done_callback(_keep_warm)
@@ -79,7 +80,7 @@ def _keep_warm(_future: object) -> None:
 
 
 def stop(futures: dict[Future[Solved], Chunk]) -> None:
-    """Drop what has not begun and end the processes; the next call starts new ones."""
+    """Cancel pending chunks and, if some are running, kill the processes; the next call starts new ones."""
     global _warm_until
     for future in futures:
         future.cancel()

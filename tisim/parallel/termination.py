@@ -1,4 +1,4 @@
-"""SIGTERM, which schedulers of clusters send, ends a command as Ctrl-C does."""
+"""Handling of SIGTERM, which cluster schedulers send, like Ctrl-C."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NoReturn
 
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM raise KeyboardInterrupt inside (signals reach the main thread only)."""
+    """Context in which SIGTERM raises KeyboardInterrupt; without effect outside the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

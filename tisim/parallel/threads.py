@@ -1,4 +1,4 @@
-"""One thread a scene: BLAS threads that spin while they wait cost a solver a factor of two."""
+"""One thread per scene: BLAS threads that spin while they wait slow a solver down by a factor of two."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _depth = 0
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Hold BLAS to one thread within (1 ms); free where a caller holds it already."""
+    """Context in which BLAS uses one thread; entering takes 1 ms, or no time inside another such context."""
     global _depth
     if _depth:
         yield

@@ -1,7 +1,7 @@
-"""Parts of a material beside its law: one file each, one registration each.
+"""Parts of a material in addition to its law: one file and one registration each.
 
-`Prony` (viscosity), `OgdenRoxburgh` (softening, Mullins' effect) and `HolzapfelGasserOgden` (fibres) go with
-any law and with one another:
+`Prony` (viscosity), `OgdenRoxburgh` (softening, Mullins effect) and `HolzapfelGasserOgden` (fibres) combine
+with any law and with one another:
 
 >>> import tisim
 >>> silicone = tisim.Material(
@@ -11,16 +11,16 @@ any law and with one another:
 ...     softening=tisim.OgdenRoxburgh(r=2.0, m=2e3),
 ... )
 
-What multiplies what: with Wbar the law's isochoric energy, W_f that of the fibres and f the softened energy,
+With Wbar the law's isochoric energy, W_f that of the fibres and f the softened energy, they combine as
 
     S = S_vol + g_inf S_iso + sum Q_i,    S_iso = 2 d f(Wbar + W_f) / dC,
     dQ_i/dt + Q_i/tau_i = g_i dS_iso/dt.
 
-Fibres add to the law, softening acts on their sum, viscosity relaxes what softening leaves; the volumetric
-part knows none of them. The largest energy that softening remembers is that of Wbar + W_f, whatever the rate.
+Fibres add to the law, softening acts on their sum, and viscosity relaxes the softened stress; the volumetric
+part is unaffected. The largest energy in the history of softening is that of Wbar + W_f at any rate.
 
-A part of one's own is a frozen dataclass that derives from `Viscosity`, `Softening` or `Fibres`. A whole one,
-in a file of one's own (relaxation by an even fraction a decade, as silicones have it):
+A user's own part is a frozen dataclass that derives from `Viscosity`, `Softening` or `Fibres`. A complete
+example, in a file (relaxation by an equal fraction per decade, as in silicones):
 
 >>> from dataclasses import dataclass
 >>> import numpy as np
@@ -28,7 +28,7 @@ in a file of one's own (relaxation by an even fraction a decade, as silicones ha
 >>>
 >>> @dataclass(frozen=True, kw_only=True)
 ... class LogTime(parts.Viscosity):
-...     '''Relaxation by `part` of the long-time modulus a decade, from time `first` to time `last` [s].'''
+...     '''Relaxation by `part` of the long-time modulus per decade, from time `first` to time `last` [s].'''
 ...
 ...     name = "log-time"
 ...     title = "Log-time relaxation"
@@ -46,8 +46,8 @@ in a file of one's own (relaxation by an even fraction a decade, as silicones ha
 >>>
 >>> _ = parts.register(LogTime)
 
-From then on `tisim.Material(viscosity=LogTime(part=0.05), ...)` is solved, and `parts.get("log-time")` finds
-it.
+After this `tisim.Material(viscosity=LogTime(part=0.05), ...)` can be solved, and `parts.get("log-time")`
+returns the class.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ P = TypeVar("P", bound=type[Part])
 
 
 def register(part: P) -> P:
-    """Add a kind of part; one of the same name that was added before is replaced.
+    """Add a class of parts; an added class of the same name is replaced.
 
     Parameters
     ----------
@@ -80,14 +80,15 @@ def register(part: P) -> P:
     Returns
     -------
     type
-        The same.
+        The argument.
 
     Raises
     ------
     TypeError
-        If it is no such dataclass.
+        If it is not such a dataclass.
     ValueError
-        If its name is taken by a part of tisim's own or not of lower-case letters, digits and hyphens.
+        If its name is that of a built-in part or has other characters than lower-case letters, digits and
+        hyphens.
     """
     derived = isinstance(part, type) and issubclass(part, Viscosity | Softening | Fibres)
     if not derived or not is_dataclass(part):
@@ -103,17 +104,17 @@ def register(part: P) -> P:
 
 
 def unregister(name: str) -> None:
-    """Take out a part that was added."""
+    """Remove an added part; other names are ignored."""
     _ADDED.pop(name, None)
 
 
 def names() -> tuple[str, ...]:
-    """Names of all parts, tisim's own first."""
+    """Names of all parts, the built-in ones first."""
     return tuple(_BUILT_IN) + tuple(_ADDED)
 
 
 def get(name: str) -> type[Part]:
-    """The part of that name; ValueError, which names the parts there are, for an unknown one."""
+    """The part of that name; ValueError, which lists the known parts, for an unknown one."""
     part = _BUILT_IN.get(name) or _ADDED.get(name)
     if part is None:
         raise ValueError(f"part: expected one of {', '.join(names())}, got {name!r}")

@@ -1,4 +1,4 @@
-"""Interface of the parts of a material beside its law: viscosity, softening, fibres."""
+"""Interface of the parts of a material: viscosity, softening, fibres."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Part(ABC):
     Attributes
     ----------
     name : str
-        Class attribute: what cards call it; lower case, digits and hyphens.
+        Class attribute: name in material cards; lower case, digits and hyphens.
     title : str
-        Class attribute: what people read.
+        Class attribute: name for display.
     """
 
     name: ClassVar[str]
@@ -32,21 +32,21 @@ class Part(ABC):
 
     @abstractmethod
     def check(self) -> None:
-        """Raise ValueError, in one sentence that begins with the field, for parameters that cannot be."""
+        """Raise ValueError for invalid parameters, in one sentence that begins with the field."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Spectrum:
-    """Relaxation of the isochoric energy, in parts of the energy that the law's own parameters give.
+    """Relaxation spectrum of the isochoric energy, as fractions of the energy with the law's parameters.
 
     Attributes
     ----------
     equilibrium : float
-        What is left in the long run.
+        Fraction in the long-time limit.
     strengths : ndarray of float, shape (n,)
-        What relaxes, by term.
+        Fraction that relaxes, by term.
     times : ndarray of float, shape (n,)
-        Relaxation times [s].
+        Relaxation time of each term [s].
     """
 
     equilibrium: float
@@ -55,17 +55,17 @@ class Spectrum:
 
     @property
     def instantaneous(self) -> float:
-        """Instantaneous modulus, in units of the law's."""
+        """Instantaneous modulus, in units of the law's modulus."""
         return self.equilibrium + float(self.strengths.sum())
 
     def modulus(self, time: float) -> float:
-        """Relaxation function: what is left at a time after a step [s]."""
+        """Relaxation function: fraction of the law's modulus at a time after a step of strain [s]."""
         return self.equilibrium + float(self.strengths @ np.exp(-time / self.times))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Viscosity(Part):
-    """A part by which isochoric stresses relax (finite linear viscoelasticity)."""
+    """A part that relaxes isochoric stresses (finite linear viscoelasticity)."""
 
     @abstractmethod
     def spectrum(self) -> Spectrum:
@@ -74,24 +74,24 @@ class Viscosity(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Softening(Part):
-    """A part that makes the isochoric energy W softer than it was before its largest value so far, W_m.
+    """A part that softens the response while the isochoric energy W is below its largest value so far, W_m.
 
     Attributes
     ----------
     energy : Taichi function
-        Class attribute: (W, W_m, prm) to (f, df/dW, d2f/dW2), f the energy that takes the place of W and prm
-        the numbers of `pack`; df/dW is 1 from W = W_m on. Decorated by `tisim.laws.ti.func`.
+        Class attribute: (W, W_m, prm) -> (f, df/dW, d2f/dW2), where f is the energy that replaces W and prm
+        the numbers of `pack`; df/dW is 1 for W >= W_m. Decorated by `tisim.laws.ti.func`.
     """
 
     energy: ClassVar[Any]
 
     @abstractmethod
     def pack(self) -> Array:
-        """The numbers that `energy` reads, shape (n,); n belongs to the class."""
+        """The numbers that `energy` reads, shape (n,), with n the same for all parts of the class."""
 
     @abstractmethod
     def dissipated(self, largest: Array) -> Array:
-        """Energy lost on the way to the largest energies W_m [J/m3]: W_m less what unloading gives back."""
+        """Energy dissipated at largest energies W_m [J/m3]: W_m minus the energy recovered in unloading."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,10 +101,10 @@ class Fibres(Part):
     Attributes
     ----------
     direction : (float, float, float)
-        Of the fibres in the body's rest frame, of any length above 0.
+        Direction of the fibres in the rest shape, of any length above 0.
     energy : Taichi function
-        Class attribute: (I4bar, prm) to (W, dW/dI4bar, d2W/dI4bar2), zero and free of slope at I4bar = 1; prm
-        the numbers of `pack`. Decorated by `tisim.laws.ti.func`.
+        Class attribute: (I4bar, prm) -> (W, dW/dI4bar, d2W/dI4bar2), where prm are the numbers of `pack`; W
+        and dW/dI4bar are 0 at I4bar = 1. Decorated by `tisim.laws.ti.func`.
     """
 
     energy: ClassVar[Any]
@@ -112,7 +112,7 @@ class Fibres(Part):
 
     @abstractmethod
     def pack(self) -> Array:
-        """The numbers that `energy` reads, shape (n,); n belongs to the class."""
+        """The numbers that `energy` reads, shape (n,), with n the same for all parts of the class."""
 
     def axis(self) -> Array:
         """The direction as a unit vector, shape (3,)."""

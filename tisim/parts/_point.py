@@ -1,4 +1,4 @@
-"""A material at given deformations over time, without a body."""
+"""Response of a material to given deformations over time, without a body."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 
 
 class MaterialPoints:
-    """Points of a material, at rest to begin with, each driven by its deformation gradient.
+    """Points of a material, initially at rest, each driven by its deformation gradient.
 
-    A step is `begin(dt)`, any number of `evaluate(F)`, and `accept(F)`; without the last it leaves nothing
-    behind.
+    A step consists of `begin(dt)`, any number of calls of `evaluate(F)`, and `accept(F)`; without the last it
+    has no effect.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ class MaterialPoints:
     Attributes
     ----------
     shear_modulus : float
-        Of the law at small strain [Pa].
+        Small-strain shear modulus of the law [Pa].
 
     Raises
     ------
     ValueError
-        In one sentence: unknown law, unsound parameters or parts.
+        For an unknown law, or invalid parameters or parts, in one sentence.
     """
 
     def __init__(self, material: Material, count: int = 1) -> None:
@@ -57,7 +57,7 @@ class MaterialPoints:
         self.begin(0.0)
 
     def begin(self, dt: float) -> None:
-        """A step of length dt [s]; 0: at once."""
+        """Begin a step of length dt [s]; 0 for an instantaneous step."""
         if self._history is not None:
             self._history.begin(dt)
             self._prm[len(self._prm) - self._tail] = self._history.scale
@@ -65,7 +65,8 @@ class MaterialPoints:
     def evaluate(self, F: ArrayLike) -> tuple[Array, Array, Array]:
         """Potential of the step psi (n,) [J/m3], stress P (n, 3, 3) and tangent A (n, 3, 3, 3, 3) [Pa].
 
-        P = dpsi/dF, A = dP/dF. F (n, 3, 3) at the end of the step, det F above 0.
+        P = dpsi/dF, A = dP/dF at F (n, 3, 3), the deformation gradient at the end of the step; ValueError
+        unless det F > 0.
         """
         n = self._count
         psi, P, A = np.empty(n), np.empty((n, 3, 3)), np.empty((n, 9, 9))
@@ -73,7 +74,7 @@ class MaterialPoints:
         return psi, P, A.reshape(n, 3, 3, 3, 3)
 
     def accept(self, F: ArrayLike) -> None:
-        """Take the step, which ends at F (n, 3, 3)."""
+        """Accept the step, which ends at F (n, 3, 3)."""
         if self._history is None:
             return
         n = self._count
@@ -85,12 +86,12 @@ class MaterialPoints:
 
     @property
     def dissipated(self) -> Array:
-        """Energy lost so far (n,) [J/m3]."""
+        """Energy dissipated so far [J/m3], shape (n,)."""
         return np.zeros(self._count) if self._history is None else self._history.dissipated[0]
 
     @property
     def stored(self) -> Array:
-        """Energy that viscous terms hold besides the elastic energy (n,) [J/m3]."""
+        """Energy stored in viscous terms in addition to the elastic energy [J/m3], shape (n,)."""
         return np.zeros(self._count) if self._history is None else self._history.stored()[0]
 
     def _gradients(self, F: ArrayLike) -> Array:
@@ -113,13 +114,13 @@ class PointResponse:
     Attributes
     ----------
     time : ndarray of float, shape (t,)
-        [s].
+        Times [s].
     stress : ndarray of float, shape (t, n, 3, 3)
         First Piola-Kirchhoff stress [Pa].
     dissipated : ndarray of float, shape (t, n)
-        Energy lost so far [J/m3].
+        Energy dissipated so far [J/m3].
     stored : ndarray of float, shape (t, n)
-        Energy that viscous terms hold besides the elastic energy [J/m3].
+        Energy stored in viscous terms in addition to the elastic energy [J/m3].
     """
 
     time: Array
@@ -129,17 +130,17 @@ class PointResponse:
 
 
 def respond(material: Material, times: ArrayLike, F: ArrayLike) -> PointResponse:
-    """Stress of a material whose deformation is given over time.
+    """Response of a material to a deformation given over time.
 
-    Each time is the end of one step, the first of which begins at rest at time 0; two equal times are a jump.
+    Each time is the end of one step. The first step begins at rest at time 0; two equal times are a jump.
 
     Parameters
     ----------
     material : Material
     times : array_like of float, shape (t,)
-        [s], from 0 on, never falling.
+        Times [s], not below 0 and never falling.
     F : array_like of float, shape (t, 3, 3) or (t, n, 3, 3)
-        Deformation gradients, of one or of n points; det F above 0.
+        Deformation gradients of one point or of n points; det F above 0.
 
     Returns
     -------
@@ -148,7 +149,7 @@ def respond(material: Material, times: ArrayLike, F: ArrayLike) -> PointResponse
     Raises
     ------
     ValueError
-        In one sentence, for times that fall or deformations that cannot be.
+        For times that fall or invalid deformations, in one sentence.
     """
     time, gradients = np.asarray(times, dtype=float), np.asarray(F, dtype=float)
     if gradients.ndim == 3:

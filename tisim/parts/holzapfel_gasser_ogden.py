@@ -1,9 +1,9 @@
 """One family of fibres that stiffen exponentially (Holzapfel, Gasser and Ogden, J. Elasticity 61, 2000).
 
-    W = k1/(2 k2) [exp(k2 (I4bar - 1)^2) - 1]  where I4bar > 1, else 0;    I4bar = J^(-2/3) a.Ca
+    W = k1/(2 k2) [exp(k2 (I4bar - 1)^2) - 1]  if I4bar > 1, else 0;    I4bar = J^(-2/3) a.Ca
 
-Fibres carry no compression. W adds to the law's isochoric energy: softening, where there is any, sees their
-sum, and viscous terms relax both alike.
+Fibres carry no compression. W adds to the law's isochoric energy: softening acts on their sum, and viscous
+terms relax both.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
@@ -25,7 +25,7 @@ from tisim.parts._part import Array, Fibres
 def energy(I4, prm):
     e = ti.max(I4 - 1.0, 0.0)
     grown = ti.exp(prm[1] * e * e)
-    # (grown - 1) / (2 k2), by its series where it would lose its digits
+    # (grown - 1) / (2 k2), by its series where the difference would lose digits
     x = prm[1] * e * e
     over = 0.5 * e * e * (1.0 + 0.5 * x * (1.0 + x / 3.0))
     if x > 1e-5:
@@ -43,11 +43,11 @@ class HolzapfelGasserOgden(Fibres):
     Attributes
     ----------
     direction : (float, float, float)
-        Of the fibres in the body's rest frame, of any length above 0.
+        Direction of the fibres in the rest shape, of any length above 0.
     k1 : float
-        Stiffness [Pa], 0 or more: small stretches along the fibres meet 4 k1 more.
+        Stiffness [Pa], 0 or more; fibres add 4 k1 to the small-strain stiffness in tension along them.
     k2 : float
-        How fast they stiffen [-], 0 or more.
+        Exponent of the stiffening [-], 0 or more.
     """
 
     name: ClassVar[str] = "holzapfel-gasser-ogden"

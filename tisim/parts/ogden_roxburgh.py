@@ -1,15 +1,15 @@
-"""Mullins' effect: softening by the largest energy so far (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
+"""Mullins effect: softening by the largest energy so far (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
 
     S_iso = eta 2 dW/dC,    eta = 1 - erf((W_m - W)/(m + beta W_m)) / r
 
 with W the isochoric energy (fibres included) and W_m its largest value so far at the point. First loading
-(W = W_m) is the law's own. The stress is the slope of the energy
+(W = W_m) follows the law without softening. The stress derives from the energy
 
     f(W) = W + d/r [z erf z + exp(-z^2)/sqrt(pi)],    z = (W_m - W)/d,    d = m + beta W_m,
 
-and d/r [z_0 erf z_0 + (exp(-z_0^2) - 1)/sqrt(pi)] with z_0 = W_m/d is what is lost per rest volume. Not
-described: residual set, recovery at rest, and the further loss of the second and later cycles to the same
-stretch.
+and the energy dissipated per rest volume is d/r [z_0 erf z_0 + (exp(-z_0^2) - 1)/sqrt(pi)] with z_0 = W_m/d.
+Permanent set, recovery at rest, and the further loss in the second and later cycles to the same stretch are
+not modelled.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
@@ -31,7 +31,7 @@ _SQRT_PI = float(np.sqrt(np.pi))
 
 @ti.func
 def error_function(z):
-    """erf z of z >= 0 to rounding, by 2 z/sqrt(pi) exp(-z^2) sum (2 z^2)^n / (2n + 1)!!, no term negative."""
+    """erf z for z >= 0 to rounding, by 2 z/sqrt(pi) exp(-z^2) sum (2 z^2)^n / (2n + 1)!!, all terms >= 0."""
     found = 1.0
     if z < 6.0:
         term = 2.0 / _SQRT_PI * z * ti.exp(-z * z)
@@ -63,11 +63,11 @@ class OgdenRoxburgh(Softening):
     Attributes
     ----------
     r : float
-        1 or more; the softest is 1 - 1/r of the law.
+        1 or more; the smallest factor of the stress is 1 - 1/r.
     m : float
-        Energy that sets where softening is felt [J/m3], above 0.
+        Scale of the energy difference W_m - W at which softening sets in [J/m3], above 0.
     beta : float
-        Part of the largest energy that adds to m [-], 0 or more.
+        Fraction of the largest energy that is added to m [-], 0 or more.
     """
 
     name: ClassVar[str] = "ogden-roxburgh"

@@ -4,10 +4,10 @@ Simo, Comput. Methods Appl. Mech. Eng. 60, 1987; Holzapfel, Nonlinear Solid Mech
 
     S = S_vol + g_inf S_iso + sum Q_i,    dQ_i/dt + Q_i/tau_i = g_i dS_iso/dt
 
-with S_iso = 2 dW/dC of the isochoric energy that the law's parameters give (softened and with fibres, where
-the material has these). Stated by the long-time modulus, g_inf = 1 and the fractions g_i are parts of that:
-the instantaneous shear modulus is G (1 + sum g_i). Stated by the instantaneous modulus, g_i are parts of it
-and g_inf = 1 - sum g_i.
+with S_iso = 2 dW/dC of the isochoric energy with the law's parameters (including softening and fibres, if
+any). If the law's modulus is the long-time modulus, g_inf = 1 and the instantaneous shear modulus is
+G (1 + sum g_i). If it is the instantaneous modulus, g_inf = 1 - sum g_i. The g_i are fractions of the law's
+modulus in both cases.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ class Prony(Viscosity):
     Attributes
     ----------
     fractions : tuple of float
-        g_i of each term, parts of the modulus that is stated; 0 or more.
+        g_i of each term, as fractions of the law's modulus; 0 or more.
     times : tuple of float
-        Relaxation times tau_i [s], above 0, no two alike.
+        Relaxation times tau_i [s], above 0, all different.
     modulus : "long-time" or "instantaneous"
-        Which modulus the law's parameters state: that in the long run (g_i may sum to any number), or that at
-        once (g_i sum to less than 1).
+        Meaning of the law's modulus: the long-time modulus (g_i may have any sum) or the instantaneous
+        modulus (g_i sum to less than 1).
     """
 
     name: ClassVar[str] = "prony"
@@ -63,7 +63,7 @@ class Prony(Viscosity):
 
 
 def _numbers(field: str, values: Any, expected: str, *, lowest: float) -> np.ndarray:
-    """The values as an array, at least one, finite and from `lowest` on."""
+    """The values as an array; FieldError unless there is at least one and all are finite and >= `lowest`."""
     try:
         found = np.array([float(v) for v in values]) if isinstance(values, Sequence | np.ndarray) else None
     except (TypeError, ValueError):

@@ -1,6 +1,6 @@
 """The kinds of scenes and how each is solved: beams, indentation, compression, homogeneous tests, dynamics.
 
-A kind is a `SceneKind` that is registered. One of one's own, in a file:
+A kind is a registered `SceneKind`. An example of a user's own kind, in a file:
 
 >>> from dataclasses import dataclass, field
 >>> import numpy as np
@@ -9,7 +9,7 @@ A kind is a `SceneKind` that is registered. One of one's own, in a file:
 >>>
 >>> @dataclass(frozen=True, kw_only=True)
 ... class Hydrostat:
-...     '''A unit cube under one volume ratio after the other.'''
+...     '''A unit cube under a sequence of volume ratios.'''
 ...
 ...     material: tisim.Material
 ...     ratios: tuple[float, ...] = (0.99,)

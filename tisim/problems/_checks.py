@@ -24,7 +24,7 @@ from tisim.scene import Material, Solver
 
 
 def check_scene(index: int, scene: Any) -> None:
-    """Raise ValueError that names the scene by its place in the list, the field and what is expected."""
+    """Raise ValueError that names the scene by its index in the list, the field and the expected value."""
     try:
         kind = kind_of(scene)
     except ValueError as error:
@@ -44,7 +44,7 @@ def check_material(material: Material) -> None:
     check_positive("material.density", material.density, "a density above 0 kg/m3")
     try:
         laws.get(material.law).check(material.parameters)
-        # the packing has rules of its own (exponents other than zero)
+        # packing has additional rules (non-zero exponents)
         laws.get(material.law).pack(material.parameters)
     except (ValueError, TypeError) as error:
         raise FieldError("material.parameters", f"a sound set ({error})", dict(material.parameters)) from None
@@ -63,7 +63,16 @@ def check_material(material: Material) -> None:
 
 
 def check_parts(material: Material, takes: tuple[str, ...], name: str) -> None:
-    """Raise for a part that a kind of scene would not take into account."""
+    """Raise FieldError for a part of the material that a kind of scene ignores.
+
+    Parameters
+    ----------
+    material : Material
+    takes : tuple of str
+        Parts that the kind takes into account, see `SceneKind.takes`.
+    name : str
+        Name of the kind, for the error message.
+    """
     for part in ("viscosity", "softening", "fibres"):
         value = getattr(material, part)
         if value is not None and part not in takes:
@@ -79,9 +88,18 @@ def oblique_fibres(material: Material) -> bool:
 
 
 def check_course(scene: Any, *, start: float, instead_of: tuple[str, ...] = ()) -> None:
-    """Raise unless the scene's course is sound, begins at rest, and nothing that it replaces is given too.
+    """Raise FieldError unless the course is valid and the fields that it replaces have their default values.
 
-    A viscous material needs a course: without one there is no time.
+    A viscous material needs a course, since without one there is no time.
+
+    Parameters
+    ----------
+    scene
+        A scene with a field `course`.
+    start : float
+        Value of the state at rest, passed to `Course.check`.
+    instead_of : tuple of str
+        Fields of the scene that the course replaces.
     """
     course = scene.course
     if course is None:
@@ -108,13 +126,13 @@ def check_solver(solver: Solver) -> None:
 
 
 def check_static(solver: Solver, what: str) -> None:
-    """Raise unless the method is the static one; what: the scenes, in the plural."""
+    """Raise FieldError unless the method is "static"; `what` names the scenes in the plural."""
     if solver.method != "static":
         raise FieldError("solver.method", f"static, the only one offered for {what}", solver.method)
 
 
 def check_stretches(stretches: Any) -> None:
-    """Raise unless these are stretches above 0, at least one."""
+    """Raise FieldError unless there is at least one stretch and all are above 0."""
     if not isinstance(stretches, tuple | list | np.ndarray) or not len(stretches):
         raise FieldError("stretches", "at least one stretch", stretches)
     for value in stretches:

@@ -1,4 +1,4 @@
-"""The kinds of scenes there are: what each checks, shares, costs, and how it is solved."""
+"""Registry of the kinds of scenes: how each is checked, grouped by mesh, scheduled and solved."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:  # scipy is imported when a scene is solved
     from tisim.discretisation.body import Discretisation
 
 OnStep = Callable[[float], None]
-"""Called with the fraction of a scene that is done, 0 to 1."""
+"""Callback that is called with the completed fraction of a scene, 0 to 1."""
 
 
 def skip(_: float) -> None:
-    """No progress is wanted."""
+    """Ignore the progress."""
 
 
 def _nothing(_: Any) -> None: ...
@@ -58,30 +58,31 @@ class SceneKind:
     ----------
     scene : type
         A frozen dataclass with a field `material` (`tisim.Material`) and a field `solver` (`tisim.Solver`);
-        a field `mesh` (`tisim.Mesh` or None) holds a mesh of the user's own.
+        a field `mesh` (`tisim.Mesh` or None) holds a mesh that the user supplies.
     solve : callable (scene, on_step) -> Result
-        Solves one scene. What has no answer is a status of the result, never an exception. on_step: see
-        `OnStep`; to call it is optional.
+        Solves one scene. A scene without a solution gives a result with that status, never an exception.
+        Calling `on_step` (see `OnStep`) is optional.
     check : callable (scene) -> None
         Raises a ValueError, in one sentence that begins with the field, for a scene that cannot be solved.
-        Material and solver are checked before it.
+        Material and solver are checked earlier.
     takes : callable (scene) -> tuple of str
-        Which of "viscosity", "softening" and "fibres" (`tisim.Material`) the solution takes into account for
-        this scene; a material with others is refused. None by default.
+        Those of "viscosity", "softening" and "fibres" (`tisim.Material`) that the solution takes into account
+        for this scene; a material with others is refused. Empty by default.
     mesh_key : callable (scene) -> tuple or None
-        Equal for scenes that share a mesh, which are solved one after the other in one process; None for a
-        scene with a mesh of its own.
+        Equal for scenes that share a mesh, which are solved in sequence in one process; None for a scene
+        that shares its mesh with no other.
     chained : callable (scene) -> bool
-        Whether scenes of one mesh start from one another (`solve_chain`).
+        True if scenes of one mesh use the solution of the previous one as start value (`solve_chain`).
     solve_chain : callable (scenes, on_step) -> iterator of Result, optional
-        Solves scenes of one mesh, each started from the one before.
+        Solves scenes of one mesh, each started from the previous one.
     seconds : callable (scene) -> float
-        Rough cost [core-s], to begin with the longest and to decide on the number of processes.
+        Approximate cost [core-s]: the longest scenes are started first, and the number of processes depends
+        on it. 10 by default.
     describe : callable (result, frame) -> str
-        A frame in a few words, for the title of a picture.
+        Short description of a frame, for the title of a picture.
     discretise : callable (result, frame) -> Discretisation
-        What the body was integrated on, for the stress of a frame; its supports do not matter. That of the
-        result's mesh by default.
+        Discretisation of the body, used to evaluate the stress of a frame; its supports do not matter. By
+        default that of the result's mesh.
     """
 
     scene: type
@@ -111,19 +112,19 @@ def register(kind: SceneKind) -> SceneKind:
     Parameters
     ----------
     kind : SceneKind
-        One with the scene class of a kind that was added before takes its place.
+        Replaces an added kind of the same scene class.
 
     Returns
     -------
     SceneKind
-        The same.
+        The argument.
 
     Raises
     ------
     TypeError
-        If it is no `SceneKind`, or its scene no dataclass.
+        If `kind` is not a `SceneKind` or its scene is not a dataclass.
     ValueError
-        If the scene is one of tisim's own.
+        If the scene class is built into tisim.
     """
     if not isinstance(kind, SceneKind) or not is_dataclass(kind.scene):
         raise TypeError(f"scene kind: expected a SceneKind whose scene is a dataclass, got {kind!r}")
@@ -134,25 +135,25 @@ def register(kind: SceneKind) -> SceneKind:
 
 
 def register_built_in(kind: SceneKind) -> SceneKind:
-    """Add one of tisim's own kinds, which no other may replace."""
+    """Add a built-in kind, which no other kind may replace."""
     register(kind)
     _BUILT_IN.add(kind.scene)
     return kind
 
 
 def unregister(scene: type) -> None:
-    """Take out a kind that was added."""
+    """Remove an added kind; built-in and unknown kinds are ignored."""
     if scene not in _BUILT_IN:
         _KINDS.pop(scene, None)
 
 
 def kinds() -> tuple[SceneKind, ...]:
-    """All kinds, tisim's own first."""
+    """All kinds, the built-in ones first."""
     return tuple(_KINDS.values())
 
 
 def kind_of(scene: object) -> SceneKind:
-    """The kind of a scene; ValueError, which names the kinds there are, for what is none."""
+    """Kind of a scene, by its class or a base class; ValueError, which lists the kinds, if there is none."""
     for base in type(scene).__mro__:
         if base in _KINDS:
             return _KINDS[base]
@@ -161,6 +162,6 @@ def kind_of(scene: object) -> SceneKind:
 
 
 def added(scene: object) -> SceneKind | None:
-    """The kind of a scene if it was registered from outside, None for tisim's own."""
+    """Kind of a scene if it was added by `register`, None if it is built in."""
     kind = kind_of(scene)
     return None if kind.scene in _BUILT_IN else kind

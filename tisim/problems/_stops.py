@@ -1,4 +1,4 @@
-"""Ends of the steps of a scene: the stops of its course, or its stretches in order."""
+"""Ends of the load steps of a scene: the stops of its course, or its stretches in order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tisim.scene import Material
 
 
 def shortest_time(material: Material) -> float | None:
-    """The shortest relaxation time that a material has [s]; None for one that does not relax."""
+    """Shortest relaxation time of a material [s]; None if it does not relax."""
     if material.viscosity is None:
         return None
     spectrum = material.viscosity.spectrum()
@@ -18,7 +18,7 @@ def shortest_time(material: Material) -> float | None:
 
 
 def stops_of(scene: Any) -> list[Stop]:
-    """Stops of a scene with stretches or a course."""
+    """Stops of the scene's course; without a course one stop per stretch, all at time 0."""
     if scene.course is None:
         return [Stop(time=0.0, value=float(stretch), frame=True) for stretch in scene.stretches]
     return list(scene.course.stops(shortest_time(scene.material)))

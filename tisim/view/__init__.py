@@ -1,4 +1,4 @@
-"""Results in three dimensions: one HTML page that opens from disk, in notebooks, as moving pictures.
+"""Results in three dimensions: a single HTML page that opens from disk, notebooks, and animations.
 
 >>> import tisim
 >>> soft = tisim.material_from_moduli("neo-hookean", shear_modulus=15e3, bulk_modulus=300e3)
@@ -7,9 +7,9 @@
 >>> shown.colourings[:2]
 ('displacement', 'von Mises stress')
 
-`shown.save("beam.html")` writes the page, `shown.animate("beam.gif")` a moving picture, and a notebook shows
-it by itself. Files are shown by `python -m tisim.view FILE`; `view_of_file` is the same from Python. Views of
-one's own are made of `Surface`, `Field` and `Curve`; `tisim.view.page` puts them into other pages.
+`shown.save("beam.html")` writes the page, `shown.animate("beam.gif")` an animation, and a notebook displays
+the view. `python -m tisim.view FILE` shows files; `view_of_file` does so from Python. Users can compose their
+own views from `Surface`, `Field` and `Curve`; `tisim.view.page` embeds them in other pages.
 """
 
 import lazy_loader as _lazy

@@ -1,4 +1,4 @@
-"""The frames of a view as a GIF or MP4, drawn by matplotlib: no display and no graphics card needed."""
+"""The frames of a view as a GIF or MP4, drawn by matplotlib without a display or graphics card."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 MOST_PICTURES = 60
-TURN = 36  # pictures of a view of one frame, which is turned around
-REST_AT_END = 1.0  # [s]
+TURN = 36  # number of pictures of a view with one frame, which is rotated
+REST_AT_END = 1.0  # additional time of the last picture [s]
 DPI = 100
 
 
@@ -61,7 +61,7 @@ def _ffmpeg(path: Path) -> str:
 
 
 def _pictures(view: View, colour: str | None, width: int) -> Iterator[Image]:
-    """One picture a frame, or of a single frame one a view from around."""
+    """One picture per frame, at most MOST_PICTURES; of a single frame TURN views from all around."""
     count = len(view.labels)
     if count == 1:
         for turn in np.linspace(0.0, 2.0 * np.pi, TURN, endpoint=False):
@@ -125,7 +125,7 @@ def _turned(towards: Array, turn: float) -> Array:
 
 
 def _drawn(view: View, surface: Surface, frame: int, chosen: str | None) -> tuple[Array, Array | None]:
-    """Triangles (t, 3, 3) at a frame, and what colours them (t,)."""
+    """Triangles (t, 3, 3) [m] at a frame, and the values (t,) of their colours, None without the field."""
     corners = surface.opened if view.opened and surface.opened is not None else surface.triangles
     at = min(frame, len(surface.positions) - 1)
     polygons = surface.positions[at][corners]
@@ -134,7 +134,7 @@ def _drawn(view: View, surface: Surface, frame: int, chosen: str | None) -> tupl
 
 
 def _limits(view: View, camera: Camera, *, all_around: bool) -> tuple[Array, Array]:
-    """Lower left and upper right of what is drawn in all frames, and from all around, with a margin [mm]."""
+    """Lower left and upper right corner [mm] of all frames, and rotations if `all_around`, with a margin."""
     points = [p.reshape(-1, 3) for p in drawn_positions(view, rest=False)]
     flat = 1e3 * camera.flat(np.concatenate(points))
     low, high = flat.min(axis=0), flat.max(axis=0)
@@ -166,7 +166,7 @@ def _gif(pictures: list[Image], path: Path, seconds: float) -> None:
 
 
 def _palette() -> Image:
-    """The colours that there are, at the brightnesses of what is lit, and greys."""
+    """Palette of the colour map at several brightnesses, and greys."""
     from matplotlib import colormaps
     from PIL import Image
 

@@ -1,4 +1,4 @@
-"""Files as views: VTU, series of them (.pvd), and pokes of a dataset's store."""
+"""Views of files: VTU, series of them (.pvd), and pokes of a dataset's store."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _read(path: Path) -> Any:
 
 
 def _solids(path: Path, m: Any) -> tuple[Any, Ints]:
-    """The one kind of solid elements of a file, and all of them."""
+    """Type and nodes of the solid elements of a file; ValueError unless all have one type."""
     blocks = [(SOLIDS[block.type], block.data) for block in m.cells if block.type in SOLIDS]
     kinds = {kind for kind, _ in blocks}
     if len(kinds) != 1:
@@ -118,7 +118,7 @@ def _solids(path: Path, m: Any) -> tuple[Any, Ints]:
 
 
 def _rest(m: Any, points: Array) -> Array:
-    """Positions at rest: as stated, by the displacement, or those of the first frame."""
+    """Rest positions: those of the file, or points minus displacement, or else the points themselves."""
     if "rest_position" in m.point_data:
         return np.asarray(m.point_data["rest_position"], dtype=float)
     moved = np.asarray(m.point_data.get("displacement", 0.0), dtype=float)
@@ -126,13 +126,13 @@ def _rest(m: Any, points: Array) -> Array:
 
 
 def _constants(m: Any) -> dict[str, Array]:
-    """Data of the frame, which tisim writes for each element alike."""
+    """Data of the frame, which tisim writes as constant cell data."""
     names = ("load", "time", "support_force", "rod_force", "rod_tip", "rod_axis", "rod_shape")
     return {name: np.asarray(m.cell_data[name][0][0], dtype=float) for name in names if name in m.cell_data}
 
 
 def _fields(read: list[Any], rest: Array, positions: Array) -> tuple[Field, ...]:
-    """Displacement, what tisim writes of stress and strain, and other numbers at the nodes."""
+    """Fields of the displacement, of stress and strain as tisim writes them, and of other nodal scalars."""
     found = [Field(name="displacement", unit="mm", values=1e3 * np.linalg.norm(positions - rest, axis=2))]
     stated = {attribute: name for name, attribute in FIELDS.items()}
     for name, attribute, component, unit in COLOURINGS:

@@ -1,4 +1,4 @@
-"""A result of `tisim.simulate` as a view."""
+"""View of a result of `tisim.simulate`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tisim.result import Result
 from tisim.view._told import Told, curve, frames_shown, label, thinned
 from tisim.view._view import REST, STEEL, Array, Field, Surface, View, outlines
 
-PIECE = 2e-3  # of a rod's shaft: what is drawn from the farthest to the nearest needs short ones [m]
+PIECE = 2e-3  # length of the pieces of a rod's shaft, short for the painter's algorithm [m]
 # name, attribute of `Quantities`, component, unit in SI
 COLOURINGS: tuple[tuple[str, str, int | None, str], ...] = (
     ("von Mises stress", "von_mises", None, "Pa"),
@@ -28,7 +28,7 @@ COLOURINGS: tuple[tuple[str, str, int | None, str], ...] = (
 
 
 def view_of_result(result: Result, *, title: str | None = None) -> View:
-    """The result in three dimensions, see `tisim.show`."""
+    """View of a result, see `tisim.show`."""
     count = len(result.positions)
     if not count:
         why = f": {result.message}" if result.message else ""
@@ -63,7 +63,7 @@ def view_of_result(result: Result, *, title: str | None = None) -> View:
 
 
 def towards(sideways: Array, *, steep: bool) -> tuple[float, float, float]:
-    """From a body to who looks across its cut, from above where there is a rod."""
+    """Direction from a body to a viewer who looks at its cut face; steeper from above if `steep`."""
     x, y, z = -sideways + 0.35 * np.cross(sideways, [0.0, 0.0, 1.0]) + [0.0, 0.0, 0.6 if steep else 0.35]
     return float(x), float(y), float(z)
 
@@ -71,7 +71,7 @@ def towards(sideways: Array, *, steep: bool) -> tuple[float, float, float]:
 def body_surfaces(
     mesh: Mesh, positions: Array, coloured: tuple[Field, ...], sideways: Array, centre: Array
 ) -> list[Surface]:
-    """A body, also cut open square to `sideways` through `centre`, and its shape at rest."""
+    """Surfaces of a body, with a cut normal to `sideways` through `centre`, and of its rest shape."""
     whole = mesh.facet_sets.get("surface")
     whole = boundary_facets(mesh.kind, mesh.elements) if whole is None else whole
     behind = (mesh.nodes[mesh.elements].mean(axis=1) - centre) @ sideways > -1e-9
@@ -98,7 +98,7 @@ def body_surfaces(
 
 
 def colourings(rest: Array, positions: Array, found: list[Quantities]) -> tuple[Field, ...]:
-    """Displacement [mm], and what `COLOURINGS` names, in units that make handy numbers."""
+    """Fields of the displacement [mm] and of the quantities in COLOURINGS, in units suited to their size."""
     moved = [Field(name="displacement", unit="mm", values=1e3 * np.linalg.norm(positions - rest, axis=2))]
     for name, attribute, component, unit in COLOURINGS:
         rows = [getattr(q, attribute) for q in found]
@@ -108,7 +108,7 @@ def colourings(rest: Array, positions: Array, found: list[Quantities]) -> tuple[
 
 
 def handy(name: str, unit: str, values: Array) -> Field:
-    """A field in SI with a prefix that suits its size."""
+    """Field of values in SI units, with a prefix of the unit suited to their size."""
     if not unit:
         return Field(name=name, unit=unit, values=values)
     size = float(np.percentile(np.abs(values), 99.0))
@@ -117,7 +117,7 @@ def handy(name: str, unit: str, values: Array) -> Field:
 
 
 def rod(shape: Rod, tips: Array, axes: Array) -> Surface:
-    """A rod at its poses: centres of its tip (f, 3) [m] and unit vectors towards it (f, 3)."""
+    """Surface of a rod at poses given by tip centres (f, 3) [m] and unit vectors towards the tip (f, 3)."""
     poses = zip(tips, axes, strict=True)
     quads = np.array([rod_surface(shape, tip, axis, around=24, piece=PIECE) for tip, axis in poses])
     corners = quads.reshape(len(quads), -1, 3)
@@ -128,7 +128,7 @@ def rod(shape: Rod, tips: Array, axes: Array) -> Surface:
 
 
 def _place(result: Result, frame: int) -> list[Told]:
-    """Load (depth, stretch or other) and time of a frame, as shown."""
+    """Load parameter (depth, stretch or fraction of the load) and time of a frame."""
     load = float(result.load[frame])
     found: list[Told] = []
     if result.rod_tip is not None:

@@ -1,4 +1,4 @@
-"""From a result or a file to a view."""
+"""Views of results and of files."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from tisim.view._view import View
 
 
 def show(result: Result, path: str | Path | None = None, *, title: str | None = None) -> View:
-    """A result to turn around: frames to step through, the rod, forces, coloured by displacement or stress.
+    """Interactive view of a result: its frames, the rod, forces, and colours by displacement or stress.
 
     Parameters
     ----------
     result : Result
     path : path, optional
-        Write the page there.
+        File to which to write the page.
     title : str, optional
-        Instead of a line that describes the scene.
+        Title; by default a line that describes the scene.
 
     Returns
     -------
     View
-        A notebook shows it; `View.save` writes the page, `View.animate` a GIF or MP4.
+        A notebook displays it; `View.save` writes the page, `View.animate` a GIF or MP4.
 
     Raises
     ------
     ValueError
-        For a result without a frame.
+        If the result has no frame.
     FileNotFoundError
         If the page's folder does not exist.
     """
@@ -40,14 +40,14 @@ def show(result: Result, path: str | Path | None = None, *, title: str | None = 
 
 
 def view_of_file(path: str | Path, *more: str | Path, poke: int | None = None) -> View:
-    """Contents of a file as a view, see `python -m tisim.view --help`.
+    """View of a file's contents, as by `python -m tisim.view`.
 
     Parameters
     ----------
     path, *more : path
-        A .vtu or several, one a frame; a .pvd, which names some; a dataset's store (.zarr, .zarr.zip).
+        One .vtu or several, one per frame; a .pvd series; or a dataset's store (.zarr, .zarr.zip).
     poke : int, optional
-        Which poke of a store, by its index.
+        Index of a poke of a store; by default the first that was simulated.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def view_of_file(path: str | Path, *more: str | Path, poke: int | None = None) -
     Raises
     ------
     ValueError
-        In one sentence, for what cannot be shown.
+        If the contents cannot be shown; the message is one sentence.
     FileNotFoundError
         If there is no such file.
     """

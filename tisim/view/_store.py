@@ -1,4 +1,4 @@
-"""A poke of a dataset's store as a view: any Zarr 3 store of the format in docs/dataset-format.md."""
+"""View of a poke of a dataset's store: any Zarr 3 store of the format in docs/dataset-format.md."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NEEDED = ("frame_start", "node_start", "triangle_start", "value_start", "rod_ti
 
 
 def view_of_poke(path: Path, index: int | None) -> View:
-    """One poke of the store at a path, by default the first that was simulated."""
+    """View of one poke of the store at a path, by default of the first that was simulated."""
     import zarr
     import zarr.storage
 

@@ -1,4 +1,4 @@
-"""Frames in words and as a curve: where each is, and the force there."""
+"""Labels of frames and the curve below a view: load parameter, time and force."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from numpy.typing import NDArray
 from tisim.view._view import Curve
 
 Told = tuple[str, float, str]
-"""Name, value and unit of one quantity."""
+"""Name, value and unit of a quantity."""
 
 MOST_FRAMES = 120
 
 
 def frames_shown(count: int) -> NDArray[np.intp]:
-    """Frames of a view: all, or MOST_FRAMES of them, evenly, first and last among them."""
+    """Indices of the frames of a view: all, or MOST_FRAMES evenly spaced ones with the first and the last."""
     return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_FRAMES))).astype(np.intp))
 
 
 def thinned(count: int) -> tuple[str, ...]:
-    """The sentence that says so where not all frames are shown."""
+    """A note if not all frames are shown, else empty."""
     return (f"{MOST_FRAMES} of {count} frames are shown.",) if count > MOST_FRAMES else ()
 
 
 def label(told: Sequence[Told]) -> str:
-    """One line of quantities."""
+    """One line with the names, values and units of quantities."""
     return " · ".join(f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in told)
 
 
 def curve(along: Sequence[Told], forces: Sequence[Told]) -> Curve:
-    """Force over what frames are counted by, one of each a frame."""
+    """Curve of the force over the load parameter, with one of each per frame."""
     return Curve(
         x=np.array([value for _, value, _ in along]),
         x_name=along[0][0],

@@ -1,4 +1,4 @@
-"""The contents of a 3-D view: bodies with fields over frames, a line of text a frame, a curve."""
+"""The contents of a 3-D view: bodies with fields over frames, a line of text per frame, a curve."""
 
 from __future__ import annotations
 
@@ -24,13 +24,14 @@ _OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Field:
-    """A colouring.
+    """A field by which a surface is coloured.
 
     Attributes
     ----------
     name, unit : str
+        Name and unit for display.
     values : ndarray, shape (f, n)
-        In that unit, by frame and node.
+        Values in that unit, by frame and node.
     """
 
     name: str
@@ -40,28 +41,29 @@ class Field:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Surface:
-    """Triangles that move.
+    """A moving surface of triangles.
 
     Attributes
     ----------
     positions : ndarray, shape (f, n, 3)
-        [m]; one frame for what does not move.
+        Positions [m]; one frame for a fixed surface.
     triangles : ndarray of int, shape (t, 3)
-        Outward.
+        Node indices, outward.
     edges : ndarray of int, shape (e, 2), optional
         Lines to draw on it: the elements' edges.
     opened, opened_edges : ndarray of int, optional
-        The same of the body cut open.
+        Triangles and lines of the body cut open.
     fields : tuple of Field
-        Colourings; the same names for all surfaces of a view that have some. None: it has one colour.
+        Fields for colours, with the same names for all surfaces of a view that have fields. If empty, the
+        surface has one colour.
     colour : (float, float, float, float)
-        Red, green, blue and opacity, 0 to 1, of what has no fields.
+        Red, green, blue and opacity, 0 to 1, of a surface without fields.
     name : str
-        For the key; empty for none.
+        Name in the legend; empty for none.
     rest : bool
-        Whether it is the shape at rest, shown on demand.
+        True for the rest shape, which is shown on demand.
     frame : int, optional
-        The one frame of the view that it belongs to; all where left out.
+        The only frame of the view that shows it; by default all do.
     """
 
     positions: Array
@@ -78,7 +80,7 @@ class Surface:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Curve:
-    """A quantity over the frames, (f,) each, drawn below."""
+    """A curve over the frames, drawn below the picture: x and y (f,) with names and units."""
 
     x: Array
     x_name: str
@@ -90,19 +92,19 @@ class Curve:
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class View:
-    """A picture to turn around, whose frames are stepped through; a notebook shows it.
+    """An interactive 3-D view with frames; a notebook displays it.
 
     Attributes
     ----------
     title : str
     labels : tuple of str
-        A line for each frame: where it is, and the force there with its unit.
+        A line for each frame with the load parameter and the force, in their units.
     surfaces : tuple of Surface
     curve : Curve, optional
     towards : (float, float, float)
-        Direction from the body to the viewer at first.
+        Initial direction from the body to the viewer.
     opened, rest : bool
-        Whether bodies are cut open, and shapes at rest shown, at first.
+        True if bodies are initially cut open, and rest shapes initially shown.
     notes : tuple of str
         Sentences below the picture.
     """
@@ -122,17 +124,17 @@ class View:
 
     @property
     def colourings(self) -> tuple[str, ...]:
-        """Names of the colourings there are."""
+        """Names of the fields by which the view can be coloured."""
         return next((tuple(f.name for f in s.fields) for s in self.surfaces if s.fields), ())
 
     def html(self) -> str:
-        """One page that needs no other file and no network."""
+        """A self-contained HTML page, which needs no other file and no network."""
         from tisim.view.page import page
 
         return page(self)
 
     def save(self, path: str | Path) -> Path:
-        """Write the page. FileNotFoundError if the folder does not exist."""
+        """Write the page; FileNotFoundError if the folder does not exist."""
         path = checked_path(path)
         path.write_text(self.html(), encoding="utf-8")
         return path
@@ -145,18 +147,18 @@ class View:
         seconds: float = 4.0,
         width: int = 800,
     ) -> Path:
-        """Write the frames as a moving picture.
+        """Write the frames as an animation.
 
         Parameters
         ----------
         path : path
-            Ends in .gif or, where ffmpeg or the package imageio-ffmpeg is at hand, in .mp4.
+            A file that ends in .gif or, if ffmpeg or the package imageio-ffmpeg is installed, in .mp4.
         colour : str, optional
-            One of `colourings`; the first where left out.
+            One of `colourings`; by default the first.
         seconds : float
-            How long it takes.
+            Duration [s], 0.1 to 600, without the additional time of a GIF's last frame.
         width : int
-            [pixels], 200 to 2000.
+            Width [pixels], 200 to 2000.
 
         Returns
         -------
@@ -165,7 +167,7 @@ class View:
         Raises
         ------
         ValueError
-            For another ending, a colouring that is not there, or an .mp4 without ffmpeg.
+            For another ending, an unknown colouring, arguments out of range, or an .mp4 without ffmpeg.
         FileNotFoundError
             If the folder does not exist.
         """
@@ -180,13 +182,13 @@ class View:
         return path
 
     def _repr_html_(self) -> str:
-        """The page in a frame of its own, for notebooks."""
+        """The page in an iframe, for notebooks."""
         style = "width:100%;height:880px;border:0"
         return f'<iframe style="{style}" sandbox="allow-scripts" srcdoc="{escape(self.html())}"></iframe>'
 
 
 def outlines(facets: Ints) -> Ints:
-    """Edges of facets as lines (e, 2), each once."""
+    """Distinct edges of facets as lines (e, 2), with the halves of edges that have a middle node."""
     ring = facets[:, _OUTLINE[facets.shape[1]]]
     lines = np.sort(np.stack([ring, np.roll(ring, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     return np.unique(lines[lines[:, 0] != lines[:, 1]], axis=0).astype(np.int32)

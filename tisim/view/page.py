@@ -1,4 +1,4 @@
-"""A view as HTML: numbers packed small, one script and one style for all views of a page."""
+"""A view as HTML: compressed numbers, and one script and one style for all views of a page."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from tisim.view._view import Array, Field, Surface, View
 
 COLOURS = "viridis"
 LEVELS = 255
-SECONDS = 4.0  # of all frames played
-# Part of a field's values [percent] that may lie beyond either end of the colours, where they reach further
-# than BEYOND of the colours' range: a few nodes at a rod's edge are not to take all colours.
+SECONDS = 4.0  # duration of all frames when played
+# Percentage of a field's values that may lie beyond either end of the colour range, if they reach further
+# than BEYOND times that range: a few nodes at a rod's edge should not determine the colours.
 OUTSIDE, BEYOND = 2.0, 0.25
 
 
@@ -34,7 +34,7 @@ def style() -> str:
 
 
 def script() -> str:
-    """JavaScript that draws all views of a page; it stands after them, once."""
+    """JavaScript that draws all views of a page; it has to be included once, after them."""
     return _text("view.js")
 
 
@@ -44,9 +44,9 @@ def page(view: View) -> str:
 
 
 def section(view: View, *, themed: bool = False) -> str:
-    """The view as a part of a page that has `style` and `script`.
+    """HTML of the view for a page that includes `style` and `script`.
 
-    themed: whether it turns dark where the reader's system is.
+    If `themed`, it is dark on systems with a dark theme.
     """
     data = json.dumps(content(view), separators=(",", ":"), allow_nan=False)
     return _filled("view.html", view=view, data=data.replace("<", "\\u003c"), themed=themed)
@@ -58,7 +58,7 @@ def _filled(name: str, **values: Any) -> str:
 
 
 class _Numbers:
-    """Arrays laid end to end, each where its numbers may begin."""
+    """Concatenated arrays, each aligned to 4 bytes."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
@@ -76,7 +76,7 @@ class _Numbers:
 
 
 def content(view: View) -> dict[str, Any]:
-    """The view as the data that the page's script reads."""
+    """Data of the view for the page's script."""
     from matplotlib import colormaps
 
     numbers = _Numbers()
@@ -126,14 +126,14 @@ def _rounded(values: Array) -> list[float]:
 
 
 def _box(surfaces: Any) -> tuple[Array, Array]:
-    """Lowest corner and size of what is shown, over all frames [m]."""
+    """Lowest corner and size of the bounding box of surfaces over all frames [m]."""
     low = np.min([s.positions.min(axis=(0, 1)) for s in surfaces], axis=0)
     high = np.max([s.positions.max(axis=(0, 1)) for s in surfaces], axis=0)
     return low, np.maximum(high - low, 1e-9)
 
 
 def drawn_positions(view: View, *, rest: bool) -> list[Array]:
-    """Positions (f, k, 3) [m] of the drawn nodes of each surface that is shown at first."""
+    """Positions (f, k, 3) [m] of the drawn nodes of each initially shown surface; rest shapes if `rest`."""
     found = []
     for s in view.surfaces:
         if not s.rest or rest:
@@ -143,7 +143,7 @@ def drawn_positions(view: View, *, rest: bool) -> list[Array]:
 
 
 def _extremes(view: View) -> Array:
-    """Points (k, 3) of what is shown at first that lie farthest out in many directions [m]."""
+    """Extreme points (k, 3) of the initial view in many directions [m]."""
     points = [p.reshape(-1, 3) for p in drawn_positions(view, rest=view.rest)]
     turn = 2.4 * np.arange(100)  # the golden angle: directions all around
     height = np.linspace(-1.0, 1.0, len(turn))
@@ -154,7 +154,7 @@ def _extremes(view: View) -> Array:
 
 
 def colour_ranges(view: View) -> dict[str, tuple[Field, tuple[float, float]]]:
-    """Each colouring with the values at the ends of its colours, the same in all frames."""
+    """Each field by name with the values at the ends of its colour range, the same in all frames."""
     found: dict[str, tuple[Field, tuple[float, float]]] = {}
     for name in view.colourings:
         of_name = [f for s in view.surfaces for f in s.fields if f.name == name]
@@ -172,7 +172,7 @@ def colour_ranges(view: View) -> dict[str, tuple[Field, tuple[float, float]]]:
 
 
 def ticks_of(colouring: Field, low: float, high: float) -> list[str]:
-    """Ends and middle of the colours; ≤ and ≥ where values lie beyond."""
+    """Labels of the ends and the middle of the colour range, with ≤ and ≥ if values lie beyond."""
     size = max(abs(low), abs(high))
     under, over = colouring.values.min() < low - 0.01 * size, colouring.values.max() > high + 0.01 * size
     marks = ["≤ " if under else "", "", "≥ " if over else ""]

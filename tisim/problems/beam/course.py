@@ -1,7 +1,7 @@
 """Beams whose load follows a course: quasi-static equilibria step by step in time.
 
-The first step is a static beam's, with the modulus that there is at once. Each later one starts from where
-the last ones point to; where it fails it is halved, in time and in load, from the last accepted state.
+The first step is that of a static beam with the instantaneous modulus. Each later step starts from an
+extrapolation of the last ones; if it fails it is halved, in time and in load, from the last accepted state.
 """
 
 from __future__ import annotations
@@ -29,18 +29,30 @@ from tisim.scene import Beam
 Array = NDArray[np.float64]
 
 SMALLEST_PART = 1.0 / 64.0  # of a step between two stops
-BETWEEN = 300.0  # tolerance of steps between frames, in units of the frames'
-LOOSEST = 1e-3  # tolerance of the first
-# Iterations of a step with earlier tangents. One whose step is more than SLOW of the last is slow: after
-# PATIENCE of them, or where a step is GROWN times the last, there is a new tangent, MOST_FACTORS times.
+BETWEEN = 300.0  # tolerance of steps between frames, in units of the frames' tolerance
+LOOSEST = 1e-3  # largest tolerance of the first step
+# A step with earlier tangents takes up to CHEAP iterations. An iteration is slow if its step is more than
+# SLOW times the last. The tangent is renewed after PATIENCE slow iterations in a row, or if a step is more
+# than GROWN times the last, at most MOST_FACTORS times.
 CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
-NEAR = 1e-4  # of the largest displacement: what a state between frames may be wrong by
+NEAR = 1e-4  # allowed error of a state between frames, relative to the largest displacement
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A state that is kept: time [s], part of the load, positions, supports' force [N], energy lost [J]."""
+    """A state that is kept in the result.
+
+    Attributes
+    ----------
+    time : time [s].
+    value : fraction of the load.
+    x : positions [m], shape (n, 3).
+    support : force of the supports on the body [N], shape (3,).
+    dissipated : energy dissipated so far [J].
+    min_jacobian : smallest det F.
+    residual : residual relative to the load.
+    """
 
     time: float
     value: float
@@ -53,10 +65,20 @@ class Frame:
 
 @dataclass(eq=False)
 class Path:
-    """A beam on its course: where it is, and what was kept and done on the way.
+    """State of a beam on its course, with the frames and the counts of steps so far.
 
-    linear: the linear material under the same load. trail: the states so far; other: the neighbour's.
-    warped: the discretisation's factor, where it is this beam's. clamps: where they are imperfect.
+    Attributes
+    ----------
+    system : the beam under the present load.
+    outcome : the last accepted equilibrium.
+    linear : strain of the linear material under the same load.
+    trail : accepted states of this beam.
+    time, value : time [s] and fraction of the load of the last accepted state.
+    other : accepted states of the neighbour, None without one.
+    clamps : clamps of an imperfect beam, None for an ideal one.
+    warped : the discretisation's factor; None if that is not a factor of this beam's tangent.
+    frames : states kept.
+    steps, cuts : numbers of steps tried and of steps that failed.
     """
 
     system: BeamSystem
@@ -90,7 +112,7 @@ class Path:
 def follow(
     scene: Beam, discretisation: Discretisation, neighbour: Neighbour | None
 ) -> tuple[Path, Status, Neighbour | None]:
-    """A beam along its course, how that ended, and what the next beam on its mesh may start from."""
+    """Solve a beam along its course; return the path, its status and start values for the next beam."""
     assert scene.course is not None
     stops = scene.course.stops(shortest_time(scene.material))
     path, found = _first(scene, discretisation, stops[0], neighbour)
@@ -117,7 +139,10 @@ def follow(
 def _first(
     scene: Beam, discretisation: Discretisation, stop: Stop, neighbour: Neighbour | None
 ) -> tuple[Path, Neighbour | None]:
-    """The path to the first stop where that is the whole load at once, else at rest."""
+    """Path at the first stop if that is the whole load at time 0, else at rest; next beam's start values.
+
+    An imperfect beam is always solved at the whole load: `beam.kind` refuses other courses for it.
+    """
     at_once = stop.time == 0.0 and stop.value == 1.0
     viscosity = scene.material.viscosity
     linear = LinearCreep(ELASTIC if viscosity is None else viscosity.spectrum())
@@ -126,7 +151,7 @@ def _first(
     if not stop.frame:
         loose = scene.solver.tolerance * BETWEEN
         scene = replace(scene, solver=replace(scene.solver, tolerance=min(loose, LOOSEST)))
-    if not is_ideal(scene):  # checked: the whole load at once
+    if not is_ideal(scene):  # its course begins with the whole load (checked in beam.kind)
         found = imperfect_equilibrium(scene, discretisation, neighbour)
         system, outcome, counts, next_one = found.system, found.outcome, found.counts, found.neighbour
         clamps = found.clamps
@@ -159,7 +184,7 @@ def _begin(path: Path, stop: Stop) -> None:
 def _beside(
     scene: Beam, system: BeamSystem, linear: LinearCreep, trail: Trail, neighbour: Neighbour, *, kept: bool
 ) -> Path | None:
-    """The path with the whole load at once, from the neighbour's states and factor; None where these fail."""
+    """Path at the whole load, solved from the neighbour's states and factor; None if that fails."""
     other = neighbour.trail
     if other is None or neighbour.warped is None or not other.leads(scene):
         return None
@@ -177,7 +202,7 @@ def _beside(
 
 
 def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
-    """On to a stop, in parts where it fails in one."""
+    """Advance to a stop, in smaller steps if one step fails."""
     system, body = path.system, path.system.body
     begin, first = path.time, path.value
     reached, part = 0.0, 1.0
@@ -210,7 +235,7 @@ def _advance(scene: Beam, path: Path, stop: Stop) -> Status:
 
 
 def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
-    """Equilibrium with the clamps at the angles that their moments make, where they yield."""
+    """Equilibrium from `start`; compliant clamps are turned to the angles that their moments cause."""
     clamps = path.clamps
     if clamps is None or not clamps.yields:
         return _solve(scene, path, start, tolerance=tolerance)
@@ -230,12 +255,12 @@ def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outc
 
 
 def _near(path: Path) -> float:
-    """Allowed error in position of a state between frames [m]."""
+    """Allowed position error of a state between frames [m]."""
     return NEAR * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
 
 
 def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
-    """Equilibrium from where other states point to: with few factors, by Newton, then on the potential."""
+    """Equilibrium from a predicted `start`: with few factors, else by mixed Newton, else on the potential."""
     system, x = path.system, path.outcome.x
     if path.clamps is not None:
         x = path.clamps.hold(x)
@@ -258,13 +283,27 @@ def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcom
 
 
 def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Outcome | None:
-    """Newton's method with an earlier tangent and Anderson's mixing (J. ACM 12, 1965).
+    """Newton's method with an earlier tangent and Anderson mixing (J. ACM 12, 1965).
 
-    The tangent is renewed where that is slow.
+    The tangent is renewed if convergence is slow.
 
-    near: a step in which no node moves further than this is the last [m]: the residual of a state that is not
-    kept is mostly pressure, and the history only knows isochoric stresses. None where it does not get there
-    with MOST_FACTORS new tangents.
+    Parameters
+    ----------
+    path : Path
+        `path.warped` must be set; it is replaced if the tangent is renewed.
+    x : ndarray of float, shape (n, 3)
+        Start positions [m].
+    tolerance : float
+        Residual relative to the load at which to stop.
+    near : float
+        If above 0, stop also after a step in which no component of a displacement exceeds this [m]. It is for
+        states that are not kept: their residual is mostly pressure, and the history stores only isochoric
+        stresses.
+
+    Returns
+    -------
+    Outcome or None
+        None if it does not converge in CHEAP iterations and MOST_FACTORS new tangents, or an element inverts.
     """
     system = path.system
     body, discretisation = system.body, system.body.discretisation
@@ -289,7 +328,7 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
         if slow >= PATIENCE or (seen and size > GROWN * before):
             if renewed == MOST_FACTORS:
                 return None
-            system.free_pressures(body.pressures(path.outcome.x))  # of a trial they may be wild
+            system.free_pressures(body.pressures(path.outcome.x))  # those of a trial may be far too large
             try:
                 step = system.step(system.linearise(x)[0], forcing=0.0)
             finally:

@@ -1,4 +1,4 @@
-"""Equilibrium of an ideal beam: Newton at full load from the rod's shape, load steps where that fails."""
+"""Equilibrium of an ideal beam: Newton at full load from the rod's shape, or load steps if that fails."""
 
 from __future__ import annotations
 
@@ -19,14 +19,20 @@ from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 
-HELD = 0.5  # of the half thickness: how far a clamp keeps a bent section's shape
+HELD = 0.5  # decay length of a clamp's constraint on the section's shape, in half thicknesses
 
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """A solved candidate that the next one starts from: discretisation, positions, rod shape, pressures.
+    """A solved beam that provides the start values of the next one.
 
-    trail, warped: the states, and the last factor, of one with a course.
+    Attributes
+    ----------
+    discretisation : the beam's discretisation.
+    x : positions in equilibrium [m], shape (n, 3).
+    rod : positions by rod theory [m], shape (n, 3).
+    pressure : element pressures [Pa], shape (m,).
+    trail, warped : states and last factor of a beam with a course, else None.
     """
 
     discretisation: Discretisation
@@ -40,11 +46,16 @@ class Neighbour:
 def equilibrium(
     scene: Beam, system: BeamSystem, neighbour: Neighbour | None = None
 ) -> tuple[Outcome, dict[str, int], Neighbour | None]:
-    """Full load from a neighbour's or the rod's shape; else from rest with adaptive load steps.
+    """Equilibrium at full load from a neighbour's or the rod's shape, else by adaptive load steps from rest.
 
-    A neighbour on the same discretisation is moved on by what rod theory says of the change, its pressures
-    are kept: 3.2 to 3.8 linearisations against 4.3 to 4.6 from the rod's shape alone, over designs
-    within a factor of 1.35 to 3.3 of their centre in stiffness and in K/mu.
+    The positions of a neighbour on the same discretisation are corrected by the change of the rod's shape,
+    and its pressures are kept: 3.2 to 3.8 linearisations against 4.3 to 4.6 from the rod's shape alone, over
+    designs within a factor of 1.35 to 3.3 of their centre in stiffness and in K/mu.
+
+    Returns
+    -------
+    tuple of (Outcome, dict of str to int, Neighbour or None)
+        Outcome, the counts "steps" and "cuts", and the start values of the next beam (None after load steps).
     """
     discretisation = system.body.discretisation
     if not system.full_load.any():
@@ -55,13 +66,13 @@ def equilibrium(
         )
     rod = rod_shape(scene, system.body)
     if rod is not None:
-        # the rod's shape is right in shape, not in volume: its pressures would be wrong by far
+        # the rod's shape does not preserve volume: its pressures would be far too large
         starts = [(rod, np.zeros(discretisation.mesh.n_elements))]
         if neighbour is not None and neighbour.discretisation is discretisation:
             moved = neighbour.x + (rod - neighbour.rod)
             moved[discretisation.fixed] = discretisation.mesh.nodes[
                 discretisation.fixed
-            ]  # an imperfect neighbour's stand elsewhere
+            ]  # an imperfect neighbour has other positions there
             starts.insert(0, (moved, neighbour.pressure))
         for guess, pressure in starts:
             if system.potential(guess)[1] > 0.0:
@@ -73,7 +84,7 @@ def equilibrium(
 
 
 def mixed_newton(scene: Beam, system: BeamSystem, x: Array, pressure: Array) -> Outcome:
-    """Newton with the element pressures as unknowns; quick or not at all."""
+    """Newton's method with the element pressures as unknowns, at most 15 iterations."""
     options = scene.solver
     system.free_pressures(pressure)
     outcome = newton(system, x, tolerance=options.tolerance, max_iterations=min(15, options.max_iterations))
@@ -82,7 +93,10 @@ def mixed_newton(scene: Beam, system: BeamSystem, x: Array, pressure: Array) -> 
 
 
 def _load_steps(scene: Beam, system: BeamSystem) -> tuple[Outcome, dict[str, int]]:
-    """From rest; a step that fails with free pressures is tried once more on the potential, then halved."""
+    """Load steps from rest.
+
+    A step that fails with free pressures is tried once more on the potential, then halved.
+    """
     options, body = scene.solver, system.body
     counts = {"steps": 0, "cuts": 0}
     outcome = Outcome(body.discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
@@ -110,11 +124,11 @@ def _load_steps(scene: Beam, system: BeamSystem) -> tuple[Outcome, dict[str, int
 
 
 def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
-    """Node positions of the beam bent as a planar rod; None where rod theory has nothing to say.
+    """Node positions (n, 3) [m] of the beam bent as a planar rod; None if the rod does not bend in a plane.
 
-    Its sections narrow where the bending stretches them and widen where it shortens them (Saint-Venant's
-    anticlastic bending), but in the clamps: flat ones would change in volume, which 4-node tetrahedra answer
-    by pressures thousands of times the load.
+    Outside the clamps, sections narrow where bending stretches them and widen where it shortens them
+    (Saint-Venant's anticlastic bending). Undeformed sections would change in volume, and the pressures of
+    4-node tetrahedra would be thousands of times the load.
     """
     section = scene.section
     if isinstance(section, Circle):

@@ -1,7 +1,8 @@
 """Equilibria of beams with an imperfect specimen or imperfect clamps.
 
-Newton from a neighbour's or the rod's shape as for ideal beams; where that fails, from the ideal beam's
-answer with the imperfections let in step by step. A clamp's compliance is an outer iteration on its angle.
+Newton starts from a neighbour's or the rod's shape as for ideal beams. If that fails, it starts from the
+solution of the ideal beam, and the imperfections are increased step by step. A clamp's compliance is an outer
+iteration on its angle.
 """
 
 from __future__ import annotations
@@ -23,19 +24,26 @@ from tisim.scene import Beam, ClampImperfections, Imperfections
 
 Array = NDArray[np.float64]
 
-ANGLE_TOLERANCE = 1e-4  # of what compliance adds to a clamp's angle, against that angle
-SMALL_ANGLE = 1e-9  # that no iteration is asked to resolve [rad]
-MOST_ANGLES = 20  # tried, before the clamps' angles count as not converged
-SMALLEST_PART = 1.0 / 64.0  # of the imperfections, let in at once
+ANGLE_TOLERANCE = 1e-4  # error of a clamp's angle, relative to the part that compliance adds
+SMALL_ANGLE = 1e-9  # absolute tolerance of a clamp's angle [rad]
+MOST_ANGLES = 20  # iterations on the clamps' angles
+SMALLEST_PART = 1.0 / 64.0  # smallest increment of the fraction of the imperfections
 EARLY_TOLERANCE = 1e-3  # of equilibrium, before the clamps' angles are first corrected
-SMALL_TURN = 1e-6  # of a clamp, in difference quotients [rad]
+SMALL_TURN = 1e-6  # rotation of a clamp in difference quotients [rad]
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Outcome, the fraction of the imperfections that was reached, and the start values of the next beam.
+    """Result of the search for the equilibrium of an imperfect beam.
 
-    clamps: those of the equilibrium, where it was found.
+    Attributes
+    ----------
+    system : the beam under its load.
+    outcome : outcome of the last equilibrium.
+    counts : numbers of "steps" and "cuts".
+    part : fraction of the imperfections that was reached.
+    neighbour : start values of the next beam, or None.
+    clamps : clamps of the equilibrium; None if it was not found.
     """
 
     system: BeamSystem
@@ -49,7 +57,7 @@ class Found:
 def imperfect_equilibrium(
     scene: Beam, discretisation: Discretisation, neighbour: Neighbour | None = None
 ) -> Found:
-    """Equilibrium of an imperfect beam; discretisation: the ideal beam's."""
+    """Equilibrium of an imperfect beam on the discretisation of the ideal beam."""
     system = imperfect_system(scene, discretisation)
     attempt = Clamped(scene, discretisation, system)
     for x, pressure in attempt.starts(neighbour):
@@ -60,14 +68,21 @@ def imperfect_equilibrium(
 
 
 def imperfect_system(scene: Beam, discretisation: Discretisation) -> BeamSystem:
-    """Material and loads of a beam on its specimen's quadrature."""
+    """Material and loads of a beam, integrated over its imperfect specimen."""
     system = beam_system(scene, specimen_discretisation(scene, discretisation))
     system.clamps_load = True
     return system
 
 
 class Clamped:
-    """One imperfect beam, from start values to the angles of its clamps."""
+    """Solver of one imperfect beam: start values, equilibrium and the angles of its clamps.
+
+    Attributes
+    ----------
+    tilts : angles of the clamps without compliance [rad], shape (2,).
+    first_angles, angles : estimated and present angles of the clamps [rad], shape (2,).
+    guess : positions of the rod's shape [m], shape (n, 3); None if there is none.
+    """
 
     def __init__(self, scene: Beam, discretisation: Discretisation, system: BeamSystem) -> None:
         self.scene, self.discretisation, self.system = scene, discretisation, system
@@ -87,10 +102,10 @@ class Clamped:
         return self.scene.clamp_imperfections.compliance > 0.0
 
     def _guess(self) -> Array | None:
-        """The rod's shape with the clamps at their first angles; the held nodes are where they are held."""
+        """Positions of the rod's shape with the clamps at their first angles, held nodes in place."""
         scene, mesh = self.scene, self.discretisation.mesh
         planar = scene.gravity[1] == 0.0 and scene.tip_force[1] == 0.0
-        # a load across the plane y = 0 bends an ideal rod; the imperfections' unloaded shape is added to it
+        # for a load out of the plane y = 0, superpose the unloaded imperfect shape and the loaded ideal shape
         unloaded = replace(scene, gravity=(0.0, 0.0, 0.0), tip_force=(0.0, 0.0, 0.0))
         rod = solve_rod(scene if planar else unloaded, self.system.body.moduli, self.first_angles)
         if rod is None:
@@ -104,22 +119,22 @@ class Clamped:
         return self.hold(x)
 
     def hold(self, x: Array) -> Array:
-        """x with the held nodes where the clamps, at their present angles, hold them."""
+        """Copy of x with the held nodes at their positions in the clamps at the present angles."""
         x = x.copy()
         x[self.fixed] = clamped_positions(self.scene, self.discretisation.mesh, self.fixed, self.angles)
         return x
 
     def starts(self, neighbour: Neighbour | None) -> Iterator[tuple[Array, Array]]:
-        """Positions and element pressures to start from, the best first."""
+        """Start values, the best first: positions (n, 3) [m] and element pressures (m,) [Pa]."""
         if self.guess is None:
             return
         if neighbour is not None and neighbour.discretisation is self.discretisation:
             yield self.hold(neighbour.x + (self.guess - neighbour.rod)), neighbour.pressure
-            self.angles = self.first_angles  # which a start that failed may have changed
+            self.angles = self.first_angles  # a failed start may have changed them
         yield self.guess, np.zeros(self.discretisation.mesh.n_elements)
 
     def from_answer(self, x: Array, guess: Array | None) -> Array:
-        """The start from another answer x on this discretisation, moved on by the rods if both exist."""
+        """Start positions from another scene's solution x, corrected by the rods' difference if available."""
         moved = x if self.guess is None or guess is None else x + (self.guess - guess)
         return self.hold(moved)
 
@@ -129,7 +144,7 @@ class Clamped:
         return Neighbour(self.discretisation, x, self.guess, self.system.body.pressures(x))
 
     def solve(self, x: Array, pressure: Array) -> Outcome:
-        """Newton at the clamps' angles, and Newton on these angles, where the clamps yield."""
+        """Newton's method, and an outer Newton iteration on the angles of compliant clamps."""
         scene, yields = self.scene, self.yields
         failed = Outcome(x, Status.INVERTED, np.inf, 0)
         if not self.system.potential(x)[1] > 0.0:
@@ -145,7 +160,7 @@ class Clamped:
             pressure = self.system.body.pressures(outcome.x)
             if self.opens(outcome.x):
                 start, pressure = self.turned(outcome.x)
-                if not self.system.potential(start)[1] > 0.0:  # nor where it is not a number
+                if not self.system.potential(start)[1] > 0.0:  # true for NaN as well
                     return failed
             elif final:
                 return outcome
@@ -165,7 +180,7 @@ class Clamped:
         return bool(np.abs(self._gap(x)).max() > small)
 
     def _gap(self, x: Array) -> Array:
-        """The clamps' angles less what their moments make them, (2,) [rad]."""
+        """Difference of the clamps' angles from those that their moments cause [rad], shape (2,)."""
         moments = clamp_moments(self.scene, self.discretisation, self.system, x)
         gap: Array = self.angles - self.tilts - self.scene.clamp_imperfections.compliance * moments
         if self.scene.supports == "clamped-free":
@@ -173,14 +188,14 @@ class Clamped:
         return gap
 
     def turned(self, x: Array) -> tuple[Array, Array]:
-        """The answer x, and its pressures, moved on to first order to angles at which the gap closes.
+        """Advance x and its pressures to first order to the clamp angles at which `_gap` vanishes.
 
-        How x follows the clamps is solved for with the last factor of the tangent; differences of forces
-        stand for the tangent's rows at the held nodes, which are not assembled.
+        The derivative of x by the clamps' angles is solved for with the last factor of the tangent. The
+        tangent's rows at the held nodes are not assembled; difference quotients of forces replace them.
         """
         body, discretisation = self.system.body, self.discretisation
         mesh, free = discretisation.mesh, discretisation.pattern.free
-        if not self.system.counts["factorisations"]:  # a start so near that no step was taken
+        if not self.system.counts["factorisations"]:  # the start value converged without a step
             self.system.step(self.system.linearise(x)[0], forcing=0.0)
         force = body.internal_forces(x)[0]
         centres = clamp_centres(self.scene)
@@ -199,7 +214,7 @@ class Clamped:
             slope[clamp, clamp] += 1.0  # the gap's own angle, which `_gap` did not turn
         if not np.isfinite(slope).all():
             return np.full_like(x, np.nan), body.pressures(x)
-        # singular where a clamp's yield makes the beam buckle
+        # singular if a clamp's compliance makes the beam buckle
         step = np.linalg.lstsq(slope, -self._gap(x))[0]
         moved = step[0] * ways[0] + step[1] * ways[1]
         self.angles = self.angles + step
@@ -213,17 +228,20 @@ def clamp_moments(scene: Beam, discretisation: Discretisation, system: BeamSyste
     """
     fixed = discretisation.fixed
     body = system.body
-    # without the weight of what is in the grips: it is there or not, as the mesh has it
+    # without the weight in the grips, which depends on how much of them is meshed
     support = body.internal_forces(x)[0][fixed] * discretisation.multiplicity
     near = discretisation.mesh.nodes[fixed, 0] < 0.5 * scene.length
     arm = x[fixed] - clamp_centres(scene)[np.where(near, 0, 1)]
-    # of the support on the body, (r x f)_y; of the body on the clamp, its opposite; from x to z, about -y
+    # support on body: (r x f)_y; body on clamp: its opposite; positive from x to z, that is, about -y
     turning = arm[:, 2] * support[:, 0] - arm[:, 0] * support[:, 2]
     return np.array([turning[near].sum(), turning[~near].sum()])
 
 
 def _continuation(scene: Beam, discretisation: Discretisation, spent: dict[str, int]) -> Found:
-    """From the ideal beam's answer, with a growing part of the imperfections; halved where Newton fails."""
+    """Continuation from the solution of the ideal beam in the fraction of the imperfections.
+
+    An increment at which Newton fails is halved. `spent` holds the counts so far and is added to.
+    """
     ideal = replace(scene, imperfections=Imperfections(), clamp_imperfections=ClampImperfections())
     system = beam_system(ideal, discretisation)
     outcome, ideal_counts, _ = equilibrium(ideal, system)
@@ -252,14 +270,14 @@ def _continuation(scene: Beam, discretisation: Discretisation, spent: dict[str, 
 
 
 def _spend(spent: dict[str, int], system: BeamSystem) -> None:
-    """Add a system's counts to what was spent before, and let it show the sum."""
+    """Add a system's counts to `spent`, which becomes the system's counts."""
     for name, count in system.counts.items():
         spent[name] = spent.get(name, 0) + count
     system.counts = spent
 
 
 def _portion(scene: Beam, part: float) -> Beam:
-    """The scene with this part of each imperfection."""
+    """The scene with the fraction `part` of each imperfection."""
     if part == 1.0:
         return scene
     s, c = scene.imperfections, scene.clamp_imperfections

@@ -1,4 +1,4 @@
-"""Beams as a kind of scene: static ones in chains, dynamic ones alone."""
+"""Beams as a kind of scene: static beams are solved in chains, dynamic beams one by one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tisim.scene import Beam, ClampImperfections, Imperfections, Void
 if TYPE_CHECKING:  # scipy is imported when a scene is solved
     from tisim.discretisation.body import Discretisation
 
-MOST_LOSS = 0.95  # of stiffness or weight, anywhere in a beam
+MOST_LOSS = 0.95  # largest loss of stiffness or weight anywhere in a beam, as a fraction
 MOST_TILT = 0.8  # of a clamp [rad]
 SECONDS_PER_NODE = 5e-5  # of a static beam [core-s]
 SECONDS_DYNAMIC = 20.0
@@ -55,7 +55,7 @@ def check(scene: Beam) -> None:
     if scene.tip_mass and scene.supports == "clamped-clamped":
         raise FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
     check_mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
-    check_length("length", scene.length)  # after the mesh, which may have given it
+    check_length("length", scene.length)  # after the mesh, from which it may have been derived
     _check_imperfections(scene)
     _check_clamps(scene)
     _check_course(scene)
@@ -91,7 +91,7 @@ def _check_imperfections(scene: Beam) -> None:
     s = scene.imperfections
     check_type("imperfections", s, (Imperfections,))
     b, h = half_sizes(scene.section)
-    # an arc of less than half a turn whose inside is not folded; sizes and moduli that stay well above 0
+    # the arc is shorter than a semicircle and does not fold inside; sizes and moduli stay well above 0
     check_within("imperfections.curvature", s.curvature, min(3.0 / scene.length, 0.5 / h), " /m on this beam")
     along = MOST_LOSS / (0.5 * scene.length)
     check_within("imperfections.taper", s.taper, 0.5 / (0.5 * scene.length), " /m on this beam")

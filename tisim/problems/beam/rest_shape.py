@@ -1,6 +1,6 @@
-"""A beam's specimen on the mesh of the ideal prism: rest shape, stiffness and density by quadrature point.
+"""Imperfect beams on the ideal prism's mesh: rest shape, and stiffness and density by quadrature point.
 
-Sparsity and symbolic factor stay those of the ideal beam; only the quadrature is made anew.
+Sparsity and symbolic factor are those of the ideal beam; only the quadrature differs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 def is_ideal(scene: Beam) -> bool:
-    """True if the scene has neither imperfections of the specimen nor of the clamps."""
+    """True if neither the specimen nor the clamps have imperfections."""
     return ideal_specimen(scene.imperfections) and scene.clamp_imperfections == ClampImperfections()
 
 
@@ -37,17 +37,21 @@ def is_planar(scene: Beam) -> bool:
 
 
 def ideal_specimen(specimen: Imperfections) -> bool:
-    """True for the ideal prism; depth of an absent skin and position of an absent void do not count."""
+    """True for the ideal prism; depth of an absent skin and position of an absent void are ignored."""
     void = specimen.void if specimen.void is not None and specimen.void.fraction else None
     depth = specimen.skin_thickness if specimen.skin else Imperfections().skin_thickness
     return replace(specimen, void=void, skin_thickness=depth) == Imperfections()
 
 
 def rest_positions(scene: Beam, mesh: Mesh) -> Array:
-    """Where the nodes of a beam's mesh lie free of stress and out of the clamps, (n, 3) [m].
+    """Stress-free node positions of a beam out of its clamps [m], shape (n, 3).
 
-    mesh: the result's, or any other mesh of the ideal prism, x from 0 to scene.length; what lies beyond its
-    ends (in the grips) goes on straight.
+    Parameters
+    ----------
+    scene : Beam
+    mesh : Mesh
+        The result's mesh, or any mesh of the ideal prism, x from 0 to scene.length. Parts beyond the ends (in
+        the grips) continue straight.
     """
     specimen = scene.imperfections
     x, y, z = mesh.nodes.T
@@ -65,12 +69,12 @@ def rest_positions(scene: Beam, mesh: Mesh) -> Array:
 
 
 def scale(scene: Beam, x: Array) -> Array:
-    """Size of the section at x against the ideal one's."""
+    """Size of the section at x [m], relative to the ideal one: 1 + taper (x - L/2)."""
     return np.asarray(1.0 + scene.imperfections.taper * (x - 0.5 * scene.length))
 
 
 def specimen_discretisation(scene: Beam, discretisation: Discretisation) -> Discretisation:
-    """The ideal beam's discretisation with the specimen's quadrature; unchanged for an ideal specimen."""
+    """The ideal beam's discretisation with the imperfect specimen's quadrature; itself for an ideal one."""
     specimen = scene.imperfections
     if ideal_specimen(specimen):
         return discretisation
@@ -95,7 +99,7 @@ def specimen_discretisation(scene: Beam, discretisation: Discretisation) -> Disc
 
 
 def along(scene: Beam, x: Array) -> Array:
-    """Factor of the modulus along the beam: its gradient and the void."""
+    """Factor of the modulus at x [m], from the axial gradient and the void."""
     gradient = scene.imperfections.axial_gradient
     return np.asarray(
         (1.0 + gradient * (x - 0.5 * scene.length)) * (1.0 - missing(scene.imperfections.void, x))
@@ -103,7 +107,7 @@ def along(scene: Beam, x: Array) -> Array:
 
 
 def heaviness(scene: Beam, x: Array) -> Array:
-    """Factor of the density along the beam: its gradient and the void."""
+    """Factor of the density at x [m], from the density gradient and the void."""
     gradient = scene.imperfections.density_gradient
     return np.asarray(
         (1.0 + gradient * (x - 0.5 * scene.length)) * (1.0 - missing(scene.imperfections.void, x))
@@ -111,7 +115,7 @@ def heaviness(scene: Beam, x: Array) -> Array:
 
 
 def missing(void: Void | None, x: Array) -> Array:
-    """Part of the section that a void takes away."""
+    """Fraction of the section that the void removes at x [m]."""
     if void is None:
         return np.zeros_like(x)
     beyond = np.abs(x - void.position) - 0.5 * (void.length - void.edge)
@@ -120,7 +124,7 @@ def missing(void: Void | None, x: Array) -> Array:
 
 
 def skin_factors(scene: Beam) -> tuple[float, float, float]:
-    """Stiffness of the section with its skin against that without: stretching, bending about y, about z."""
+    """Ratios of the section's stiffness with and without skin: stretching, bending about y and about z."""
     excess, depth = scene.imperfections.skin, scene.imperfections.skin_thickness
     if isinstance(scene.section, Circle):
         core = 1.0 - depth / scene.section.radius
@@ -135,9 +139,10 @@ def skin_factors(scene: Beam) -> tuple[float, float, float]:
 
 
 def skin_profile(scene: Beam) -> tuple[float, float, float]:
-    """(c0, cy, cz) of the section's stiffness c0 + cy (y/b)^2 + cz (z/h)^2 with the skin's three factors.
+    """Coefficients (c0, cy, cz) of a stiffness c0 + cy (y/b)^2 + cz (z/h)^2 that has the `skin_factors`.
 
-    b, h: half width and half height, both the radius of a circle. From the moments of the continuous section.
+    b and h are the half width and half height (the radius of a circle). The moments are those of the
+    continuous section.
     """
     if isinstance(scene.section, Circle):
         square, fourth, mixed = 1.0 / 4.0, 1.0 / 8.0, 1.0 / 24.0
@@ -151,7 +156,7 @@ def skin_profile(scene: Beam) -> tuple[float, float, float]:
 
 
 def _skin(scene: Beam, points: Array, weights: Array) -> Array:
-    """`skin_profile` at the points, with the moments that the mesh's own quadrature gives (exactly, so)."""
+    """`skin_profile` at the points, exact for the mesh since the moments are those of its quadrature."""
     b, h = half_sizes(scene.section)
     basis = np.stack([np.ones_like(weights), (points[..., 1] / b) ** 2, (points[..., 2] / h) ** 2])
     moments = np.einsum("ieq,jeq,eq->ij", basis, basis, weights)

@@ -1,9 +1,9 @@
-"""Rods in a plane, the start values of beams.
+"""Rods in a plane, which give the start values of beams.
 
 An ideal beam starts from a planar, nearly inextensible Euler-Bernoulli rod under weight and a tip force
-(`planar_rod`): nodes joined by stiff axial springs and bending springs; Newton on its energy, with load steps
-where the whole load fails, serves both supports. The continuous rod obeys EI theta'' + V(s) x t = 0, V(s) the
-load beyond s.
+(`planar_rod`): nodes joined by stiff axial springs and bending springs. Newton's method on its energy, with
+load steps if the whole load fails, applies to both supports. The continuous rod obeys
+EI theta'' + V(s) x t = 0, V(s) the load beyond s.
 
 An imperfect beam starts from an extensible rod with natural curvature between imperfect clamps (`solve_rod`).
 Segments of length h and angle p_i carry the load V_i + R beyond their middle (R: the far clamp's force). With
@@ -11,7 +11,7 @@ t, n along and across a segment, tau = (V + R).t, its stretch is tau / EA, and t
 
     sum over joints (p_(i+1) - p_i - h k)^2 / (2 C) - sum over segments h (tau + tau^2 / (2 EA)) + R.r_end
 
-are the equilibria: C = h / EI between segments; at a clamp, half a segment's and the clamp's own compliance.
+are the equilibria. C = h / EI between segments; at a clamp it is half of that plus the clamp's compliance.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 SEGMENTS = 40
-SMALLEST_STEP = 1.0 / 64.0  # of the load
-SQUEEZED = 0.5  # how far a clamp's squeeze reaches into the guess, in half heights of the section
+SMALLEST_STEP = 1.0 / 64.0  # smallest increment of the load, as a fraction of it
+SQUEEZED = 0.5  # decay length of a clamp's squeeze in the start values, in half heights of the section
 
 
 def planar_rod(
@@ -47,9 +47,24 @@ def planar_rod(
 ) -> tuple[Array, Array, Array]:
     """Equilibrium of a straight rod along the first axis of a plane, clamped at s = 0.
 
-    bending EI [N m2], stretching EA [N]; line_load [N/m] and tip_force [N] as (along, across).
-    Returns arc length s (k,), positions (k, 2) [m] and section angles (k,) [rad], k = segments + 1.
-    A discrete rod of nodes with axial springs and bending springs.
+    Parameters
+    ----------
+    length : float
+        Length of the rod [m].
+    bending, stretching : float
+        EI [N m2] and EA [N].
+    line_load, tip_force : tuple of float
+        Components along and across the rod [N/m], [N].
+    clamped_end : bool
+        Clamp the far end as well.
+    segments : int
+        Number of segments of the discrete rod.
+
+    Returns
+    -------
+    tuple of ndarray
+        Arc length s (k,) [m], positions (k, 2) [m] and section angles (k,) [rad], k = segments + 1. They
+        belong to a part of the load if no equilibrium at the full load is found.
     """
     h = length / segments
     rest = np.column_stack([np.linspace(0.0, length, segments + 1), np.zeros(segments + 1)])
@@ -81,7 +96,7 @@ def planar_rod(
 def _equilibrium(
     x: Array, load: Array, h: float, ei: float, ea: float, free: slice, clamped_end: bool
 ) -> Array | None:
-    """Newton for the discrete rod; None where it does not converge."""
+    """Newton's method for the discrete rod; None if it does not converge."""
     x = x.copy()
     scale = np.linalg.norm(load) + 1e-12
     for _ in range(60):
@@ -104,10 +119,10 @@ def _equilibrium(
 
 
 def _forces(x: Array, h: float, ei: float, ea: float, clamped_end: bool) -> tuple[Array, Array]:
-    """Internal forces (k, 2) and the banded tangent (11, 2k) of the discrete rod.
+    """Internal forces (k, 2) [N] and the banded tangent (11, 2k) [N/m] of the discrete rod.
 
-    Stretch energy EA/(2h) (|e| - h)^2 an edge; bending EI/(2h^3) |x_(i-1) - 2 x_i + x_(i+1)|^2 a node,
-    which for edges of length h is EI/h (1 - cos turn).
+    The energy is EA/(2h) (|e| - h)^2 per edge and EI/(2h^3) |x_(i-1) - 2 x_i + x_(i+1)|^2 per node, which for
+    edges of length h and a turning angle a is EI/h (1 - cos a).
     """
     ghost0 = x[:1] - np.array([[h, 0.0]])
     points = np.vstack([ghost0, x])
@@ -139,7 +154,7 @@ def _forces(x: Array, h: float, ei: float, ea: float, clamped_end: bool) -> tupl
 
 @lru_cache(maxsize=32)
 def _bending_band(points: int, stiffness: float) -> Array:
-    """The bending springs' part of the tangent, which no motion changes; (11, 2 points)."""
+    """Contribution of the bending springs to the tangent, which is constant; shape (11, 2 points)."""
     band = np.zeros((11, 2 * points))
     ones = np.full(points - 2, stiffness)
     coefficient = (1.0, -2.0, 1.0)
@@ -151,14 +166,21 @@ def _bending_band(points: int, stiffness: float) -> Array:
 
 
 def _add(band: Array, i: int, j: int, a: int, b: int, values: Array) -> None:
-    """values (n,) to the entries (component a of point i + k, component b of point j + k), k = 0 to n - 1."""
+    """Add values (n,) to the entries (component a of point i + k, component b of point j + k), k < n."""
     first = 2 * j + b
     band[5 + 2 * (i - j) + a - b, first : first + 2 * len(values) : 2] += values
 
 
 @dataclass(frozen=True)
 class Rod:
-    """s (k,) along the beam, axis points (k, 2) (x, z) [m], angles (k,) from the x axis [rad]."""
+    """Shape of a rod in the plane y = 0.
+
+    Attributes
+    ----------
+    s : position along the undeformed beam [m], shape (k,).
+    axis : points (x, z) of the axis [m], shape (k, 2).
+    angle : angles from the x axis [rad], shape (k,).
+    """
 
     s: Array
     axis: Array
@@ -166,17 +188,23 @@ class Rod:
 
     @property
     def clamp_angles(self) -> Array:
-        """At the near and the far end, (2,)."""
+        """Angles at the near and the far end [rad], shape (2,)."""
         return self.angle[[0, -1]]
 
 
 @dataclass(frozen=True)
 class _Chain:
-    """The rod's segments and joints, see the module's text.
+    """The rod's segments and joints, see the module's docstring.
 
-    h [m]; load (k, 2) beyond each segment's middle [N]; ea (k,) [N]; bend (k + 1,): angles of the joints
-    free of stress [rad], the first against the x axis, and the last the x axis against the last segment;
-    softness (k + 1,) [rad/(N m)]; end: the far clamp's middle (x, z) [m], None on a cantilever.
+    Attributes
+    ----------
+    h : length of a segment [m].
+    load : load beyond each segment's middle [N], shape (k, 2).
+    ea : axial stiffness [N], shape (k,).
+    bend : stress-free angles of the joints [rad], shape (k + 1,); the first is that of the first segment from
+        the x axis, the last that of the x axis from the last segment.
+    softness : compliance of the joints [rad/(N m)], shape (k + 1,).
+    end : middle of the far clamp's face (x, z) [m]; None for a cantilever.
     """
 
     h: float
@@ -188,9 +216,14 @@ class _Chain:
 
 
 def solve_rod(scene: Beam, moduli: Moduli, clamp_angles: Array | None = None) -> Rod | None:
-    """The beam as a rod in the plane y = 0; None where no equilibrium is found.
+    """Equilibrium of the beam as a rod in the plane y = 0; None if none is found.
 
-    clamp_angles: of the clamps' faces [rad], instead of those that tilt and compliance give.
+    Parameters
+    ----------
+    scene : Beam
+    moduli : Moduli
+    clamp_angles : ndarray of float, shape (2,), optional
+        Prescribed angles of the clamps' faces [rad]. By default they follow from tilt and compliance.
     """
     clamps = scene.clamp_imperfections
     faces = np.array([clamps.tilt, clamps.far_tilt]) if clamp_angles is None else clamp_angles
@@ -215,7 +248,7 @@ def solve_rod(scene: Beam, moduli: Moduli, clamp_angles: Array | None = None) ->
 
 
 def _chain(scene: Beam, moduli: Moduli, faces: Array, yielding: float) -> _Chain:
-    """faces (2,): angles of the clamps [rad]; yielding: their compliance [rad/(N m)]."""
+    """Segments and joints of a beam; faces (2,): clamp angles [rad], yielding: compliance [rad/(N m)]."""
     h = scene.length / SEGMENTS
     middle = np.asarray((np.arange(SEGMENTS) + 0.5) * h, dtype=np.float64)
     joint = np.asarray(np.arange(SEGMENTS + 1) * h, dtype=np.float64)
@@ -252,8 +285,8 @@ def _in_plane(vector: tuple[float, float, float]) -> Array:
 
 
 def _in_steps(chain: _Chain) -> tuple[Array, Array] | None:
-    """Angles (k,) and the far clamp's force (2,) at full load, in as few steps of the load as it takes."""
-    # from the stress-free shape of a cantilever, from straight between two clamps
+    """Angles (k,) [rad] and the far clamp's force (2,) [N] at full load; load steps are halved on failure."""
+    # start: stress-free shape of a cantilever, straight line between two clamps
     if chain.end is None:
         p = np.cumsum(chain.bend)[:-1]
     else:
@@ -272,7 +305,7 @@ def _in_steps(chain: _Chain) -> tuple[Array, Array] | None:
 
 
 def _section(scene: Beam) -> tuple[float, float]:
-    """Area [m2] and second moment about y [m4]."""
+    """Area [m2] and second moment of area about y [m4]."""
     b, h = half_sizes(scene.section)
     if isinstance(scene.section, Circle):
         return np.pi * h**2, np.pi * h**4 / 4.0
@@ -280,14 +313,14 @@ def _section(scene: Beam) -> tuple[float, float]:
 
 
 def _tension(force: Array, p: Array) -> tuple[Array, Array, Array]:
-    """Force along the segments (k,), their directions (k, 2) and normals (k, 2)."""
+    """Axial force in the segments (k,) [N], their directions (k, 2) and normals (k, 2)."""
     t = np.column_stack([np.cos(p), np.sin(p)])
     n = np.column_stack([-np.sin(p), np.cos(p)])
     return (force * t).sum(axis=1), t, n
 
 
 def _newton(chain: _Chain, load: Array, p: Array, reaction: Array) -> tuple[Array, Array] | None:
-    """Angles (k,) and the far clamp's force (2,) in equilibrium; None where Newton does not find them."""
+    """Angles (k,) [rad] and the far clamp's force (2,) [N] in equilibrium; None if Newton fails."""
     h, bend, softness, ea, end = chain.h, chain.bend, chain.softness, chain.ea, chain.end
     k = len(p)
     spring = 1.0 / softness
@@ -325,7 +358,7 @@ def _newton(chain: _Chain, load: Array, p: Array, reaction: Array) -> tuple[Arra
 
 
 def clamped_positions(scene: Beam, mesh: Mesh, nodes: NDArray[np.int32], clamp_angles: Array) -> Array:
-    """Where the clamps, at these angles, hold `nodes` (k,) of the mesh, (k, 3) [m]."""
+    """Positions (k, 3) [m] at which clamps of these angles (2,) [rad] hold `nodes` (k,) of the mesh."""
     clamps = scene.clamp_imperfections
     x, y, z = mesh.nodes[nodes].T
     near = x < 0.5 * scene.length
@@ -345,13 +378,16 @@ def clamped_positions(scene: Beam, mesh: Mesh, nodes: NDArray[np.int32], clamp_a
 
 
 def clamp_centres(scene: Beam) -> Array:
-    """Middles of the near and the far clamp's face, (2, 3) [m]."""
+    """Middles of the near and the far clamp's face [m], shape (2, 3)."""
     dx, dz = scene.clamp_imperfections.far_shift
     return np.array([[0.0, 0.0, 0.0], [scene.length + dx, 0.0, dz]])
 
 
 def body_positions(scene: Beam, mesh: Mesh, rod: Rod) -> Array:
-    """Node positions (n, 3) of the beam whose axis is the rod, its sections flat and as large as at rest."""
+    """Node positions (n, 3) [m] of the beam around the rod, with plane sections.
+
+    Sections keep the size of the rest shape, except for the clamps' squeeze, which decays from the clamps.
+    """
     x, y, z = mesh.nodes.T
     inside = np.clip(x, 0.0, scene.length)
     half_height = half_sizes(scene.section)[1]

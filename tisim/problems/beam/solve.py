@@ -1,4 +1,4 @@
-"""Static beams, ideal and imperfect ones, one after the other."""
+"""Static beams, ideal and imperfect, solved in sequence."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from tisim.scene import Beam
 
 
 def solve_beam(scene: Beam) -> Result:
-    """Equilibrium of a beam: one frame, at load 1; with a course, its frames."""
+    """Equilibrium of a beam: one frame at load 1, or the frames of its course."""
     return next(solve_beams([scene]))
 
 
 def solve_beams(scenes: Sequence[Beam]) -> Iterator[Result]:
-    """Equilibria of beams one after the other, each started from the one before on the same mesh."""
+    """Equilibria of beams in sequence, each started from the previous one if that has the same mesh."""
     neighbour: Neighbour | None = None
     for scene in scenes:
         with one_thread():
@@ -33,7 +33,7 @@ def solve_beams(scenes: Sequence[Beam]) -> Iterator[Result]:
 
 
 def _solve(scene: Beam, neighbour: Neighbour | None) -> tuple[Result, Neighbour | None]:
-    """One beam, and what the next one on its mesh may start from."""
+    """Result of one beam, and start values of the next beam on its mesh."""
     mesh_start = time.process_time()
     discretisation = beam_discretisation(scene)
     mesh_seconds = time.process_time() - mesh_start
@@ -55,7 +55,7 @@ def _solve(scene: Beam, neighbour: Neighbour | None) -> tuple[Result, Neighbour 
 
 
 def _along_course(scene: Beam, path: Path, status: Status, mesh_s: float, core_s: float) -> Result:
-    """The result of a beam with a course: the frames up to where it ended."""
+    """Result of a beam with a course, with the frames up to the end of the solution."""
     frames, mesh = path.frames, path.system.body.discretisation.mesh
     n, done = len(frames), status is Status.CONVERGED
     return Result(

@@ -1,4 +1,4 @@
-"""A beam as Newton sees it: mesh and numbering that candidates share, material, loads."""
+"""Nonlinear system of a static beam: shared mesh and numbering, material, loads."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 
-# Part of the forces in imperfect clamps that counts as load: they are many and cancel, their sum is small.
+# Fraction of the nodal forces in imperfect clamps that counts as load: they largely cancel in their sum.
 CLAMPS_PART = 0.01
 
 
 def beam_discretisation(scene: Beam) -> Discretisation:
-    """Mesh, numbering and symbolic factor of a beam; kept for the next candidate on the same mesh."""
+    """Mesh, numbering and symbolic factor of a beam, cached for the next beams on the same mesh."""
     if scene.mesh is not None:
         return _own_discretisation(scene.mesh)
     return _structured_discretisation(
@@ -74,11 +74,15 @@ def _discretise(mesh: Mesh) -> Discretisation:
 
 
 class BeamSystem:
-    """A beam under a part `factor` of its load (see `tisim.nonlinear.newton.System`).
+    """A beam under the fraction `factor` of its load (see `tisim.nonlinear.newton.System`).
 
-    tolerance: what the residual will be asked to reach, relative to the load. Where rounding is more than
-    that (stiffness times the last digit of the positions: thin beams, nearly incompressible), `linearise`
-    returns the load that makes it just reachable.
+    Parameters
+    ----------
+    body : DiscretisedBody
+    tolerance : float
+        Residual relative to the load that the solver will require. If the rounding error (stiffness times
+        the last digit of the positions, for thin or nearly incompressible beams) exceeds it, `linearise`
+        returns a load at which the tolerance is just reachable.
     """
 
     def __init__(self, body: DiscretisedBody, *, tolerance: float = 1e-6) -> None:
@@ -87,9 +91,9 @@ class BeamSystem:
         self.full_load = body.dead_load
         self.factor = 1.0
         self.step_limit = np.inf
-        self.least_load = 0.0  # what counts as load where there is less [N]: a beam that was unloaded
+        self.least_load = 0.0  # smallest load scale [N], for a beam that is unloaded again
         self.clamps_load = (
-            False  # whether clamps strain the body, so that equilibrium has a scale without load
+            False  # True if clamps strain the body: their forces then contribute to the load scale
         )
         self.counts = {"factorisations": 0, "newton": 0}
         self.min_jacobian = 1.0
@@ -101,10 +105,10 @@ class BeamSystem:
     def free_pressures(self, start: Array | None) -> None:
         """Iterate the element pressures as unknowns, from `start` (m,) [Pa], without a line search.
 
-        None: back to pressures that follow the positions.
+        With None, pressures follow from the positions again.
 
-        A step that is right to first order leaves an error in volume of second order; the potential
-        punishes it by the bulk modulus and would cut the step, the mixed iteration does not see it.
+        A step that is accurate to first order leaves a second-order error in volume. The potential penalises
+        it by the bulk modulus and would cut the step; the mixed iteration does not.
         """
         self._pressure = start
 
@@ -134,11 +138,11 @@ class BeamSystem:
         return residual, max(load, self.least_load, self._rounding(x) / self.tolerance)
 
     def load_norm(self) -> float:
-        """Size of the load at the free nodes [N]."""
+        """Norm of the load at the free nodes [N]."""
         return float(np.linalg.norm(self.body.dead_load[self.body.discretisation.pattern.free]))
 
     def _rounding(self, x: Array) -> float:
-        """Size of the residual that rounding the positions makes [N]; 2 to 3 times what is measured."""
+        """Estimated residual norm from rounding of the positions [N], 2 to 3 times the measured one."""
         assert self._blocks is not None
         diagonal = self._blocks[self.body.discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
         return 0.5 * float(np.finfo(float).eps * np.linalg.norm(diagonal) * np.abs(x).max())
@@ -157,7 +161,7 @@ class BeamSystem:
             step = discretisation.solver.solve(-residual)
             if discretisation.solver.negative == 0 and np.vdot(step, residual) < 0.0:
                 return step
-            # indefinite: shift the spectrum until the step goes downhill
+            # indefinite: shift the spectrum until the step is a descent direction
             more = scale * 1e-4 * 8.0**attempt
             self._blocks[diagonal] += (more - shift) * np.eye(3)
             shift = more
@@ -184,7 +188,7 @@ class BeamSystem:
 
 
 def beam_system(scene: Beam, discretisation: Discretisation) -> BeamSystem:
-    """Material and loads of a beam on its discretisation."""
+    """System of a beam with its material and loads; ValueError for a tip load on a mesh without a tip."""
     load = gravity_load(discretisation, scene.material.density, scene.gravity)
     mass = np.zeros(discretisation.mesh.n_nodes)
     if any(scene.tip_force) or scene.tip_mass:

@@ -1,8 +1,8 @@
-"""Where a beam on its course goes next: what its linear material says of it, and the beam before it.
+"""Prediction of a beam's next state on its course, from its linear material and from the previous beam.
 
-A beam's shape is very nearly a function of how far its linear material would have crept. So its last states
-point to the next one; and a neighbour's states, on the same mesh under the same loads, are that function
-itself, but for what the two differ by, which hardly changes from one step to the next.
+A beam's shape is very nearly a function of the creep strain of its linear material. Its next state is
+therefore extrapolated from its last ones, or from the states of a neighbour on the same mesh under the same
+loads; the difference between the two beams hardly changes from one step to the next.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from tisim.scene import Beam
 
 Array = NDArray[np.float64]
 
-DISTINCT = 1e-3  # of the strain: states closer than this are one
-KNOWN = 4  # states that the next one is predicted from
-BEYOND = 0.1  # of the neighbour's range of strain: how far outside it is still followed
+DISTINCT = 1e-3  # relative difference of strain below which states count as one
+KNOWN = 4  # number of states from which the next one is predicted
+BEYOND = 0.1  # allowed extrapolation beyond the neighbour's range of strain, as a fraction of it
 
 
 class LinearCreep:
-    """Strain of a spectrum's linear material under a stress, in 1/G, step by step as `History` takes them."""
+    """Strain of a spectrum's linear material under a stress, in units of 1/G; steps as in `History`."""
 
     def __init__(self, spectrum: Spectrum) -> None:
         self._spectrum = spectrum
@@ -32,13 +32,13 @@ class LinearCreep:
         self._strain = 0.0
 
     def strain(self, dt: float, stress: float) -> float:
-        """Strain at the end of a step of length dt [s] to this stress."""
+        """Strain at the end of a step of length dt [s] to the stress."""
         decay, c = self._weights(dt)
         carried = float(decay @ self._branches) - float(c.sum()) * self._strain
         return (stress - carried) / (self._spectrum.equilibrium + float(c.sum()))
 
     def accept(self, dt: float, strain: float) -> None:
-        """Take a step of length dt [s] to this strain."""
+        """Accept a step of length dt [s] to the strain."""
         decay, c = self._weights(dt)
         self._branches = decay * self._branches + c * (strain - self._strain)
         self._strain = strain
@@ -50,7 +50,14 @@ class LinearCreep:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Beam on its course: time [s], strain of the linear material by its weight, positions (n, 3)."""
+    """State of a beam on its course.
+
+    Attributes
+    ----------
+    time : time [s].
+    strain : strain of the linear material times `Trail.unit`.
+    x : positions [m], shape (n, 3).
+    """
 
     time: float
     strain: float
@@ -59,10 +66,14 @@ class State:
 
 @dataclass(eq=False)
 class Trail:
-    """The states of a beam from the first equilibrium on.
+    """States of a beam from the first equilibrium on.
 
-    unit: density over long-time shear modulus [s2/m2]: beams of one shape that differ in these two alone hang
-        alike where the linear material's strain times this is the same.
+    Attributes
+    ----------
+    scene : the beam.
+    unit : density over the law's shear modulus [s2/m2]. Beams of one shape that differ in these two alone
+        have the same deflection at the same strain of the linear material times `unit`.
+    states : the states, in order of time.
     """
 
     scene: Beam
@@ -70,11 +81,11 @@ class Trail:
     states: list[State] = field(default_factory=list)
 
     def add(self, time: float, strain: float, x: Array) -> None:
-        """strain: as `LinearCreep` has it."""
+        """Append a state; `strain` is that of `LinearCreep`."""
         self.states.append(State(time, self.unit * strain, x))
 
     def leads(self, scene: Beam) -> bool:
-        """True if another scene, on the same mesh, has the same loads over the same time."""
+        """True if a scene on the same mesh has the same loads and course, and enough states are known."""
         return (
             len(self.states) >= KNOWN
             and scene.course == self.scene.course
@@ -83,7 +94,7 @@ class Trail:
         )
 
     def at(self, time: float, strain: float) -> Array | None:
-        """Positions at a strain around that time; None where the states do not reach that far."""
+        """Positions interpolated at a strain near that time; None if the states do not reach it."""
         branch = self._branch(time)
         strains = [state.strain for state in branch]
         room = BEYOND * (max(strains) - min(strains))
@@ -92,7 +103,7 @@ class Trail:
         return polynomial(sorted(branch, key=lambda state: abs(state.strain - strain)), strain)
 
     def _branch(self, time: float) -> list[State]:
-        """The states about a time between which the strain only rises, or only falls."""
+        """States around a time between which the strain is monotonic."""
         states = self.states
         at = next((i for i, state in enumerate(states) if state.time >= time), len(states) - 1)
         first = last = max(at, 1)
@@ -105,7 +116,7 @@ class Trail:
 
 
 def polynomial(states: list[State], strain: float) -> Array:
-    """Positions at a strain by Lagrange's formula, through the first KNOWN distinct states."""
+    """Positions at a strain by Lagrange interpolation through the first KNOWN distinct states."""
     known: list[State] = []
     for state in states:
         if all(abs(state.strain - other.strain) > DISTINCT * abs(strain) for other in known):
@@ -120,9 +131,10 @@ def polynomial(states: list[State], strain: float) -> Array:
 
 
 def predict(own: Trail, other: Trail | None, time: float, strain: float) -> Array:
-    """Positions at a strain of the linear material, as `LinearCreep` has it, at a time [s].
+    """Predict positions at a time [s] and a strain of `LinearCreep`.
 
-    By the neighbour's states and what the last one here differs from it; else by the last states here.
+    Adds the neighbour's change to the last state if `other` has the same loads, else extrapolates the last
+    KNOWN states.
     """
     last, strain = own.states[-1], own.unit * strain
     if other is not None and other.leads(own.scene):

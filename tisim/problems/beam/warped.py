@@ -1,4 +1,4 @@
-"""A factor of an earlier tangent, carried along with the body as it turns."""
+"""The factor of an earlier tangent, rotated with the body."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @lru_cache(maxsize=4)
 def _gradient_operator(discretisation: Discretisation) -> tuple[Array, sparse.csr_array]:
-    """Elements' mean gradients of shape functions (m, a, 3) [1/m], and free nodes' means over elements."""
+    """Mean shape-function gradients of elements (m, a, 3) [1/m], and the averaging over a node's elements."""
     mesh, ref = discretisation.mesh, discretisation.reference
     volume = ref.weights.sum(axis=1)
     mean = np.einsum("mq,mqak->mak", ref.weights, ref.gradients) / volume[:, None, None]
@@ -28,14 +28,14 @@ def _gradient_operator(discretisation: Discretisation) -> tuple[Array, sparse.cs
 
 
 class Warped:
-    """The last factor of a beam's tangent, carried along with the rotation of the body since.
+    """The last factor of a beam's tangent K_0, rotated with the body: K = R K_0 R^T, R the nodal rotations.
 
-    A tangent's factor costs some fifteen solves with it. As a beam creeps, its material hardly gets stiffer
-    or softer from one step to the next, but its parts turn, and what resists a change of volume does so in
-    turned directions. K = R K_0 R^T, R the rotation of each node, follows that.
+    Factorising a tangent costs about as much as fifteen solves. In creep the stiffness of the material hardly
+    changes from one step to the next, but parts of the beam rotate, and with them the directions in which the
+    bulk modulus resists.
 
-    A body on the same discretisation that is stiffer or softer as a whole has the same factor, but for that
-    (`of`): it is the discretisation's, until another tangent is factorised on it.
+    A body on the same discretisation that differs by a factor of the stiffness has the same factor but for a
+    scale (`of`). The factor is the discretisation's: it is lost when another tangent is factorised on it.
     """
 
     def __init__(self, body: DiscretisedBody, x: Array) -> None:
@@ -46,18 +46,18 @@ class Warped:
         self._turned = np.broadcast_to(np.eye(3), (len(discretisation.pattern.free), 3, 3))
 
     def _gradients(self, x: Array) -> Array:
-        """Mean deformation gradient around each free node, (n_free, 3, 3)."""
+        """Mean deformation gradient around each free node, shape (n_free, 3, 3)."""
         F = x[self._discretisation.mesh.elements].transpose(0, 2, 1) @ self._mean
         return np.asarray(self._around @ F.reshape(len(F), 9)).reshape(-1, 3, 3)
 
     def of(self, body: DiscretisedBody) -> Warped:
-        """The same factor as another body's."""
+        """The factor scaled to another body's shear modulus."""
         it = copy(self)
         it._softer = self._modulus / body.moduli.shear_modulus
         return it
 
     def turn(self, x: Array) -> None:
-        """Carry the factor along to positions x (n, 3)."""
+        """Rotate the factor to positions x (n, 3) [m]."""
         moved = self._gradients(x) @ self._at_factor
         skew = 0.5 * (moved - moved.transpose(0, 2, 1))
         axis = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
@@ -66,7 +66,7 @@ class Warped:
         self._turned = np.eye(3) + skew + skew @ skew / (1.0 + np.sqrt(1.0 - sine**2))
 
     def solve(self, rhs: Array) -> Array:
-        """(R K_0 R^T)^-1 rhs, both (n_free, 3)."""
+        """(R K_0 R^T)^-1 rhs, shapes (n_free, 3)."""
         R = self._turned
         back = np.einsum("nji,nj->ni", R, rhs)
         held = self._discretisation.held

@@ -17,7 +17,7 @@ from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
 from tisim.scene import Press
 
-SECONDS = 2.0  # of a default cylinder [core-s]
+SECONDS = 2.0  # cost of a scene with the default mesh [core-s]
 
 
 def check(scene: Press) -> None:
@@ -41,7 +41,10 @@ def check(scene: Press) -> None:
 
 
 def _check_way(scene: Press) -> None:
-    """A bonded cylinder's side sticks where it comes down for good: one that is let go again has to stop."""
+    """Refuse side "stick" for a bonded cylinder that is unloaded: its side would never lift off again.
+
+    Raises FieldError also if a stretch of the course is not above 0.
+    """
     values = np.array(scene.course.values) if scene.course is not None else np.ones(0)
     check_stretches(tuple(values))
     turns = bool((np.diff([1.0, *values]) > 0.0).any()) and bool((values < 1.0).any())

@@ -1,7 +1,7 @@
-"""Uniaxial compression of a cylinder between two platens, stretch after stretch, by an eighth of it.
+"""Uniaxial compression of a cylinder between two platens, for a sequence of stretches, on one eighth of it.
 
-A bonded cylinder's end faces move with the platens. Where its side comes down on a platen, the nodes that
-would pass through it stick to it from then on.
+The end faces of a bonded cylinder move with the platens. Nodes of its side that would pass through a platen
+stick to it from then on.
 """
 
 from __future__ import annotations
@@ -27,23 +27,33 @@ from tisim.scene import Press
 
 Array = NDArray[np.float64]
 
-MOST_LANDINGS = 12  # rounds of nodes coming down within one step
-MOST_ITERATIONS = 15  # with free pressures Newton is quick or gets nowhere
-# Overlap of side and platen that counts as none, in parts of the height: rounding.
+MOST_LANDINGS = 12  # rounds of nodes that come into contact within one step
+MOST_ITERATIONS = 15  # with free pressures Newton's method converges quickly or not at all
+# Overlap of side and platen that counts as rounding, relative to the height.
 TOUCH = 1e-9
-# Of the logarithm of the stretch: half of it changes the force by 0.03 % at most, to a third of the height.
+# Step of the logarithm of the stretch. Half of it changes the force by at most 0.03 %, down to a third of the
+# height.
 LARGEST_STEP = 0.03
 SMALLEST_STEP = LARGEST_STEP / 64.0
-MOST_PARTS = 64  # of a step in a hold
+MOST_PARTS = 64  # largest number of parts of a step in a hold
 
 
 class SideLandedError(Exception):
-    """The side came down on the platen, and the scene says to stop there."""
+    """The side came into contact with the platen in a scene with side "stop"."""
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """An equilibrium: stretch, positions (n, 3) [m], nodes carried by the platen (n,), residual, time [s]."""
+    """An equilibrium.
+
+    Attributes
+    ----------
+    stretch : height over rest height.
+    x : positions [m], shape (n, 3).
+    carried : True for nodes on the platen, shape (n,).
+    residual : residual relative to the load.
+    time : time [s].
+    """
 
     stretch: float
     x: Array
@@ -63,17 +73,17 @@ def _discretise(
 
 
 class PressSystem(BeamSystem):
-    """The upper quarter of the cylinder (`tisim.nonlinear.newton.System`), its held components in place in x.
+    """One eighth of the cylinder, x, y, z >= 0 (`tisim.nonlinear.newton.System`); x contains the held values.
 
-    What a bonded cylinder's side does on the platen: a node that would pass through it is held where its
-    path met it, all components, from then on (the side rolls onto the platen and sticks).
+    A node of a bonded cylinder's side that would pass through the platen is held, in all components, at the
+    point where its path meets the platen: the side rolls onto the platen and sticks.
     """
 
     def __init__(self, scene: Press) -> None:
         kind: ElementKind = "tet10" if scene.element == "default" else scene.element
         self.bonded = scene.platens == "bonded"
         shared = _discretise(scene.radius, scene.height, kind, scene.refinement, self.bonded)
-        # nodes that land are held in this scene only; no node is fixed, so held is by node
+        # nodes in contact are held in this scene only; no node is fixed, so rows of held are nodes
         discretisation = replace(shared, held=shared.held.copy())
         super().__init__(DiscretisedBody(discretisation, scene.material), tolerance=scene.solver.tolerance)
         self.scene = scene
@@ -90,23 +100,33 @@ class PressSystem(BeamSystem):
     def linearise(self, x: Array) -> tuple[Array, float]:
         residual, _ = super().linearise(x)
         force, _ = self.body.internal_forces(x)
-        # at rest there is no reaction to compare with
+        # a floor, since there is no reaction at rest
         return residual, float(np.linalg.norm(force[self.body.discretisation.held])) + self._at_rest
 
     def plane(self, stretch: float) -> float:
-        """Height of the upper platen over the middle [m]."""
+        """Height of the upper platen above the middle plane [m]."""
         return 0.5 * self.scene.height * stretch
 
     def overlap(self, x: Array, stretch: float) -> float:
-        """Distance by which the side reaches beyond the platen [m], not below 0."""
+        """Largest distance of the side beyond the platen [m], at least 0."""
         return max(0.0, float((x[self._side, 2]).max()) - self.plane(stretch))
 
     def equilibrium(
         self, state: State, before: State | None, stretch: float, time: float
     ) -> tuple[State | None, Status]:
-        """The state at `stretch` and a time [s], one step on from `state`; or None and the reason.
+        """Equilibrium at `stretch` and a time [s], one step after `state`; or None and the reason.
 
-        before: the state before that, for a secant guess. SideLandedError where the scene stops at it.
+        Parameters
+        ----------
+        state, before : State
+            The last state, and the one before it (None if there is none) for a secant start value.
+        stretch, time : float
+            Stretch and time [s] at the end of the step.
+
+        Raises
+        ------
+        SideLandedError
+            If the side comes into contact in a scene with side "stop".
         """
         status = Status.NOT_CONVERGED
         self.body.begin(time - state.time)
@@ -130,7 +150,7 @@ class PressSystem(BeamSystem):
         return None, status
 
     def _guesses(self, state: State, before: State | None, stretch: float) -> list[Array]:
-        """Where the last two states point to, then the last one scaled; held nodes in their places."""
+        """Start values: the last two states extrapolated, then the last one scaled; held nodes in place."""
         ratio = stretch / state.stretch
         scaled = state.x.copy()
         scaled[:, 2] *= ratio
@@ -165,7 +185,7 @@ class PressSystem(BeamSystem):
         return self._side[beyond & ~carried[self._side]] if self.bonded else self._side[:0]
 
     def _put_down(self, state: State, x: Array, landed: NDArray[np.int32], stretch: float) -> Array:
-        """x with the landed nodes where their straight paths from `state` met the moving platen."""
+        """Copy of x with the landed nodes where their straight paths from `state` meet the moving platen."""
         gap = self.plane(state.stretch) - state.x[landed, 2]
         now = self.plane(stretch) - x[landed, 2]
         part = np.clip(gap / (gap - now), 0.0, 1.0)[:, None]
@@ -177,11 +197,12 @@ class PressSystem(BeamSystem):
 
 @one_thread()
 def solve_press(scene: Press, *, on_step: OnStep = skip) -> Result:
-    """One frame a stretch, or as the course says, up to the first that has no equilibrium.
+    """Solve a compression test: one frame per stretch, or the frames of the course, until none converges.
 
-    The middle plane stays at z = 0, the upper platen at stretch * height / 2. nominal_stress: force of the
-    platen on the body over the rest area, negative in compression; what the side carries where it lies on
-    the platen counts. support_force: of the lower platen. penetration: of the side and the platen.
+    The middle plane stays at z = 0, the upper platen is at stretch * height / 2. The result's nominal_stress
+    is the force of the platen on the body over the rest area, negative in compression, including the force
+    on the part of the side in contact. Its support_force is that of the lower platen, its penetration the
+    overlap of side and platen.
     """
     start = time.process_time()
     system = PressSystem(scene)
@@ -215,7 +236,7 @@ def solve_press(scene: Press, *, on_step: OnStep = skip) -> Result:
 
 @dataclass
 class _Counts:
-    """reached: the last stretch with an equilibrium."""
+    """Numbers of steps tried and of cuts, and the last stretch with an equilibrium."""
 
     steps: int = 0
     cuts: int = 0
@@ -225,7 +246,7 @@ class _Counts:
 def _advance(
     system: PressSystem, here: State, before: State | None, stop: Stop, counts: _Counts
 ) -> tuple[State, State | None, Status]:
-    """From `here` to a stop in steps even in the logarithm of the stretch, halved where they fail."""
+    """Advance from `here` to a stop in equal steps of the logarithm of the stretch, halved if they fail."""
     size, status, target = LARGEST_STEP, Status.CONVERGED, stop.value
     shorter = 1  # a hold is cut in time
     while here.stretch != target or here.time < stop.time:
@@ -266,7 +287,7 @@ class _Frame:
 
 def _frame(system: PressSystem, state: State) -> _Frame:
     force, min_jacobian = system.body.internal_forces(state.x)
-    # the mesh has a quarter of each end
+    # the mesh has a quarter of the end face
     pushed = 4.0 * float(force[state.carried, 2].sum())
     overlap, lost = system.overlap(state.x, state.stretch), system.body.dissipated()
     return _Frame(state, pushed, overlap, min_jacobian, lost)

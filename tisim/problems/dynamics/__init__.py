@@ -1,1 +1,1 @@
-"""Beams through time: BDF2 and central differences."""
+"""Dynamics of beams: BDF2 and central differences."""

@@ -3,8 +3,8 @@ Elements for Continua and Structures, 6.2).
 
     M (v(+) - v(-)) / dt + c_M M (v(+) + v(-)) / 2 + f(x) + c_K df/dt = p,    x(+) = x + dt v(+)
 
-M is diagonal (`tisim.discretisation.mass.lumped_mass`), v lives at half steps, and df/dt, which is K(x) v at
-the *current* positions as in the implicit method, is taken from the last two internal forces.
+M is diagonal (`tisim.discretisation.mass.lumped_mass`) and v is stored at half steps. df/dt, which is K(x) v
+at the *current* positions as in the implicit method, is the difference of the last two internal forces.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from tisim.scene import Solver
 
 Array = NDArray[np.float64]
 
-SAFETY = 0.9  # part of the stable step that is taken
-LIMIT = 0.01  # error of the energy balance, of the largest energy seen, that ends a run
-RECHECK = 500  # steps after which the largest frequency is looked up again
+SAFETY = 0.9  # time step as a fraction of the stable step
+LIMIT = 0.01  # error of the energy balance, relative to the largest energy so far, that ends a run
+RECHECK = 500  # number of steps after which the largest frequency is computed again
 
 
 def moving_mass(body: DiscretisedBody) -> Array:
-    """Lumped mass of each component, shape (n, 3) [kg]; 0 where it may not move."""
+    """Lumped mass of each component [kg], 0 for fixed and held components, shape (n, 3)."""
     pattern = body.discretisation.pattern
     mass = np.zeros((body.discretisation.mesh.n_nodes, 3))
     lumped = lumped_mass(body.discretisation.mesh, body.material.density) + body.added_mass
@@ -48,9 +48,9 @@ def moving_mass(body: DiscretisedBody) -> Array:
 
 
 def highest_frequency(body: DiscretisedBody, x: Array, mass: Array) -> float:
-    """Largest eigenfrequency at x: sqrt of the largest eigenvalue of M^-1 K(x) [rad/s].
+    """Largest eigenfrequency at x: square root of the largest eigenvalue of M^-1 K(x) [rad/s].
 
-    By Lanczos' method, which is power iteration that forgets nothing; it comes from below within 1e-3.
+    Lanczos' method, with a relative tolerance of 1e-3 on the eigenvalue, from below.
     """
     pattern = body.discretisation.pattern
     blocks, _, _ = body.stiffness(x)
@@ -59,15 +59,16 @@ def highest_frequency(body: DiscretisedBody, x: Array, mass: Array) -> float:
     free = mass[pattern.free].ravel()
     scaling = sparse.diags_array(np.where(free > 0.0, 1.0 / np.sqrt(np.where(free > 0.0, free, 1.0)), 0.0))
     full = scaling @ (upper + sparse.triu(upper, 1).T) @ scaling
-    start = np.random.default_rng(0).standard_normal(3 * n)  # the same for each run
+    start = np.random.default_rng(0).standard_normal(3 * n)  # fixed seed: the result is deterministic
     top = eigsh(full.tocsr(), k=1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)
     return float(np.sqrt(max(float(top[0]), 0.0)))
 
 
 def stable_step(frequency: float, stiffness_damping: float) -> float:
-    """Longest stable step [s]: 2/w, less with stiffness damping, whose force lags half a step.
+    """Longest stable time step [s], 2/w (sqrt(1 + r^2) - r) with r = c_K w / 2.
 
-    Mass damping does not shorten it, because its velocity is centred.
+    Stiffness damping shortens it, since its force lags half a step. Mass damping does not, since its velocity
+    is centred.
     """
     ratio = 0.5 * stiffness_damping * frequency
     return 2.0 / frequency * (np.sqrt(1.0 + ratio**2) - ratio)
@@ -82,7 +83,18 @@ def march(
     safety: float = SAFETY,
     on_step: OnStep = skip,
 ) -> Run:
-    """Release the body at `start` (n, 3) [m] (the rest shape) with `velocity` (n, 3) [m/s] (none)."""
+    """Integrate the motion of a body after its release.
+
+    Parameters
+    ----------
+    body : DiscretisedBody
+    solver : Solver
+    start, velocity : ndarray of float, shape (n, 3), optional
+        Positions [m] and velocities [m/s] at time 0: the rest shape and zero by default.
+    safety : float
+        Time step as a fraction of the stable step.
+    on_step : OnStep
+    """
     parts = Intervals.of(solver)
     nodes = body.discretisation.mesh.nodes
     x = nodes.copy() if start is None else np.array(start, dtype=float)
@@ -91,7 +103,7 @@ def march(
     longest = safety * stable_step(highest_frequency(body, x, mass), solver.stiffness_damping)
     count = int(np.ceil(parts.length / longest))
     dt = parts.length / count
-    f = body.internal_forces(x - dt * v)[0]  # so that the first df/dt is that of the motion
+    f = body.internal_forces(x - dt * v)[0]  # so that the first df/dt is consistent with the velocity
     v -= 0.5 * dt * _acceleration(body, solver, x, v, f, dt, mass)
     before = np.zeros_like(f)
     state = np.zeros(STATE_SIZE)
@@ -124,7 +136,7 @@ def march(
         relative = static_residual(body, force)
         rest = solver.until_rest and at_rest(body, x, relative, float(state[KINETIC]), solver.tolerance)
         if rest or interval == parts.count or interval % parts.stride == 0:
-            # the fixed nodes' lumped mass does not move: no inertia reaches the supports
+            # the lumped mass of fixed nodes does not move: the supports carry no inertia force
             dynamic = force + solver.stiffness_damping * (force - f) / dt - body.dead_load
             frames.keep(time, x, dynamic, min_jacobian, relative)
             on_step(interval / parts.count)
@@ -138,7 +150,7 @@ def march(
 def _acceleration(
     body: DiscretisedBody, solver: Solver, x: Array, v: Array, before: Array, dt: float, mass: Array
 ) -> Array:
-    """Acceleration at x and v (n, 3) [m/s2], 0 where nothing moves; before: internal forces dt earlier."""
+    """Acceleration at x and v (n, 3) [m/s2], 0 for components without mass; before: forces dt earlier [N]."""
     force = body.internal_forces(x)[0]
     rate = solver.stiffness_damping * (force - before) / dt
     push = body.dead_load - force - rate

@@ -1,4 +1,4 @@
-"""Records of both dynamic methods: frames in time, the criterion of rest, the outcome."""
+"""Frames, criterion of rest and outcome of both dynamic methods."""
 
 from __future__ import annotations
 
@@ -18,12 +18,19 @@ MOST_FRAMES = 500
 
 @dataclass(eq=False)
 class Frames:
-    """States kept of a dynamic run; the released state at time 0 is the rest shape and is not kept.
+    """States kept of a dynamic run, without the start at time 0.
 
-    time (f,) [s]; positions (f, n, 3) [m]; support_force (f, 3) [N], inertia and damping included;
-    min_jacobian (f,); residual (f,): the *static* out-of-balance force at the free nodes relative to the
-    applied load, which is what is left to rest (each step's own residual is under the tolerance);
-    dissipated (f,) [J]: by viscosity and softening of the material, not by Rayleigh's damping.
+    Attributes
+    ----------
+    body : the body.
+    time : time [s], shape (f,).
+    positions : node positions [m], shape (f, n, 3).
+    support_force : force of the supports with inertia and damping [N], shape (f, 3).
+    min_jacobian : smallest det F, shape (f,).
+    residual : *static* out-of-balance force at the free nodes relative to the applied load, a measure of the
+        distance from equilibrium (the residual of each step is below the tolerance), shape (f,).
+    dissipated : energy dissipated by viscosity and softening of the material, not by Rayleigh damping [J],
+        shape (f,).
     """
 
     body: DiscretisedBody
@@ -35,7 +42,7 @@ class Frames:
     dissipated: list[float] = field(default_factory=list)
 
     def keep(self, time: float, x: Array, dynamic: Array, min_jacobian: float, residual: float) -> None:
-        """dynamic (n, 3) [N]: internal, damping and inertia forces less the applied load."""
+        """Append a state; dynamic (n, 3) [N]: internal, damping and inertia forces less the applied load."""
         discretisation = self.body.discretisation
         support = dynamic[discretisation.fixed].sum(axis=0) * discretisation.multiplicity
         for axis in discretisation.mesh.symmetry:
@@ -50,9 +57,15 @@ class Frames:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Outcome of a dynamic run, its frames, its cost.
+    """Outcome, frames and cost of a dynamic run.
 
-    time: reached [s]; drift: largest error of the energy balance against the largest energy (explicit).
+    Attributes
+    ----------
+    status, message : outcome, and a sentence if it is not a success.
+    frames : states kept.
+    time : time reached [s].
+    steps, newton_iterations, factorisations, step_cuts : cost.
+    drift : largest error of the energy balance relative to the largest energy; explicit method only.
     """
 
     status: Status
@@ -68,7 +81,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Intervals:
-    """The duration cut into equal parts no longer than the time step; every `stride`-th end is a frame."""
+    """The duration in `count` equal intervals of `length` [s] up to the time step, a frame every `stride`."""
 
     count: int
     length: float
@@ -87,7 +100,7 @@ class Intervals:
 
 
 def static_residual(body: DiscretisedBody, force: Array) -> float:
-    """Size of the out-of-balance force at the free nodes, in parts of the load's [-] (without one, [N])."""
+    """Norm of the out-of-balance force at the free nodes relative to the load [-]; without a load, in [N]."""
     discretisation = body.discretisation
     residual = (force - body.dead_load)[discretisation.pattern.free]
     residual[discretisation.held] = 0.0
@@ -96,23 +109,34 @@ def static_residual(body: DiscretisedBody, force: Array) -> float:
 
 
 def load_size(body: DiscretisedBody) -> float:
-    """Size of the applied load at the free nodes [N]."""
+    """Norm of the applied load at the free nodes [N]."""
     return float(np.linalg.norm(body.dead_load[body.discretisation.pattern.free]))
 
 
 def at_rest(body: DiscretisedBody, x: Array, relative: float, kinetic: float, tolerance: float) -> bool:
-    """Equilibrium and no motion left that could leave it.
+    """True in equilibrium without motion: both the static residual and the kinetic energy are small.
 
-    relative: static residual against the load; kinetic [J]. A swing of amplitude e around equilibrium, in
-    parts of the deflection, has a residual of about e and an energy of e^2 times half the load's work, but
-    passes the equilibrium itself with no residual at all: both must be small.
+    A vibration around equilibrium with amplitude e, relative to the deflection, has a residual of about e and
+    an energy of e^2 times half the load's work, but no residual when it passes through equilibrium.
+
+    Parameters
+    ----------
+    body : DiscretisedBody
+    x : ndarray of float, shape (n, 3)
+        Positions [m].
+    relative : float
+        Static residual relative to the load.
+    kinetic : float
+        Kinetic energy [J].
+    tolerance : float
+        Bound of `relative`, and of the amplitude e.
     """
     work = abs(float(np.vdot(body.dead_load, x - body.discretisation.mesh.nodes)))
     return relative <= tolerance and kinetic <= tolerance**2 * 0.5 * work
 
 
 def not_at_rest(residual: float, solver: Solver) -> str:
-    """The sentence for a run that ended before the rest it was asked for."""
+    """Message of a run that ended before it came to rest."""
     damped = solver.mass_damping > 0.0 or solver.stiffness_damping > 0.0
     hint = "" if damped else "; nothing damps the motion (mass_damping, stiffness_damping)"
     return f"not at rest after {solver.duration:g} s: residual {residual:.1e} of the load{hint}"

@@ -5,18 +5,18 @@ Ordinary Differential Equations I, III.5), each step solves
 
     M D v + c_M M v + f(x) + c_K D f(x) = p,    v = D x
 
-for the positions x at its end: consistent mass M, internal forces f, dead load p. Damping is Rayleigh's,
-with the stiffness at the *current* positions, since D f is K(x) v to second order. (With the stiffness at
-rest a bent beam's turning would be taken for a change of volume and held back by the bulk modulus.)
+for the positions x at its end: consistent mass M, internal forces f, dead load p. Rayleigh damping uses the
+stiffness at the *current* positions, since D f is K(x) v to second order. (With the stiffness at rest, the
+rotation of a bent beam would act as a change of volume, which the bulk modulus resists.)
 
-Why BDF2 and not generalised-alpha: it is L-stable, so that the sudden release and the stiff volumetric
-modes of nearly incompressible tissue die out in a few steps without a parameter; it needs no acceleration
-at the start; all its terms stand at the end of the step, which makes the damping and its tangent exact at
-no cost. The price: a mode with w dt = 0.1 loses 0.0025 % of its amplitude a step, and its period is 0.3 %
-long (a third of (w dt)^2). The first step is backward Euler's, which keeps the order.
+BDF2 is preferred to generalised-alpha for three reasons. It is L-stable, so that the sudden release and the
+stiff volumetric modes of nearly incompressible tissue decay in a few steps without a parameter. It needs no
+acceleration at the start. All its terms are evaluated at the end of the step, so that damping and its tangent
+are exact at no cost. In return a mode with w dt = 0.1 loses 0.0025 % of its amplitude per step, and its
+period is 0.3 % too long (a third of (w dt)^2). The first step is backward Euler, which keeps the order.
 
-A viscous material's stress at the end of the step is that of the step's potential
-(`tisim.discretisation.history`), of second order as well.
+The stress of a viscous material at the end of the step derives from the step's potential
+(`tisim.discretisation.history`), which is of second order as well.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ from tisim.scene import Solver
 
 Array = NDArray[np.float64]
 
-MOST_HALVINGS = 10  # of the time step, before the run gives up
-CALM_STEPS = 4  # that must succeed before a halved step doubles again
-SHARPER = 0.1  # part of the tolerance that a step is solved to, so that rest can be told from it
+MOST_HALVINGS = 10  # of the time step, before the run fails
+CALM_STEPS = 4  # consecutive successful steps before a halved step is doubled again
+SHARPER = 0.1  # tolerance of a step as a fraction of the solver's, so that rest can be detected
 ROUNDING = 1e-15
 
 
@@ -62,9 +62,13 @@ class State:
 
 
 def difference(step: float, before: float | None) -> tuple[float, float, float]:
-    """Weights of D at the new, the last and the last but one time [1/s]; before: length of the last step.
+    """Weights of D at the new, the last and the second-last time [1/s].
 
-    A step may be twice the one before (zero-stable below 1 + sqrt 2).
+    Parameters
+    ----------
+    step, before : float
+        Length of this and of the last step [s]; `before` is None in the first step (backward Euler). A step
+        may be twice the last one (zero-stable below 1 + sqrt 2).
     """
     if before is None:
         return 1.0 / step, -1.0 / step, 0.0
@@ -73,10 +77,10 @@ def difference(step: float, before: float | None) -> tuple[float, float, float]:
 
 
 class ImplicitSystem:
-    """The equation of one step, as Newton wants it (see `tisim.nonlinear.newton.System`).
+    """The equation of one time step (see `tisim.nonlinear.newton.System`).
 
-    The element pressures are unknowns of their own (as in `BeamSystem.free_pressures`), so that steps are
-    whole and not cut by second-order errors of volume.
+    The element pressures are independent unknowns (as in `BeamSystem.free_pressures`), so that second-order
+    errors of volume do not cut the Newton steps.
     """
 
     def __init__(self, body: DiscretisedBody, solver: Solver, scale: float) -> None:
@@ -87,7 +91,10 @@ class ImplicitSystem:
         self.factorisations = 0
 
     def begin(self, step: float, last: State, before: tuple[State, float] | None) -> Array:
-        """Set the step's difference formula; returns the predicted positions."""
+        """Set the difference formula of a step of length `step` [s]; return the predicted positions (n, 3).
+
+        `before` is the second-last state and the length of the last step, None in the first step.
+        """
         self.body.begin(step)
         c, c1, c2 = difference(step, before[1] if before else None)
         older = before[0] if before else last
@@ -106,14 +113,14 @@ class ImplicitSystem:
         return State(u, v, self.c * v + self._v, f)
 
     def balance(self, state: State) -> Array:
-        """Inertia, damping and internal forces less the load, over all nodes (n, 3) [N]."""
+        """Inertia, damping and internal forces less the load at all nodes [N], shape (n, 3)."""
         s = self.solver
         rate = self.c * state.f + self._f
         drag = np.asarray(self.mass @ (state.a + s.mass_damping * state.v))
         return np.asarray(drag + state.f + s.stiffness_damping * rate - self.body.dead_load)
 
     def potential(self, x: Array) -> tuple[float, float]:
-        return self.body.energy(x)  # for the protocol: steps are taken whole
+        return self.body.energy(x)  # required by the protocol; there is no line search
 
     def linearise(self, x: Array) -> tuple[Array, float]:
         discretisation, c, s = self.body.discretisation, self.c, self.solver
@@ -124,7 +131,7 @@ class ImplicitSystem:
         residual = self._free(self.balance(self.state(x, force)))
         if self.min_jacobian <= 0.0:
             residual[:] = np.nan
-        # short steps magnify the rounding of positions: nothing can be asked for below that
+        # short steps amplify the rounding of positions, which bounds the residual that can be reached
         diagonal = self._blocks[discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
         noise = ROUNDING * float(np.linalg.norm(diagonal * x[discretisation.pattern.free]))
         return residual, self.scale + noise / (SHARPER * s.tolerance)
@@ -172,18 +179,27 @@ def march(
     velocity: Array | None = None,
     on_step: OnStep = skip,
 ) -> Run:
-    """Release the body at `start` (n, 3) [m] (the rest shape) with `velocity` (n, 3) [m/s] (none)."""
+    """Integrate the motion of a body after its release.
+
+    Parameters
+    ----------
+    body : DiscretisedBody
+    solver : Solver
+    start, velocity : ndarray of float, shape (n, 3), optional
+        Positions [m] and velocities [m/s] at time 0: the rest shape and zero by default.
+    on_step : OnStep
+    """
     parts = Intervals.of(solver)
     nodes = body.discretisation.mesh.nodes
     x = nodes.copy() if start is None else start.copy()
     v = np.zeros_like(nodes) if velocity is None else velocity.copy()
     last = State(x - nodes, v, np.zeros_like(v), body.internal_forces(x)[0])
-    # without a load the force that the body was released with is the measure
+    # without a load, the residual is measured by the internal force at the release
     scale = load_size(body) or float(np.linalg.norm(last.f)) or 1.0
     system = ImplicitSystem(body, solver, scale)
     frames = Frames(body)
     before: tuple[State, float] | None = None
-    whole = 2**MOST_HALVINGS  # time is counted in the shortest step, so that frames are met exactly
+    whole = 2**MOST_HALVINGS  # time is counted in units of the shortest step, so that frames are met exactly
     ticks, halvings, calm, steps, cuts = 0, 0, 0, 0, 0
     relative = static_residual(body, last.f)
 

@@ -1,8 +1,8 @@
-"""The paper's stopping rule, to reproduce where its simulations ended. It finds slowness, not equilibrium.
+"""The paper's stopping rule, to reproduce the end of its simulations. It detects slowness, not equilibrium.
 
 Paper, Data Generation: "run until equilibrium, defined as the root-mean-square nodal displacement, measured
 as the change in node position over consecutive 50-step windows, remaining below 1 mm, averaged across three
-consecutive windows (150 steps total)". At its 1 ms steps a motion of 20 mm/s passes.
+consecutive windows (150 steps total)". At its steps of 1 ms a motion of 20 mm/s meets the rule.
 """
 
 from __future__ import annotations
@@ -21,11 +21,14 @@ PAPER_STEP = 1e-3  # [s]
 
 @dataclass(frozen=True)
 class PaperStop:
-    """Where the rule stops a run.
+    """State at which the rule stops a run.
 
-    time [s]; motion: the mean of the windows' RMS displacements there [m]; rms_distance and
-    largest_distance: of the nodes from the equilibrium given [m]; residual: static out-of-balance force
-    there against the load.
+    Attributes
+    ----------
+    time : time [s].
+    motion : mean of the windows' RMS displacements [m].
+    rms_distance, largest_distance : distance of the nodes from the given equilibrium [m].
+    residual : static out-of-balance force relative to the load.
     """
 
     time: float
@@ -44,11 +47,26 @@ def paper_stop(
     threshold: float = 1e-3,
     step: float = PAPER_STEP,
 ) -> PaperStop | None:
-    """The first moment at which the rule is met by a dynamic run; None where it never is.
+    """First state at which a dynamic run meets the rule; None if it never does or has no frames.
 
-    run: of method "implicit" (or "explicit"), its frames no further apart than `step` [s] or a whole
-    part of the window; equilibrium: node positions (n, 3) [m] from the static method on the same mesh.
-    threshold [m]. The RMS is over all nodes of the mesh, in space.
+    Parameters
+    ----------
+    run : Result
+        Of method "implicit" or "explicit". Its frames are evenly spaced, except the last, and divide the
+        window.
+    equilibrium : ndarray of float, shape (n, 3)
+        Node positions [m] by the static method on the same mesh.
+    window_steps, windows : int
+        Steps per window, and number of consecutive windows.
+    threshold : float
+        RMS displacement over all nodes of the mesh [m].
+    step : float
+        Length of one of the paper's steps [s].
+
+    Raises
+    ------
+    ValueError
+        If the shape of `equilibrium` is wrong or the frames do not divide the window.
     """
     if equilibrium.shape != run.mesh.nodes.shape:
         raise ValueError(f"equilibrium: expected shape {run.mesh.nodes.shape}, got {equilibrium.shape}")

@@ -1,4 +1,4 @@
-"""Beams through time: released from the straight rest shape at time 0 under the full load."""
+"""Dynamics of beams, released from the straight rest shape at time 0 under the full load."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tisim.scene import Beam
 
 @one_thread()
 def solve_dynamic(scene: Beam, *, on_step: OnStep = skip) -> Result:
-    """Motion of a beam by scene.solver.method, "implicit" or "explicit".
+    """Motion of a beam by scene.solver.method, "implicit" or "explicit"; ValueError for another method.
 
-    The result's frames are counted by time [s], at most 500 of them and the end; `residual` is the static
-    out-of-balance force against the load, which is what is left to rest.
+    The result's `load` is the time [s]. It has at most 500 frames and one at the end. Its `residual` is the
+    static out-of-balance force relative to the load, which measures the distance from equilibrium.
     """
     march = {"implicit": implicit.march, "explicit": explicit.march}.get(scene.solver.method)
     if march is None:

@@ -12,7 +12,7 @@ from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
 from tisim.scene import Coupon
 
-SECONDS = 0.05  # of a coupon [core-s]
+SECONDS = 0.05  # cost of a scene [core-s]
 
 
 def check(scene: Coupon) -> None:

@@ -1,8 +1,8 @@
-"""Coupons with fibres oblique to their sides, which shear as they are pulled.
+"""Homogeneous material tests with fibres oblique to the specimen's sides, which shears under tension.
 
-A long strip whose grips let it shear: one deformation gradient for all, lines along x stay along x (F is
-upper triangular), and the components of the first Piola-Kirchhoff stress that belong to the free entries of F
-vanish.
+The specimen is a long strip whose grips permit shear: the deformation gradient F is uniform, lines along x
+stay along x (F is upper triangular), and the components of the first Piola-Kirchhoff stress that are
+conjugate to the free entries of F vanish.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from tisim.scene import Coupon
 
 Array = NDArray[np.float64]
 
-# Entries of F that are driven, and those that are free of stress.
+# Entries of F that are prescribed, and those that are free of stress.
 _DRIVEN = {"uniaxial": ((0, 0),), "equibiaxial": ((0, 0), (1, 1)), "planar": ((0, 0),)}
 _FREE = {
     "uniaxial": ((0, 1), (0, 2), (1, 1), (1, 2), (2, 2)),
     "equibiaxial": ((0, 2), (1, 2), (2, 2)),
     "planar": ((0, 2), (1, 2), (2, 2)),
 }
-SMALLEST_VOLUME = 1e-4  # det F of a step of Newton's
+SMALLEST_VOLUME = 1e-4  # smallest det F in Newton's method
 
 
 @one_thread()
 def solve_oblique(scene: Coupon, *, on_step: OnStep = skip) -> Result:
-    """Solve as `solve_coupon` does, for a homogeneous deformation with sides free to shear."""
+    """Solve as `solve_coupon`, for a homogeneous deformation with sides free to shear."""
     start = time.process_time()
     mesh = coupon_mesh()
     points = MaterialPoints(scene.material)
@@ -77,13 +77,13 @@ def solve_oblique(scene: Coupon, *, on_step: OnStep = skip) -> Result:
 def _equilibrium(
     scene: Coupon, points: MaterialPoints, F: Array, stretch: float
 ) -> tuple[Array | None, float, int]:
-    """F with the driven entries at the stretch, or None; the residual against the stress; iterations."""
+    """F with the driven entries at the stretch, or None; residual relative to the stress; iterations."""
     rows, columns = (list(v) for v in zip(*_FREE[scene.mode], strict=True))
     F = F.copy()
     grown = stretch / F[0, 0]
     for i, k in _DRIVEN[scene.mode]:
         F[i, k] = stretch
-    # as if the volume stayed
+    # start value of constant volume
     thin = {"uniaxial": -0.5, "equibiaxial": -2.0, "planar": -1.0}[scene.mode]
     for i, k in _FREE[scene.mode]:
         if i == k:

@@ -1,4 +1,4 @@
-"""Homogeneous material tests by finite elements: a cube pulled, with free sides, stretch after stretch."""
+"""Homogeneous material tests by finite elements: a cube driven to a sequence of stretches."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from tisim.scene import Coupon
 Array = NDArray[np.float64]
 
 EDGE = 0.010  # of the cube [m]; the stress does not depend on it
-# The middle node sits off the centre, so that each coupon is a patch test too.
+# The middle node is off the centre, so that each solution is a patch test.
 MIDDLE = (0.45, 0.55, 0.48)
-SMALLEST_PART = 1.0 / 256.0  # of the way from one stretch to the next
+SMALLEST_PART = 1.0 / 256.0  # smallest fraction of the way from one stretch to the next
 
 # Axes whose far faces are driven to the stretch, and axes held at rest; the others are free.
 _DRIVEN = {"uniaxial": (0,), "equibiaxial": (0, 1), "planar": (0,), "simple-shear": ()}
 _HELD = {"uniaxial": (), "equibiaxial": (), "planar": (1,), "simple-shear": ()}
-# Thickness of a free side where the volume stays: stretch to this power, the first guess of a step.
+# Start value of the free sides at constant volume: the stretch to this power.
 _THINNING = {"uniaxial": -0.5, "equibiaxial": -2.0, "planar": -1.0, "simple-shear": 0.0}
 
 
 @one_thread()
 def solve_coupon(scene: Coupon, *, on_step: OnStep = skip) -> Result:
-    """One frame a stretch, or as the course says, up to the first that has no equilibrium.
+    """Solve a homogeneous test: one frame per stretch, or the frames of the course, until none converges.
 
-    The near faces are rollers, the far faces of the driven axes are displaced, free sides stay free.
-    planar: pulled along x, y held. simple-shear: top face moved along x, x = X + gamma Z, the whole
-    boundary driven. nominal_stress: force on the pulled (sheared) face over its rest area, along x.
-    support_force: on the face opposite to it.
+    The near faces are on rollers, the far faces of the driven axes are displaced, the other sides are free.
+    In mode "planar" y is held; in "simple-shear" the whole boundary is driven to x = X + gamma Z. The
+    result's nominal_stress is the force along x on the driven face over its rest area, its support_force the
+    force on the opposite face.
     """
     start = time.process_time()
     discretisation = _discretise(scene.mode)
@@ -71,7 +71,7 @@ def solve_coupon(scene: Coupon, *, on_step: OnStep = skip) -> Result:
 
 @lru_cache(maxsize=4)
 def _discretise(mode: str) -> Discretisation:
-    """Eight hexahedra, rollers and driven faces as held components."""
+    """Discretisation of eight hexahedra; rollers and driven faces are held components."""
     mesh = coupon_mesh()
     held = np.zeros((mesh.n_nodes, 3), dtype=bool)
     near, far = mesh.nodes == 0.0, mesh.nodes == EDGE
@@ -100,21 +100,24 @@ def coupon_mesh() -> Mesh:
 
 
 class CouponSystem(BeamSystem):
-    """A cube driven by its held components; they stand in x already (see `tisim.nonlinear.newton.System`)."""
+    """A cube driven by its held components, whose values x contains (`tisim.nonlinear.newton.System`)."""
 
     def linearise(self, x: Array) -> tuple[Array, float]:
         residual, _ = super().linearise(x)
         discretisation = self.body.discretisation
         force, _ = self.body.internal_forces(x)
         load = float(np.linalg.norm(force[discretisation.pattern.free][discretisation.held]))
-        # at rest there is no reaction to compare with
+        # a floor, since there is no reaction at rest
         return residual, load + 1e-6 * self.body.moduli.shear_modulus * EDGE**2
 
 
 def _drive(
     scene: Coupon, system: CouponSystem, x: Array, here: float, target: float, duration: float
 ) -> tuple[Outcome, float, int, int]:
-    """From `here` to `target` in a time [s], in steps, cut where they fail: outcome, stretch, steps, cuts."""
+    """Drive the cube from stretch `here` to `target` in `duration` [s], in steps that are cut if they fail.
+
+    Returns outcome, stretch reached, number of steps tried and number of cuts.
+    """
     part, reached, steps, cuts = 1.0, 0.0, 0, 0
     outcome = Outcome(x, Status.CONVERGED, 0.0, 0)
     begin = here
@@ -136,7 +139,7 @@ def _drive(
 
 
 def _moved(scene: Coupon, system: CouponSystem, x: Array, here: float, stretch: float) -> Array:
-    """Positions with the driven faces at `stretch`, free sides thinned as if the volume stayed."""
+    """Positions with the driven faces at `stretch` and free sides contracted at constant volume."""
     x = x.copy()
     if scene.mode == "simple-shear":
         x[:, 0] += (stretch - here) * system.body.discretisation.mesh.nodes[:, 2]

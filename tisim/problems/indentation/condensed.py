@@ -1,12 +1,12 @@
-"""Equilibrium of a block under a rod: Newton's method next to the rod, the rest condensed.
+"""Equilibrium of a block under a rod: Newton's method on nodes near the rod, static condensation of the rest.
 
-What makes a poke hard, sticking and slipping, folds, snaps along the shaft, happens within a few millimetres
-of the rod, in a quarter of the nodes. The others respond almost linearly. So their tangent is eliminated once
-and for several load steps (a Schur complement on the nodes where they meet the near ones), and Newton's
-method works on the near nodes with that complement as a spring, at a quarter of an iteration's cost on the
-whole block. Then the far nodes follow, and what their nonlinearity leaves is taken up in the next round.
-Equilibrium is judged on the whole block, by its true residual. (Nonlinear elimination: Cai and Li, SIAM J.
-Sci. Comput. 33, 2011; here the eliminated part is the smooth one.)
+Stick and slip, folds and snaps along the shaft occur within a few millimetres of the rod, in a quarter of the
+nodes. The other nodes respond almost linearly. Their tangent is condensed once for several load steps (a
+Schur complement on the nodes of the interface). Newton's method then solves for the near nodes with this
+complement as a spring, at a quarter of the cost of an iteration on the whole block. The far nodes are updated
+after it, and their remaining nonlinear residual is reduced in the next round. Convergence is judged by the
+true residual of the whole block. (Nonlinear elimination: Cai and Li, SIAM J. Sci. Comput. 33, 2011; here the
+eliminated part is the smooth one.)
 """
 
 from __future__ import annotations
@@ -29,20 +29,21 @@ from tisim.result import Status
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-# Near: closer to the rod's surface than this, also when it will have gone on by RENEW; then near nodes are
-# chosen anew (in radii of the rod).
+# Near nodes are within REACH of the rod's surface, now or after a motion by RENEW along its axis. After that
+# motion they are selected again (in radii of the rod).
 REACH, RENEW = 0.8, 1.8
-ASIDE = 0.3  # across the rod, of one that turns
-# A round ends after so many near iterations: in a snap, far nodes are to come along, and a trust region that
-# has grown small is begun anew (5, 6 and 20 take longer: benchmarks/README.md).
+ASIDE = 0.3  # motion across the rod's axis after which they are selected again, for a rod that turns
+# Largest number of near iterations per round: in a snap the far nodes have to follow, and a trust region that
+# has become small starts again (5, 6 and 20 take longer: benchmarks/README.md).
 INNER = 8
-# A round leaves less than SLOW of the residual, or the far tangent is renewed, at the price of three near
-# iterations; so many rounds are tried.
+# If a round leaves more than SLOW times the residual, the far tangent is renewed, at the cost of three near
+# iterations. ROUNDS is the largest number of rounds.
 SLOW, ROUNDS = 0.7, 12
-# So often the way is halved on which elements turn over.
+# Number of step lengths tried, each half of the last, if elements invert.
 SHORTER = 4
-# The near residual goes down to this part of the whole, or of what the whole is to reach. Smaller ones solve
-# the near part better than its far neighbours deserve (studies/depth, "A fifth less").
+# The tolerance of the near residual is REDUCTION times the whole residual, or GOAL times the tolerance of the
+# whole. With smaller ones the near part is solved more accurately than the far part warrants (studies/depth,
+# "A fifth less").
 REDUCTION, GOAL = 0.2, 0.8
 
 
@@ -50,7 +51,14 @@ REDUCTION, GOAL = 0.2, 0.8
 class _Split:
     """Near and far part of a block.
 
-    inside (m,): elements of the near part. beyond (n_far,): far rows that are no interface.
+    Attributes
+    ----------
+    inside : True for elements of the near part, shape (m,).
+    near : the near part.
+    body : the far part.
+    beyond : True for rows of the far part that are not on the interface, shape (n_far,).
+    condensation : condensation of the far part on the interface.
+    far : condensed far part.
     """
 
     inside: Bools
@@ -62,10 +70,16 @@ class _Split:
 
 
 class CondensedBlock:
-    """Solves a system at the depths it is moved to.
+    """Solver of a `PokeSystem` at its present depth.
 
-    iterations, factorisations, linear_iterations: Newton's on near nodes, of near tangents and condensations,
-    of GMRES. rounds: as above. condensations: of the far tangent. last_residual: of the last accepted step.
+    Attributes
+    ----------
+    iterations : number of Newton iterations on the near nodes.
+    factorisations : number of factorisations of near tangents and of condensations.
+    linear_iterations : number of GMRES iterations.
+    rounds : number of rounds of near iterations and far update.
+    condensations : number of condensations of the far tangent.
+    last_residual : relative residual of the last accepted step; set by the caller.
     """
 
     def __init__(self, system: PokeSystem) -> None:
@@ -81,9 +95,14 @@ class CondensedBlock:
     def solve(
         self, x: Array, *, tolerance: float, max_iterations: int, kept: bool, drag: float = 0.0
     ) -> Outcome:
-        """Equilibrium from x (n, 3) on, as by `contact_newton`, whose tolerance and `kept` these are.
+        """Equilibrium from x (n, 3) [m].
 
-        drag: of each near node against motion away from x [N/m] (`Drag`).
+        Parameters
+        ----------
+        x, tolerance, max_iterations, kept
+            As in `contact_newton`.
+        drag : float
+            Resistance of each near node to motion away from x [N/m] (`Drag`).
         """
         system = self._system
         if self._chosen is None or self._beyond(self._chosen):
@@ -134,12 +153,12 @@ class CondensedBlock:
             found, share = self._sound(x, self._follow(split, x, outcome.x, left))
             if found is None:
                 return Outcome(x, Status.INVERTED, relative, used)
-            self._stale = share < 1.0  # too far for a linear answer of the far tissue
+            self._stale = share < 1.0  # the step is too large for the linearised far tissue
             x = found
             self.rounds += 1
 
     def renew(self) -> None:
-        """Take the far tangent at the next state: the last one was far from where the block is now."""
+        """Renew the far tangent at the next state, which may be far from the state of the last one."""
         self._stale = True
 
     def _count(self, linear: FactorGMRES, iterations: int) -> None:
@@ -149,7 +168,7 @@ class CondensedBlock:
         linear.factorisations = linear.iterations = 0
 
     def _place(self, split: _Split, x: Array) -> Array:
-        """Put the far field at x; returns what is left of the forces on far rows (n_far, 3)."""
+        """Place the far field at x; return the residual forces on the far rows [N], shape (n_far, 3)."""
         discretisation = split.body.discretisation
         if self._stale:
             blocks, _, _ = split.body.stiffness(x)
@@ -166,7 +185,7 @@ class CondensedBlock:
         return left
 
     def _follow(self, split: _Split, x: Array, moved: Array, left: Array) -> Array:
-        """moved (n, 3), of which near nodes and interface are new, with far nodes where they come to rest."""
+        """Copy of `moved` (n, 3) with the far nodes in linear equilibrium with the moved interface."""
         at = split.far.nodes
         change = split.condensation.expand(-left, (moved[at] - x[at]).ravel())
         found = moved.copy()
@@ -174,7 +193,7 @@ class CondensedBlock:
         return found
 
     def _sound(self, x: Array, moved: Array) -> tuple[Array | None, float]:
-        """The way from x to moved as far as no element turns over, and which part of it that is."""
+        """First step from x towards `moved` without inverted elements, and its fraction; None, 0 if none."""
         part = 1.0
         for _ in range(SHORTER):
             trial = moved if part == 1.0 else x + part * (moved - x)
@@ -184,7 +203,7 @@ class CondensedBlock:
         return None, 0.0
 
     def _choose(self, x: Array) -> None:
-        """Part the block at x; into no parts where all of it, or nothing, is near."""
+        """Split the block at x into near and far part; no split if one of them would have no own nodes."""
         system, whole = self._system, self._system.discretisation
         mesh = whole.mesh
         self._chosen, self._split, self._stale = system.tip, None, True
@@ -211,14 +230,14 @@ class CondensedBlock:
         )  # fmt: skip
 
     def _beyond(self, chosen: Array) -> bool:
-        """True if the tip is so far from where the near part was chosen that it has to be chosen again."""
+        """True if the near part has to be selected again, since the tip has moved far from `chosen` (3,)."""
         way = self._system.tip - chosen
         aside = way - (way @ self._system.axis) * self._system.axis
         far, beside = float(np.linalg.norm(way)), float(np.linalg.norm(aside))
         return far > RENEW * self._radius or beside > ASIDE * self._radius
 
     def _distance(self, x: Array) -> Array:
-        """Distances (n,) [m] from the rod's surface on its way to the next choice, its inside 0."""
+        """Distances (n,) [m] from the volume that the rod sweeps up to the next selection; 0 inside it."""
         system = self._system
         from_tip = x - system.tip
         ahead = from_tip @ system.axis
@@ -227,7 +246,7 @@ class CondensedBlock:
         return np.hypot(beside, np.maximum(ahead - RENEW * self._radius, 0.0))
 
     def _body(self, elements: Bools, moving: Bools) -> DiscretisedBody:
-        """Some of the elements (m,), of whose nodes those `moving` (n,) are free."""
+        """Body of the `elements` (m,), with the `moving` nodes (n,) free and the others fixed."""
         whole = self._system.discretisation
         mesh, reference = whole.mesh, whole.reference
         chosen = np.flatnonzero(elements)
@@ -257,7 +276,7 @@ class CondensedBlock:
 
 
 def _of_free(value: float, discretisation: Discretisation) -> Array:
-    """(n,): the value at nodes that move, 0 at the others."""
+    """The value at free nodes, 0 at the others, shape (n,)."""
     found = np.zeros(discretisation.mesh.n_nodes)
     found[discretisation.pattern.free] = value
     return found

@@ -1,4 +1,4 @@
-"""A rod whose depth, and direction, follow a course: each step an equilibrium in its time."""
+"""Indentation in which the rod's depth and direction follow a course: one equilibrium per time step."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from tisim.scene import Poke
 
 Array = NDArray[np.float64]
 
-SMALLEST_PART = 1.0 / 64.0  # of a step in a hold
+SMALLEST_PART = 1.0 / 64.0  # smallest fraction of a step in a hold
 
 
 def without_course(scene: Poke) -> Poke:
-    """The scene with the course's largest depth as its own: what mesh, contact and checks go by."""
+    """The scene without its course, with the course's largest depth: used by mesh, contact and checks."""
     if scene.course is None:
         return scene
     return replace(scene, depth=float(max(scene.course.values)), course=None)
@@ -41,7 +41,17 @@ def without_course(scene: Poke) -> Poke:
 
 @dataclass(eq=False)
 class _Walk:
-    """Position of the rod, and the last velocity of the body: by depth in a ramp, by log time in a hold."""
+    """State of the solution along the course.
+
+    Attributes
+    ----------
+    x : positions of the body [m], shape (n, 3).
+    depth, time : depth of the rod [m] and time [s].
+    step : next step in depth [m].
+    velocity : last change of x per unit of the step's variable, shape (n, 3): depth, or log time in a hold
+        (`_pace`); time if the rod turns. None after a corner.
+    steps, cuts : numbers of steps tried and of steps refused.
+    """
 
     x: Array
     depth: float = 0.0
@@ -55,7 +65,7 @@ class _Walk:
 def follow(
     scene: Poke, system: PokeSystem, block: CondensedBlock, on_step: OnStep
 ) -> tuple[list[Frame], Status, int, int]:
-    """Frames of a poke along its course, how it ended, steps and cuts."""
+    """Solve a poke along its course; return its frames, status, and numbers of steps and of cuts."""
     course = scene.course
     assert course is not None
     shortest = shortest_time(scene.material)
@@ -70,7 +80,7 @@ def follow(
         way = np.sign(stop.value - walk.depth)
         if way:
             system.turn(float(way))
-        elif scene.turns:  # it sets elements free on one side
+        elif scene.turns:  # a rotation releases elements on one side
             system.turn(-1.0)
         status = _advance(scene, system, block, walk, stop, corner - offset)
         if status is not Status.CONVERGED:
@@ -84,7 +94,7 @@ def follow(
 def _advance(
     scene: Poke, system: PokeSystem, block: CondensedBlock, walk: _Walk, stop: Stop, origin: float
 ) -> Status:
-    """On to a stop, in depth steps no larger than a poke's, and in parts of the time where a hold fails."""
+    """Advance to a stop, in depth steps as those of a poke, and in fractions of the time if a hold fails."""
     part, in_vain = 1.0, 0
     while walk.time < stop.time or walk.depth != stop.value:
         left = stop.value - walk.depth
@@ -95,7 +105,7 @@ def _advance(
         share = min(part, 1.0)
         if way:
             share = min(share, walk.step / way)
-            if share > 0.7:  # no small rest
+            if share > 0.7:  # leave no small remainder
                 share = 1.0 if part >= 1.0 and way <= 1.25 * walk.step else 0.5
         done = share == 1.0
         target = stop.value if done else walk.depth + share * left
@@ -134,7 +144,7 @@ def _advance(
 
 
 def _pace(walk: _Walk, depth: float, time: float, origin: float) -> float:
-    """Length of a step in the variable of the motion: depth, or the logarithm of time since the corner."""
+    """Length of a step in depth [m]; in a hold, in the logarithm of the time since `origin`."""
     if depth != walk.depth:
         return depth - walk.depth
     return float(np.log((time - origin) / (walk.time - origin))) if time > walk.time else 0.0

@@ -1,11 +1,10 @@
-"""A step that Newton's method does not solve, as a damped motion that comes to rest.
+"""Pseudo-transient continuation for steps that Newton's method does not solve.
 
-Where the surface snaps from one fold to another, or many points begin to slide at once, no way of equilibria
-leads from the last state to the next, or none that friction follows in one step. Then the rod goes on by the
-whole step, and stays; a drag holds the nodes next to it, and is lowered as fast as Newton's method follows
-(pseudo-transient continuation: Kelley and Keyes, SIAM J. Numer. Anal. 35, 1998). Each state on the way is
-accepted, so that friction goes on from it. The state at the end is an equilibrium like any other: without
-the drag, to the same tolerance.
+If the surface snaps from one fold to another, or many points begin to slide at once, no path of equilibria
+connects the last state to the next, or none that friction follows in one step. The rod is then moved by the
+whole step and held. A drag on the nodes near it is lowered as fast as Newton's method converges (Kelley and
+Keyes, SIAM J. Numer. Anal. 35, 1998). Each intermediate state is accepted, so that friction continues from
+it. The final state is an equilibrium without drag, to the same tolerance as any other.
 """
 
 from __future__ import annotations
@@ -24,30 +23,43 @@ from tisim.result import Status
 
 _log = logging.getLogger(__name__)
 
-# The drag of a node at first, and at most, in shear moduli times the rod's radius.
+# Initial and largest drag of a node, in units of the shear modulus times the rod's radius.
 FIRST, LARGEST = 40.0, 200.0
-# Newton iterations of a step of the motion; with fewer than these the drag falls to a quarter, to a half.
+# Largest number of Newton iterations per pseudo-time step. The drag is multiplied by 1/4 after fewer than
+# QUARTER iterations, by 1/2 after fewer than HALF.
 AT_MOST, QUARTER, HALF = 10, 4, 7
-# Residual of a step, in units of the rod's force: this part of the drag before, at most so much, and at least
-# this part of what equilibrium is asked for.
+# Tolerance of a pseudo-time step, relative to the rod's force: PART times the drag force of the step before,
+# at most LOOSEST, at least LEAST times the tolerance of equilibrium.
 PART, LOOSEST, LEAST = 0.2, 2e-3, 0.4
-# Where the drag's force is so many times what equilibrium is asked for, it is tried for in so many
-# iterations, and again where the drag has come down to this part.
+# Equilibrium without drag is sought, in TRIED iterations, once the drag force is below NEAR times its
+# tolerance, and again each time the drag has fallen to AGAIN times its value at the last attempt.
 NEAR, TRIED, AGAIN = 6.0, 12, 0.3
 
-# Of the iterations that a step may take: those before it is tried as a motion, and those of the motion.
+# Iterations of the direct attempt and of the motion, in units of the largest number of a step.
 STRAIGHT, IN_MOTION = 0.5, 4.0
-# A motion is given up unless its drag has fallen to the fraction LOW of the first after the fraction SOON of
-# its iterations: over crushed tissue it does not fall.
+# The motion is abandoned unless its drag has fallen to the fraction LOW of the first after the fraction SOON
+# of its iterations: over crushed tissue it does not fall.
 LOW, SOON = 0.1, 0.375
 
 
 def solve_step(
     system: PokeSystem, block: CondensedBlock, x: Array, *, tolerance: float, kept: bool
 ) -> tuple[Outcome, Status | None]:
-    """Equilibrium at the system's pose from the guess x (n, 3) on, and why it is refused, None if it is good.
+    """Equilibrium at the system's pose from the start value x (n, 3), directly or by a damped motion.
 
-    tolerance and kept: as `tisim.nonlinear.contact_newton.settled` has them.
+    Parameters
+    ----------
+    system : PokeSystem
+    block : CondensedBlock
+    x : ndarray of float, shape (n, 3)
+        Start positions [m].
+    tolerance, kept
+        See `tisim.nonlinear.contact_newton.settled`.
+
+    Returns
+    -------
+    tuple of (Outcome, Status or None)
+        The status is the reason for which the step is refused; None if it is accepted.
     """
     most = system.scene.solver.max_iterations
     system.touch(x)
@@ -65,9 +77,9 @@ def solve_step(
 def come_to_rest(
     system: PokeSystem, block: CondensedBlock, x: Array, *, tolerance: float, max_iterations: int, kept: bool
 ) -> Outcome:
-    """Equilibrium at the system's pose by a motion from x (n, 3) on; arguments as `CondensedBlock.solve`.
+    """Equilibrium at the system's pose by a damped motion from x (n, 3); arguments as `CondensedBlock.solve`.
 
-    Where it is not found the system is as if nothing had been tried.
+    If none is found, the system is restored to its state before the call.
     """
     before = system.remembered()
     unit = system.body.moduli.shear_modulus * system.scene.rod.radius

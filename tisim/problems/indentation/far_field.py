@@ -1,4 +1,4 @@
-"""Force and stiffness of the tissue far from a rod on the nodes at which the near tissue ends."""
+"""Force and stiffness of the tissue far from the rod, condensed on the interface to the near tissue."""
 
 from __future__ import annotations
 
@@ -15,11 +15,18 @@ Ints = NDArray[np.int32]
 
 
 class FarField:
-    """Far tissue, linear about where its nodes were when it was placed.
+    """Far tissue, linearised about the positions at which it was placed.
 
-    nodes (n,): the interface. pattern: of the near tissue. The stiffness couples all interface nodes, and
-    all of it is in what is factorised (`joined`, in the order of `factor_pattern`): with pairs of neighbours
-    alone tissue looks unstable which is not, and each step is held back.
+    The stiffness couples all interface nodes, and the factorised matrix (`joined`, in the order of
+    `factor_pattern`) has all of it: with neighbouring pairs alone, stable tissue would appear unstable and
+    each step would be restricted.
+
+    Parameters
+    ----------
+    nodes : ndarray of int, shape (n,)
+        Nodes of the interface.
+    pattern : Pattern
+        Sparsity of the near tissue.
     """
 
     def __init__(self, nodes: Ints, pattern: Pattern) -> None:
@@ -29,38 +36,38 @@ class FarField:
         self._pairs = np.triu_indices(len(nodes))
 
     def set_stiffness(self, stiffness: Singles) -> None:
-        """stiffness (3 n, 3 n), symmetric [N/m]."""
+        """Set the symmetric stiffness (3 n, 3 n) [N/m]."""
         n = len(self.nodes)
         i, j = self._pairs
         self._stiffness, self._blocks = stiffness, stiffness.reshape(n, 3, n, 3)[i, :, j]
 
     def joined(self, blocks: Array) -> Array:
-        """Blocks of the near tangent and of the stiffness, in the order of `factor_pattern`."""
+        """Blocks of the near tangent plus those of the stiffness, in the order of `factor_pattern`."""
         whole = np.zeros((self.factor_pattern.n_blocks, 3, 3))
         whole[self._of_near] = blocks
         whole[self._of_pairs] += self._blocks
         return whole
 
     def place(self, x: Array, force: Array) -> None:
-        """force (n, 3) [N]: of the far tissue at positions x, its inner nodes at rest."""
+        """Linearise about x, where the far tissue exerts force (n, 3) [N] with its inner nodes at rest."""
         self._origin = x[self.nodes]
         self._force = force
 
     def add_to(self, force: Array, x: Array) -> float:
-        """Add its forces at x to force (nodes of the block, 3) [N]; returns its energy [J]."""
+        """Add the far tissue's forces at x to force (nodes of the block, 3) [N]; return its energy [J]."""
         d = (x[self.nodes] - self._origin).ravel()
         elastic = (self._stiffness @ d.astype(np.float32)).astype(np.float64)
         force[self.nodes] += self._force + elastic.reshape(-1, 3)
         return float(d @ (self._force.ravel() + 0.5 * elastic))
 
     def add_product(self, v: Array, out: Array) -> None:
-        """out += the stiffness times v, both (3 n_free,) over the near tissue."""
+        """Add the stiffness times v to out, both of shape (3 n_free,) over the near tissue."""
         product = self._stiffness @ v.reshape(-1, 3)[self.rows].astype(np.float32).ravel()
         out.reshape(-1, 3)[self.rows] += product.reshape(-1, 3)
 
 
 def _with_all_pairs(pattern: Pattern, rows: Ints) -> tuple[Pattern, Ints, Ints]:
-    """The pattern with all pairs of some rows besides; where its blocks are there, and those of the pairs."""
+    """Pattern with all pairs of `rows` added; positions in it of the pattern's blocks and of the pairs."""
     n = len(pattern.free)
     row = np.repeat(np.arange(n, dtype=np.int64), np.diff(pattern.indptr))
     own = row * n + pattern.indices

@@ -28,10 +28,10 @@ from tisim.scene import Poke
 if TYPE_CHECKING:  # scipy is imported when a scene is solved
     from tisim.discretisation.body import Discretisation
 
-STEEPEST = 45.0  # of a push against the normal [degrees]
-SECONDS = 10.0  # of a default poke [core-s]
-ELEMENT: ElementKind = "hex20"  # what "default" stands for
-# raised whenever the contact's pressure or its points change: labels of two are not mixed in a dataset
+STEEPEST = 45.0  # largest angle of the rod's direction from the normal [degrees]
+SECONDS = 10.0  # cost of a scene with the default mesh [core-s]
+ELEMENT: ElementKind = "hex20"  # the element type "default"
+# Version of the contact, raised when its pressure law or its points change; a dataset has one version only.
 CONTACT = 2
 
 
@@ -86,7 +86,7 @@ def _check_turns(scene: Poke, course: Course) -> None:
 
 
 def _check_way(scene: Poke, name: str, direction: Vector) -> None:
-    """Refuse a direction in which the rod does not go into the block, or leaves it at the depth asked for."""
+    """Refuse a direction that is too oblique, or in which the rod would leave the block at the full depth."""
     check_vector(name, direction)
     size = float(np.linalg.norm(direction))
     angle = np.degrees(np.arccos(np.clip(-direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
@@ -105,7 +105,10 @@ def _check_way(scene: Poke, name: str, direction: Vector) -> None:
 
 
 def leaves(scene: Poke, direction: Vector, depth: float) -> tuple[float, float] | None:
-    """Tip (x, y) [m] of a rod pushed along `direction` to a depth [m], if outside the block's sides."""
+    """End (x, y) [m] of a path from the contact point along `direction` to a depth [m], if off the block.
+
+    None if it is within the block's sides.
+    """
     size = float(np.linalg.norm(direction))
     x, y = (scene.site[k] + depth * direction[k] / size for k in range(2))
     inside = all(abs(at) <= 0.5 * side for at, side in zip((x, y), scene.block.size[:2], strict=True))
@@ -162,7 +165,7 @@ def describe(result: Result, frame: int) -> str:
 
 
 def discretise(result: Result, frame: int) -> Discretisation:
-    """With the parts that tetrahedra of hexahedra have come to by that frame, as frames show it."""
+    """Discretisation of a frame; for hex8, tetrahedral parts are reconstructed from the frames up to it."""
     from tisim.discretisation.body import Discretisation
     from tisim.discretisation.quadrature import TetrahedralParts
 

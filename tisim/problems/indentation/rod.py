@@ -1,4 +1,4 @@
-"""The rod's surface, and how much tissue is left between it and what is rigid."""
+"""Surface of the indenter, and its distance from the rigid base and inclusion."""
 
 from __future__ import annotations
 
@@ -12,9 +12,20 @@ Array = NDArray[np.float64]
 
 
 def tissue_left(scene: Poke, tip: Array, axis: Array) -> tuple[float, str]:
-    """Least distance [m] of the rod's surface from what is rigid, and what that is: "base" or "inclusion".
+    """Smallest distance [m] of the rod's surface from the nearest rigid body, and its name.
 
-    tip (3,) [m]: the centre of the rod's tip; axis (3,): along the rod, towards its tip.
+    Parameters
+    ----------
+    scene : Poke
+    tip : ndarray of float, shape (3,)
+        Centre of the rod's tip [m].
+    axis : ndarray of float, shape (3,)
+        Direction of the rod, towards its tip.
+
+    Returns
+    -------
+    tuple of (float, str)
+        The distance, at least 0, and "base" or "inclusion".
     """
     points = rod_surface(scene.rod, tip, axis).reshape(-1, 3)
     gaps = {"base": float(points[:, 2].min())}
@@ -25,9 +36,17 @@ def tissue_left(scene: Poke, tip: Array, axis: Array) -> tuple[float, str]:
 
 
 def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40, piece: float = 1e-3) -> Array:
-    """Quadrangles (k, 4, 3) [m], outward, of a rod with its tip's centre at `tip`, pointing along `axis`.
+    """Outward quadrangles (k, 4, 3) [m] of a rod with its tip's centre at `tip`, pointing along `axis`.
 
-    around: how many at its circumference. piece: longest along the shaft [m].
+    Parameters
+    ----------
+    rod : Rod
+    tip, axis : ndarray of float, shape (3,)
+        Centre of the tip [m] and direction towards it, of any length.
+    around : int
+        Number of quadrangles around the circumference.
+    piece : float
+        Largest length of a quadrangle along the shaft [m].
     """
     radius, height = _profile(rod, piece)
     axis = axis / np.linalg.norm(axis)
@@ -43,10 +62,10 @@ def rod_surface(rod: Rod, tip: Array, axis: Array, *, around: int = 40, piece: f
 
 
 def _profile(rod: Rod, piece: float) -> tuple[Array, Array]:
-    """Radius of the rod and height above its tip, from the tip's centre to the far end and its axis."""
+    """Profile of the rod from the tip's centre to the far end: radius and height above the tip [m]."""
     edge = rod.edge
     angle = np.linspace(0.0, 0.5 * np.pi, 9)
-    # short pieces along the shaft, so that a painter's order of their centres is right
+    # short pieces along the shaft, so that sorting them by their centres (painter's algorithm) is correct
     shaft = np.linspace(edge, rod.length, max(2, int(np.ceil((rod.length - edge) / piece)) + 1))[1:]
     radius = np.concatenate([
         [0.0], rod.radius - edge + edge * np.sin(angle), np.full(len(shaft), rod.radius), [0.0],

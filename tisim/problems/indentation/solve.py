@@ -1,4 +1,4 @@
-"""A rod pushed into a block, and drawn back, each step an equilibrium with frictional contact."""
+"""Indentation of a block by a rod, and its retraction: one equilibrium with frictional contact per step."""
 
 from __future__ import annotations
 
@@ -37,28 +37,29 @@ from tisim.scene import Poke
 Array = NDArray[np.float64]
 _log = logging.getLogger(__name__)
 
-# A frame that finds no equilibrium, which is asked more of than the steps between, is tried again so much of
-# the spacing further on.
+# A frame has a smaller tolerance than the steps between frames. If its equilibrium is not found, the frame is
+# tried again further on, by this fraction of the frame spacing.
 LATER = 0.1
-SAME = 1e-9  # depths closer than this are one [m]
+SAME = 1e-9  # difference below which two depths are equal [m]
 
 
 @one_thread()
 def solve_poke(scene: Poke, *, on_step: OnStep = skip) -> Result:
-    """Push the rod in to the depth asked for, then draw it back if asked, or follow a course.
+    """Push the rod to the scene's depth and retract it if `retract_to` is given, or follow the course.
 
-    One frame every spacing, or as the course says.
+    There is one frame per frame spacing, or the frames of the course.
 
     Parameters
     ----------
     scene : Poke
     on_step : callable (fraction), optional
-        Called after each accepted depth step with the fraction of the rod's way.
+        Called with the completed fraction of the rod's path after each accepted step, or with that of the
+        course's stops after each stop.
 
     Returns
     -------
     Result
-        Frames up to where the solution ends; each step tried is logged at DEBUG.
+        Frames up to the end of the solution. Without a course, each step tried is logged at DEBUG.
     """
     mesh_start = time.process_time()
     mesh = scene.mesh or poke_mesh(
@@ -161,7 +162,7 @@ def _result(scene: Poke, mesh: Mesh, frames: list[Frame], status: Status, cost: 
         return np.array(values) if values else np.zeros((0, *width))
 
     reached = "0 mm"
-    if frames:  # what stops a poke shows there: tissue crushed against an inclusion, or a surface that folds
+    if frames:  # indicates the cause of the end: tissue crushed against an inclusion, or a folding surface
         last = frames[-1]
         size = float(np.linalg.norm(last.rod_force))
         reached = f"{last.depth * 1e3:.2f} mm, {size:.3g} N and smallest det F {last.min_jacobian:.3f}"

@@ -1,4 +1,4 @@
-"""Common to pokes by depth and by course: constants, frames, the guess of a step, reasons to refuse one."""
+"""Constants, frames, start values and acceptance of steps, for pokes by depth and by course."""
 
 from __future__ import annotations
 
@@ -13,20 +13,33 @@ from tisim.result import Status
 
 Array = NDArray[np.float64]
 
-# Penetration, as a fraction of the edge radius, at which a step is refused.
+# Penetration, as a fraction of the edge radius, beyond which a step is refused.
 REFUSE_AT = 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
-# Between two frames, refused steps may take so many times the iterations that one may take. Near a poke's
-# end, where tissue is crushed, smaller steps are found for a tenth of a millimetre more, at the cost of all
-# the way before.
+# Iterations that refused steps between two frames may take, in units of the largest number of one step. Near
+# the end of a poke, where tissue is crushed, smaller steps gain a tenth of a millimetre at the cost of the
+# whole poke before.
 IN_VAIN = 4
-# Tolerance of steps between frames, which are there to follow the path, in units of the frames'.
+# Tolerance of steps between frames, which only follow the path, in units of the frames' tolerance.
 BETWEEN = 12.0
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One equilibrium: depth [m], positions, forces [N], how good it is, time [s], energy lost [J]."""
+    """One equilibrium.
+
+    Attributes
+    ----------
+    depth : depth of the rod [m].
+    x : positions [m], shape (n, 3).
+    rod_force, base_force : force on the rod and force of the base on the body [N], shape (3,).
+    tip : centre of the rod's tip [m], shape (3,).
+    penetration : penetration of the surface into the rod [m].
+    min_jacobian : smallest det F.
+    residual : residual relative to the load.
+    time : time [s].
+    dissipated : energy dissipated by the material so far [J].
+    """
 
     depth: float
     x: Array
@@ -57,16 +70,17 @@ def frame_of(x: Array, system: PokeSystem, residual: float, time: float = 0.0) -
 
 
 def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
-    """Why a step is refused; None where it is good."""
+    """Reason for which a step is refused; None if it is accepted."""
     if outcome.status is not Status.CONVERGED:
         return outcome.status
     return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
 
 
 def predict(system: PokeSystem, x: Array, move: Array) -> Array:
-    """x carried on along the last motion, as far as that lowers the energy and turns no element over.
+    """Extrapolate x by `move`, halved up to three times while that lowers the energy.
 
-    The last motion may have been a snap, which is not to be carried on.
+    Trials in which an element nearly inverts are rejected; if all are, a copy of x is returned. The last
+    motion may have been a snap, which does not continue.
     """
     least = max(0.02, 0.5 * system.min_jacobian)
     best, lowest, part = x.copy(), np.inf, 1.0

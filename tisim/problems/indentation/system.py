@@ -1,4 +1,4 @@
-"""A block under a rod at one pose: energy, residual and Newton step of body and contact together."""
+"""A block under a rod at one pose: energy, residual and Newton step of body and contact combined."""
 
 from __future__ import annotations
 
@@ -24,25 +24,34 @@ from tisim.scene import Poke
 Array = NDArray[np.float64]
 
 # Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
-# shear moduli is a twentieth of the edge radius. Points stick and slip less abruptly than at twice as much.
+# shear moduli is a twentieth of the edge radius. With twice the stiffness, stick and slip are more abrupt.
 NORMAL_STIFFNESS = 200.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
-# a linear one the surface of crushed tissue slips past the rod's edge (studies/depth).
+# a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
 TANGENT_STIFFNESS = 50.0
-# Of the radius: an edge that is rounder counts as this. By its whole radius a hemisphere would sink into the
-# body so far that its force is 1.3 % low, whatever the mesh.
+# Upper limit of the edge radius in the contact stiffness, as a fraction of the rod's radius. With its whole
+# radius a hemisphere would penetrate so far that its force is 1.3 % low, whatever the mesh.
 ROUNDEST = 0.4
 # Contact points along a facet's side, by its number of nodes. With three on the facets of hex20 the rod's
-# edge goes through between them where the tissue is stretched most (studies/depth).
+# edge passes between them where the tissue is stretched most (studies/depth).
 POINTS_PER_SIDE = {3: 4, 4: 4, 6: 4, 8: 5}
-# at which a converged surface is looked at: between a curved facet's points the rod's edge could go through
+# Points per side at which the penetration of a converged surface is measured: the rod's edge could pass
+# between the contact points of a curved facet.
 WATCHED_PER_SIDE = 7
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Some of a block's elements as a system of their own: body, solver, tangent, slots of the facets."""
+    """A subset of a block's elements as a separate system.
+
+    Attributes
+    ----------
+    body : the elements with the material.
+    linear : linear solver.
+    full : sparse matrix of the tangent.
+    slot : positions of the facets' node pairs in the tangent, shape (f, a, a).
+    """
 
     body: DiscretisedBody
     linear: FactorGMRES
@@ -52,9 +61,12 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Drag:
-    """Resistance against motion away from positions `start` (n, 3): `stiffness` (n,) [N/m] at each node.
+    """Resistance to motion: one implicit step of a viscous motion, stiffness = viscosity / step length.
 
-    One implicit step of a viscous motion; the stiffness is the viscosity over the length of the step.
+    Attributes
+    ----------
+    start : positions at the start of the step [m], shape (n, 3).
+    stiffness : stiffness at each node [N/m], shape (n,).
     """
 
     start: Array
@@ -69,7 +81,7 @@ class Drag:
 
 
 class Remembered(NamedTuple):
-    """Data of the last accepted state: see `PokeSystem.accept`."""
+    """Data of the last accepted state, see `PokeSystem.remembered`."""
 
     x: Array
     depth: float
@@ -81,7 +93,7 @@ class Remembered(NamedTuple):
 
 
 def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
-    """Tip centre where the rod, its axis through the site, first touches the plane z = height."""
+    """Centre of the tip [m] at first contact with the plane z = height, the axis passing through the site."""
     edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
     core = rod.radius - edge
     tilt = np.sqrt(max(0.0, 1.0 - axis[2] ** 2))
@@ -94,14 +106,21 @@ def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -
 class PokeSystem:
     """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
 
-    far: what tissue beyond the body's elements adds, where the body is the near part of a block.
-    drag: what resists motion besides, in energy, forces and tangent; None for equilibrium.
+    Attributes
+    ----------
+    axis : direction of the rod, shape (3,).
+    depth : depth of the rod [m].
+    facets : facets of the top that the rod can touch, shape (f, a).
+    far : condensed far tissue, if the body is the near part of a block; else None.
+    drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
+    report : results of the last residual or linearisation, shape (6,): force on the rod (3) [N], smallest
+        distance [m], area in contact [m2], 1 if friction acts.
     """
 
     def __init__(self, scene: Poke, discretisation: Discretisation) -> None:
         mesh, rod = discretisation.mesh, scene.rod
         self._parts: TetrahedralParts | None = None
-        if mesh.kind == "hex8":  # on weights of its own: they change as the rod goes down
+        if mesh.kind == "hex8":  # copy the weights, which change with the rod's depth
             own = replace(discretisation.reference, weights=discretisation.reference.weights.copy())
             discretisation = replace(discretisation, reference=own)
             self._parts = TetrahedralParts(mesh, own)
@@ -147,7 +166,7 @@ class PokeSystem:
         self.report = np.zeros(6)
 
     def _near(self, mesh: Mesh) -> NDArray[np.int32]:
-        """Facets of the top that the rod can come to touch."""
+        """Facets of the top that the rod can touch."""
         top = mesh.facet_sets["top"]
         centres = mesh.nodes[top].mean(axis=1)[:, :2] - np.asarray(self.scene.site)
         reach = 0.5 * self.scene.depth + 4.0 * self.scene.rod.radius
@@ -173,7 +192,7 @@ class PokeSystem:
         return self.start + self.depth * self.axis
 
     def move_to(self, depth: float, axis: Array | None = None) -> None:
-        """Put the rod at this depth, turned to a unit vector if given; slip counts from the last state."""
+        """Move the rod to a depth [m] and, if given, a direction (unit vector) from the accepted state."""
         if axis is not None:
             same = np.array_equal(axis, self.previous_axis)
             self.axis = self.previous_axis if same else axis
@@ -181,12 +200,12 @@ class PokeSystem:
         self._pose(depth)
 
     def turn(self, way: float) -> None:
-        """Go on down (way above 0) or back up: elements that the rod sets free may get their shape back."""
+        """Set the sense of motion, way > 0 down or way < 0 up; going up, tetrahedral parts may fall again."""
         if self._parts is not None:
             self._parts.mends = way < 0.0
 
     def touch(self, guess: Array) -> None:
-        """Set the part of the step in which each point touches, by the step's start value."""
+        """Estimate from the start value the fraction of the step in which each point is in contact."""
         distance = np.empty_like(self._gap)
         self._measure(guess, self.facets, self._shape, self._rod, distance)
         gap = np.maximum(self._gap, 0.0)
@@ -199,7 +218,7 @@ class PokeSystem:
         self._known = []
 
     def accept(self, x: Array) -> None:
-        """Take x as the converged state: friction remembers it, and so do material and distorted elements."""
+        """Accept x as converged state: update the history of friction, material and distorted elements."""
         if self.body.remembers:
             self.body.accept(x)
             self._known = []
@@ -212,7 +231,7 @@ class PokeSystem:
             self._known = []
 
     def remembered(self) -> Remembered:
-        """The last accepted state, for `recall`."""
+        """Data of the last accepted state, for `recall`."""
         return Remembered(
             x=self.previous,
             depth=self.previous_depth,
@@ -224,7 +243,7 @@ class PokeSystem:
         )
 
     def recall(self, earlier: Remembered) -> None:
-        """Forget all states that were accepted since; each is to be recalled once."""
+        """Return to an earlier accepted state; each `Remembered` can be used only once."""
         self.previous, self.previous_depth = earlier.x, earlier.depth
         self.previous_axis, self._previous_start = earlier.pose
         self._memory, self._gap = earlier.slip, earlier.gap
@@ -234,9 +253,9 @@ class PokeSystem:
         self._known = []
 
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
-        """This system at its depth on some of the elements, with `far` for the others.
+        """This system at its depth, restricted to some elements, with `far` in place of the others.
 
-        What contact remembers of the last converged state is shared; what it makes of a trial is not.
+        The contact's data of the last accepted state are shared with this system, those of trials are not.
         """
         it = copy(self)
         it.discretisation, it.body, it.linear = part.body.discretisation, part.body, part.linear
@@ -246,7 +265,7 @@ class PokeSystem:
         return it
 
     def potential(self, x: Array) -> tuple[float, float]:
-        """Potential with the pressures of the friction frozen [J], and smallest det F."""
+        """Potential [J] at fixed pressures in the friction, and smallest det F."""
         _, energy, min_jacobian = self._forces_at(x)
         out = np.empty(2)
         self._energy(
@@ -259,16 +278,16 @@ class PokeSystem:
         return energy, min_jacobian
 
     def overlap(self, x: Array) -> float:
-        """Penetration of the surface at x into the rod [m], also between contact points; not below 0."""
+        """Largest penetration of the surface at x into the rod [m], also between contact points, or 0."""
         shape, distance = self._watched
         self._measure(x, self.facets, shape, self._rod, distance)
         return max(-float(distance.min()), 0.0)
 
     def _forces_at(self, x: Array) -> tuple[Array, float, float]:
-        """Internal forces (n, 3), energy and smallest det F of the body.
+        """Internal forces (n, 3) [N], energy [J] and smallest det F of the body.
 
-        Those of the last two states are kept: an accepted trial is asked for again, and `predict` takes the
-        last but one where the last is no better.
+        Results of the last two states are cached: an accepted trial is evaluated again, and `predict` returns
+        to the second-last trial if the last is no better.
         """
         for state, known in self._known:
             if state is x:
@@ -280,13 +299,13 @@ class PokeSystem:
         return self._known[0][1]
 
     def residual(self, x: Array) -> tuple[Array, float]:
-        """Residual at the free nodes (n_free, 3) and the load it is measured by [N]; sets the report."""
+        """Residual at the free nodes (n_free, 3) [N] and the load scale [N]; sets `report`."""
         force, _, self.min_jacobian = self._forces_at(x)
         none = np.full_like(self._slot, -1)
         return self._with_contact(x, force, none, np.zeros((1, 3, 3)))
 
     def linearise(self, x: Array) -> tuple[Array, float]:
-        """The same, and the tangent for the next steps."""
+        """As `residual`, and assemble the tangent for the next steps."""
         self._blocks, force, self.min_jacobian = self.body.stiffness(x)
         if self.far is not None:
             self.far.add_to(force, x)
@@ -301,7 +320,7 @@ class PokeSystem:
         return found
 
     def _unsymmetric(self) -> Array | None:
-        """Unsymmetric part of the tangent of friction, by node pair of the facets."""
+        """Unsymmetric part of the friction tangent by node pair [N/m], (f, a, a, 3, 3); None if it is 0."""
         if self.report[5] == 0.0:
             return None
         pairs = self._shape[:, :, None] * self._shape[:, None, :]  # (q, a, a)
@@ -319,7 +338,7 @@ class PokeSystem:
         )  # fmt: skip
         if self.drag is not None:
             total += self.drag.forces(x)
-        # before first touch there is no force to compare with: a millinewton-scale floor
+        # a floor on the scale of a millinewton, since there is no force before first contact
         floor = 1e-4 * self.body.moduli.shear_modulus * self.edge**2
         load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
         return self._free(total), float(load)
@@ -333,14 +352,14 @@ class PokeSystem:
         return self.linear.solve(self._blocks, -residual, tolerance=forcing, multiply=self.multiply)
 
     def multiply(self, v: Array) -> Array:
-        """The tangent of the last linearisation times v (3 n_free,)."""
+        """Product of the last tangent and v, shapes (3 n_free,)."""
         product: Array = self._matrix @ v
         if self.far is not None:
             self.far.add_product(v, product)
         return product
 
     def residual_norm(self, x: Array) -> float:
-        """Size of the residual at a trial x [N]; changes nothing."""
+        """Norm of the residual at a trial x [N]; leaves `report` and the contact's data unchanged."""
         total = self._forces_at(x)[0].copy()
         report, pressure = np.zeros(6), np.zeros_like(self._pressure)
         slip, skew = np.empty_like(self._slip), np.empty_like(self._skew)
@@ -354,7 +373,7 @@ class PokeSystem:
         return float(np.linalg.norm(self._free(total)))
 
     def rod_force(self) -> float:
-        """Size of the force on the rod, from the last residual or linearisation [N]."""
+        """Magnitude of the force on the rod in the last residual or linearisation [N]."""
         return float(np.linalg.norm(self.report[:3]))
 
     def advance(self, x: Array, step: Array) -> Array:
@@ -363,6 +382,6 @@ class PokeSystem:
         return moved
 
     def base_force(self) -> Array:
-        """Force of the fixed nodes on the body, from the last linearisation [N]."""
+        """Force of the supports on the body in the last residual or linearisation [N], shape (3,)."""
         fixed = self.discretisation.fixed
         return (self.internal[fixed] - self.body.dead_load[fixed]).sum(axis=0)

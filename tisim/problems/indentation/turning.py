@@ -1,4 +1,4 @@
-"""The rod's direction over time: it turns about the place where its axis meets the surface."""
+"""Direction of the rod over time: it rotates about the point where its axis meets the surface."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tisim.scene import Poke
 
 Array = NDArray[np.float64]
 
-BETWEEN_TURNS = 4  # directions looked at on the way from one to the next, where all of a turn counts
+BETWEEN_TURNS = 4  # number of directions that sample a rotation in `axes`
 
 
 def axis_at(scene: Poke, time: float) -> Array:
-    """Unit vector along the rod, towards its tip, at a time [s]."""
+    """Unit vector along the rod towards its tip at a time [s], shape (3,)."""
     before, begin = _unit(scene.direction), 0.0
     for end, direction in scene.turns:
         axis = _unit(direction)
@@ -26,7 +26,7 @@ def axis_at(scene: Poke, time: float) -> Array:
 
 
 def axes(scene: Poke) -> Array:
-    """Unit vectors (k, 3) that the rod passes through on its course."""
+    """Unit vectors (k, 3) that sample the rod's directions on its course."""
     times = [0.0, *(time for time, _ in scene.turns)]
     parts = np.arange(1, BETWEEN_TURNS + 1) / BETWEEN_TURNS
     between = [a + parts * (b - a) for a, b in pairwise(times)]
@@ -34,12 +34,12 @@ def axes(scene: Poke) -> Array:
 
 
 def angle(a: Array, b: Array) -> float:
-    """Between two unit vectors [rad]."""
+    """Angle between two unit vectors [rad]."""
     return float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
 
 
 def rotation(a: Array, b: Array) -> Array:
-    """The rotation matrix (3, 3) of the shortest turn from one unit vector to another, not opposite to it."""
+    """Matrix (3, 3) of the shortest rotation that takes unit vector a to b, which must not be -a."""
     v = np.cross(a, b)
     cross = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
     turned: Array = np.eye(3) + cross + cross @ cross / (1.0 + a @ b)
@@ -52,7 +52,7 @@ def _unit(direction: tuple[float, float, float]) -> Array:
 
 
 def _between(a: Array, b: Array, part: float) -> Array:
-    """So far on the shortest turn from one unit vector to another."""
+    """Unit vector at the fraction `part` of the shortest rotation from a to b."""
     whole = angle(a, b)
     if whole == 0.0:
         return a
