@@ -1,15 +1,15 @@
 """Deflection errors of static beams against references/beams.json; prints a table.
 
     python -m benchmarks.accuracy_beams                      # the default beams, the whole table: 10 s
-    python -m benchmarks.accuracy_beams --element tet4 --mesh paper   # as the paper's 7,257 nodes: 3 min
+    python -m benchmarks.accuracy_beams --element tet4 --mesh paper   # the paper's mesh of 7,257 nodes: 3 min
     python -m benchmarks.accuracy_beams --element hex8 --mesh fine
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
-Errors of the displacement down and along, in % of the size of the reference's displacement; negative is too
-little (too stiff). The reference's own error is beside them. Newton counts linearisations from cold,
-the first being that of the start; CPU is of one core, numbering and symbolic factor included for the first
-of a mesh (not the compilation).
+Errors of the downward and of the axial displacement are in % of the magnitude of the reference displacement;
+negative means too small (too stiff). The error of the reference itself is printed beside them. Newton counts
+linearisations from the undeformed state, including the first. CPU is the time on one core; for the first beam
+of a mesh it includes numbering and symbolic factorisation, but not compilation.
 """
 
 from __future__ import annotations
@@ -33,7 +33,23 @@ MESHES = {"default": (2, 0.007), "fine": (4, 0.0035), "paper": (PAPER_RINGS, PAP
 
 @dataclass(frozen=True)
 class Row:
-    """One beam: errors of dz and dx [%] (nan where it did not converge) and what it took."""
+    """Result of one beam.
+
+    Attributes
+    ----------
+    case, law : str
+        Support and length, and the table's set of parameters.
+    modulus : float
+        Shear modulus [Pa].
+    down, along : float
+        Errors of dz and dx [%]; NaN if the beam did not converge.
+    reference_error : float
+        Error of the reference [%].
+    nodes, newton : int
+        Nodes of the mesh and Newton iterations.
+    cpu : float
+        Time on one core [s].
+    """
 
     case: str
     law: str
@@ -47,7 +63,7 @@ class Row:
 
 
 def material(entry: dict[str, Any]) -> Material:
-    """The entry's law in our terms."""
+    """Material of an entry of the table."""
     p, law = entry["parameters"], entry["law"]
     if law == "neo_hookean":
         return Material(law="neo-hookean", parameters={"mu": p["mu"], "lam": p["lambda"]})

@@ -1,19 +1,20 @@
-"""Share of the memory-bandwidth and arithmetic limits that a poke's two big kernels reach; prints a table.
+"""Fraction of the memory-bandwidth and arithmetic limits that a poke's main kernels reach; prints a table.
 
     python -m benchmarks.bandwidth                # the default poke mesh: 20 s
     python -m benchmarks.bandwidth --refinement 1.5
 
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
-Limits, measured here on one core: copy (NumPy, 16 B an entry of float64: read and written) and reading
-(a float32 dot product of two arrays), both out of memory (256 MiB) and over as many bytes as the factor has,
-which the caches may hold; arithmetic by a matrix product (float64 of 1000 x 1000;
-float32, in which the factor is made, can do twice that).
+The limits are measured on one core. Bandwidth: a copy (NumPy, 16 B per float64 entry: read and written) and a
+read (a float32 dot product of two arrays), each with 256 MiB, which exceeds the caches, and with as many
+bytes as the factor has, which the caches may hold. Arithmetic: a float64 matrix product of 1000 x 1000;
+float32, in which the factor is computed, can be twice as fast.
 
-Bytes that must move at least: a solve reads the factor (float32) forward and back again; assembly reads
-gradients, weights, node numbers and slots of each element once, and reads and writes each block once.
-Operations of the assembly: counted from the kernel's loops (multiplications and additions), the law's tangent
-taken as LAW_OPERATIONS a point. Medians of --repeats; CPU seconds.
+Bytes that must be moved at least: a solve reads the factor (float32) once forward and once backward; assembly
+reads gradients, weights, node numbers and slots of each element and the node positions once, and reads and
+writes each block once. Operations of the assembly are counted from the kernel's loops (multiplications and
+additions); the tangent of the constitutive law counts as LAW_OPERATIONS per quadrature point. Times are
+medians of --repeats, in CPU seconds.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ LAW_OPERATIONS = 1100  # invariants, cofactors, 45 entries of the tangent by out
 
 
 def seconds(run: Callable[[], object], repeats: int) -> float:
-    """Median CPU seconds of a call, after one that does not count."""
+    """Median CPU seconds of a call, after one warm-up call."""
     run()
     found = []
     for _ in range(repeats):
@@ -46,7 +47,7 @@ def seconds(run: Callable[[], object], repeats: int) -> float:
 
 
 def many(run: Callable[[], object], times: int) -> Callable[[], None]:
-    """The call so many times over, for what is too quick for the clock."""
+    """Function that makes the call `times` times, for calls too short for the clock's resolution."""
 
     def loop() -> None:
         for _ in range(times):
@@ -56,7 +57,7 @@ def many(run: Callable[[], object], times: int) -> Callable[[], None]:
 
 
 def copying(size: int, repeats: int) -> float:
-    """Bytes a second of a copy whose two arrays take `size` bytes together."""
+    """Throughput [B/s] of a copy whose two arrays take `size` bytes together."""
     a = np.ones(size // 16)
     b = np.empty_like(a)
     times = max(1, (1 << 28) // size)
@@ -64,7 +65,7 @@ def copying(size: int, repeats: int) -> float:
 
 
 def reading(size: int, repeats: int) -> float:
-    """Bytes a second of a dot product whose two arrays take `size` bytes together."""
+    """Throughput [B/s] of a dot product whose two arrays take `size` bytes together."""
     a = np.ones(size // 8, dtype=np.float32)
     b = np.ones_like(a)
     times = max(1, (1 << 28) // size)
@@ -72,7 +73,7 @@ def reading(size: int, repeats: int) -> float:
 
 
 def assembly_operations(elements: int, points: int, nodes: int) -> float:
-    """Floating-point operations of `stiffness` with an element pressure."""
+    """Number of floating-point operations of `stiffness` with an element pressure."""
     gradient = 2 * 18 * nodes  # F twice: for the mean volume change and for the stress
     vector = nodes * (3 * 7 + 3 * 7)  # forces and the pressure's vector
     blocks = nodes * 27 * 6 + nodes * (nodes + 1) // 2 * 9 * 6
@@ -81,7 +82,7 @@ def assembly_operations(elements: int, points: int, nodes: int) -> float:
 
 
 def main() -> None:
-    """Print the limits and the shares."""
+    """Print the limits and the fractions reached."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--refinement", type=float, default=1.0)
     parser.add_argument("--repeats", type=int, default=7)
@@ -102,15 +103,15 @@ def main() -> None:
     body, pattern = system.body, discretisation.pattern
     blocks = body.stiffness(mesh.nodes)[0]
     factor = Pardiso(pattern.indptr, pattern.indices, single=True)
-    factor._iparm[17] = -1  # asks for the entries of the factor
-    factor._iparm[18] = -1  # and for the operations
+    factor._iparm[17] = -1  # request the number of entries of the factor
+    factor._iparm[18] = -1  # and the number of operations
     factor.factorise(blocks)
     rhs = np.random.default_rng(0).normal(size=(len(pattern.free), 3))
     solve = seconds(many(lambda: factor.solve(rhs), 10), args.repeats) / 10
     factorise = seconds(lambda: factor.factorise(blocks), args.repeats)
     assemble = seconds(lambda: body.stiffness(mesh.nodes), args.repeats)
 
-    # PARDISO counts 3 x 3 blocks: the memory it says it holds bears that out
+    # PARDISO counts 3 x 3 blocks, consistent with the memory that it reports
     entries, held = 9 * int(factor._iparm[17]), 1024 * int(factor._iparm[16])
     factor_bytes = 4.0 * entries
     ref = discretisation.reference

@@ -1,5 +1,5 @@
-"""Photographs of known beams, made by casting rays: an own camera (perspective, radial distortion), light,
-blur and noise.
+"""Ray-cast photographs of known beams: a separate camera model (perspective, radial distortion), light, blur
+and noise.
 
 Frame as in docs/reference/experiment-format.md, in mm: x along the beam, z up, y away from the camera;
 the board is at y = board_y.
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Lens:
-    """focal length and centre in pixels, image size (width, height), radial distortion k1, k2."""
+    """Image size (width, height), focal length and centre [pixel], radial distortion k1, k2."""
 
     size: tuple[int, int] = (2000, 1500)
     focal: float = 4650.0
@@ -30,8 +30,11 @@ class Lens:
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """Where the camera stands: it looks at `target` (mm) from `distance`, swung by yaw (to the right, seen
-    from the beam's front), pitch (up), turned by roll about its own axis; degrees."""
+    """Pose of the camera: it looks at `target` [mm] from `distance` [mm].
+
+    Angles in degrees: yaw (to the right, seen from the beam's front), pitch (up), roll about the camera's
+    axis.
+    """
 
     target: tuple[float, float, float] = (52.0, 0.0, 16.0)
     distance: float = 400.0
@@ -40,7 +43,7 @@ class View:
     roll: float = 0.0
 
     def frame(self) -> tuple[Array, Array]:
-        """The camera's centre, and its axes (right, down, forward) as rows."""
+        """Centre of the camera, and its axes (right, down, forward) as rows."""
         yaw, pitch, roll = np.radians([self.yaw, self.pitch, self.roll])
         away = np.array([np.sin(yaw) * np.cos(pitch), -np.cos(yaw) * np.cos(pitch), np.sin(pitch)])
         right = np.array([np.cos(yaw), np.sin(yaw), 0.0])
@@ -53,9 +56,10 @@ class View:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Tube:
-    """A round body about a planar axis, (k, 2) points x, z in mm, cut flat at both ends.
+    """A body of circular section about a planar axis, (k, 2) points x, z [mm], with flat ends.
 
-    radius: mm, one or (k,) along the axis: a heavy beam thins where it is stretched."""
+    `radius` [mm] is a number or (k,) along the axis, since a heavy beam thins where it is stretched.
+    """
 
     axis: Array
     radius: float | Array
@@ -65,7 +69,7 @@ class Tube:
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp:
-    """A box: x, y and z from and to, mm."""
+    """A box from corner `low` to corner `high`: x, y, z [mm]."""
 
     low: tuple[float, float, float] = (-40.0, -10.0, -22.0)
     high: tuple[float, float, float] = (0.0, 10.0, 22.0)
@@ -74,7 +78,7 @@ class Clamp:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Setting:
-    """Everything in front of the camera. board_corner: the board's lower left outer corner, x and z in mm."""
+    """The scene in front of the camera; board_corner: the board's lower left outer corner, x and z [mm]."""
 
     tubes: tuple[Tube, ...]
     clamps: tuple[Clamp, ...] = (Clamp(),)
@@ -93,13 +97,13 @@ class Setting:
 
 
 def photograph(setting: Setting, lens: Lens, view: View) -> NDArray[np.uint8]:
-    """The 8-bit grey photograph."""
+    """8-bit grey photograph (height, width)."""
     width, height = lens.size
     caster = _Caster(setting, lens, view)
     v, u = np.mgrid[0 : height + 2 : 2, 0 : width + 2 : 2]
     coarse, label = caster.cast(np.column_stack([u.ravel(), v.ravel()]).astype(float))
     coarse, label = coarse.reshape(u.shape), label.reshape(u.shape)
-    image = np.empty((height, width))  # smooth parts between every second pixel, edges cast finely
+    image = np.empty((height, width))  # smooth parts interpolated from every second pixel, edges supersampled
     image[::2, ::2] = coarse[:-1, :-1]
     image[1::2, ::2] = 0.5 * (coarse[:-1, :-1] + coarse[1:, :-1])
     image[::2, 1::2] = 0.5 * (coarse[:-1, :-1] + coarse[:-1, 1:])
@@ -125,7 +129,7 @@ class _Caster:
         self.fields = [_Field(tube) for tube in setting.tubes]
 
     def cast(self, pixels: Array) -> tuple[Array, NDArray[np.int64]]:
-        """Brightness of each ray, and a label of what it met."""
+        """Brightness of each ray, and a label of the object that it hits."""
         direction = self._directions(pixels)
         step = (self.setting.board_y - self.centre[1]) / direction[:, 1]
         hit = self.centre + step[:, None] * direction
@@ -193,7 +197,7 @@ class _Field:
         _, nearest = cKDTree(fine).query(grid.reshape(-1, 2))
         start, end = fine[1] - fine[0], fine[-1] - fine[-2]
         offset = grid.reshape(-1, 2) - fine[nearest]
-        # signed, so that it stays smooth through the axis; cells past an end measure off the tangent
+        # signed, so that it is smooth across the axis; cells past an end measure from the tangent
         tangent = np.gradient(fine, axis=0)[nearest]
         tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
         across = tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
@@ -240,7 +244,7 @@ class _Field:
         return normal
 
     def meet(self, centre: Array, direction: Array, light: Array) -> tuple[NDArray[np.int64], Array, Array]:
-        """Rows of the rays that hit, the step along them, and the brightness there."""
+        """Indices of the rays that hit, the step along them, and the brightness there."""
         radius = self.widest
         enter = (-1.05 * radius - centre[1]) / direction[:, 1]
         leave = (1.05 * radius - centre[1]) / direction[:, 1]

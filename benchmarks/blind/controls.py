@@ -1,12 +1,12 @@
-"""Controls of verdicts, of every kind of made measurement: `python -m benchmarks.blind.controls coupons`.
+"""Controls of verdicts on synthetic measurements of each kind: `python -m benchmarks.blind.controls coupons`.
 
-without: one cause of the library, taken out of the catalogue; a stand-in may be named in part, and said so.
-smooth: nothing is hidden, but each record has a smooth error that nobody states; nothing may be named.
-half: one cause of the library and one outside it, equally large; the one inside is to be named (or to come
-nearest), and the interval of its share is to hold the true one.
-one, two: causes of the library; the intervals of their shares are to hold the true ones.
+without: one cause of the library, removed from the catalogue; a substitute may be named only as partial.
+smooth: no cause, but an unstated smooth error in each record; nothing may be named.
+half: one cause of the library and one outside it, equally large; the one inside is to be named (or to be the
+nearest), and the interval of its share is to contain the true one.
+one, two: causes of the library; the intervals of their shares are to contain the true ones.
 
-What the true share is, is said in `laboratory.py`. `--out FILE` keeps each case, one line of JSON each.
+The true share is defined in `laboratory.py`. `--out FILE` appends each case as one line of JSON.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ LABORATORIES: dict[str, Laboratory[Any]] = {
     "release": release.LABORATORY,
 }
 CONTROLS = ("without", "smooth", "half", "one", "two")
-SIZE = 25.0  # standard deviations of a cause
-HALF = (0.4, 0.6)  # true share of the one inside, of two of that size
+SIZE = 25.0  # size of a cause in standard deviations
+HALF = (0.4, 0.6)  # accepted true share of the cause inside the library, of two of that size
 UNNAMED = ("none", "unexplained")
 Row = dict[str, Any]
 
 
 def rows(kind: str, control: str, count: int, seed: int) -> Iterator[Row]:
-    """What was hidden, what was said, and the shares of both, a case each."""
+    """Hidden causes, verdict and the shares of both, for each case."""
     lab = LABORATORIES[kind]
     made = number = 0
     while made < count:
@@ -64,7 +64,7 @@ def rows(kind: str, control: str, count: int, seed: int) -> Iterator[Row]:
             seconds = time.process_time() - began
             excused = False
             if control == "without" and verdict["verdict"] == "found":
-                # another word for the truth, or what the whole catalogue cannot tell from it, is no stand-in
+                # an equivalent of the truth, by name or by the full catalogue's verdict, is not wrong
                 excused = set(hidden) <= {h for n in named(verdict) for h in lab.same.get(n, ())}
                 excused = excused or named(verdict) in named_set(lab.diagnose(folder))
         yield {
@@ -88,26 +88,26 @@ def _case(lab: Laboratory[Any], control: str, seed: int) -> Any:
     case = lab.half(seed, SIZE)
     if case is None:
         return None
-    # two that are nearly alike, or opposite, are not half and half of what is seen of both
+    # two causes with similar or opposite effects do not share the visible misfit equally
     inside = lab.hidden(case)[0].name
     return case if HALF[0] <= lab.true_shares(case, [inside])[inside] <= HALF[1] else None
 
 
 def causes_of(verdict: Row) -> list[Row]:
-    """Named, or nearest where none is."""
+    """Named causes, or the nearest ones if none is named."""
     nearest = verdict["nearest"]
     return list(verdict["causes"] or (nearest["causes"] if nearest else []))
 
 
 def share_of(verdict: Row) -> Row | None:
-    """Of what is named, or nearest."""
+    """Share of the named causes, or of the nearest ones if none is named."""
     nearest = verdict["nearest"]
     found: Row | None = verdict["share"] if verdict["causes"] else (nearest["share"] if nearest else None)
     return found
 
 
 def _true_shares(lab: Laboratory[Any], control: str, case: Any, verdict: Row) -> dict[str, float]:
-    """Of the causes that are named or nearest, where all of them are hidden ones of the library."""
+    """True shares of the named or nearest causes; empty unless all are hidden causes of the library."""
     names = {c["effect"] for c in causes_of(verdict)}
     inside = {h.name for h in lab.hidden(case)[: 1 if control == "half" else None]}
     if control == "without" or not names or not names <= inside:
@@ -116,7 +116,7 @@ def _true_shares(lab: Laboratory[Any], control: str, case: Any, verdict: Row) ->
 
 
 def covered(row: Row) -> list[bool]:
-    """Whether the interval holds the true share: of all that is named, and of each cause of several."""
+    """True for each interval that contains the true share: of all named causes, and of each of several."""
     true = row["true_shares"]
     share = share_of(row)
     pairs = [(share, sum(true.values()))] if true else []
@@ -126,7 +126,7 @@ def covered(row: Row) -> list[bool]:
 
 
 def line(row: Row) -> str:
-    """A case for people."""
+    """One line of text for a case."""
     hidden = " + ".join(f"{n} {s:g}" for n, s in zip(row["hidden"], row["sigma"], strict=True)) or "-"
     found = " + ".join(c["effect"] for c in causes_of(row))
     shown = found if row["causes"] else f"({found})"
@@ -141,7 +141,7 @@ def line(row: Row) -> str:
 
 
 def scores(control: str, done: list[Row]) -> Iterator[str]:
-    """Goals and what was reached."""
+    """Lines of text with the goals and the scores."""
     said = Counter(r["verdict"] for r in done)
     yield f"{control}: {dict(said)}"
     if control == "without":

@@ -1,10 +1,10 @@
-"""What the controls ask of a kind of measurement: its cases, their files, and the data without noise.
+"""Interface of the controls to a kind of measurement: its cases, their files, and the data without noise.
 
-The true share of causes, in a made case, is of the data without noise: moduli are fitted to them (a specimen,
-or a material, as the lab would), which leaves the explainable misfit; moduli and the amplitudes of these
-causes, in their true form, leave less. The share is the part that is gone. One of several causes has
-Shapley's mean of what it takes over all orders, so that shares add up. Squares are in units of the stated
-noise; moduli and amplitudes act to first order around the truth.
+The true share of causes in a synthetic case is defined by the data without noise. Fitting moduli alone (per
+specimen, or per material, as the lab would) leaves the explainable misfit; fitting moduli and the amplitudes
+of these causes, in their true form, leaves less. The share is the fraction of squares removed. For one of
+several causes it is the Shapley value: the mean of its contribution over all orders, so that shares add up.
+Squares are in units of the stated noise; moduli and amplitudes are linearised around the truth.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from benchmarks.blind.records import Put
 Array = NDArray[np.float64]
 C = TypeVar("C")
 
-SMOOTH = (0.003, 0.01)  # of full scale: rms of an error that nobody states
+SMOOTH = (0.003, 0.01)  # rms of an unstated error over full scale
 WAVES = 4
 
 
@@ -35,18 +35,18 @@ class Laboratory(Generic[C]):
 
     Attributes
     ----------
-    clean : a case with nothing hidden, by its seed.
-    one : with one cause of the library, by seed and size in standard deviations.
-    half : with one of the library and, second, one outside it, each of that size; None where its protocol
-        cannot show both so large.
-    two : with two causes of the library, each of that size or more.
-    write : the experiment's folder, without the truth.
-    hidden : the causes of a case.
-    whitened : the data without noise with these causes, over the standard deviation of the noise, shape (k,).
+    clean : case without a hidden cause, by its seed.
+    one : case with one cause of the library, by seed and size in standard deviations.
+    half : case with one cause of the library and, second, one outside it, each of that size; None if its
+        protocol cannot show both so large.
+    two : case with two causes of the library, each of that size or more.
+    write : writes the experiment's folder, without the truth.
+    hidden : causes of a case.
+    whitened : data without noise with these causes, over the standard deviation of the noise, shape (k,).
     free : columns of the moduli, shape (k, moduli).
-    diagnose : the verdict on a folder, with effects left out of the catalogue.
-    smooth_error : gives what was measured a smooth error that nobody states, by folder and seed.
-    same : hidden causes that an effect of the catalogue is another word for.
+    diagnose : verdict on a folder, with effects removed from the catalogue.
+    smooth_error : adds an unstated smooth error to the measured data, by folder and seed.
+    same : for effects of the catalogue, the hidden causes of which they are an equivalent description.
     """
 
     clean: Callable[[int], C]
@@ -62,7 +62,7 @@ class Laboratory(Generic[C]):
     same: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def true_shares(self, case: C, names: Iterable[str]) -> dict[str, float]:
-        """Of the causes of these names, each; they add up to the share of all of them."""
+        """True share of each cause of these names; they add up to the share of all of them."""
         base = self.whitened(case, ())
         every = list(self.hidden(case))
         departure = self.whitened(case, every) - base
@@ -71,11 +71,11 @@ class Laboratory(Generic[C]):
 
 
 def smooth_error_of_records(*, measured: int, stated: str) -> Callable[[Path, int], None]:
-    """Of tables: each gets an error of its own, and the stated ones are taken out.
+    """Function that adds a smooth error to each record of a folder, and removes the stated noise.
 
     Parameters
     ----------
-    measured : column of the records that holds what is measured.
+    measured : column of the records with the measured quantity.
     stated : key of a trial by which the lab states its noise.
     """
 
@@ -103,13 +103,13 @@ def log_uniform(rng: np.random.Generator, limits: tuple[float, float]) -> float:
 
 
 def waves(rng: np.random.Generator, at: Array) -> Array:
-    """A smooth error of rms 1 at parts of a record's or an edge's length."""
+    """Smooth random error of rms 1 at positions `at`, fractions of a record's or an edge's length."""
     found = sum(rng.standard_normal() * np.cos(np.pi * (k * at + rng.random())) for k in range(1, WAVES + 1))
     return np.asarray(found / np.sqrt(np.mean(np.square(found))))
 
 
 def shapley(departure: Array, free: Array, columns: dict[str, Array]) -> dict[str, float]:
-    """Shares of the part of a departure (k,) that free columns (k, n) leave."""
+    """Shapley shares of the columns in the part of `departure` (k,) that the columns `free` (k, n) leave."""
     names = list(columns)
     whole = left(free, departure)
     taken = {
@@ -132,6 +132,6 @@ def shapley(departure: Array, free: Array, columns: dict[str, Array]) -> dict[st
 
 
 def left(columns: Array, z: Array) -> float:
-    """Squares of z that columns leave."""
+    """Sum of squares of z that a least-squares fit of the columns leaves."""
     q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
     return float(z @ z - (q.T @ z) @ (q.T @ z))

@@ -1,10 +1,10 @@
-"""How often any diagnosis could rank the truth first: `python -m benchmarks.blind.limits coupons --seed 9`.
+"""Upper bound on correct ranking by any diagnosis: `python -m benchmarks.blind.limits coupons --seed 9`.
 
-Each case of one effect is written once more without noise. How much worse the nearest alternative then fits
-than the truth is the squared distance d^2 between their predictions, in standard deviations of the noise.
-Where both were as likely before, no rule picks the right one of them in more than a fraction Phi(d/2) of
-experiments (Neyman and Pearson); further alternatives make it fewer. Distances are those of the diagnosis'
-model: of indentations they contain the difference of the two solvers, which is printed as the chi-square of
+Each case of one effect is written again without noise. The excess of chi-square of the nearest alternative
+over the truth is the squared distance d^2 between their predictions, in standard deviations of the noise. If
+both have the same prior probability, no rule selects the right one of them in more than a fraction Phi(d/2)
+of experiments (Neyman and Pearson); further alternatives reduce it. Distances are those of the diagnosis'
+model: for indentations they contain the difference of the two solvers, which is printed as the chi-square of
 the truth.
 """
 
@@ -20,7 +20,7 @@ from typing import Any
 from benchmarks.blind import coupons, indentation
 from benchmarks.blind.under_test import noise_free_fits
 
-# cases of a count and a seed, and the function that writes one
+# function that draws cases by count and seed, and function that writes one
 KINDS: dict[str, tuple[Callable[[int, int], Any], Callable[..., None]]] = {
     "coupons": (coupons.draw_cases, coupons.write),
     "indentation": (indentation.draw_cases, indentation.write),
@@ -28,7 +28,7 @@ KINDS: dict[str, tuple[Callable[[int, int], Any], Callable[..., None]]] = {
 
 
 def fits(kind: str, case: Any) -> dict[str, float]:
-    """Least chi-square of each effect on the case's data without noise."""
+    """Minimum chi-square of each effect on the case's data without noise."""
     _, write = KINDS[kind]
     with tempfile.TemporaryDirectory() as place:
         write(case, Path(place) / "experiment", noise=0.0)
@@ -36,8 +36,7 @@ def fits(kind: str, case: Any) -> dict[str, float]:
 
 
 def summary(least: dict[str, float], truth: str) -> tuple[str, float]:
-    """The nearest alternatives as text, and the largest fraction of experiments in which any rule ranks the
-    truth first."""
+    """Nearest alternatives as text, and the largest fraction of correct first ranks under any rule."""
     own = least[truth]
     near = sorted((chi2 - own, name) for name, chi2 in least.items() if name != truth)[:3]
     most = largest_fraction(near[0][0]) if near else 1.0
@@ -46,8 +45,7 @@ def summary(least: dict[str, float], truth: str) -> tuple[str, float]:
 
 
 def largest_fraction(nearest: float) -> float:
-    """Fraction of experiments in which the truth outdoes an alternative whose noise-free chi-square is larger
-    by `nearest`."""
+    """Phi(d/2) for d^2 = `nearest`, the excess of the nearest alternative's noise-free chi-square."""
     return 0.5 * (1.0 + math.erf(math.sqrt(max(nearest, 0.0) / 8.0)))
 
 

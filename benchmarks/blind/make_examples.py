@@ -4,7 +4,7 @@
     python -m benchmarks.blind.make_examples --only coupons --out examples
 
 The five benches in `datasets/measured/bench` are older, made once by a solver that is not in this repository.
-`truth.yaml` names the hidden cause and the true parameters; no program reads it.
+`truth.yaml` holds the hidden cause and the true parameters; no program reads it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BOARD_CORNER = (12.0, 26.0)  # [mm]
 
 
 def photographs(folder: Path) -> None:
-    """Two silicone cantilevers before a checkerboard: equilibrium of the laboratory's solver, ray-cast."""
+    """Two silicone cantilevers in front of a checkerboard: the laboratory's equilibrium, ray-cast."""
     import cv2
 
     (folder / "photos").mkdir(parents=True)
@@ -45,7 +45,7 @@ def photographs(folder: Path) -> None:
             Beam(length=1e-3 * length, bridge=False, mu=SHEAR_MODULUS, radius=RADIUS, density=DENSITY)
         )
         edges = 1e3 * shape.edges(np.linspace(0.0, 1.0, 400))
-        # as thick as the bent beam is: its own weight thins the long one by 0.6 % near the clamp
+        # thickness of the bent beam: its own weight thins the long one by 0.6 % near the clamp
         half = 0.5 * np.linalg.norm(edges[0] - edges[1], axis=1)
         setting = Setting(
             tubes=(Tube(axis=edges.mean(axis=0), radius=half),),
@@ -90,7 +90,7 @@ def photographs(folder: Path) -> None:
 
 
 def homogeneous(folder: Path) -> None:
-    """Tension, shear and the like of two materials, by a machine that yields."""
+    """Homogeneous material tests of two materials on a compliant machine."""
     case = coupons.make_coupon(11, "one", "machine-compliance", target=15.0)
     coupons.write(case, folder)
     _rename(folder, "homogeneous tests", "two materials in the same modes on one machine")
@@ -98,7 +98,7 @@ def homogeneous(folder: Path) -> None:
 
 
 def indented(folder: Path) -> None:
-    """A rod pushed into a thin layer, with the zero of its depth off."""
+    """Indentation of a thin layer, with an offset of the depth's zero."""
     case = indentation.make_poke(12, "one", "depth-offset", target=9.0)
     indentation.write(case, folder)
     _rename(
@@ -110,7 +110,7 @@ def indented(folder: Path) -> None:
 
 
 def compressed(folder: Path) -> None:
-    """Cylinders of two materials whose ends stick to the platens."""
+    """Compression of cylinders of two materials whose ends are bonded to the platens."""
     compression.write(compression.draw("bonded", 0), folder)
     _rename(folder, "compression", "cylinders of 50 x 30 mm between platens, lubrication not stated")
     truth = {

@@ -1,7 +1,6 @@
-"""Scores of verdicts on made coupons and indentations: confusion matrix, goals, and the runs that they come
-from.
+"""Scores of verdicts on synthetic homogeneous tests and indentations: confusion matrix, goals, and the runs.
 
-Verdicts are those of `under_test.scored`, truths those of `records.truth_of`.
+Verdicts are those of `under_test.diagnose_*`, truths those of `records.truth_of`.
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ from typing import Any, Protocol, TypeVar
 
 from benchmarks.blind.records import SEVERAL
 
-# the parameter that diagnosis.json writes for an effect, and how many of its units make one SI unit; only of
-# effects whose amplitude means the same on both sides (not: the size of a loop whose form no name settles)
+# parameter of an effect in diagnosis.json, and number of its units in one SI unit; only for
+# effects whose amplitude is defined alike on both sides (not the size of a loop of undetermined shape)
 UNITS = {
     "rate-dependence": ("per_decade", 1.0),
     "anisotropy": ("fibre_excess", 1.0),
@@ -36,7 +35,7 @@ UNITS = {
     "adhesion": ("pull_mN", 1e3),
     "inclusion-debonded": ("loose_part", 1.0),
 }
-# kinds of cases in which there is nothing to name, and how often a name may be given
+# kinds of cases without an identifiable cause, and the accepted rate of named causes
 ALARMS = {"clean": "at most 5 %", "trap": "0"}
 Pair = tuple[dict[str, Any], dict[str, Any]]
 Row = tuple[str, str, str]
@@ -59,12 +58,12 @@ def sigma(truth: dict[str, Any]) -> float:
 
 
 def part(hits: Sequence[bool]) -> str:
-    """hits of all, as text."""
+    """Count of hits of the total, as text."""
     return f"{sum(hits)} of {len(hits)}" + (f" ({100 * sum(hits) / len(hits):.0f} %)" if hits else "")
 
 
 def goals(pairs: Sequence[Pair]) -> Iterator[Row]:
-    """(what, goal, reached)."""
+    """(description, goal, reached) of each goal."""
     yield from _naming(pairs)
     yield from _numbers([p for p in pairs if p[0]["kind"] == "one"])
 
@@ -103,7 +102,7 @@ def _naming(pairs: Sequence[Pair]) -> Iterator[Row]:
 
 
 def _numbers(single: Sequence[Pair]) -> Iterator[Row]:
-    """Of rightly named causes: amplitudes, moduli, held-out gain."""
+    """Goals of rightly named causes: amplitudes, moduli, held-out gain."""
     right = [p for p in single if named(p[1]) == true_names(p[0])]
     off = list(_deviations(right))
     yield "amplitude within 3 of its sd", "97 %", part([abs(d) <= 3.0 for d in off])
@@ -125,7 +124,7 @@ def _numbers(single: Sequence[Pair]) -> Iterator[Row]:
 
 
 def _deviations(right: Sequence[Pair]) -> Iterator[float]:
-    """(amplitude - truth) / sd."""
+    """(amplitude - truth) / sd of each cause in UNITS."""
     for t, v in right:
         (effect,) = t["effects"]
         if effect["effect"] in UNITS:
@@ -135,12 +134,12 @@ def _deviations(right: Sequence[Pair]) -> Iterator[float]:
 
 
 def _beyond(gain: dict[str, Any], which: str) -> float:
-    """What a held-out rms has beyond that of the noise."""
+    """Excess of a held-out rms over that of the noise."""
     return math.sqrt(max(gain[which] ** 2 - gain["rms_noise"] ** 2, 0.0))
 
 
 def confusion(pairs: Sequence[Pair]) -> str:
-    """One line a true cause: how often it was named what."""
+    """One line per true cause, with the counts of the diagnoses."""
     lines: dict[str, Counter[str]] = {}
     for t, v in pairs:
         truth = f"{t['kind']} at once" if t["kind"] in SEVERAL else "+".join(true_names(t)) or "(clean)"
@@ -158,7 +157,7 @@ def confusion(pairs: Sequence[Pair]) -> str:
 
 
 class Made(Protocol):
-    """A case."""
+    """A case with its truth."""
 
     def truth(self) -> dict[str, Any]: ...
 
@@ -173,7 +172,7 @@ def diagnosed(
     *,
     show_each: bool,
 ) -> list[Pair]:
-    """(truth, verdict) of each numbered case; only `write` is given the case."""
+    """(truth, verdict) of each numbered case; only `write` has access to the case."""
     pairs: list[Pair] = []
     for n, case in cases:
         with tempfile.TemporaryDirectory() as place:
@@ -212,7 +211,7 @@ def parser(about: str | None) -> argparse.ArgumentParser:
 
 
 def show(pairs: list[Pair], out: Path | None) -> None:
-    """Confusion matrix and goals; pairs to a file where one is asked for."""
+    """Print the confusion matrix and the goals; write the pairs to `out` if given."""
     if out:
         out.write_text(json.dumps([{"truth": t, "verdict": v} for t, v in pairs], indent=1))
     print()

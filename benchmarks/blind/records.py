@@ -1,4 +1,4 @@
-"""Coupons and indentations alike: kinds of cases in turn, sizes, the truth, experiment.yaml."""
+"""Common parts of homogeneous tests and indentations: mixture of cases, sizes, truth, experiment.yaml."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any, Protocol, TypeVar
 
 import yaml
 
-SEVERAL = {"two": 2, "three": 3}  # kinds of cases with so many causes at once
+SEVERAL = {"two": 2, "three": 3}  # number of causes in kinds of cases with several
 
 T = TypeVar("T")
 H = TypeVar("H")
 
 
 class Put(Protocol):
-    """A cause as it was put in; amplitude in SI; where: the trials that have it; sigma: its size."""
+    """A hidden cause: amplitude in SI; `where`: the trials that have it; sigma: its size."""
 
     @property
     def name(self) -> str: ...
@@ -31,7 +31,7 @@ class Put(Protocol):
 
 
 def truth_of(seed: int, kind: str, hidden: Sequence[Put], moduli: Mapping[str, float]) -> dict[str, Any]:
-    """The truth of a case, as scorers get it."""
+    """Truth of a case in the form that the scores use."""
     return {
         "seed": seed,
         "kind": kind,
@@ -51,8 +51,11 @@ def in_turn(
     outside: Sequence[str],
     trap: bool,
 ) -> list[T]:
-    """A quarter clean, a tenth each of traps (where there are any), outside the library and two at once, the
-    rest one each in turn. make: a case from its seed, kind, and cause ("": drawn)."""
+    """Make `count` cases of all kinds.
+
+    A quarter are clean, a tenth each traps (if `trap`), outside the library and with two causes, the rest
+    have one cause each, in turn. `make` makes a case from its seed, kind, and cause ("": drawn).
+    """
     kinds = ["clean"] * round(0.25 * count)
     for kind in (*(["trap"] if trap else []), "outside", "two"):
         kinds += [kind] * round(0.1 * count)
@@ -69,17 +72,17 @@ def in_turn(
 
 
 def draw_several(count: int, seed: int, make: Callable[[int, str], T], kind: str) -> list[T]:
-    """Cases that all have several causes at once (a kind of SEVERAL)."""
+    """Cases that all have several causes; kind: a key of SEVERAL."""
     return [make(1000 * seed + n, kind) for n in range(count)]
 
 
 def apart(size: Callable[[T, H, tuple[H, ...]], float], trials: T, hidden: tuple[H, ...]) -> bool:
-    """Whether each of several causes is still seen beside the others; size: of one beside others [sigmas]."""
+    """True if each of several causes exceeds 3 sigmas beside the others; `size` gives this size."""
     return all(size(trials, h, tuple(o for o in hidden if o is not h)) > 3.0 for h in hidden)
 
 
 def reaching(size: Callable[[float], float], target: float, *, largest: float, steps: int) -> float:
-    """The amplitude that is `target` sigmas, by bisection in so many steps, or the largest."""
+    """Amplitude of size `target` [sigma] by bisection in `steps` steps, at most `largest`."""
     low, high = 0.0, largest
     if size(high) > target:
         for _ in range(steps):
@@ -89,7 +92,7 @@ def reaching(size: Callable[[float], float], target: float, *, largest: float, s
 
 
 def write_yaml(folder: Path, name: str, materials: Sequence[str], trials: list[dict[str, Any]]) -> None:
-    """experiment.yaml."""
+    """Write experiment.yaml."""
     known: dict[str, Any] = {m: {} for m in materials}
     content = {"format": 1, "name": name, "materials": known, "trials": trials}
     (folder / "experiment.yaml").write_text(yaml.safe_dump(content, sort_keys=False))

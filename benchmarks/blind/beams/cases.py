@@ -1,8 +1,7 @@
-"""A case of the blind beams, drawn from one seed: the lab's nominal values, the true ones, and the hidden
-effects.
+"""A case of the blind beams, drawn from one seed: nominal values, true values and hidden effects.
 
-Amplitudes are in SI; `PARAMETER` holds the parameter that a diagnosis reports (its unit stands in its name)
-and its factor to SI. Signs stand in `model.Beam` and below.
+Amplitudes are in SI. `PARAMETER` holds, for each effect, the parameter that a diagnosis reports (the name
+contains its unit) and the factor that converts it to SI. Signs are defined in `model.Beam` and below.
 """
 
 from __future__ import annotations
@@ -23,8 +22,15 @@ DEGREE = np.pi / 180
 
 @dataclass(frozen=True, kw_only=True)
 class Effect:
-    """threshold: amplitude of about 5 sigma, from which the draw starts; largest: where physics or the solver
-    ends; signed: both signs occur; scopes: what may carry it."""
+    """Range of an effect's amplitude [SI].
+
+    Attributes
+    ----------
+    threshold : amplitude of a size of about 5 sigma, which `draw` scales to the target size.
+    largest : largest amplitude, limited by physics or by the solver.
+    signed : True if both signs occur.
+    scopes : which beams the effect may act on; one of them is drawn.
+    """
 
     threshold: float
     largest: float
@@ -32,7 +38,7 @@ class Effect:
     scopes: tuple[Scope, ...] = ("all", "material")
 
 
-# threshold: the table of the project's facts on diagnosis (nine beams, three photographs), SI
+# thresholds: from the project's facts on diagnosis (nine beams, three photographs); SI
 EFFECTS: dict[str, Effect] = {
     "grip-length": Effect(threshold=0.49e-3, largest=3e-3, signed=False),
     "clamp-compliance": Effect(threshold=1.4, largest=9.0, signed=False, scopes=("all",)),
@@ -87,14 +93,16 @@ PARAMETER: dict[str, tuple[str, float]] = {
     "skin": ("excess", 1.0),
     "added-mass": ("mass_g", 1e-3),
 }
-# a relative radius is drawn; the amplitude that is reported is in metres
+# a relative radius is drawn; the reported amplitude is a length
 SIZE = {"radius": 0.010}
 IMAGE = ("camera-roll", "image-scale", "lens-distortion")
 
 
 def at_work(beam: Beam, effect: str, amplitude: float, *, place: float, time: float, dice: float) -> Beam:
-    """The true beam under an effect at `time` [s]. place: x of a void [m]; dice: a standard normal number of
-    this photograph."""
+    """True beam with an effect at `time` [s].
+
+    `place` is the x coordinate of a void [m], `dice` a standard normal number of this photograph.
+    """
     a = amplitude
     changes: dict[str, dict[str, float | bool]] = {
         "grip-length": {"grip_depth": a},
@@ -118,7 +126,7 @@ def at_work(beam: Beam, effect: str, amplitude: float, *, place: float, time: fl
         "string": {"string": a},
         # a lamp warms the specimen for the second photograph only
         "lamp": {"mu": beam.mu * (1 - a)} if 50.0 < time < 500.0 else {},
-        # photographed on the swing: sags more or less than at rest, from photograph to photograph
+        # photographed while it vibrates: the deflection varies about the static one between photographs
         "swinging": {} if beam.bridge else {"mu": beam.mu / (1 + a * float(np.clip(dice, -2, 2)))},
     }
     if effect == "compressibility":
@@ -128,11 +136,12 @@ def at_work(beam: Beam, effect: str, amplitude: float, *, place: float, time: fl
 
 
 def photographed(edges: Array, length: float, effect: str, amplitude: float) -> Array:
-    """Edges (2, k, 2) [m] as a camera with a fault shows them.
+    """Edges (2, k, 2) [m] in the image of a camera with a fault.
 
-    camera-roll: counter-clockwise about the frame's origin as seen with x right and z up (lifts the free
-    end). image-scale: about the origin. lens-distortion [1/m2]: r grows by amplitude r^3 about the middle of
-    the free length, z = 0. shadow [m]: the lower edge displaced downwards over 40 mm about 45 % of it.
+    camera-roll [rad]: counter-clockwise rotation about the frame's origin as seen with x right and z up
+    (raises the free end). image-scale: relative scaling about the origin. lens-distortion [1/m2]: r grows by
+    amplitude r^3 about the middle of the free length, z = 0. shadow [m]: downward displacement of the lower
+    edge over 40 mm about 45 % of the length.
     """
     x, z = edges[..., 0], edges[..., 1]
     if effect == "camera-roll":
@@ -160,7 +169,7 @@ NAMES = ("cantilever-050", "cantilever-100", "bridge-150")
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
-    """One beam as it truly is without the hidden effect; kind: index of `ideal_beams.LENGTHS`. SI."""
+    """One true beam without the hidden effect, in SI units; kind: index of `ideal_beams.LENGTHS`."""
 
     id: str
     kind: int
@@ -183,8 +192,17 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """An effect put in: amplitude [SI], scope (all, bridges, a material, a trial), the trials it is in, where
-    a void lies (part of the free length), and the size aimed at."""
+    """A hidden effect.
+
+    Attributes
+    ----------
+    effect : its name.
+    amplitude : in SI units.
+    scope : "all", "bridges", a material or a trial.
+    trials : indices of the trials that it acts on.
+    place : position of a void, as a fraction of the free length.
+    target : size aimed at, in sigmas.
+    """
 
     effect: str
     amplitude: float
@@ -194,7 +212,7 @@ class Hidden:
     target: float
 
     def parameters(self) -> dict[str, float]:
-        """As a diagnosis reports it."""
+        """Amplitude by the name and in the unit of a diagnosis; outside the library: {"amplitude": in SI}."""
         if self.effect not in PARAMETER:
             return {"amplitude": self.amplitude}
         name, unit = PARAMETER[self.effect]
@@ -203,8 +221,15 @@ class Hidden:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """index and seed name the case; category: clean, density, single, two, outside. stated: density [kg/m3]
-    that the lab believes, a material; dice (trials, photographs): standard normal."""
+    """A case, identified by index and seed.
+
+    Attributes
+    ----------
+    category : "clean", "density", "single", "two" or "outside".
+    per_beam : True if each beam is a specimen, False if each material is.
+    stated : density that the lab assumes for each material [kg/m3].
+    dice : standard normal numbers, shape (trials, photographs).
+    """
 
     index: int
     seed: int
@@ -217,7 +242,7 @@ class Case:
 
 
 def trial_names(*, per_beam: bool) -> list[dict[str, Any]]:
-    """id, kind, material and specimen of each trial."""
+    """Id, kind, material and specimen of each trial."""
     return [
         {
             "id": f"{material}-{name}",
@@ -231,7 +256,11 @@ def trial_names(*, per_beam: bool) -> list[dict[str, Any]]:
 
 
 def draw(index: int, seed: int, category: str, effects: tuple[str, ...], sizes: tuple[float, float]) -> Case:
-    """A case from its seed; its amplitudes are thresholds (5 sigma) scaled to a target within `sizes`."""
+    """Draw a case from its seed.
+
+    Targets are log-uniform between the two `sizes` [sigma]. An amplitude is the effect's threshold (5 sigma)
+    scaled to the target, and 1.7 times that if it acts on one material only.
+    """
     rng = np.random.default_rng([seed, index, 1])
     per_beam = bool(rng.random() < 0.5)
     scatter = rng.uniform(0.10, 0.20)
@@ -312,7 +341,7 @@ def _hide(
 
 
 def resized(case: Case, amplitudes: tuple[float, ...]) -> Case:
-    """The case with other amplitudes [SI], held within what the effect allows."""
+    """Case with other amplitudes [SI], limited to the largest that each effect allows."""
     catalogue = EFFECTS | OUTSIDE
     hidden = []
     for old, wanted in zip(case.hidden, amplitudes, strict=True):
@@ -322,12 +351,12 @@ def resized(case: Case, amplitudes: tuple[float, ...]) -> Case:
 
 
 def true_beam(case: Case, trial: int, photograph: int) -> Beam:
-    """The beam of a trial at the time of a photograph, with all that is hidden in it."""
+    """Beam of a trial at the time of a photograph, with all hidden effects."""
     return beam_at(case, trial, time=TIMES[photograph], dice=float(case.dice[trial, photograph]))
 
 
 def beam_at(case: Case, trial: int, *, time: float, dice: float) -> Beam:
-    """The beam of a trial `time` [s] after its release; dice: a standard normal number of the photograph."""
+    """Beam of a trial `time` [s] after its release; dice: a standard normal number of the photograph."""
     own = case.trials[trial]
     beam = own.beam()
     for hidden in case.hidden:
@@ -344,7 +373,7 @@ def beam_at(case: Case, trial: int, *, time: float, dice: float) -> Beam:
 
 
 def stiff_enough(case: Case) -> Case:
-    """Moduli raised where an effect would make a beam softer than SOFTEST at some time."""
+    """Case with moduli raised for specimens that would be softer than SOFTEST at some time."""
     trials = list(case.trials)
     lowest: dict[str, float] = {}
     for k, trial in enumerate(trials):
@@ -357,7 +386,7 @@ def stiff_enough(case: Case) -> Case:
 
 
 def solve_case(case: Case, kept: Table, resolution: Resolution) -> Array:
-    """True silhouettes (trials, photographs, 2, POINTS, 2) [m], before any camera."""
+    """True silhouettes (trials, photographs, 2, POINTS, 2) [m], without camera faults."""
     edges = np.empty((len(case.trials), len(TIMES), 2, POINTS, 2))
     for k, trial in enumerate(case.trials):
         done: dict[Beam, Array] = {}
@@ -370,7 +399,7 @@ def solve_case(case: Case, kept: Table, resolution: Resolution) -> Array:
 
 
 def seen(case: Case, edges: Array, trial: int, photograph: int, s: Array) -> Array:
-    """Edges (2, len(s), 2) [m] in a photograph, without noise and registration; s: parts of the length."""
+    """Edges (2, len(s), 2) [m] in a photograph, without noise and registration; s: length fractions."""
     source = trial
     for hidden in case.hidden:
         if hidden.effect == "swapped-photograph" and trial in hidden.trials and photograph == 1:

@@ -1,8 +1,8 @@
-"""Negative controls, and the experiments that a diagnosis advises.
+"""Negative controls, and follow-up experiments that a diagnosis advises.
 
-Controls: the true cause is taken out of the catalogue, or the outlines are handed to other materials. A
-diagnosis that names causes by more than the data would fail them. Advice: the advised experiment is made, and
-diagnosed again.
+Controls: the true cause is removed from the catalogue, or the outlines are exchanged among the materials. A
+diagnosis that names causes on grounds other than the data fails them. Advice: the advised experiment is
+simulated and diagnosed together with the first.
 """
 
 from __future__ import annotations
@@ -19,24 +19,27 @@ from benchmarks.blind.beams.follow_up import GAUGES, POSES, measure, new_id, pho
 from benchmarks.blind.beams.scores import Goal, Scored
 from benchmarks.blind.under_test import Diagnoser, Verdict, pose_of
 
-LEAST = 5.0  # sigmas: smaller effects are too often not seen at all
+LEAST = 5.0  # sigmas: smaller effects too often remain undetected
 LENGTHS = 3
 
 
 def without_truth(case: Scored) -> bool:
-    """Cases of the first control: one effect of the library, in the set that was named."""
+    """True for cases of the first control: one effect of at least LEAST sigmas, in the named set."""
     return case.truth["category"] == "single" and case.sigma >= LEAST and case.in_the_set
 
 
 def shuffled(case: Scored) -> bool:
-    """Cases of the second: the right name came first."""
+    """True for cases of the second control: those of the first whose true effect was ranked first."""
     return without_truth(case) and case.named == case.effects
 
 
 def shuffle_materials(folder: Path) -> None:
-    """Hand the outlines on among the materials in an experiment's folder: those of the first length stay,
-    those of the second go to the next material, those of the third to the one after that. Then no material
-    has its own outlines of all lengths, under any renaming."""
+    """Exchange the outlines among the materials in an experiment's folder.
+
+    Outlines of the first length stay, those of the second move to the next material, those of the third to
+    the one after that. No material then has its own outlines of all lengths, under any permutation of the
+    names.
+    """
     path = folder / "experiment.yaml"
     experiment = yaml.safe_load(path.read_text(encoding="utf-8"))
     trials = experiment["trials"]
@@ -52,7 +55,11 @@ def shuffle_materials(folder: Path) -> None:
 def control_goals(
     cases: Mapping[str, Scored], without: Mapping[str, Verdict], mixed: Mapping[str, Verdict]
 ) -> list[Goal]:
-    """without: verdicts with the true effect out of the catalogue; mixed: with the materials shuffled."""
+    """Goals of both controls.
+
+    `without` holds verdicts with the true effect removed from the catalogue, `mixed` with the materials
+    shuffled.
+    """
     first = {k: Scored(cases[k].truth, diagnosis) for k, diagnosis in without.items() if k in cases}
     second = {k: Scored(cases[k].truth, diagnosis) for k, diagnosis in mixed.items() if k in cases}
     unnamed = sum(c.verdict == "unexplained" for c in first.values())
@@ -68,8 +75,11 @@ def control_goals(
 
 
 def excused(full: Scored, now: Scored) -> bool:
-    """Whether the diagnosis without the truth was equivalent to it already, or is `unexplained`, or explained
-    in part by a stand-in."""
+    """True if the diagnosis without the true cause is acceptable.
+
+    It is if it is `unexplained` or `partly explained`, or names what the full diagnosis listed as an
+    alternative.
+    """
     if now.verdict in ("unexplained", "partly explained"):
         return True
     listed = {tuple(sorted(names)) for names in full.diagnosis["alternatives"]}
@@ -79,7 +89,7 @@ def excused(full: Scored, now: Scored) -> bool:
 def control_table(
     cases: Mapping[str, Scored], without: Mapping[str, Verdict], mixed: Mapping[str, Verdict]
 ) -> str:
-    """How often which diagnosis, by control and true cause."""
+    """Counts of the diagnoses by control and true cause."""
     lines = []
     for what, verdicts in (("truth not in the library", without), ("materials shuffled", mixed)):
         rows: dict[str, Counter[str]] = {}
@@ -96,7 +106,7 @@ def control_table(
     return "\n".join(lines)
 
 
-# how the advice for each begins, in `next_experiment`
+# first words of the advice in `next_experiment`, by experiment
 SENTENCES = {
     "weigh": "weigh the specimens",
     "callipers": "measure the section with callipers",
@@ -116,8 +126,10 @@ NOTHING = "no experiment of the catalogue"
 
 
 def advised(diagnosis: Verdict) -> str | None:
-    """The experiment that is advised first; None where the diagnosis knows of none. ValueError where the lab
-    does not understand it."""
+    """Name of the experiment advised first; None if the diagnosis states that the catalogue has none.
+
+    ValueError if the advice is not one of SENTENCES.
+    """
     text = diagnosis.get("next_experiment") or ""
     if text.startswith(NOTHING):
         return None
@@ -128,15 +140,16 @@ def advised(diagnosis: Verdict) -> str | None:
 
 
 def asked(case: Scored) -> bool:
-    """Cases whose advice is tried."""
+    """True for cases whose advice is followed: the ambiguous ones."""
     return case.verdict == "ambiguous"
 
 
 def follow(case: Case, diagnosis: Verdict, folder: Path, finder: Diagnoser) -> dict[str, Any]:
-    """Make the advised experiment of `case`, whose experiment is in `folder`, and diagnose all again.
+    """Simulate the experiment advised for `case`, add it to that in `folder`, and diagnose again.
 
-    {"advice": its name or None, "entered": effects whose readings are in the experiment now, "without": what
-    was taken out of the catalogue, "not_made": trials, "diagnosis": the new one, None without advice}
+    Returns {"advice": its name or None, "entered": effects whose readings were entered in the experiment,
+    "without": effects removed from the catalogue, "not_made": trials that could not be made, "diagnosis": the
+    new one, None without advice}.
     """
     name = advised(diagnosis)
     answer: dict[str, Any] = {"advice": name, "entered": [], "without": [], "not_made": [], "diagnosis": None}
@@ -153,8 +166,11 @@ def follow(case: Case, diagnosis: Verdict, folder: Path, finder: Diagnoser) -> d
 
 
 def settled(case: Scored, answer: Mapping[str, Any]) -> bool:
-    """Whether the new verdict is the truth: the hidden effects alone, but for those whose measured values are
-    in the experiment now; `none` where nothing is left to be named, `unexplained` outside the library."""
+    """True if the new verdict agrees with the truth.
+
+    It must name exactly the hidden effects without those whose measured values were entered, or be `none` if
+    no effect is left, or `unexplained` for a cause outside the library.
+    """
     if answer["diagnosis"] is None:
         return False
     now = Scored(case.truth, answer["diagnosis"])
@@ -166,7 +182,7 @@ def settled(case: Scored, answer: Mapping[str, Any]) -> bool:
 
 
 def advice_goals(cases: Mapping[str, Scored], answers: Mapping[str, Mapping[str, Any]]) -> list[Goal]:
-    """Of the ambiguous cases whose advised experiment was made."""
+    """Goals of the ambiguous cases whose advised experiment was simulated."""
     some = [(cases[k], t) for k, t in answers.items() if k in cases]
     rows: list[Goal] = [_part("ambiguous, advised experiment made: settled", "90 %", some)]
     for what, categories in (
@@ -185,7 +201,7 @@ def advice_goals(cases: Mapping[str, Scored], answers: Mapping[str, Mapping[str,
 
 
 def advice_table(cases: Mapping[str, Scored], answers: Mapping[str, Mapping[str, Any]]) -> str:
-    """Each case, and how often each experiment settled what it was advised for."""
+    """One line per case, and how often each experiment settled the case that it was advised for."""
     lines, right, made = [], Counter[str](), Counter[str]()
     for key, t in answers.items():
         if key not in cases:

@@ -1,7 +1,8 @@
-"""How large a hidden effect is in sigmas: what is left of it after moduli and nuisances are fitted.
+"""Size of a hidden effect in sigmas: the misfit that remains after moduli and nuisances are fitted.
 
-The best fit of ideal beams to the true silhouettes (no noise drawn), by Gauss-Newton over one modulus a
-specimen and, with their priors, radii, free lengths and registrations; the root of its chi-square.
+Ideal beams are fitted to the true silhouettes (without noise) by Gauss-Newton over one modulus per specimen
+and, with their priors, radii, free lengths and registrations. The size is the square root of the minimum of
+chi-square.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from benchmarks.blind.beams.model import GRAVITY, Beam
 
 Array = NDArray[np.float64]
 OUTLINE_SD, CORRELATION = 0.1e-3, 5e-3  # [m]
-TRACE_START = 2.5e-3  # of the outline beyond the clamp face [m]
+TRACE_START = 2.5e-3  # distance of the outline's first point from the clamp face [m]
 SHIFT_SD, ROLL_SD, SCALE_SD = 0.1e-3, np.deg2rad(0.15), 0.003
-# White part of the contour error, in parts of OUTLINE_SD: two good meshes differ by 0.04 mm next to a clamp,
+# White part of the contour error over OUTLINE_SD: two good meshes differ by 0.04 mm next to a clamp,
 # and no diagnosis can count on less.
 FLOOR = 0.4
 
@@ -33,7 +34,7 @@ def trace(kind: int) -> Array:
 
 
 def traced(length: float, bridge: bool) -> Array:
-    """Where an edge is traced: s, parts of the free length; dense near a clamp, as on the bench."""
+    """Positions s of traced edge points, as fractions of the free length; dense near a clamp."""
     half = length / 2 if bridge else length
     steps = [TRACE_START]
     while sum(steps) < half - 0.5e-3:
@@ -43,7 +44,7 @@ def traced(length: float, bridge: bool) -> Array:
 
 
 def contour_root(at: Array) -> Array:
-    """Lower factor of the covariance [m2] of the contour error at arc lengths `at` [m]."""
+    """Lower Cholesky factor of the covariance [m2] of the contour error at arc lengths `at` [m]."""
     kernel = np.exp(-((at[:, None] - at) ** 2) / (2 * CORRELATION**2))
     return np.asarray(np.linalg.cholesky(OUTLINE_SD**2 * (kernel + FLOOR**2 * np.eye(len(at)))))
 
@@ -54,7 +55,7 @@ def _root(kind: int) -> Array:
 
 
 def sigmas(case: Case, edges: Array, kept: Table, *, against: tuple[Case, Array] | None = None) -> float:
-    """Size of what sets `edges` apart from ideal beams, or from the case `against` to first order."""
+    """Distance [sigma] of `edges` from ideal beams, or to first order from `against`, after the fit."""
     specimens = sorted({t.specimen for t in case.trials})
     trials, photographs = len(case.trials), len(TIMES)
     count = 2 * len(specimens) + trials + 4 * trials * photographs
@@ -97,16 +98,23 @@ def sigmas(case: Case, edges: Array, kept: Table, *, against: tuple[Case, Array]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Columns:
-    """Changes of all photographs around a case, over the noise: free (k, parameters) of what any fit may
-    move, causes (k, causes). The last rows are the priors."""
+    """Changes of all photographs of a case divided by the noise (whitened); the last rows are the priors.
+
+    Attributes
+    ----------
+    free : by parameters that any fit may change, shape (k, parameters).
+    causes : by causes, shape (k, causes).
+    """
 
     free: Array
     causes: Array
 
 
 def columns_at(case: Case, edges: Array, kept: Table, others: Sequence[tuple[Case, Array]]) -> Columns:
-    """Of moduli, radii, free lengths and registrations; causes: from the cases `others` (with their edges) to
-    this one."""
+    """Columns of a case: free ones for moduli, radii, free lengths and registrations.
+
+    Those of causes are the differences between this case and each of `others` (cases with their edges).
+    """
     specimens = sorted({t.specimen for t in case.trials})
     shared = 2 * len(specimens) + len(case.trials)
     count = shared + 4 * len(case.trials) * len(TIMES)
@@ -139,7 +147,10 @@ def columns_at(case: Case, edges: Array, kept: Table, others: Sequence[tuple[Cas
 
 
 def _fitted(beam: Beam, own: Array, kind: int) -> Beam:
-    """log modulus; radius and free length in standard deviations; held within the table."""
+    """Beam with changed parameters, limited to the range of the table.
+
+    `own` holds the change of ln(modulus), and those of radius and free length in standard deviations.
+    """
     radius = beam.radius + RADIUS_SD * float(np.clip(own[1], -6, 6))
     unit = LENGTHS[kind][0] * radius / RADIUS
     length = np.clip(
@@ -153,7 +164,11 @@ def _fitted(beam: Beam, own: Array, kind: int) -> Beam:
 def _misfit(
     kind: int, measured: Array, curve: Array, slopes: list[Array], place: Array
 ) -> tuple[Array, Array]:
-    """Whitened normal distance (rows,) of the points from the registered curve, and its slopes (rows, 7)."""
+    """Whitened normal distance (rows,) of points from the registered curve, and its derivatives (rows, 7).
+
+    `place` (4,) is the registration in standard deviations; `slopes` are the derivatives of the curve by the
+    beam's parameters.
+    """
     registration = [
         SHIFT_SD * np.stack([np.ones_like(curve[..., 0]), np.zeros_like(curve[..., 0])], axis=-1),
         SHIFT_SD * np.stack([np.zeros_like(curve[..., 0]), np.ones_like(curve[..., 0])], axis=-1),

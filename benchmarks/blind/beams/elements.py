@@ -1,12 +1,13 @@
 """Mesh and finite elements of a half beam (y >= 0).
 
-A section is a half disc of curved quadrilaterals (half a hexagon inside, rings around it); the beam is that
-section swept along x, so that all layers share one connectivity. Elements are hexahedra of one polynomial
-degree with
+A section is a half disc of curved quadrilaterals (half a hexagon inside, rings around it); the beam is the
+section extruded along x, so that all layers share one connectivity. Elements are hexahedra of one polynomial
+degree with the energy density
 
     W = mu/2 [(I1bar - 3) + a (I1bar - 3)^2] + p (J - 1) - p^2 / (2 K),
 
-where the pressure p is a polynomial one degree lower, discontinuous from element to element, and condensed.
+where the pressure p is a polynomial one degree lower, discontinuous between elements and statically
+condensed.
 """
 
 from __future__ import annotations
@@ -26,13 +27,13 @@ Indices = NDArray[np.intp]
 
 
 def lobatto(degree: int) -> Array:
-    """Gauss-Lobatto points of a degree on [-1, 1]."""
+    """Gauss-Lobatto points of a degree on [-1, 1], shape (degree + 1,)."""
     inner = legendre.legroots(legendre.legder([0.0] * degree + [1.0]))
     return np.concatenate([[-1.0], np.sort(inner), [1.0]])
 
 
 def lagrange(nodes: Array, at: Array) -> tuple[Array, Array]:
-    """Values and slopes of the Lagrange polynomials through `nodes`, each (len(at), len(nodes))."""
+    """Values and derivatives of the Lagrange polynomials through `nodes`, each (len(at), len(nodes))."""
     powers = np.vander(nodes, increasing=True)
     coefficients = np.linalg.inv(powers)
     k = np.arange(len(nodes))
@@ -44,8 +45,15 @@ def lagrange(nodes: Array, at: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """nodes (n, 2): y, z on the unit half disc; quads (m, (p+1)^2): first local axis slow; flat: nodes with
-    y = 0; top, bottom: the nodes at (0, 1) and (0, -1)."""
+    """Mesh of the unit half disc.
+
+    Attributes
+    ----------
+    nodes : coordinates y, z, shape (n, 2).
+    quads : nodes of the quadrilaterals, shape (m, (p + 1)^2); the first local axis is the slow one.
+    flat : nodes with y = 0.
+    top, bottom : the nodes at (0, 1) and (0, -1).
+    """
 
     nodes: Array
     quads: Indices
@@ -56,7 +64,11 @@ class Section:
 
 @lru_cache(maxsize=8)
 def half_disc(degree: int, rings: tuple[float, ...], split: int = 1) -> Section:
-    """rings: radii (parts of 1) of the circles between elements, the last 1; the first bounds the hexagon."""
+    """Mesh of the unit half disc.
+
+    `rings` are the radii of the circles between elements, ascending, the last one 1; the first is the
+    circumradius of the hexagon. Each quadrilateral is split into split^2.
+    """
     grid = lobatto(degree)
     steps = np.concatenate([(k + (grid + 1) / 2) / split for k in range(split)])
     steps = steps.reshape(split, degree + 1)
@@ -89,7 +101,7 @@ def half_disc(degree: int, rings: tuple[float, ...], split: int = 1) -> Section:
 
 
 def face_shares(section: Section, degree: int) -> Array:
-    """Part of a load spread evenly over the section that each node carries (n,)."""
+    """Fraction of a uniformly distributed load on the section that each node carries, shape (n,)."""
     points, gauss = legendre.leggauss(degree + 2)
     value, slope = lagrange(lobatto(degree), points)
     shares = np.zeros(len(section.nodes))
@@ -106,7 +118,7 @@ def face_shares(section: Section, degree: int) -> Array:
 def axial_breaks(
     start: float, end: float, *, both_ends: bool, first: float, growth: float, longest: float
 ) -> Array:
-    """Layer boundaries from `start` to `end` [m], graded towards the clamp at start (and at end)."""
+    """Layer boundaries from `start` to `end` [m], graded towards the clamp at `start` (and at `end`)."""
     span = (end - start) / (2 if both_ends else 1)
     sizes = [first]
     while sum(sizes) < span:
@@ -118,7 +130,7 @@ def axial_breaks(
 
 
 def with_breaks(breaks: Array, wanted: tuple[float, ...], *, near: float = 1.2e-3) -> Array:
-    """`breaks` with further boundaries at `wanted`; inner ones nearer than `near` [m] to a wanted one go."""
+    """`breaks` with further ones at `wanted`; inner ones closer than `near` [m] to these are removed."""
     for value in wanted:
         keep = np.abs(breaks - value) > near
         keep[[0, -1]] = True
@@ -131,9 +143,16 @@ _EYE = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class Bricks:
-    """Elements with their rest shape. gradient (e, q, 3, a): of the shape functions; weight (e, q): rest
-    volume [m3]; value (q, a); pressure (q, b): pressure polynomials; point (e, q, 3): where each quadrature
-    point lies in the ideal prism [m]."""
+    """Elements in their stress-free shape.
+
+    Attributes
+    ----------
+    gradient : gradients of the shape functions [1/m], shape (e, q, 3, a).
+    weight : volume of the quadrature points [m3], shape (e, q).
+    value : shape functions, shape (q, a).
+    pressure : pressure polynomials, shape (q, b).
+    point : quadrature points in the ideal prism [m], shape (e, q, 3).
+    """
 
     gradient: Array
     weight: Array
@@ -143,9 +162,10 @@ class Bricks:
 
 
 def bricks(degree: int, ideal: Array, rest: Array, layer: Callable[[float], float] | None = None) -> Bricks:
-    """ideal, rest: (e, a, 3) nodes of the elements in the prism and stress-free; a: (plane, slow, fast).
+    """Elements with nodes `ideal` in the prism and `rest` stress-free, both (e, a, 3).
 
-    layer: the slow coordinate at which, for a fast one, another material begins: integrated on both sides.
+    The nodes a are numbered (plane, slow, fast). `layer` maps the fast coordinate to the slow coordinate of a
+    material interface; the quadrature is split there. ValueError if an element is inverted.
     """
     grid, (abscissa, gauss) = lobatto(degree), leggauss(degree + 1)
     places = []
@@ -171,7 +191,7 @@ def bricks(degree: int, ideal: Array, rest: Array, layer: Callable[[float], floa
     )
     jacobian: Array = np.einsum("qka,eai->eqki", local, rest)
     volume = np.linalg.det(jacobian)
-    if (volume * volume[:, :1] <= 0).any():  # left- and right-handed elements are both welcome
+    if (volume * volume[:, :1] <= 0).any():  # left- and right-handed elements are both allowed
         raise ValueError("blind mesh: an element is turned inside out")
     gradient = np.linalg.solve(jacobian, np.broadcast_to(local, (len(rest), *local.shape)))
     weight = np.abs(volume) * at[:, 3]
@@ -182,14 +202,20 @@ def bricks(degree: int, ideal: Array, rest: Array, layer: Callable[[float], floa
 
 
 def smallest_volume(mesh: Bricks, x: Array) -> float:
-    """The least det F over the quadrature points at positions x (e, a, 3)."""
+    """Minimum of det F over the quadrature points at positions x (e, a, 3)."""
     return float(np.linalg.det(np.matmul(mesh.gradient, x[:, None])).min())
 
 
 @dataclass(frozen=True, eq=False)
 class Stiffness:
-    """force (e, a, 3), matrix (e, a, 3, b, 3) condensed; recover (e, b, 3a) and shift (e, b): the pressure's
-    change is recover @ du + shift."""
+    """Forces and tangent of the elements, with the pressure condensed.
+
+    Attributes
+    ----------
+    force : shape (e, a, 3).
+    matrix : shape (e, a, 3, b, 3).
+    recover, shift : shapes (e, b, 3a) and (e, b); the pressure changes by recover @ du + shift.
+    """
 
     force: Array
     matrix: Array
@@ -198,7 +224,10 @@ class Stiffness:
 
 
 def assemble(mesh: Bricks, x: Array, p: Array, mu: Array, stiffening: float, bulk_ratio: float) -> Stiffness:
-    """x (e, a, 3): positions; p (e, b); mu (e, q): shear modulus at the quadrature points."""
+    """Forces and tangent at positions x (e, a, 3) and pressures p (e, b).
+
+    mu (e, q) is the shear modulus at the quadrature points; `stiffening` is a and `bulk_ratio` K / mu.
+    """
     e, q, _, a = mesh.gradient.shape
     F = np.matmul(mesh.gradient, x[:, None]).swapaxes(-1, -2)
     J = np.linalg.det(F)

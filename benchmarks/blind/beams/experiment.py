@@ -1,5 +1,6 @@
-"""An experiment folder (docs/reference/experiment-format.md) from a case's true silhouettes: contour noise
-and one registration error a photograph, drawn from the case's seed when it is written.
+"""Write an experiment folder (docs/reference/experiment-format.md) from a case's true silhouettes.
+
+Contour noise and one registration error per photograph are drawn from the case's seed when it is written.
 """
 
 from __future__ import annotations
@@ -20,8 +21,10 @@ SIDES = ("upper", "lower")
 
 
 def write_experiment(case: Case, edges: Array, folder: Path, *, noise: bool = True) -> None:
-    """experiment.yaml and a table a photograph. edges: as `solve_case` gives them. Writes nothing of the
-    truth."""
+    """Write experiment.yaml and one table per photograph, without any of the truth.
+
+    `edges` are those of `solve_case`; `noise` False omits contour noise and registration errors.
+    """
     rng = np.random.default_rng([case.seed, case.index, 2])
     (folder / "beams").mkdir(parents=True)
     trials = []
@@ -53,7 +56,7 @@ def write_experiment(case: Case, edges: Array, folder: Path, *, noise: bool = Tr
 
 
 def rewrite_tables(folder: Path, moved: Callable[[Array], Array]) -> None:
-    """Put each edge (k, 2) [m] of each photograph elsewhere."""
+    """Replace each edge (k, 2) [m] of each photograph by `moved` of it."""
     for path in sorted((folder / "beams").glob("*.csv")):
         _, *rows = path.read_text(encoding="utf-8").splitlines()
         points = {side: [r.split(",")[1:] for r in rows if r.startswith(side)] for side in SIDES}
@@ -62,19 +65,19 @@ def rewrite_tables(folder: Path, moved: Callable[[Array], Array]) -> None:
 
 
 def jittered(s: Array, rng: np.random.Generator) -> Array:
-    """Traced where the eye falls: points moved by a few per cent of their spacing."""
+    """Traced positions with the inner points moved at random by up to 5 % of the smallest spacing."""
     moved = s.copy()
     moved[1:-1] += 0.05 * np.diff(s).min() * rng.uniform(-1, 1, len(s) - 2)
     return moved
 
 
 def as_traced(edges: Array, rng: np.random.Generator) -> str:
-    """Edges (2, k, 2) [m] as a photograph's table has them: contour noise, and where the photograph lies."""
+    """Table of a photograph from its edges (2, k, 2) [m], with contour noise and a registration error."""
     return _table(_registered(_noisy(edges, rng), rng))
 
 
 def _noisy(edges: Array, rng: np.random.Generator) -> Array:
-    """Each edge moved along its normal by a smooth random error."""
+    """Move each edge along its normal by a smooth random error."""
     moved = np.empty_like(edges)
     for side, edge in enumerate(edges):
         apart = np.hypot(*np.diff(edge, axis=0).T)
@@ -88,7 +91,7 @@ def _noisy(edges: Array, rng: np.random.Generator) -> Array:
 
 
 def _registered(edges: Array, rng: np.random.Generator) -> Array:
-    """Where the photograph lies: scaled and turned about the frame's origin, shifted."""
+    """Scale and rotate the edges about the frame's origin and shift them, at random."""
     shift, turn = SHIFT_SD * rng.standard_normal(2), ROLL_SD * rng.standard_normal()
     scale = 1 + SCALE_SD * rng.standard_normal()
     c, s = np.cos(turn), np.sin(turn)

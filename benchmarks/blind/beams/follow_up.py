@@ -1,12 +1,12 @@
 """Follow-up experiments that a diagnosis advises: the same specimens in another pose, or measured directly.
 
-Poses are physical: a specimen whose ends are swapped shows what was in the grip, one that is pushed deeper
-into it shows less of its clamped end. They are solved with the hidden effects; noise and registration are
+Poses are physical: a specimen with swapped ends shows what was in the grip, one that is pushed deeper into
+the grip shows less of its clamped end. They are solved with the hidden effects; noise and registration are
 drawn anew.
 
-Direct measurements (scales, callipers, a level, ...) are entered in experiment.yaml where it has a key with a
-standard deviation for them. Of the others the lab knows whether the effect is present, by three standard
-deviations of the gauge, and takes effects that this refutes out of the catalogue.
+Direct measurements (scales, callipers, a level, ...) are entered in experiment.yaml if it has a key with a
+standard deviation for them. For the others, an effect counts as present from three standard deviations of the
+gauge, and effects that the readings refute are removed from the catalogue.
 """
 
 from __future__ import annotations
@@ -37,17 +37,25 @@ from benchmarks.blind.beams.model import GRAVITY, WINDOW, Beam
 from benchmarks.blind.beams.solver import NoEquilibriumError, solve
 
 Array = NDArray[np.float64]
-GRIP = 0.020  # of a specimen that is held [m]
+GRIP = 0.020  # clamped length of a specimen [m]
 OTHER = 0.075  # another free length [m]
 TIP_MASS = 0.005  # [kg]
-ONCE = ("lamp", "swapped-photograph")  # happened in the first session only
+ONCE = ("lamp", "swapped-photograph")  # occur in the first session only
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """beam: the true beam in it, from the true one and the free length [m] of a new clamping; None where it
-    cannot be. free_length [m]: another than the trial's; time [s] since release. entry: what experiment.yaml
-    says of it. again: more photographs of the same trials."""
+    """Another arrangement of the specimens.
+
+    Attributes
+    ----------
+    beam : function of the true beam and the free length [m] of the new clamping that returns the true beam in
+        this pose; None if the pose is impossible.
+    free_length : new nominal free length [m]; None: that of the trial.
+    time : time since release [s].
+    entry : keys of the trial in experiment.yaml that change.
+    again : True if the photographs are added to the same trials.
+    """
 
     beam: Callable[[Beam, float], Beam | None]
     free_length: float | None = None
@@ -66,7 +74,11 @@ def turned(beam: Beam, length: float) -> Beam:
 
 
 def swapped(beam: Beam, length: float) -> Beam:
-    """What was at x is at L - GRIP - x, in a bridge at L - x; a blob at the free end is in the grip now."""
+    """Beam with swapped ends.
+
+    Material at x moves to L - GRIP - x, in a bridge to L - x; an added mass at the free end is then in the
+    grip.
+    """
     shift = 0.0 if beam.bridge else GRIP
     moved = _along(beam, shift)
     return replace(
@@ -80,7 +92,7 @@ def swapped(beam: Beam, length: float) -> Beam:
 
 
 def _along(beam: Beam, shift: float) -> Beam:
-    """The beam about a middle that lies `shift` nearer to its clamped end (its length stays as it is)."""
+    """Beam whose radius and modulus refer to a middle `shift` nearer to its clamped end; same length."""
     size, stiff = 1 - beam.taper * shift, 1 - beam.axial_gradient * shift
     return replace(
         beam,
@@ -96,14 +108,17 @@ def _hung(beam: Beam, _: float) -> Beam | None:
 
 
 def deeper(beam: Beam, length: float) -> Beam | None:
-    """Pushed deeper into its grip, down to this free length; a beam that is shorter already cannot be."""
+    """Beam pushed deeper into its grip, to this free length; None if it is not longer than that.
+
+    Also None for a bridge and for a void that would be partly in the grip.
+    """
     in_grip = beam.length - length
     if beam.bridge or in_grip <= 0:
         return None
     moved = replace(_along(beam, -in_grip / 2), length=length)
     at = beam.void_at - in_grip
     if beam.void and at > -WINDOW / 2:
-        return replace(moved, void_at=at) if at > WINDOW / 2 else None  # half of it held: not photographed
+        return replace(moved, void_at=at) if at > WINDOW / 2 else None  # partly clamped: not photographed
     return replace(moved, void=0.0)
 
 
@@ -126,14 +141,16 @@ POSES: dict[str, Pose] = {
 
 
 def new_id(trial: str, name: str) -> str:
-    """Of the trial that repeats another one in a pose."""
+    """Id of the trial that repeats another one in a pose."""
     return f"{trial}-{name}"
 
 
 def photograph_again(case: Case, name: str, folder: Path) -> list[str]:
-    """Add a photograph of each beam in the pose `name` to the experiment in `folder`. Returns the trials that
-    could not be made, with the reason. A specimen that is a single beam is called by its trial, so that what
-    sits in one beam can be in both of its poses."""
+    """Add a photograph of each beam in the pose `name` to the experiment in `folder`.
+
+    Returns the trials that could not be made, with the reason. If each beam is a specimen, the specimens are
+    renamed to the trials' ids, so that an effect in one beam can be in both of its poses.
+    """
     pose = POSES[name]
     rng = np.random.default_rng([case.seed, case.index, 3, list(POSES).index(name)])
     path = folder / "experiment.yaml"
@@ -174,7 +191,7 @@ def photograph_again(case: Case, name: str, folder: Path) -> list[str]:
 
 
 def _true(case: Case, trial: int, pose: Pose, clamped: float, dice: float) -> Beam | None:
-    """The true beam in a pose; clamped [m]: free length of the new clamping, to which adds what slips out."""
+    """True beam in a pose; `clamped` [m]: free length of the new clamping, without slip."""
     lasting = replace(case, hidden=tuple(h for h in case.hidden if h.effect not in ONCE))
     beam = beam_at(lasting, trial, time=pose.time, dice=dice)
     return pose.beam(beam, clamped + beam.length - case.trials[trial].length)
@@ -185,8 +202,13 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Gauge:
-    """sds: standard deviation [SI] with which it reads an amplitude; enters: the effects whose readings the
-    experiment's file holds."""
+    """A direct measurement.
+
+    Attributes
+    ----------
+    sds : standard deviations [SI] of its readings of amplitudes.
+    enters : effects whose readings have keys in experiment.yaml.
+    """
 
     sds: dict[str, float] = field(default_factory=dict)
     enters: Names = ()
@@ -208,9 +230,10 @@ PRESENT = 3.0
 
 
 def measure(case: Case, name: str, alternatives: Iterable[Names], folder: Path) -> tuple[Names, Names]:
-    """Read the gauge; enter in the experiment in `folder` what it has keys for. Returns the effects that were
-    entered, and the ones that readings refute among `alternatives`, sets of effects: those that stand in no
-    set with which the readings agree, and what was read to be absent."""
+    """Read the gauge, and enter the readings in the experiment in `folder` if it has keys for them.
+
+    Returns the effects that were entered, and the ones that the readings refute: see `refuted`.
+    """
     gauge = GAUGES[name]
     rng = np.random.default_rng([case.seed, case.index, 4, list(GAUGES).index(name)])
     _enter(case, gauge.enters, folder, rng)
@@ -223,7 +246,11 @@ def measure(case: Case, name: str, alternatives: Iterable[Names], folder: Path) 
 
 
 def refuted(there: dict[str, bool], alternatives: Iterable[Names]) -> Names:
-    """there: whether an effect was seen by the gauge, by name."""
+    """Effects that the readings refute; `there`: True for each effect that the gauge found present.
+
+    These are the effects read to be absent, and those that occur only in `alternatives` (sets of effects)
+    that disagree with the readings; never an effect read to be present.
+    """
     sets = [set(names) for names in alternatives]
     standing = [s for s in sets if all((effect in s) == seen for effect, seen in there.items())]
     kept = set().union(*standing)
@@ -241,7 +268,7 @@ def _enter(case: Case, effects: Names, folder: Path, rng: np.random.Generator) -
             true = next(t.density for t in case.trials if t.material == material)
             entry["density_kg_m3"] = round(float(true + GAUGE_DENSITY_SD * rng.standard_normal()), 1)
             entry["density_sd_kg_m3"] = GAUGE_DENSITY_SD
-    radii: dict[str, float] = {}  # of a specimen, measured once
+    radii: dict[str, float] = {}  # by specimen, measured once
     for k, (trial, entry) in enumerate(zip(case.trials, experiment["trials"], strict=True)):
         beam = true_beam(case, k, len(TIMES) - 1)
         if "radius" in effects:

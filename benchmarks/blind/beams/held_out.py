@@ -1,7 +1,7 @@
-"""Held-out improvement of a named cause, against the noise and against a fit that is given the true cause.
+"""Held-out improvement by a named cause, compared with the noise and with a fit that is given the true cause.
 
-The rms on held-out data contains the noise of these data, which no fit removes: `raw` is the relative fall of
-the rms itself, `beyond` that of its excess over the noise (root of the difference of squares).
+The rms on held-out data contains the noise of these data, which no fit removes: `raw` is the relative
+reduction of the rms itself, `beyond` that of its excess over the noise (root of the difference of squares).
 """
 
 from __future__ import annotations
@@ -20,9 +20,13 @@ FALL, NEAR = 0.30, 1.2
 
 @dataclass(frozen=True, kw_only=True)
 class Fall:
-    """Held-out rms [mm]: of the baseline, of the extension, of noise alone; true_cause: of the extension
-    that is found where the true cause is the only one in the catalogue, None where that was not run or found
-    none."""
+    """Held-out rms [mm].
+
+    Attributes ---------- before, after, noise : of the baseline, of the extension and of noise alone.
+    true_cause : of the extension found with the true cause alone in the catalogue; None if this was not run
+    or
+        found none.
+    """
 
     before: float
     after: float
@@ -35,13 +39,13 @@ class Fall:
 
     @property
     def beyond(self) -> float:
-        """0 where the baseline leaves no more than noise does."""
+        """Relative reduction of the excess over the noise; 0 if the baseline has none."""
         excess = _excess(self.before, self.noise)
         return 1 - _excess(self.after, self.noise) / excess if excess else 0.0
 
     @property
     def has_room(self) -> bool:
-        """Whether rms could fall by 30 % before it comes to the noise."""
+        """True if the rms could fall by 30 % before it reaches the noise."""
         return self.noise <= (1 - FALL) * self.before
 
     @property
@@ -51,7 +55,10 @@ class Fall:
 
     @property
     def near_beyond(self) -> bool:
-        """The same of the excess over noise; a thousandth of the noise is none."""
+        """True if the excess over noise is at most 1.2 times that with the true cause.
+
+        A thousandth of the noise counts as no excess.
+        """
         assert self.true_cause is not None
         reachable = _excess(self.true_cause, self.noise)
         return _excess(self.after, self.noise) <= NEAR * reachable + 1e-3 * self.noise
@@ -66,7 +73,7 @@ def measured(diagnosis: Verdict) -> bool:
 
 
 def fall(diagnosis: Verdict, true_cause: Verdict | None) -> Fall | None:
-    """None where nothing was measured, or no fold keeps the effect estimable."""
+    """Held-out rms of a diagnosis; None if it was not measured or no fold keeps the effect estimable."""
     gain = diagnosis.get("gain") or {}
     if gain.get("rms_mm_before") is None:
         return None
@@ -81,8 +88,11 @@ def large(case: Scored) -> bool:
 
 
 def gain_goals(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -> list[Goal]:
-    """Of single effects of 10 sigmas and above. Where nothing was named nothing falls: these count, in a run
-    that measures gains, as missed; those without a usable fold do not."""
+    """Goals of single effects of 10 sigmas and above.
+
+    In a run that measures gains, cases in which nothing was named count as missed; cases without a usable
+    fold do not count.
+    """
     some = {key: c for key, c in cases.items() if large(c)}
     falls = {key: fall(c.diagnosis, true_cause.get(key)) for key, c in some.items()}
     there = [f for f in falls.values() if f is not None]
@@ -125,7 +135,7 @@ def gain_goals(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -
 
 
 def gain_table(cases: Mapping[str, Scored], true_cause: Mapping[str, Verdict]) -> str:
-    """One line a case of 10 sigmas and above, and the medians."""
+    """One line per case of 10 sigmas and above, and the medians."""
     lines = [
         f"{'held-out rms [mm]':42} {'before':>7} {'after':>7} {'noise':>7} {'given':>7}"
         f" {'fall':>6} {'beyond noise':>12}"

@@ -1,7 +1,7 @@
-"""Silhouettes of the ideal beam by interpolation: what a beam without faults looks like at any modulus.
+"""Silhouettes of the ideal beam (without faults) at any modulus, by interpolation in a table.
 
-A neo-Hookean beam of nearly incompressible material depends on rho g / mu, length and radius; and only on
-two quotients of these, so that a table over load and length (at one radius) holds all.
+The shape of a nearly incompressible neo-Hookean beam depends on rho g / mu, length and radius, and
+dimensionless only on two ratios of these, so that a table over load and length (at one radius) suffices.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from benchmarks.blind.beams.solver import axis_of, solve
 Array = NDArray[np.float64]
 RADIUS = 0.010
 LENGTHS = ((0.050, False), (0.100, False), (0.150, True))  # free length [m], bridge
-STRETCH = np.array([0.965, 1.0, 1.035])  # lengths of the table in parts of the nominal one
+STRETCH = np.array([0.965, 1.0, 1.035])  # lengths of the table over the nominal one
 LOAD = (0.15, 1.22)  # rho g / mu [1/m]
 LOADS = 14
 POINTS = 33
-START = 0.0008  # of an edge beyond the clamp face [m]
+START = 0.0008  # distance of an edge's first point from the clamp face [m]
 
 
 def chebyshev(low: float, high: float, count: int) -> Array:
@@ -32,7 +32,7 @@ def chebyshev(low: float, high: float, count: int) -> Array:
 
 
 def barycentric(nodes: Array, at: Array) -> Array:
-    """(len(at), len(nodes)): polynomial interpolation from nodes (well spaced ones, as Chebyshev's)."""
+    """Matrix (len(at), len(nodes)) of polynomial interpolation from nodes, which should be Chebyshev-like."""
     gap = at[:, None] - nodes
     hit = gap == 0
     share = _weights(nodes.tobytes()) / np.where(hit, 1.0, gap)
@@ -49,21 +49,25 @@ def _weights(raw: bytes) -> Array:
 
 
 def edge_points(kind: int) -> Array:
-    """Where the edges of a beam of this kind (index of LENGTHS) are kept: s, parts of the free length."""
+    """Positions s of the stored edge points of a kind (index of LENGTHS), as fractions of the length."""
     length, bridge = LENGTHS[kind]
     first = START / length
     return chebyshev(first, 1 - first if bridge else 1.0, POINTS)
 
 
 def interpolate(kind: int, edges: Array, s: Array) -> Array:
-    """Edges (2, POINTS, 2) at other s: (2, len(s), 2)."""
+    """Edges (2, POINTS, 2) interpolated to positions s: (2, len(s), 2)."""
     return np.einsum("sk,ekc->esc", barycentric(edge_points(kind), s), edges)
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """edges (kinds, lengths, loads, 2, POINTS, 2) [m]; axes: (kinds, planes) arrays of the axis at each load
-    (nominal length), from which a faulty beam's solution starts."""
+    """Table of ideal beams.
+
+    Attributes ---------- edges : silhouettes [m], shape (kinds, lengths, loads, 2, POINTS, 2). axes : for
+    each kind the axes at the nominal length, shape (loads, planes, 4), as `solver.axis_of`; initial
+        guesses for beams with faults.
+    """
 
     edges: Array
     axes: tuple[Array, ...]
@@ -77,7 +81,10 @@ class Table:
         return bool(STRETCH[0] <= length <= STRETCH[-1] and LOAD[0] <= load <= LOAD[1])
 
     def ideal_edges(self, beam: Beam, kind: int) -> Array:
-        """(2, POINTS, 2) [m] of the beam with its length, radius, modulus, density; faults are ignored."""
+        """Silhouette (2, POINTS, 2) [m] for a beam's length, radius, modulus and density, without faults.
+
+        ValueError if the length or the load is outside the table.
+        """
         length, load = self._place(beam, kind)
         if not self.covers(beam, kind):
             raise ValueError(
@@ -125,7 +132,7 @@ def make_table(resolution: Resolution) -> Table:
 
 
 def table(path: Path, resolution: Resolution) -> Table:
-    """The table kept at `path`, made where there is none."""
+    """Table stored at `path`; computed and stored if there is none."""
     if path.exists():
         with np.load(path) as kept:
             return Table(kept["edges"], tuple(kept[f"axis_{k}"] for k in range(len(LENGTHS))))
@@ -139,7 +146,7 @@ def table(path: Path, resolution: Resolution) -> Table:
 
 
 def true_edges(kept: Table, beam: Beam, kind: int, resolution: Resolution) -> Array:
-    """Silhouette (2, POINTS, 2) [m]: from the table where the beam has no fault that needs a solution."""
+    """Silhouette (2, POINTS, 2) [m]: interpolated if the beam has no fault and is in range, else solved."""
     plain = Beam(length=beam.length, bridge=beam.bridge, mu=beam.mu, density=beam.density, radius=beam.radius)
     if plain == beam and kept.covers(beam, kind):
         return kept.ideal_edges(beam, kind)

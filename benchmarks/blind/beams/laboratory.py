@@ -1,8 +1,8 @@
-"""Beams, as the controls ask for them.
+"""Beams for the controls.
 
-True shares are to first order around the true beams: of each photograph, the normal distance between its
-edges and those of a slightly smaller cause, beside moduli and, with their priors, radii, free lengths and
-registrations.
+True shares are to first order around the true beams: for each photograph, the normal distance between its
+edges and those of a slightly smaller cause, after fitting moduli and, with their priors, radii, free lengths
+and registrations.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from benchmarks.blind.under_test import Diagnoser
 
 Array = NDArray[np.float64]
 
-NEAR = (0.8, 1.25)  # of the size that is asked of a cause
-# those outside that have a size: the others are there or not
+NEAR = (0.8, 1.25)  # size of a cause relative to the requested one
+# causes outside the library that have a size; the others are present or not
 SIZED = tuple(name for name, e in OUTSIDE.items() if e.largest != e.threshold)
-ERROR = (0.05e-3, 0.15e-3)  # rms of an error of edges that nobody states [m]
-STEP = 0.05  # of an amplitude, for slopes
+ERROR = (0.05e-3, 0.15e-3)  # rms of an unstated error of edges [m]
+STEP = 0.05  # relative change of an amplitude, for derivatives
 TRIES = 40
 
 
 @dataclass(frozen=True, kw_only=True)
 class Put:
-    """A cause as the controls see it."""
+    """A hidden cause in the form that the controls use."""
 
     name: str
     amplitude: float
@@ -49,7 +49,7 @@ class Put:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Made:
-    """A case with its true edges (trials, photographs, 2, points, 2) [m] and sizes in standard deviations."""
+    """A case with its true edges (trials, photographs, 2, points, 2) [m] and sizes [sigma]."""
 
     case: Case
     edges: Array
@@ -67,7 +67,7 @@ class Made:
         return columns_at(self.case, self.edges, ideal(), [self._smaller(k) for k in range(len(self.hidden))])
 
     def _smaller(self, k: int) -> tuple[Case, Array]:
-        """The case with less of its cause k."""
+        """Case with the amplitude of its cause k reduced by the fraction STEP."""
         amplitudes = [h.amplitude for h in self.case.hidden]
         amplitudes[k] *= 1.0 - STEP
         case = resized(self.case, tuple(amplitudes))
@@ -76,17 +76,17 @@ class Made:
 
 @lru_cache(maxsize=1)
 def ideal() -> Table:
-    """Beams without faults; kept beside the cases, half a minute to make."""
+    """Table of beams without faults; stored beside the cases, computed in half a minute."""
     return table(CASES.with_name("ideal.npz"), Resolution())
 
 
 def make(seed: int, size: float, draw: Callable[[np.random.Generator], Sequence[Any]]) -> Made:
-    """A case with these causes, each nearly as large as asked beside the others.
+    """A case with these causes, each within NEAR of the requested size when fitted beside the others.
 
     Raises
     ------
     RuntimeError
-        None was found.
+        If no draw has such sizes.
     """
     for number in range(TRIES):
         names = tuple(str(n) for n in draw(np.random.default_rng([seed, 1, number])))
@@ -94,7 +94,7 @@ def make(seed: int, size: float, draw: Callable[[np.random.Generator], Sequence[
         try:
             case, edges, sizes = make_case(number, seed, category, names, (size, size), ideal(), Resolution())
         except (NoEquilibriumError, ValueError, np.linalg.LinAlgError):
-            continue  # a beam that this draw bends beyond what the solver reaches
+            continue  # this draw has a beam that bends more than the solver can handle
         if all(NEAR[0] * size < sizes[n] < NEAR[1] * size for n in names):
             return Made(case=case, edges=edges, sizes=sizes)
     raise RuntimeError(f"seed {seed}: no causes of {size} sigmas")
@@ -107,8 +107,10 @@ def whitened(made: Made, hidden: Sequence[Put]) -> Array:
 
 
 def smooth_error(folder: Path, seed: int) -> None:
-    """Each edge is moved along its normal by a smooth error of its own; the stated ones stay, being asked for
-    of every outline."""
+    """Move each edge along its normal by a smooth random error of its own.
+
+    The stated errors stay, since the format requires them for every outline.
+    """
     rng = np.random.default_rng([seed, 7])
     size = log_uniform(rng, ERROR)
 

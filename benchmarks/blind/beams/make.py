@@ -1,9 +1,9 @@
-"""Make the blind beam experiments: true silhouettes and their truths, small, once.
+"""Make the blind beam experiments: true silhouettes and their truths, stored compactly.
 
     python -m benchmarks.blind.beams.make --cases 200 --seed 2026
     python -m benchmarks.blind.beams.make --survey --seed 7 --smallest 6 --largest 15 --out FOLDER
 
-A run that was stopped goes on where it ended. Noise is drawn when an experiment is written (`experiment.py`).
+An interrupted run resumes. Noise is drawn when an experiment is written (`experiment.py`).
 """
 
 from __future__ import annotations
@@ -27,8 +27,11 @@ Plan = list[tuple[str, tuple[str, ...]]]
 
 
 def plan(cases: int, seed: int) -> Plan:
-    """Category and effects of each case: a quarter clean, a tenth density alone, a tenth outside the library,
-    a tenth two effects, the rest one; each effect about as often as any other."""
+    """Category and effects of each case.
+
+    A quarter are clean, a tenth have a wrong density alone, a tenth an effect outside the library, a tenth
+    two effects, the rest one; effects occur about equally often.
+    """
     rng = np.random.default_rng([seed, 0])
     counts = {
         "clean": round(0.25 * cases),
@@ -55,7 +58,7 @@ def plan(cases: int, seed: int) -> Plan:
 
 
 def survey() -> Plan:
-    """Each effect of the library once, one clean case, one of density alone, one outside the library."""
+    """One case per effect of the library, one clean, one with a wrong density, one outside the library."""
     made: Plan = [("single", (name,)) for name in EFFECTS]
     return [*made, ("clean", ()), ("density", ()), ("outside", ("shadow",))]
 
@@ -69,7 +72,7 @@ def make_case(
     kept: Table,
     resolution: Resolution,
 ) -> tuple[Case, np.ndarray, dict[str, float]]:
-    """A case whose amplitudes are corrected once towards their targets; its edges; its sizes."""
+    """A case, its edges and its sizes; amplitudes are corrected once towards their targets."""
     case = stiff_enough(draw(index, seed, category, effects, sizes))
     edges = solve_case(case, kept, resolution)
     if not effects:
@@ -84,7 +87,7 @@ def make_case(
 
 
 def _sizes(case: Case, edges: np.ndarray, kept: Table, resolution: Resolution) -> dict[str, float]:
-    """Sigmas: of each effect beside the others, and of all together ("total")."""
+    """Sizes [sigma] of each effect beside the others, and of all together ("total")."""
     total = sigmas(case, edges, kept)
     if len(case.hidden) == 1:
         return {case.hidden[0].effect: total, "total": total}
@@ -97,7 +100,7 @@ def _sizes(case: Case, edges: np.ndarray, kept: Table, resolution: Resolution) -
 
 
 def recount(folder: Path, kept: Table, resolution: Resolution) -> None:
-    """Sizes in sigma of cases that were counted with another noise floor."""
+    """Compute the sizes anew of cases that were computed with another noise floor."""
     for key, entry in load_truth(folder)["cases"].items():
         if entry.get("floor") == FLOOR:
             continue

@@ -1,8 +1,7 @@
-"""A beam as it truly is, with the faults that are hidden in it, and its mesh: rest shape, moduli, dead load,
-grips.
+"""A true beam with its hidden faults, and its mesh: stress-free shape, moduli, dead load, grips.
 
-Coordinates as in docs/reference/experiment-format.md: x out of the clamp face, z up. Signs of the faults
-stand in `Beam`.
+Coordinates are those of docs/reference/experiment-format.md: x out of the clamp face, z up. Signs of the
+faults are defined in `Beam`.
 """
 
 from __future__ import annotations
@@ -31,16 +30,30 @@ WINDOW = 0.015  # length of a void [m]
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A beam as it truly is. Lengths [m], angles [rad], mu [Pa], density [kg/m3].
+    """A true beam with its faults.
 
-    grip_depth: free material inside each grip. near_tilt: positive lifts the free end. compliance
-    [rad/(N m)]: each clamp yields to its moment. squeeze: the held section lower by this part, wider so that
-    its area stays. gravity_angle: positive pulls towards +x. taper, axial_gradient [1/m]: of the size and of
-    the modulus along x, about the middle. transverse_gradient [1/m]: of the modulus along z, positive:
-    stiffer on top. curvature [1/m]: of the stress-free axis, positive upwards. void: part of stiffness and
-    weight missing over 15 mm about void_at. skin: excess modulus of the outer skin_depth. gap: the far clamp
-    is nearer by this. far_pinned: the far face turns freely about its centre. blob [kg]: hung over the last
-    3 mm. string [N]: lifts the middle 3 mm. tip [kg]: a known mass, on the free face.
+    Attributes
+    ----------
+    length, radius : free length and radius [m].
+    bridge : True if both ends are clamped.
+    mu, density : shear modulus [Pa] and density [kg/m3].
+    bulk_ratio : bulk modulus over shear modulus.
+    stiffening : a in the energy density of `elements`.
+    grip_depth : length of free material inside each grip [m].
+    near_tilt : rotation of the clamp [rad]; positive raises the free end.
+    compliance : rotation of each clamp per moment [rad/(N m)].
+    squeeze : relative reduction of the clamped section's height; it is wider so that its area stays.
+    gravity_angle : direction of gravity [rad]; positive pulls towards +x.
+    taper, axial_gradient : relative gradients of the size and of the modulus along x, about the middle [1/m].
+    transverse_gradient : relative gradient of the modulus along z [1/m]; positive is stiffer on top.
+    curvature : of the stress-free axis [1/m], positive upwards.
+    void, void_at : fraction of stiffness and weight missing over 15 mm about x = void_at [m].
+    skin, skin_depth : relative excess of the modulus in the outer skin_depth [m].
+    gap : distance by which the far clamp is too near [m].
+    far_pinned : True if the far face rotates freely about its centre.
+    blob : mass hung over the last 3 mm [kg].
+    string : upward force on the middle 3 mm [N].
+    tip : known mass on the free face [kg].
     """
 
     length: float
@@ -72,9 +85,17 @@ class Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class Resolution:
-    """degree: of the bricks; split: each quadrilateral of the section into split^2; first, growth, longest:
-    of the layers along the beam [m]. A finer `first` lets the lower edge of a soft long beam crease at the
-    clamp, with several equilibria 0.5 mm apart: real perhaps, but of no use here."""
+    """Resolution of the mesh.
+
+    A finer `first` lets the lower edge of a soft long beam crease at the clamp, with several equilibria 0.5
+    mm apart: perhaps real, but of no use here.
+
+    Attributes
+    ----------
+    degree : polynomial degree of the elements.
+    split : each quadrilateral of the section is split into split^2.
+    first, growth, longest : first layer [m], growth ratio and longest layer [m] along the beam.
+    """
 
     degree: int = 2
     split: int = 1
@@ -84,13 +105,20 @@ class Resolution:
 
 
 Array = NDArray[np.float64]
-HEXAGON = 0.5  # radius of the section's inner hexagon, parts of the beam's
+HEXAGON = 0.5  # radius of the section's inner hexagon over that of the beam
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """The meshed beam: planes of nodes, each a copy of the section. ideal, rest (planes, n, 3): the prism and
-    the stress-free shape; load (planes, n, 3) [N / Pa]; mu (e, q): modulus in parts of Beam.mu."""
+    """The meshed beam: planes of nodes, each a copy of the section.
+
+    Attributes
+    ----------
+    ideal, rest : nodes in the prism and in the stress-free shape [m], shape (planes, n, 3).
+    element : nodes of the elements, shape (e, a).
+    mu : modulus at the quadrature points over Beam.mu, shape (e, q).
+    load : dead load over Beam.mu [N/Pa], shape (planes, n, 3).
+    """
 
     beam: Beam
     degree: int
@@ -104,7 +132,10 @@ class Model:
 
 
 def mesh(beam: Beam, resolution: Resolution) -> Model:
-    """Layers graded towards the clamps, with boundaries where a fault begins and ends."""
+    """Mesh with layers graded towards the clamps and boundaries at the ends of a void and of loads.
+
+    ValueError if a skin is combined with a split section.
+    """
     start, end = -beam.grip_depth, beam.length + (beam.grip_depth if beam.bridge else 0.0)
     breaks = axial_breaks(
         start,
@@ -149,12 +180,12 @@ def mesh(beam: Beam, resolution: Resolution) -> Model:
 
 
 def _down(beam: Beam) -> Array:
-    """Where gravity pulls."""
+    """Unit vector of gravity."""
     return np.array([np.sin(beam.gravity_angle), 0.0, -np.cos(beam.gravity_angle)])
 
 
 def _skin_begins(radius: float, fast: float) -> float:
-    """Slow coordinate at which the outer quadrilaterals pass `radius` (of 1), at a fast coordinate."""
+    """Slow coordinate at which the outer quadrilaterals reach `radius` (of 1), at a fast coordinate."""
     share = (fast + 1) / 2
     corner = HEXAGON * np.exp(1j * np.pi / 3 * np.arange(2))
     inner = (1 - share) * corner[0] + share * corner[1]
@@ -173,7 +204,7 @@ def _rest_shape(beam: Beam, ideal: Array) -> Array:
 
 
 def _stiffness(beam: Beam, point: Array) -> tuple[Array, Array]:
-    """Modulus and density at the quadrature points, in parts of the beam's."""
+    """Modulus and density at the quadrature points, over those of the beam."""
     x, y, z = np.moveaxis(point, -1, 0)
     mu = (1 + beam.axial_gradient * (x - beam.length / 2)) * (1 + beam.transverse_gradient * z)
     if (mu <= 0).any():
@@ -185,7 +216,7 @@ def _stiffness(beam: Beam, point: Array) -> tuple[Array, Array]:
 
 
 def _force(beam: Beam, elements: Bricks, density: Array) -> Array:
-    """Dead load on the elements' nodes (e, a, 3), in parts of mu; the half beam carries half of a load."""
+    """Dead load on the elements' nodes (e, a, 3) over mu; the half beam carries half of a point load."""
     weight = elements.weight * density
     pull = beam.density * GRAVITY * _down(beam)
     force = np.einsum("qa,eq,i->eai", elements.value, weight, pull, optimize=True)
@@ -201,7 +232,7 @@ def _force(beam: Beam, elements: Bricks, density: Array) -> Array:
 
 
 def held_face(model: Model, end: int, turn: float) -> tuple[Array, Array]:
-    """Positions (n, 3) of a held face turned by `turn` about its clamp's centre, and their slope by it."""
+    """Positions (n, 3) of a face rotated by `turn` about its clamp's centre, and their derivative by it."""
     beam, face = model.beam, model.ideal[end].copy()
     face[:, 1:] *= 1 + beam.taper * (face[0, 0] - beam.length / 2)
     face[:, 2] *= 1 - beam.squeeze

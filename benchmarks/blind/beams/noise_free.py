@@ -1,9 +1,9 @@
-"""How large the diagnosis under test sees a hidden effect where the photographs have no noise.
+"""Size of a hidden effect in the diagnosis under test if the photographs have no noise.
 
     python -m benchmarks.blind.beams.noise_free --only 1,4,8,40      # some 10 core-s a case
     python -m benchmarks.blind.beams.noise_free --alternatives --only 82   # fits them too, 60 core-s
 
-Contour and registration noise are left out of the photographs, but not out of the expectations of the
+Contour and registration noise are omitted from the photographs, but not from the statistical model of the
 diagnosis: the output is the effect itself and the difference of the two solvers, in standard deviations of
 the diagnosis.
 """

@@ -2,12 +2,12 @@
 
     python -m benchmarks.blind.beams.run --out FOLDER              # the whole set, each by the command line
     python -m benchmarks.blind.beams.run --out FOLDER --in-process --jobs 2 --workers 1 --given-cause \\
-        --advice --control without-truth --control shuffled        # with all that is scored besides
+        --advice --control without-truth --control shuffled        # with all further scores
     python -m benchmarks.blind.beams.run --out FOLDER --score      # only score the verdicts in FOLDER
 
-Each diagnosis is given the experiment in a temporary folder, never the truth. A run that was stopped goes on
-where it ended: each verdict is kept in OUT, in a file by kind, and is not asked for again. Beams that were
-photographed in another pose on advice are diagnosed in this process: the command line takes no pose.
+Each diagnosis is given the experiment in a temporary folder, never the truth. An interrupted run resumes:
+each verdict is stored in OUT, in one file per kind, and is not computed again. Beams photographed in another
+pose on advice are diagnosed in this process, since the command line accepts no pose.
 """
 
 from __future__ import annotations
@@ -47,7 +47,17 @@ Answer = tuple[str, Verdict | None, str, float]  # case, its diagnosis, why ther
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """Stored cases, what is true of them, how they are diagnosed, and the answers by kind of question."""
+    """A run of diagnoses over stored cases.
+
+    Attributes
+    ----------
+    cases : folder of the cases.
+    truth : entries of truth.json by case.
+    finder : the diagnosis.
+    kept : stored answers by kind of question.
+    gain_from : size [sigma] from which the held-out gain is measured.
+    jobs : number of cases diagnosed at once.
+    """
 
     cases: Path
     truth: dict[str, Any]
@@ -61,7 +71,7 @@ class Run:
         return {k: Scored(self.truth[k], known[k]) for k in wanted if k in known}
 
     def ask(self, key: str, kind: str, folder: Path) -> Verdict:
-        """The answer to one kind of question about a case; folder: where its experiment is to be written."""
+        """Answer to one kind of question about a case, whose experiment is written to `folder`."""
         case, edges = load_case(self.cases, int(key))
         write_experiment(case, edges, folder)
         effects = tuple(h.effect for h in case.hidden)
@@ -78,7 +88,7 @@ class Run:
         return self.finder(folder, gain=Scored(self.truth[key], {}).sigma >= self.gain_from)
 
     def answer(self, kind: str, key: str) -> Answer:
-        """Diagnosis of a case, or why there is none."""
+        """Diagnosis of a case, or the reason why there is none."""
         began = time.monotonic()
         with tempfile.TemporaryDirectory() as place:
             try:
@@ -88,7 +98,7 @@ class Run:
         return key, diagnosis, problem, time.monotonic() - began
 
     def answers(self, kind: str, keys: Sequence[str]) -> Iterator[Answer]:
-        """As they come; several cases at once each in a process of its own."""
+        """Answers in order of completion; with several jobs, each case runs in a process."""
         if self.jobs == 1:
             yield from (self.answer(kind, key) for key in keys)
             return
@@ -98,7 +108,7 @@ class Run:
             )
 
     def fill(self, kind: str, keys: Iterable[str]) -> list[str]:
-        """Ask what has not been asked yet; returns the cases without an answer."""
+        """Ask the questions without a stored answer; return the cases that failed."""
         failed = []
         for key, diagnosis, problem, seconds in self.answers(
             kind, [k for k in keys if k not in self.kept[kind].answers]
@@ -123,7 +133,7 @@ class Run:
         )
 
     def show(self, wanted: Iterable[str]) -> None:
-        """Confusion matrix, tables and goals of what has been diagnosed."""
+        """Print the confusion matrix, tables and goals of the cases diagnosed so far."""
         cases = self.scored(wanted)
         true_cause, advised, without, mixed = (self.kept[kind].answers for kind in KINDS[1:])
         for table in (
@@ -147,7 +157,7 @@ class Run:
 
 
 def asked_for(given: argparse.Namespace) -> list[tuple[str, Callable[[Scored], bool]]]:
-    """Kinds of questions beyond the verdict, and of which cases each is asked, once that has its verdict."""
+    """Requested kinds of questions beyond the verdict, each with the condition on a scored case."""
     found: list[tuple[str, Callable[[Scored], bool]]] = []
     if given.given_cause:
         found.append(("given-cause", large))

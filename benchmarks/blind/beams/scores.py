@@ -1,6 +1,4 @@
-"""Verdicts on blind cases against their truth: confusion matrix, goals with their counts, scopes of the
-causes.
-"""
+"""Scores of verdicts on blind cases: confusion matrix, goals with their counts, scopes of the causes."""
 
 from __future__ import annotations
 
@@ -20,7 +18,7 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Scored:
-    """A case: what was true (an entry of truth.json) and its diagnosis (a diagnosis.json)."""
+    """A case: its truth (an entry of truth.json) and its diagnosis (a diagnosis.json)."""
 
     truth: Truth
     diagnosis: dict[str, Any]
@@ -31,7 +29,7 @@ class Scored:
 
     @property
     def sigma(self) -> float:
-        """Of the weakest effect that is hidden."""
+        """Size of the weakest hidden effect."""
         sizes = self.truth["sigma"]
         return float(min((sizes[name] for name in self.effects), default=0.0))
 
@@ -41,7 +39,7 @@ class Scored:
 
     @property
     def named(self) -> Names:
-        """The effects that come first, () where none is named."""
+        """Effects ranked first; () if none is named."""
         if self.verdict not in ("found", "ambiguous"):
             return ()
         return tuple(sorted(c["effect"] for c in self.diagnosis["causes"]))
@@ -53,7 +51,7 @@ class Scored:
         return self.effects in {self.named, *(tuple(sorted(a)) for a in self.diagnosis["alternatives"])}
 
     def amplitudes(self) -> list[tuple[float, float, float]]:
-        """(true, found, its standard deviation) of each effect, where the right ones come first."""
+        """(true, found, standard deviation) of each effect; empty unless the right effects are first."""
         if not self.effects or self.named != self.effects:
             return []
         found = []
@@ -66,8 +64,11 @@ class Scored:
         return found
 
     def moduli(self) -> list[float]:
-        """Relative errors of the extended model's moduli, at the density that the lab states: only their
-        quotient shows in a beam."""
+        """Relative errors of the extended model's shear moduli.
+
+        They are compared at the density that the lab states, since a beam determines only the ratio of
+        modulus and density.
+        """
         moduli = (self.diagnosis.get("extended") or {}).get("shear_modulus_Pa", {})
         errors = []
         names = trial_names(per_beam=self.truth["per_beam"])
@@ -86,7 +87,7 @@ Goal = tuple[str, str, int, int]
 
 
 def goals(cases: list[Scored]) -> list[Goal]:
-    """(what, goal, how many, of how many). Sizes are those of truth.json, in sigmas."""
+    """(description, goal, count, total) of each goal; sizes are those of truth.json, in sigmas."""
     one = [c for c in cases if c.truth["category"] == "single"]
     two = [c for c in cases if c.truth["category"] == "two"]
     clean = [c for c in cases if c.truth["category"] == "clean"]
@@ -138,7 +139,7 @@ def goals(cases: list[Scored]) -> list[Goal]:
 
 
 def confusion(cases: list[Scored]) -> str:
-    """Rows: what is true; how often; named alone; named first among several; what was named instead."""
+    """Table by true effect: cases, named alone, named first among several, and what was named instead."""
     order = ["clean", "density", *EFFECTS, *OUTSIDE, "two"]
     rows: dict[str, list[Scored]] = {}
     for case in cases:
@@ -160,7 +161,7 @@ def confusion(cases: list[Scored]) -> str:
 
 
 def by_size(cases: list[Scored]) -> str:
-    """One effect of the library: noticed, first, in the set, unique and wrong, by size."""
+    """Table of single effects of the library by size: noticed, first, in the named set, unique and wrong."""
     edges = [0, 3, 5, 7, 10, 15, np.inf]
     lines = [f"{'sigma':>8} {'cases':>5} {'noticed':>7} {'first':>5} {'in set':>6} {'wrong':>5}"]
     for low, high in pairwise(edges):
@@ -194,13 +195,16 @@ def _part(what: str, goal: str, cases: Iterable[Scored], holds: Callable[[Scored
     return what, goal, sum(holds(c) for c in kept), len(kept)
 
 
-# indices of `ideal_beams.LENGTHS` that an effect has anything to act on; others: all
+# indices of `ideal_beams.LENGTHS` that an effect can act on; other effects: all
 ACTS_ON = {"free-length": (0, 1), "added-mass": (0, 1), "clamp-gap": (2,)}
 KINDS = {"all": "all beams", "bridges": "all beams"}
 
 
 def beams_in(scope: str, effect: str, *, per_beam: bool) -> frozenset[int]:
-    """Trials (by index) that an effect acts on in a scope: all, a material, a specimen or a trial."""
+    """Indices of the trials that an effect acts on in a scope: all, a material, a specimen or a trial.
+
+    ValueError if the scope is none of these.
+    """
     names = trial_names(per_beam=per_beam)
     there = {k for k, n in enumerate(names) if scope in ("all", n["material"], n["specimen"], n["id"])}
     if not there:
@@ -209,8 +213,10 @@ def beams_in(scope: str, effect: str, *, per_beam: bool) -> frozenset[int]:
 
 
 def scopes(case: Scored) -> list[tuple[str, frozenset[int], frozenset[int]]]:
-    """(what carries it: all beams, a material or a beam; true trials; named ones) of each effect, where the
-    right effects come first."""
+    """(carrier, true trials, named trials) of each effect; empty unless the right effects are ranked first.
+
+    The carrier is "all beams", "one material" or "one beam".
+    """
     if not case.effects or case.named != case.effects:
         return []
     found = []
@@ -225,7 +231,7 @@ def scopes(case: Scored) -> list[tuple[str, frozenset[int], frozenset[int]]]:
 
 
 def scope_goals(cases: Sequence[Scored]) -> list[Goal]:
-    """How often the beams are the right ones: all together, and by what carries the fault."""
+    """How often the named beams are the right ones: for all cases, and by carrier of the effect."""
     found = [s for c in cases for s in scopes(c)]
     rows: list[Goal] = [("named rightly: in the right beams", "-", _right(found), len(found))]
     for carrier in ("all beams", "one material", "one beam"):

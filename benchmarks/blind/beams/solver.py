@@ -1,7 +1,7 @@
 """Equilibrium of a heavy silicone beam with faults: Newton's method on positions, pressures and clamp angles.
 
-The layers of a beam are condensed and eliminated one after the other, from the clamp to the end: the matrix
-is block tridiagonal.
+The inner planes of each layer are condensed; the block tridiagonal matrix of the layers' faces is eliminated
+from the clamp to the end.
 """
 
 from __future__ import annotations
@@ -28,7 +28,26 @@ def newton_step(
     spring: Array,
     turned: Array,
 ) -> tuple[Array, Array]:
-    """Moves of the positions and turns of the clamps."""
+    """Newton step: changes of the positions (planes, n, 3) and of the clamps' angles.
+
+    Parameters
+    ----------
+    model : Model
+    force, matrix : array
+        Of the elements, shapes (e, a, 3) and (e, a, 3, a, 3).
+    factor : float
+        Fraction of the load.
+    moves : array, shape (planes, n, 3)
+        Prescribed changes of the clamped faces.
+    slopes : list of array, shape (n, 3)
+        Derivatives of the clamped faces by the clamps' angles.
+    loose : array of int
+        Clamps that can rotate.
+    spring : array
+        Rotational stiffness of each clamp over mu, for the half beam.
+    turned : array
+        Rotation of each clamp from its unloaded angle [rad].
+    """
     degree, quads = model.degree, model.section.quads
     n = 3 * len(model.section.nodes)
     layers, size = len(model.mu) // len(quads), (degree + 1) * n
@@ -50,7 +69,7 @@ def newton_step(
     A[:, :, held] = 0.0
     A[:, held, held] = 1.0
     right[:, mirror] = 0.0
-    # columns: the load's right side with the faces moved as prescribed, then one for each loose clamp
+    # columns: the load's right-hand side with the prescribed faces, then one per rotating clamp
     columns = 1 + len(loose)
     inner, outer = slice(n, degree * n), np.r_[0:n, degree * n : size]
     G = A[:, inner, outer]
@@ -90,8 +109,11 @@ def newton_step(
 
 
 def _tridiagonal(S: Array, f: Array, given: Array, *, bridge: bool) -> Array:
-    """Faces' moves (faces, n, columns) from the layers' matrices S (l, 2n, 2n) and forces f (faces, n) (first
-    column only); `given` holds the moves of the held faces."""
+    """Displacements of the faces, shape (faces, n, columns).
+
+    They follow from the layers' matrices S (l, 2n, 2n) and the forces f (faces, n), which belong to the first
+    column only; `given` holds the displacements of the clamped faces.
+    """
     layers, n = len(S), S.shape[1] // 2
     last = layers - 1 if bridge else layers
     right = np.zeros_like(given)
@@ -125,8 +147,7 @@ class NoEquilibriumError(RuntimeError):
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A solved beam: positions (planes, n, 3) [m], the clamps' turns [rad] (positive: slope up), Newton
-    steps."""
+    """A solved beam: positions (planes, n, 3) [m], clamp angles [rad] (positive: slope up), Newton steps."""
 
     model: Model
     x: Array
@@ -134,8 +155,10 @@ class Shape:
     steps: int
 
     def edges(self, s: Array) -> Array:
-        """Silhouette (2, len(s), 2): x, z [m] of the upper and lower edge at s in [0, 1], the ideal prism's x
-        over its free length."""
+        """Silhouette (2, len(s), 2): x, z [m] of the upper and lower edge at s in [0, 1].
+
+        s is the x coordinate in the ideal prism over the free length.
+        """
         planes = self.model.ideal[:, 0, 0]
         degree, at = self.model.degree, s * self.model.beam.length
         layer = np.clip(np.searchsorted(planes[::degree], at, side="right") - 1, 0, len(planes) // degree - 1)
@@ -144,7 +167,7 @@ class Shape:
         columns = layer[:, None] * degree + np.arange(degree + 1)
         ends = [self.model.section.top, self.model.section.bottom]
         edges = np.einsum("sk,skec->esc", value, self.x[columns][:, :, ends][..., [0, 2]])
-        # a grip that reaches out over its face holds what lies in it straight
+        # a grip that extends over its face keeps the material inside straight
         for end, beyond in ((0, np.minimum(at - planes[0], 0)), (-1, np.maximum(at - planes[-1], 0))):
             turn = self.turn[end] if len(self.turn) == 2 or end == 0 else 0.0
             held = beyond != 0
@@ -154,8 +177,11 @@ class Shape:
 
 
 def solve(beam: Beam, *, start: Array | None = None, resolution: Resolution | None = None) -> Shape:
-    """Equilibrium. start (k, 4): x, z, slope angle of the axis at the ideal x in column 0, to begin from;
-    without it the load is raised in steps. Raises NoEquilibriumError."""
+    """Equilibrium of a beam; NoEquilibriumError if none is found.
+
+    `start` (k, 4) is an initial guess of the axis (`axis_of`): ideal x, x, z and slope angle. Without it, or
+    if it fails, the load is raised in steps.
+    """
     model = mesh(beam, resolution or Resolution())
     if start is not None:
         try:
@@ -179,7 +205,7 @@ def solve(beam: Beam, *, start: Array | None = None, resolution: Resolution | No
 
 
 def axis_of(shape: Shape) -> Array:
-    """(planes, 4): ideal x, then x, z and slope angle of the axis, as `solve` takes for its start."""
+    """Axis of a solved beam, shape (planes, 4): ideal x, then x, z and slope angle."""
     flat = shape.model.section.flat
     x = shape.x[:, flat]
     up = x[:, shape.model.section.nodes[flat, 1].argmax()] - x[:, shape.model.section.nodes[flat, 1].argmin()]
@@ -190,7 +216,7 @@ def axis_of(shape: Shape) -> Array:
 
 
 def _from_axis(model: Model, start: Array) -> Array:
-    """The prism bent along an axis, turned by the tilt (a bridge's tilt fades), closed by the gap."""
+    """Prism bent along an axis, with the tilt, curvature and gap of the beam added approximately."""
     ideal, beam = model.ideal, model.beam
     at = ideal[:, 0, 0]
     cx, cz, slope = (np.interp(at, start[:, 0], start[:, k]) for k in (1, 2, 3))
@@ -214,11 +240,11 @@ def _from_axis(model: Model, start: Array) -> Array:
 
 
 def _newton(model: Model, x: Array, factor: float) -> Shape:
-    """Newton at `factor` of the load, on positions, pressures and the turns of clamps that yield."""
+    """Newton's method at `factor` of the load, on positions, pressures and angles of rotating clamps."""
     beam, x = model.beam, x.copy()
     ends = (0, -1) if beam.bridge else (0,)
     base = np.array([beam.near_tilt, 0.0][: len(ends)])
-    spring = np.full(len(ends), np.inf)  # clamp's stiffness over mu, for the half beam
+    spring = np.full(len(ends), np.inf)  # rotational stiffness over mu, for the half beam
     if beam.compliance:
         spring[:] = 0.5 / (beam.compliance * beam.mu)
     if beam.far_pinned and beam.bridge:
@@ -255,7 +281,7 @@ def _newton(model: Model, x: Array, factor: float) -> Shape:
 
 
 def _admissible(model: Model, x: Array, dx: Array) -> float:
-    """Part of a step after which no element is turned inside out."""
+    """Fraction of a step (a power of 1/2) after which no element is inverted."""
     part = 1.0
     while smallest_volume(model.bricks, (x + part * dx).reshape(-1, 3)[model.element]) <= 0.0:
         part /= 2

@@ -1,4 +1,4 @@
-"""Clean silhouettes and truths on disk, kept apart: edges.npz and truth.json in one folder."""
+"""Clean silhouettes and truths on disk, in separate files: edges.npz and truth.json in one folder."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OF_TRIALS = {"mu": 1, "density": 2, "length": 7, "radius": 7}  # name: decimals
 
 
 def load_truth(folder: Path) -> dict[str, Any]:
-    """truth.json: {"seed", "cases": {index: ...}}; an empty one where there is none."""
+    """Content of truth.json: {"seed", "cases": {index: ...}}; without cases if there is no file."""
     path = folder / "truth.json"
     if not path.exists():
         return {"seed": None, "cases": {}}
@@ -29,11 +29,11 @@ def load_truth(folder: Path) -> dict[str, Any]:
 
 
 def save_case(folder: Path, case: Case, edges: Array, sizes: dict[str, float]) -> None:
-    """Edges first, then the truth: a case counts as made once truth.json names it."""
+    """Save edges, then the truth: a case counts as made once truth.json names it."""
     folder.mkdir(parents=True, exist_ok=True)
     key = f"{case.index:03d}"
     kept = _load_edges(folder)
-    # photographs of beams that do not change in time are kept once
+    # photographs of beams that do not change over time are stored once
     still = bool((edges == edges[:, :1]).all())
     kept[key] = (edges[:, :1] if still else edges).astype(np.float32)
     partial = folder / "edges.part.npz"
@@ -59,8 +59,10 @@ def save_case(folder: Path, case: Case, edges: Array, sizes: dict[str, float]) -
 
 
 def load_case(folder: Path, index: int) -> tuple[Case, Array]:
-    """A case and its clean silhouettes (trials, photographs, 2, POINTS, 2) [m]. Its dice are not kept: what
-    they did is in the silhouettes."""
+    """A case and its clean silhouettes (trials, photographs, 2, POINTS, 2) [m].
+
+    Its `dice` are not stored (they are 0): their effect is in the silhouettes.
+    """
     truth = load_truth(folder)
     entry = truth["cases"][f"{index:03d}"]
     trials = tuple(

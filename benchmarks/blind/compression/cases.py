@@ -1,7 +1,7 @@
-"""Cases of compressed cylinders: closed forms between free platens, and FElupe's table between bonded ones.
+"""Cases of compressed cylinders: closed forms for free platens, and FElupe's table for bonded ones.
 
-Stresses are nominal and over the shear modulus, negative in compression; `bonded.json` holds those of a
-bonded cylinder of 50 x 30 mm, made by `make_table.py`.
+Stresses are nominal and divided by the shear modulus, negative in compression; `bonded.json` holds those of a
+bonded cylinder of 50 x 30 mm, computed by `make_table.py`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ RATE = 0.005  # [1/s]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """One test as it was measured.
+    """Measured data of one test.
 
     Attributes
     ----------
@@ -51,21 +51,21 @@ class Record:
 
 
 def free(strain: Array) -> Array:
-    """Incompressible Neo-Hookean cylinder between platens without friction."""
+    """Stress of an incompressible neo-Hookean cylinder between platens without friction."""
     s = 1.0 - strain
     return s - s**-2
 
 
 @cache
 def bonded(law: str = "neo-hookean") -> Stress:
-    """FElupe's cylinder of 50 x 30 mm whose end faces stick to the platens."""
+    """Stress of FElupe's cylinder of 50 x 30 mm with end faces bonded to the platens."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     curve = CubicSpline([0.0, *table["strains"]], [0.0, *table["stress_over_shear_modulus"][law]])
     return lambda strain: np.asarray(curve(strain))
 
 
 def ramps(count: int, largest: float = LARGEST, points: int = 70) -> Array:
-    """Strain of `count` ramps, loading and unloading in turn."""
+    """Strain over `count` ramps, alternately loading and unloading."""
     there = np.linspace(0.0, largest, points)
     return np.concatenate([there if k % 2 == 0 else there[-2::-1] for k in range(count)])
 
@@ -73,7 +73,10 @@ def ramps(count: int, largest: float = LARGEST, points: int = 70) -> Array:
 def measured(
     name: str, stress: Array, *, strain: Array, material: str = "soft", seed: int, noise: float
 ) -> Record:
-    """stress: over the shear modulus; noise: standard deviation over the largest stress."""
+    """Record with noise.
+
+    `stress` is over the shear modulus, `noise` is its standard deviation over the largest stress.
+    """
     clean = SHEAR_MODULI[material] * stress
     sd = noise * float(np.abs(clean).max())
     noisy = clean + sd * np.random.default_rng(seed).standard_normal(strain.size)
@@ -81,7 +84,7 @@ def measured(
 
 
 def one_each(stress: Stress, *, strain: Array | None = None, seed: int, noise: float) -> tuple[Record, ...]:
-    """One cylinder of each material."""
+    """Records of one cylinder of each material."""
     x = ramps(1) if strain is None else strain
     return tuple(
         measured(f"{m}-1", stress(x), strain=x, material=m, seed=seed + k, noise=noise)
@@ -106,8 +109,11 @@ def _repeats(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
 def _tested_again(
     seed: int, strain_of: Callable[[Array, int], Array], factor_of: Callable[[int], float]
 ) -> tuple[Record, ...]:
-    """Five tests of one bonded cylinder that scatter by half a percent; strain_of, factor_of : what the
-    cylinder feels, and how much stiffer it is, by the number of the test."""
+    """Five tests of one bonded cylinder with a scatter of about a tenth of a percent.
+
+    By the number of the test, `strain_of` gives the strain of the cylinder and `factor_of` the factor of its
+    stress.
+    """
     rng = np.random.default_rng(seed)
     strain = ramps(1)
     found = []
@@ -120,12 +126,12 @@ def _tested_again(
 
 
 def _set(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
-    lost = float(rng.uniform(0.003, 0.006))  # of the height, a test
+    lost = float(rng.uniform(0.003, 0.006))  # fraction of the height per test
     return _tested_again(seed, lambda strain, k: strain / (1.0 - lost * k), lambda _: 1.0)
 
 
 def _order(seed: int, rng: np.random.Generator) -> tuple[Record, ...]:
-    grown = float(rng.uniform(0.006, 0.012))  # of the stress, a test
+    grown = float(rng.uniform(0.006, 0.012))  # fraction of the stress per test
     return _tested_again(seed, lambda strain, _: strain, lambda k: 1.0 + grown * k)
 
 
@@ -154,17 +160,17 @@ KINDS: dict[str, tuple[str, Callable[[int, np.random.Generator], tuple[Record, .
 
 
 def draw(kind: str, number: int) -> tuple[Record, ...]:
-    """The records of a case; `number` seeds it."""
+    """Records of a case, seeded by `number`."""
     return KINDS[kind][1](100 * number, np.random.default_rng(1000 + number))
 
 
 def write(records: tuple[Record, ...], folder: Path, name: str = "compression") -> None:
-    """experiment.yaml and its CSV files, without the truth."""
+    """Write experiment.yaml and its CSV files, without the truth."""
     (folder / "coupons").mkdir(parents=True)
     trials: list[dict[str, Any]] = []
     for r in records:
         way = np.abs(np.diff(r.strain))
-        # between a release and the next ramp the machine waits for as long as a point takes: time must grow
+        # between unloading and the next ramp the machine waits for one sampling interval: time must increase
         time = np.concatenate([[0.0], np.cumsum(np.where(way > 0.0, way, way.max()))]) / RATE
         rows = ["stretch,nominal_stress_kPa,time_s"]
         for strain, stress, t in zip(r.strain, r.stress, time, strict=True):

@@ -1,7 +1,8 @@
-"""Compression, as the controls ask for it: cylinders of two materials, closed forms and FElupe's table.
+"""Compression for the controls: cylinders of two materials, from closed forms and FElupe's table.
 
-Causes act on the nominal stress over the shear modulus, of the strain (positive in compression). They are
-sized against noise of 0.2 to 0.6 % of the largest stress, a modulus a material projected out.
+Causes act on the nominal stress over the shear modulus as a function of the strain (positive in compression).
+They are scaled relative to noise of 0.2 to 0.6 % of the largest stress, with one modulus per material
+projected out.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from benchmarks.blind.under_test import diagnose_compression
 
 Array = NDArray[np.float64]
 
-# the largest that a lab meets: parts of what platens hold, of the stress, strains, strains at a stress of the
-# soft cylinder's shear modulus (one machine presses both: the hard one makes it yield more)
+# largest amplitudes in a lab: fractions of bonding and of the stress, strains, strains at a stress of the
+# soft cylinder's shear modulus (one machine compresses both: the hard one deflects it more)
 INSIDE = {
     "platen-bonding": 1.0,
     "strain-offset": 0.03,
@@ -32,12 +33,12 @@ INSIDE = {
     "hysteresis": 0.4,
 }
 OUTSIDE = {"kink": 0.1, "cell-saturates": 0.5, "wavy-gauge": 0.05}
-NEAR = (0.8, 1.25)  # of the size that is asked of a cause
+NEAR = (0.8, 1.25)  # size of a cause relative to the requested one
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """A cause in all tests; shape: of what is not settled by its name (where a kink is, a period)."""
+    """A cause in all tests; shape: a parameter besides the amplitude (strain of a kink, a period)."""
 
     name: str
     amplitude: float
@@ -48,7 +49,7 @@ class Hidden:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A cylinder of each material, pressed `count` ramps (every other one back)."""
+    """One cylinder of each material, loaded over `count` ramps (every other one unloading)."""
 
     seed: int
     count: int
@@ -61,7 +62,7 @@ class Case:
 
 
 def stress(case: Case, hidden: Sequence[Hidden], material: str = "soft") -> Array:
-    """Of one cylinder over its shear modulus, negative in compression."""
+    """Nominal stress of one cylinder over its shear modulus, negative in compression."""
     a = {h.name: h.amplitude for h in hidden}
     shape = {h.name: h.shape for h in hidden}
     strain = case.strain
@@ -89,7 +90,7 @@ def stress(case: Case, hidden: Sequence[Hidden], material: str = "soft") -> Arra
 
 
 def whitened(case: Case, hidden: Sequence[Hidden]) -> Array:
-    """Of both cylinders, over their noise."""
+    """Stresses of both cylinders over their noise."""
     return np.concatenate(
         [
             stress(case, hidden, m) / (case.noise * float(np.abs(stress(case, case.hidden, m)).max()))
@@ -99,19 +100,19 @@ def whitened(case: Case, hidden: Sequence[Hidden]) -> Array:
 
 
 def free_of(case: Case) -> Array:
-    """A modulus a material."""
+    """Columns of one modulus per material, whitened."""
     count, base = len(SHEAR_MODULI), whitened(case, ())
     return np.asarray(np.repeat(np.eye(count), len(case.strain), axis=0) * base[:, None])
 
 
 def sigmas(case: Case, hidden: Hidden, others: tuple[Hidden, ...] = ()) -> float:
-    """Size in standard deviations, a modulus a material projected out."""
+    """Size of a cause in standard deviations, with one modulus per material projected out."""
     z = whitened(case, (*others, hidden)) - whitened(case, others)
     return float(np.sqrt(left(free_of(case), z)))
 
 
 def hide(case: Case, name: str, size: float) -> Hidden:
-    """A cause of that size, or the largest that a lab meets."""
+    """Cause of the requested size, or at the largest amplitude in a lab."""
     rng = np.random.default_rng([case.seed, 2])
     shape = {"kink": rng.uniform(0.08, 0.35), "wavy-gauge": rng.uniform(1.5, 3.0)}.get(name, 0.0)
     whole = Hidden(name=name, amplitude=1.0, shape=float(shape))
@@ -130,7 +131,10 @@ def clean(seed: int) -> Case:
 
 
 def _with(seed: int, size: float, names: Callable[[np.random.Generator], Sequence[str]]) -> Case:
-    """A case with these causes, each nearly as large as asked, and seen beside the others."""
+    """A case with these causes, each of about the requested size and detectable beside the others.
+
+    RuntimeError if there is none in 100 draws.
+    """
     for number in range(100):
         rng = np.random.default_rng([seed, 1, number])
         wanted = [str(n) for n in names(rng)]
@@ -144,7 +148,7 @@ def _with(seed: int, size: float, names: Callable[[np.random.Generator], Sequenc
 
 
 def files(case: Case, folder: Path) -> None:
-    """The experiment's folder."""
+    """Write the experiment's folder."""
     records = [
         measured(
             f"{m}-1", stress(case, case.hidden, m), strain=case.strain, material=m, seed=case.seed + k,

@@ -1,9 +1,10 @@
-"""Force of bonded cylinders, by axisymmetric FElupe elements: writes `bonded.json`.
+"""Force of bonded cylinders from axisymmetric FElupe elements: writes `bonded.json`.
 
     python -m benchmarks.blind.compression.make_table        # some minutes
 
-50 mm by 30 mm, K/G 1000. Shares nothing with `tisim`: biquadratic elements with constant-plus-linear pressure
-(`benchmarks/references/mixed.py`); where a node of the side comes down on the platen, springs hold it there.
+The cylinder is 50 mm by 30 mm, with K/G = 1000. The computation shares nothing with `tisim`: biquadratic
+elements with constant-plus-linear pressure (`benchmarks/references/mixed.py`); a node of the lateral surface
+that reaches the platen is held there by springs.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_name("bonded.json")
 RADIUS, HEIGHT, MU, RATIO = 0.025, 0.030, 10e3, 1000.0
 STRAINS = [0.01, *(round(0.025 * k, 3) for k in range(1, 23))]
-SPRING = 1e7  # [N/m] a node
+SPRING = 1e7  # [N/m] per node
 LEVEL = 2
 SHAPES, SHAPES_TO = (1.0, 2.0), 0.2
 CASES: dict[str, tuple[str, dict[str, float]]] = {
@@ -35,11 +36,11 @@ CASES: dict[str, tuple[str, dict[str, float]]] = {
 
 
 class Platen:
-    """The side's nodes against the platen at half of height (1 - strain); (z, r) are the coordinates."""
+    """Contact of the lateral nodes with the platen at height/2 (1 - strain); coordinates are (z, r)."""
 
     def __init__(self, points: Array, side: Array, height: float) -> None:
         self.points, self.side, self.height = points, side, height
-        self.landed: dict[int, float] = {}  # node: radius where it came down
+        self.landed: dict[int, float] = {}  # node: radius at which it touched down
         self.pushed = 0.0
 
     def assemble(self, u: Array, factor: float) -> tuple[Array, sp.csr_matrix]:
@@ -67,7 +68,7 @@ class Platen:
 def press(
     law: str, parameters: dict[str, float], level: int = LEVEL, *, height: float = HEIGHT, last: float = 1.0
 ) -> list[float]:
-    """Nominal stress over MU at STRAINS, up to the last."""
+    """Nominal stress over MU at STRAINS, up to the strain `last` or the last one with an equilibrium."""
     mesh = meridian(height, level)
     field = mixed_fields(fe.RegionBiQuadraticQuad(mesh), axisymmetric=True)
     z, r = mesh.points.T
@@ -101,7 +102,7 @@ def press(
 
 def main() -> None:
     cases = {name: press(*case) for name, case in CASES.items()}
-    # by diameter over height: how what is held depends on it
+    # by diameter over height: effect of the shape on the bonding
     shapes = {
         str(slender): press(*CASES["neo-hookean"], height=2.0 * RADIUS / slender, last=SHAPES_TO)
         for slender in SHAPES

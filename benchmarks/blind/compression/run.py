@@ -1,6 +1,6 @@
-"""Diagnose made compression tests, and count the verdicts: `python -m benchmarks.blind.compression.run`.
+"""Diagnose synthetic compression tests and count the verdicts: `python -m benchmarks.blind.compression.run`.
 
-Noise of 0.1 to 0.6 % of the largest stress; bonded data are FElupe's. Seeds are fixed. 12 cases of each kind
+Noise is 0.1 to 0.6 % of the largest stress; bonded data are FElupe's. Seeds are fixed. 12 cases of each kind
 take a core-minute.
 """
 
@@ -16,7 +16,7 @@ from benchmarks.blind.under_test import diagnose_compression
 
 
 def survey(kind: str, cases: int) -> tuple[Counter[str], float]:
-    """How often each verdict is given, and the largest relative error of a shear modulus."""
+    """Counts of the verdicts, and the largest relative error of a shear modulus."""
     counts: Counter[str] = Counter()
     largest = 0.0
     for number in range(cases):

@@ -1,6 +1,4 @@
-"""Cases of made coupons: which cause is hidden, by what protocol it is measured, how large it is, and the
-files of the experiment.
-"""
+"""Cases of synthetic homogeneous material tests: hidden causes, their sizes, test protocols and files."""
 
 from __future__ import annotations
 
@@ -30,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 def sigmas(case_protocols: tuple[Protocol, ...], hidden: Hidden, others: tuple[Hidden, ...] = ()) -> float:
-    """Size of a cause in standard deviations, after projecting out a modulus a specimen."""
+    """Size of a cause in standard deviations, with one modulus per specimen projected out."""
     changed: list[Array] = []
     free: dict[str, Array] = {}
     first = 0
@@ -48,13 +46,13 @@ def sigmas(case_protocols: tuple[Protocol, ...], hidden: Hidden, others: tuple[H
 
 
 def sized(protocols: tuple[Protocol, ...], hidden: Hidden, target: float) -> Hidden:
-    """The cause with the amplitude that makes it `target` sigmas, or the largest that a lab meets."""
+    """Cause with an amplitude of `target` sigmas, or the largest amplitude in a lab if that is smaller."""
     high = LARGEST[hidden.name] / hidden.amplitude
     if hidden.name == "limited-extensibility":
         furthest = max(first_invariant(p) for p in protocols if hidden.hits(p))
         high = min(high, CHAINS * 3.0 / furthest / hidden.amplitude)
     if hidden.name == "machine-compliance":
-        # the rig takes at most a fifth of the travel
+        # the rig's deflection is at most a fifth of the travel
         travel = [
             abs(p.top - 1.0) / float(np.abs(Solid(G=p.G).stress(p.mode, np.array([p.top])))[0])
             for p in protocols
@@ -74,8 +72,23 @@ NEEDS_TWO_MODES = ("anisotropy", "second-invariant")
 
 
 def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = None) -> Case:
-    """kind: clean, one (of LIBRARY), two or three at once, or outside (one of OUTSIDE); name: of the cause,
-    drawn where empty. target: its size in sigmas, drawn from 4 to 40 where None."""
+    """Draw a case.
+
+    Parameters
+    ----------
+    seed : int
+    kind : str
+        "clean", "one" (of LIBRARY), "two", "three" (that many at once) or "outside" (one of OUTSIDE).
+    name : str
+        Name of the cause; drawn if empty.
+    target : float, optional
+        Size of each cause [sigma]; log-uniform from 4 to 40 if None. At least 8 for several causes.
+
+    Raises
+    ------
+    RuntimeError
+        If no protocol shows the causes.
+    """
     rng = np.random.default_rng([seed, 0])
     for _ in range(200):
         if kind == "clean":
@@ -99,12 +112,15 @@ def make_coupon(seed: int, kind: str, name: str = "", *, target: float | None = 
 
 
 def draw_cases(count: int, seed: int) -> list[Case]:
-    """A quarter clean, a tenth outside the library, a tenth of two, the rest one effect each, all in turn."""
+    """Draw a quarter clean cases, a tenth outside the library, a tenth of two effects, the rest of one.
+
+    The effects take turns.
+    """
     return in_turn(count, seed, make_coupon, library=LIBRARY, outside=OUTSIDE, trap=False)
 
 
 def _protocols(rng: np.random.Generator, names: list[str]) -> tuple[Protocol, ...]:
-    """Trials of one or two materials that a lab would make; where a cause needs a protocol, it has it."""
+    """Plausible trials of one or two materials, with the protocols that the causes require."""
     modes = ["tension", "equibiaxial", "planar", "simple-shear", "compression"]
     number = int(rng.integers(2 if any(n in NEEDS_TWO_MODES for n in names) else 1, 4))
     chosen = [str(m) for m in rng.choice(modes, number, replace=False)]
@@ -200,13 +216,13 @@ def hide(rng: np.random.Generator, name: str, protocols: tuple[Protocol, ...], t
 
 
 def write(case: Case, folder: Path, *, noise: float = 1.0) -> None:
-    """experiment.yaml and its CSVs, without the truth. noise: part of the stated noise that is in them."""
+    """Write experiment.yaml and its CSV files, without the truth; `noise` multiplies the stated noise."""
     rng = np.random.default_rng([case.seed, 1])
     (folder / "coupons").mkdir(parents=True)
     trials: list[dict[str, Any]] = []
     for p in case.protocols:
         recorded, time, _ = p.path()
-        # the lab reads the stretch with an error of its own: the stress is that of the true one
+        # the lab measures the stretch with an error; the stress is that of the true stretch
         stress = curve(p, case.hidden) + noise * p.stress_sd * rng.standard_normal(len(recorded))
         shown = recorded + noise * p.stretch_sd * rng.standard_normal(len(recorded))
         rows = ["stretch,nominal_stress_kPa,time_s"]

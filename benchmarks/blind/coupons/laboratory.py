@@ -1,4 +1,4 @@
-"""Coupons, as the controls ask for them."""
+"""Homogeneous material tests for the controls."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from benchmarks.blind.under_test import diagnose_coupons
 
 Array = NDArray[np.float64]
 
-NEAR = (0.8, 1.25)  # of the size that is asked of a cause
+NEAR = (0.8, 1.25)  # size of a cause relative to the requested one
 
 
 def half(seed: int, size: float) -> Case | None:
-    """One cause of each sort in one experiment; None where the protocols cannot show both so large."""
+    """Case with one cause of the library and one outside it; None if protocols cannot show both so large."""
     rng = np.random.default_rng([seed, 8])
     case = make_coupon(seed, "one", str(rng.choice(LIBRARY)), target=size)
     for name in rng.permutation(OUTSIDE):
@@ -34,7 +34,7 @@ def whitened(case: Case, hidden: Sequence[Hidden]) -> Array:
 
 
 def free(case: Case) -> Array:
-    """A modulus a specimen, or a material where specimens have no names."""
+    """Columns of one modulus per specimen, or per material if specimens have no names; whitened."""
     owners = [p.specimen or p.material for p in case.protocols]
     base = [curve(p, ()) / errors(p) for p in case.protocols]
     return np.column_stack(

@@ -1,10 +1,11 @@
-"""A made homogeneous test: protocol, hidden causes, and what the load cell shows.
+"""A synthetic homogeneous material test: protocol, hidden causes and measured stress.
 
-The stress is that of an energy of the principal stretches, differentiated by a complex step. The test's path
-l(s) is incompressible; the nominal stress on a driven face is dW/ds over the number of driven axes.
+The stress is the derivative of an energy of the principal stretches, computed by a complex step. The path
+l(s) of a test is incompressible; the nominal stress on a driven face is dW/ds divided by the number of driven
+axes.
 
-Signs: strain-offset is true less recorded strain; machine-compliance strain per Pa of recorded less true;
-rate-dependence is the fraction of the stress a decade of rate, from 0.01 per second.
+Signs: strain-offset is true minus recorded strain; machine-compliance is recorded minus true strain per Pa;
+rate-dependence is the relative change of the stress per decade of rate, at 0.01 1/s.
 """
 
 from __future__ import annotations
@@ -26,10 +27,14 @@ TINY = 1e-30
 
 @dataclass(frozen=True, kw_only=True)
 class Solid:
-    """An incompressible solid of shear modulus G [Pa] (of an isotropic one, at rest).
+    """An incompressible solid of shear modulus G [Pa] at rest, without fibres.
 
-    stiffening: W gets G/2 a (I1 - 3)^2. second: part of G that goes with I2. locking: 1 / N, with N the
-    number of links of the eight chains (0: Gaussian chains). fibre: W gets G k / 8 (I4 - 1)^2 along axis 1.
+    Attributes
+    ----------
+    stiffening : a in the additional energy G/2 a (I1 - 3)^2.
+    second : fraction of G in the term with I2.
+    locking : 1/N, with N links per chain of the eight-chain model (0: Gaussian chains).
+    fibre : k in the additional energy G k/8 (I4 - 1)^2 along axis 1.
     """
 
     G: float
@@ -39,7 +44,7 @@ class Solid:
     fibre: float = 0.0
 
     def stress(self, mode: str, s: Array) -> Array:
-        """Nominal stress [Pa] at the driven stretch (simple shear: 1 + gamma)."""
+        """Nominal stress [Pa] at the driven stretch s (simple shear: s = 1 + gamma)."""
         driven = 2.0 if mode == "equibiaxial" else 1.0
         return np.asarray(np.imag(self._energy(mode, s + 1j * TINY)) / TINY / driven)
 
@@ -72,8 +77,7 @@ def _squared_stretches(mode: str, s: Complex) -> tuple[Complex, ...]:
 
 
 def _chains(i1: Complex, inverse: float) -> Complex:
-    """2 W / G of eight Langevin chains with 1/inverse links, scaled so that the modulus at rest is G; I1 - 3
-    where the chains are Gaussian."""
+    """2 W/G of eight Langevin chains with 1/inverse links and modulus G at rest; Gaussian chains: I1 - 3."""
     if inverse == 0.0:
         return i1 - 3.0
     at_rest = _chain_energy(np.array([inverse**0.5 + 0j]))[0]
@@ -83,14 +87,14 @@ def _chains(i1: Complex, inverse: float) -> Complex:
 
 
 def _chain_energy(x: Complex) -> Complex:
-    """Of a Langevin chain, a link, over kT, at the part x of its length (Kuhn and Gruen, 1942)."""
+    """Energy per link of a Langevin chain over kT, at the fraction x of its length (Kuhn and Gruen, 1942)."""
     b = _chain_tension(x)
     # ln(b / sinh b), which does not overflow for long b
     return x * b + np.log(2.0 * b) - b - np.log(1.0 - np.exp(-2.0 * b))
 
 
 def _chain_tension(x: Complex) -> Complex:
-    """b with coth b - 1/b = x, by Newton's steps, which rise to it from 3 x."""
+    """Solution b of coth b - 1/b = x by Newton's method, which increases monotonically from 3 x."""
     b = 3.0 * x
     for _ in range(100):
         coth = (1.0 + np.exp(-2.0 * b)) / (1.0 - np.exp(-2.0 * b))
@@ -102,7 +106,10 @@ def _chain_tension(x: Complex) -> Complex:
 
 
 def inverse_of(measured: Callable[[Array], Array], wanted: Array) -> Array:
-    """True stretches whose recorded ones are `wanted`: fixed points of s + (wanted - measured(s))."""
+    """True stretches s with measured(s) = wanted, by fixed-point iteration.
+
+    RuntimeError if it does not converge.
+    """
     s = wanted.copy()
     for _ in range(200):
         change = wanted - measured(s)
@@ -124,10 +131,10 @@ LIBRARY = (
     "second-invariant",
     "limited-extensibility",
 )
-# causes that a diagnosis asks only where no other explains the data; never drawn, made by name
+# causes that a diagnosis tries only if no other explains the data; never drawn, requested by name
 FURTHER = ("tension-compression-asymmetry", "permanent-set", "gauge-length")
 OUTSIDE = ("cell-drift", "slip", "wrong-area", "cell-saturates", "wavy-gauge")
-# the largest that a lab meets, in the unit of truth (SI)
+# largest amplitudes in a lab, in SI
 LARGEST = {
     "rate-dependence": 0.2,
     "hysteresis": 0.6,
@@ -152,9 +159,14 @@ LARGEST = {
 
 @dataclass(frozen=True, kw_only=True)
 class Protocol:
-    """One trial: driven from rest to `top` and back `turns` times at `rate` [1/s]; points a ramp.
+    """One trial: driven from rest to `top` and back, as `turns` + 1 ramps at `rate` [1/s].
 
-    before: the farthest stretch of this mode that the same piece saw in trials before.
+    Attributes
+    ----------
+    points : number of points of a ramp.
+    G : shear modulus [Pa].
+    stress_sd, stretch_sd : standard deviations of the stress [Pa] and of the stretch.
+    before : farthest stretch of the same specimen in this mode in earlier trials.
     """
 
     id: str
@@ -171,8 +183,7 @@ class Protocol:
     before: float = 1.0
 
     def again(self, name: str) -> Protocol | None:
-        """The same specimen in the test of this name that a diagnosis advises; None where the name is no
-        test, or says nothing new of this one."""
+        """Advised test of this name with the same specimen; None if the name is not a test of coupons."""
         made = replace(self, id=f"{self.id}-{name}", before=self.top if self.specimen else 1.0)
         beyond = {"further": 1.5, "twice": 2.25, "to-the-end": 4.0}.get(name)
         if beyond:
@@ -192,7 +203,7 @@ class Protocol:
         return min(new, key=lambda p: abs(first_invariant(p) - reach))
 
     def path(self) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Recorded stretch without noise, time [s], number of the ramp (odd: back)."""
+        """Recorded stretch without noise, time [s], and number of the ramp (odd: unloading)."""
         there = np.linspace(1.0, self.top, self.points)
         ramps = [there if k % 2 == 0 else there[::-1] for k in range(self.turns + 1)]
         stretch = np.concatenate([r if k == 0 else r[1:] for k, r in enumerate(ramps)])
@@ -203,8 +214,10 @@ class Protocol:
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """A cause in the trials of `where` (all where it is "all"); amplitude in SI; shape: of what is not
-    settled by its name (a loop's roundness, a period)."""
+    """A cause in the trials of `where` (a trial, a material or "all"); amplitude in SI.
+
+    `shape` is a parameter besides the amplitude (the roundness of a loop, a period).
+    """
 
     name: str
     amplitude: float
@@ -218,7 +231,7 @@ class Hidden:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """kind: clean, one, two or outside."""
+    """A case; kind: "clean", "one", "two", "three" or "outside"."""
 
     seed: int
     kind: str
@@ -240,7 +253,7 @@ def first_invariant(p: Protocol) -> float:
     }[p.mode]
 
 
-CHAINS = 0.56  # largest squared length of chains, over their contour length: 3/4 of it
+CHAINS = 0.56  # largest squared ratio of chain length to contour length: (3/4)^2
 REFERENCE_RATE = 0.01  # [1/s]
 
 
@@ -258,7 +271,7 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
     )
     recorded, time, ramp = p.path()
     top_energy, worn_energy = solid.energy(p.mode, np.array([p.top, p.before]))
-    # a piece remembers the trials before: its first ramp here is virgin only beyond them
+    # a specimen remembers earlier trials: its first ramp here is virgin only beyond them
     peak = np.where(ramp >= 1, max(top_energy, worn_energy), worn_energy)
     virgin = peak <= 1e-9 * top_energy
 
@@ -274,7 +287,7 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
             worn = [math.erf(x / shape["mullins"]) / math.erf(1.0 / shape["mullins"]) for x in unused]
             found = found * np.where(virgin, 1.0, 1.0 - a["mullins"] * np.array(worn))
         if "rate-dependence" in a:
-            # a power of the rate, whose slope a decade at the reference is the amplitude
+            # a power of the rate, whose slope per decade at the reference is the amplitude
             found = found * (p.rate / REFERENCE_RATE) ** (a["rate-dependence"] / math.log(10.0))
         if "tension-compression-asymmetry" in a and p.mode == "uniaxial":
             found = np.where(true < 1.0, 1.0 + a["tension-compression-asymmetry"], 1.0) * found
@@ -308,7 +321,7 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
 
 
 def errors(p: Protocol) -> Array:
-    """Standard deviation of each point's stress as the lab would say [Pa]."""
+    """Standard deviation of the stress of each point [Pa], as the lab states it."""
     recorded, _, _ = p.path()
     solid = Solid(G=p.G)
     slope = (solid.stress(p.mode, recorded + 1e-6) - solid.stress(p.mode, recorded - 1e-6)) / 2e-6
@@ -316,7 +329,7 @@ def errors(p: Protocol) -> Array:
 
 
 def until_it_locks(p: Protocol, hidden: tuple[Hidden, ...]) -> Protocol:
-    """The same test, to no more than 3/4 of the chains' length: a lab stops where the curve shoots up."""
+    """The same test, to at most 3/4 of the chains' contour length, since a lab stops at the steep rise."""
     inverse = sum(h.amplitude for h in hidden if h.name == "limited-extensibility" and h.hits(p))
     while first_invariant(p) * inverse / 3.0 > CHAINS:
         p = replace(p, top=1.0 + 0.95 * (p.top - 1.0))

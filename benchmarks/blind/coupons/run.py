@@ -1,7 +1,7 @@
-"""Diagnose made coupon experiments, and score the verdicts: `python -m benchmarks.blind.coupons.run`.
+"""Diagnose synthetic homogeneous material tests and score them: `python -m benchmarks.blind.coupons.run`.
 
-Prints each case, the confusion matrix and the goals. Cases are drawn from --seed; the truth never leaves the
-memory of this process.
+Prints each case, the confusion matrix and the goals. Cases are drawn from --seed; the truth stays in memory
+until all cases are diagnosed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from benchmarks.blind.record_scores import Pair, diagnosed, named, named_set, pa
 from benchmarks.blind.records import draw_several
 from benchmarks.blind.under_test import diagnose_coupons
 
-# each trial once more, in another way
+# tests that repeat each trial with another protocol
 SAME_TESTS = ("further", "twice", "to-the-end", "unload", "second-cycle", "faster")
 
 
@@ -26,9 +26,11 @@ def run(count: int, seed: int, *, show_each: bool = True) -> list[Pair]:
 
 
 def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | None]]:
-    """(cause, advised experiment, whether it settled the case) of the ambiguous cases of one cause: the
-    experiment is made of the same specimens, and old and new trials are diagnosed together. None: what is
-    advised is a direct measurement, which no coupon file can hold."""
+    """(cause, advised experiment, True if it settled the case) of the ambiguous cases of one cause.
+
+    The experiment is simulated with the same specimens; old and new trials are diagnosed together. The last
+    entry is None if the advice is a direct measurement, which no coupon file can contain.
+    """
     found: list[tuple[str, str, bool | None]] = []
     for (truth, diagnosis), case in zip(pairs, cases, strict=True):
         if case.kind != "one" or diagnosis["verdict"] != "ambiguous":
@@ -54,7 +56,7 @@ def settle(pairs: list[Pair], cases: list[Case]) -> list[tuple[str, str, bool | 
 
 
 def without_truth(pairs: list[Pair], cases: list[Case]) -> list[Pair]:
-    """(truth with its diagnosis, verdict without the true effect in the catalogue), cases of one."""
+    """Pairs of truth (with its diagnosis) and verdict without the true effect, for cases of one cause."""
     found: list[Pair] = []
     for (truth, diagnosis), case in zip(pairs, cases, strict=True):
         if case.kind == "one":
@@ -66,7 +68,7 @@ def without_truth(pairs: list[Pair], cases: list[Case]) -> list[Pair]:
 
 
 def show_without(pairs: list[Pair]) -> None:
-    """How often a cause that is not in the catalogue is unexplained, or named as one of its equivalents."""
+    """Print how often a cause outside the catalogue is unexplained, or named as one of its equivalents."""
     right = [
         v["verdict"] in ("unexplained", "partly explained") or named(v) in named_set(t["diagnosis"])
         for t, v in pairs

@@ -1,6 +1,4 @@
-"""Cases of made indentations: which cause is hidden, by what protocol it is measured, how large it is, and
-the files of the experiment.
-"""
+"""Cases of synthetic indentations: hidden causes, their sizes, test protocols and files."""
 
 from __future__ import annotations
 
@@ -30,8 +28,8 @@ from benchmarks.blind.indentation.model import (
 from benchmarks.blind.records import SEVERAL, apart, in_turn, reaching, write_yaml
 
 Array = NDArray[np.float64]
-# what the finder's simulation may be off by, as docs/pokes.md states it: together, and what wanders
-# (sd, width of contact)
+# relative error of the diagnosis' simulation: common part MESH, larger below SHALLOW radii, and varying
+# parts (sd, correlation length of the contact's width)
 REFINED = 1.5
 MESH, SHALLOW = 0.025 / REFINED**2, 0.4
 WANDER = ((0.008 / REFINED**2, 0.04 / REFINED), (0.006 / REFINED**2, 0.5 / REFINED))
@@ -39,8 +37,7 @@ WANDER = ((0.008 / REFINED**2, 0.04 / REFINED), (0.006 / REFINED**2, 0.5 / REFIN
 
 @lru_cache(maxsize=4)
 def _root(trials: tuple[Trial, ...]) -> Array:
-    """Lower factor of the covariance of all forces [N2]: noise, touch, and what a simulation may be off
-    by."""
+    """Lower Cholesky factor of the covariance of all forces [N2]: noise, contact depth, simulation error."""
     base = [force(t, ()) for t in trials]
     parts, width, radii, relative = [], [], [], []
     for t, f in zip(trials, base, strict=True):
@@ -66,13 +63,13 @@ def _root(trials: tuple[Trial, ...]) -> Array:
 
 
 def whitened(trials: tuple[Trial, ...], hidden: Sequence[Hidden]) -> Array:
-    """Forces without noise over their errors, which are made independent of each other."""
+    """Forces without noise, whitened by their covariance."""
     found = np.concatenate([force(t, tuple(hidden)) for t in trials])
     return np.asarray(solve_triangular(_root(trials), found, lower=True))
 
 
 def free(trials: tuple[Trial, ...], hidden: Sequence[Hidden] = ()) -> Array:
-    """Columns of a modulus a material beside these causes, whitened alike."""
+    """Whitened columns of one modulus per material, in the presence of these causes."""
     base = [force(t, tuple(hidden)) for t in trials]
     columns = [
         np.concatenate([b * (t.material == m) for t, b in zip(trials, base, strict=True)])
@@ -82,21 +79,24 @@ def free(trials: tuple[Trial, ...], hidden: Sequence[Hidden] = ()) -> Array:
 
 
 def _unique(depth: Array, f: Array) -> tuple[Array, Array]:
-    """Depths of the first stroke with the slope of its force."""
+    """Depths of the first stroke, and the derivative of its force."""
     last = int(np.argmax(depth)) + 1
     x, y = depth[:last], f[:last]
     return x, np.gradient(y, x)
 
 
 def sigmas(trials: tuple[Trial, ...], hidden: Hidden, others: tuple[Hidden, ...] = ()) -> float:
-    """Size of a cause in standard deviations, a modulus a material projected out."""
+    """Size of a cause in standard deviations, with one modulus per material projected out."""
     z = whitened(trials, (*others, hidden)) - whitened(trials, others)
     q, _ = np.linalg.qr(free(trials, others))
     return float(np.linalg.norm(z - q @ (q.T @ z)))
 
 
 def sized(trials: tuple[Trial, ...], hidden: Hidden, target: float) -> Hidden:
-    """The cause with the amplitude that makes it `target` sigmas, or the largest that a lab meets."""
+    """Cause with an amplitude of `target` sigmas, or the largest amplitude in a lab if that is smaller.
+
+    A tabled cause keeps its simulated size.
+    """
     if hidden.table:
         return replace(hidden, sigma=sigmas(trials, hidden))
     sign = math.copysign(1.0, hidden.amplitude)
@@ -114,9 +114,24 @@ RIG = ("depth-offset", "force-gain", "force-offset", "force-drift", "friction")
 
 
 def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = None) -> Case:
-    """kind: clean, one (of LIBRARY), two or three at once, trap (a gain of everything) or outside (one of
-    OUTSIDE); name: of the cause, drawn where empty. target: its size in sigmas, drawn from 4 to 40 where
-    None."""
+    """Draw a case.
+
+    Parameters
+    ----------
+    seed : int
+    kind : str
+        "clean", "one" (of LIBRARY), "two", "three" (that many at once), "trap" (a common factor of
+        all forces, which cannot be identified) or "outside" (one of OUTSIDE).
+    name : str
+        Name of the cause; drawn if empty.
+    target : float, optional
+        Size of each cause [sigma]; log-uniform from 4 to 40 if None. At least 8 for several causes.
+
+    Raises
+    ------
+    RuntimeError
+        If no protocol shows the causes.
+    """
     rng = np.random.default_rng([seed, 0])
     for _ in range(60):
         if kind == "clean":
@@ -145,13 +160,15 @@ def make_poke(seed: int, kind: str, name: str = "", *, target: float | None = No
 
 
 def draw_cases(count: int, seed: int) -> list[Case]:
-    """A quarter clean, a tenth each of traps, outside the library and two at once, the rest one each in
-    turn."""
+    """Draw a quarter clean cases, a tenth each of traps, outside the library and of two, the rest of one.
+
+    The effects take turns.
+    """
     return in_turn(count, seed, make_poke, library=LIBRARY, outside=OUTSIDE, trap=True)
 
 
 def _trials(rng: np.random.Generator, names: list[str]) -> tuple[Trial, ...]:
-    """Pokes that a lab would make; where a cause needs a protocol, it has it."""
+    """Plausible indentations of one or two materials, with the protocols that the causes require."""
     some = ["thick", "thin", "ball"]
     if any(n.startswith("inclusion") for n in names) or rng.random() < 0.2:
         some = ["core", *([str(rng.choice(some))] if rng.random() < 0.5 else [])]
@@ -202,7 +219,7 @@ def hide(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], target:
         ending = str(rng.choice(TABLED[name]))
         holders = [t for t in trials if f"{t.base}{ending}" in table()]
         if len(holders) < len(trials):
-            # several trials of this geometry, in each material: stated to be one block
+            # one trial of this geometry for each material, on the same block
             where = holders[0].base
     elif name == "inclusion-debonded":
         where = "core"
@@ -215,7 +232,7 @@ def hide(rng: np.random.Generator, name: str, trials: tuple[Trial, ...], target:
 
 
 def write(case: Case, folder: Path, *, noise: float = 1.0) -> None:
-    """experiment.yaml and its records, without the truth. noise: part of the stated noise that is in them."""
+    """Write experiment.yaml and its records, without the truth; `noise` multiplies the stated noise."""
     rng = np.random.default_rng([case.seed, 1])
     (folder / "pokes").mkdir(parents=True)
     trials: list[dict[str, Any]] = []

@@ -1,4 +1,4 @@
-"""Indentation, as the controls ask for it."""
+"""Indentation for the controls."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from benchmarks.blind.indentation.model import LIBRARY, OUTSIDE, TABLED, Case
 from benchmarks.blind.laboratory import Laboratory, smooth_error_of_records
 from benchmarks.blind.under_test import diagnose_indentation
 
-NEAR = (0.8, 1.25)  # of the size that is asked of a cause
-SIZED = tuple(n for n in LIBRARY if n not in TABLED)  # tabled ones have the sizes that were simulated
+NEAR = (0.8, 1.25)  # size of a cause relative to the requested one
+SIZED = tuple(n for n in LIBRARY if n not in TABLED)  # tabled causes have fixed, simulated sizes
 ADDED = tuple(n for n in OUTSIDE if n not in TABLED)
 
 
 def half(seed: int, size: float) -> Case | None:
-    """One cause of each sort in one experiment; None where the protocols cannot show both so large."""
+    """Case with one cause of the library and one outside it; None if protocols cannot show both so large."""
     rng = np.random.default_rng([seed, 8])
     case = make_poke(seed, "one", str(rng.choice(SIZED)), target=size)
     for name in rng.permutation(ADDED):

@@ -1,11 +1,11 @@
-"""Force of a rod pushed into a layer and drawn back, by an axisymmetric FEM of FElupe: writes `forces.json`.
+"""Force of an indenter on a layer, loading and unloading, by axisymmetric FEM (FElupe): writes `forces.json`.
 
     python -m benchmarks.blind.indentation.make_table      # adds what is missing; some minutes of CPU a case
 
 9-node quadrilaterals with discontinuous pressure, penalty contact with Coulomb friction (the solver of
-`benchmarks/references`). Neo-Hookean, K/G = 300; a disc of 50 mm radius stands for the block of 100 x 100 mm.
-Forces are over the shear modulus [mm2], depths in mm. `rigid`, of a geometry: the factor by which its forces,
-and those of its variants, are multiplied to stand for a rigid contact.
+`benchmarks/references`). Neo-Hookean, K/G = 300; a disc of 50 mm radius replaces the block of 100 x 100 mm.
+Forces are over the shear modulus [mm2], depths in mm. `rigid` holds, for each geometry, the factor by which
+its forces, and those of its variants, are multiplied to correct the penalty contact to a rigid one.
 """
 
 from __future__ import annotations
@@ -26,18 +26,28 @@ from benchmarks.references.rod import FlatRod
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_name("forces.json")
 MU, RATIO, PENALTY, SIDE = 30e3, 300.0, 6e9, 0.050
-SOFT = 1e-5  # of penetration, over which the contact sets in [m]
-STIFFER = 2.0  # the contact of the runs that the rigid one is estimated from
-# Steps to try, the next where the one before does not get to the end: first, longest, shortest [m], and
+SOFT = 1e-5  # penetration over which the contact sets in [m]
+STIFFER = 2.0  # factor of the penalty in the runs from which rigid contact is extrapolated
+# Step sizes, tried in turn until a run reaches the end: first, longest, shortest [m], and
 # iterations.
 STEPS = ((1e-4, 3e-4, 2e-6, 14), (2e-5, 5e-5, 1e-7, 30))
-FRAMES = 16  # depths on the way in, and as many on the way out (the same, where nothing slides under the rod)
+FRAMES = 16  # depths in loading, and one fewer in unloading (equal forces if nothing slides under the rod)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """Lengths in mm. skin: excess of the shear modulus in the outer millimetre. slips: the base slides
-    freely. cylinder: radius, lower and upper end of a rigid bonded cylinder on the axis."""
+    """A geometry; lengths in mm.
+
+    Attributes
+    ----------
+    height : of the layer.
+    rod, tip : radius of the indenter, and "flat" or "hemisphere".
+    depth : largest depth.
+    friction : Coulomb coefficient.
+    skin : relative excess of the shear modulus in the outer millimetre.
+    slips : True if the base slides freely.
+    cylinder : radius, lower and upper end of a rigid bonded cylinder on the axis.
+    """
 
     height: float
     rod: float
@@ -58,7 +68,7 @@ BASES = {
 
 
 def setups() -> dict[str, Setup]:
-    """By name: a base, and one with a cause in it."""
+    """Geometries by name: each of BASES, and variants with one cause."""
     found: dict[str, Setup] = {}
     for name, s in BASES.items():
         found[name] = s
@@ -78,7 +88,7 @@ def setups() -> dict[str, Setup]:
 
 
 def _span(a: float, b: float, first: float, growth: float) -> Array:
-    """Corners from a to b, the first interval about `first` long, each longer by `growth`, at most 3 mm."""
+    """Element boundaries from a to b: first interval about `first`, growing by `growth`, at most 3 mm."""
     steps = [first]
     while sum(steps) < b - a:
         steps.append(min(steps[-1] * growth, 3.0))
@@ -92,7 +102,7 @@ def _with_middles(c: Array) -> Array:
 
 
 def layer(s: Setup) -> fe.Mesh:
-    """(axial, radial) [mm], fine at the top under the rod; lines where the cylinder ends."""
+    """Mesh (axial, radial) [m], fine under the indenter, with element boundaries at the cylinder's ends."""
     r = s.rod
     inner = [np.linspace(0.0, 0.48 * r, 3), np.linspace(0.48 * r, 1.44 * r, 9)[1:]]
     last = 0.12 * r
@@ -122,8 +132,11 @@ def layer(s: Setup) -> fe.Mesh:
 
 
 def push(s: Setup, *, stiffer: float = 1.0) -> dict[str, list[float]]:
-    """depth [mm], force over G [mm2] in and out, on one list of depths; out ends where the rod leaves. By the
-    longest steps that get to the end, or as far as the shortest do."""
+    """Depth [mm], and force over G [mm2] in loading and unloading, at the same depths.
+
+    Unloading ends where the indenter separates. The steps are the longest ones that reach the end, or the
+    shortest ones if none do.
+    """
     for steps in STEPS:
         found = _push(s, stiffer, steps)
         if len(found["in"]) + len(found["out"]) == 2 * FRAMES - 1:
@@ -175,7 +188,7 @@ def _push(s: Setup, stiffer: float, steps: tuple[float, float, float, int]) -> d
 def _follow(
     model: MixedModel, rod: FlatRod, at: float, targets: Array, steps: tuple[float, float, float, int]
 ) -> tuple[list[float], float]:
-    """Force at each target, in turn, with a secant predictor, and where it ended: where Newton does."""
+    """Forces at the targets in turn, by a secant predictor, and the depth where Newton's method stopped."""
     forces: list[float] = []
     last: tuple[float, list[Array]] | None = None
     step, longest, shortest, iterations = steps
@@ -204,7 +217,10 @@ def _follow(
 
 
 def rigid(s: Setup, soft: list[float]) -> list[float]:
-    """What a rigid contact would multiply the forces by: the penalty's part goes as one over the penalty."""
+    """Factors from the forces of the penalty contact to those of a rigid one, by extrapolation in 1/penalty.
+
+    RuntimeError if the run with the stiffer contact does not reach the end.
+    """
     stiff = push(s, stiffer=STIFFER)["in"]
     if len(stiff) < len(soft):
         raise RuntimeError("the stiffer contact did not converge to the end")
@@ -213,7 +229,7 @@ def rigid(s: Setup, soft: list[float]) -> list[float]:
 
 
 def main() -> None:
-    """Solve what is not in the file yet."""
+    """Solve the geometries that are not in the file yet."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--only", default="", help="names that hold this")
     asked = parser.parse_args()

@@ -1,7 +1,7 @@
-"""A made indentation: protocol, hidden causes, and what the load cell shows.
+"""A synthetic indentation: protocol, hidden causes and measured force.
 
-Forces come from a table of an axisymmetric FEM, `forces.json`, made by `make_table.py`; the causes act on
-them.
+Forces come from a table of an axisymmetric FEM, `forces.json`, computed by `make_table.py`; most causes act
+on these forces, some have tables of their own.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from benchmarks.blind.records import truth_of
 
 Array = NDArray[np.float64]
 
-# in tables: these have the sizes that were simulated
+# causes with tables of their own, at the simulated sizes
 TABLED = {
     "friction": (" friction 0", " friction 0.1", " friction 0.25"),
     "thickness": (" height 0.85", " height 1.15"),
@@ -43,7 +43,7 @@ LIBRARY = (
     "adhesion",
 )
 OUTSIDE = ("skin", "saturation", "backlash", "screw")
-# the largest that a lab meets, in SI
+# largest amplitudes in a lab, in SI
 LARGEST = {
     "inclusion-debonded": 1.0,
     "depth-offset": 0.6e-3,
@@ -61,8 +61,17 @@ LARGEST = {
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
-    """One poke: strokes of (depth to go to [m], speed [m/s], hold there [s]); from the surface, at depth
-    0."""
+    """One indentation, starting at the surface, depth 0.
+
+    Attributes
+    ----------
+    base : geometry, of `BASES`.
+    G : shear modulus [Pa].
+    strokes : target depth [m], speed [m/s] and hold [s] of each stroke.
+    samples : points of a stroke; a hold has half as many.
+    force_sd, depth_sd : standard deviations of force [N] and depth [m].
+    touch : error of the depth of first contact [m].
+    """
 
     id: str
     material: str
@@ -75,7 +84,7 @@ class Trial:
     touch: float = 0.0
 
     def path(self) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Time [s], depth [m] and number of the stroke (holds belong to the stroke before them)."""
+        """Time [s], depth [m] and number of the stroke (a hold belongs to the stroke before it)."""
         t, d, n, now, at = [np.zeros(1)], [np.zeros(1)], [np.zeros(1, int)], 0.0, 0.0
         for k, (to, speed, hold) in enumerate(self.strokes):
             lasts = abs(to - at) / speed
@@ -96,8 +105,11 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """A cause in the trials of `where` (all where it is "all"); amplitude in SI; shape: of what is not
-    settled by its name (a relaxation time, 0 for many). table: end of the table's name."""
+    """A cause in the trials of `where` (a trial, a material, a geometry or "all"); amplitude in SI.
+
+    `shape` is a parameter besides the amplitude (a relaxation time, 0 for several); `table` is the suffix of
+    the tabled geometry.
+    """
 
     name: str
     amplitude: float = 0.0
@@ -112,7 +124,7 @@ class Hidden:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """kind: clean, one, two, trap (nothing can be seen) or outside."""
+    """A case; kind: "clean", "one", "two", "three", "trap" (the cause cannot be detected) or "outside"."""
 
     seed: int
     kind: str
@@ -135,14 +147,17 @@ def table() -> dict[str, Any]:
 
 @lru_cache(maxsize=256)
 def _curve(name: str, way: str) -> PchipInterpolator:
-    """Force over G [m2], to the power 1/p, of depth [m]; way "in" or "out"."""
+    """Interpolant of (force/G)^(1/p) [m2 to the power 1/p] over depth [m]; way: "in" or "out".
+
+    p is 1.5 for a hemisphere, else 1.
+    """
     entry = table()[name]
     depth, force = np.array(entry["depth"]), np.array(entry["in"])
     if way == "out" and len(entry["out"]):
         force = force.copy()
         out = np.array(entry["out"])
-        # a list that ends early misses its shallow end: the rod has left, or Newton has; taken as on the way
-        # in
+        # a list that ends early lacks its shallow end: the rod separated, or Newton's method failed; loading
+        # forces are used there
         force[len(force) - 1 - len(out) : len(force) - 1] = out
     force = force * np.array(table()[name.split(" ")[0]]["rigid"])[: len(force)]
     power = 1.5 if entry["setup"]["tip"] == "hemisphere" else 1.0
@@ -152,7 +167,7 @@ def _curve(name: str, way: str) -> PchipInterpolator:
 
 
 def elastic(t: Trial, depth: Array, stroke: NDArray[np.int64], ending: str = "") -> Array:
-    """Force [N] of the trial's geometry, or of one with a cause (ending of its name), at depths [m]."""
+    """Force [N] at depths [m] of the trial's geometry, or of its variant with the name suffix `ending`."""
     name = t.base + ending
     power = 1.5 if table()[t.base]["setup"]["tip"] == "hemisphere" else 1.0
     there = _curve(name, "in")
@@ -160,8 +175,8 @@ def elastic(t: Trial, depth: Array, stroke: NDArray[np.int64], ending: str = "")
     back = _curve(name, "out")
     x = np.clip(depth, 0.0, top)
     steep = max(float(there.derivative()(top)), 0.0)
-    # what sliding takes from the force on the way back was tabled for a turn at its end: the same part
-    # of it is taken at the same part of the way from another
+    # the ratio of unloading to loading force (sliding) is tabled for reversal at the largest depth; it is
+    # applied at the same fraction of the depth at which this trial reverses
     part = top * np.clip(depth / max(float(depth.max()), 1e-9), 1e-6, 1.0)
     root = there(x) * np.where(stroke % 2 == 1, back(part) / there(part), 1.0)
     root = root + steep * np.maximum(depth - top, 0.0)
@@ -169,14 +184,14 @@ def elastic(t: Trial, depth: Array, stroke: NDArray[np.int64], ending: str = "")
 
 
 def force(t: Trial, hidden: tuple[Hidden, ...]) -> Array:
-    """Force along the rod [N] as the load cell shows it, without noise."""
+    """Force along the indenter [N] as measured, without noise."""
     mine = {h.name: h for h in hidden if h.hits(t)}
     time, depth, stroke = t.path()
     radius = 1e-3 * table()[t.base]["setup"]["rod"]
     true = depth + t.touch
     if "depth-offset" in mine:
         true = true + mine["depth-offset"].amplitude
-    if "backlash" in mine:  # the screw turns before the rod comes back
+    if "backlash" in mine:  # the drive reverses before the indenter does
         true = true + mine["backlash"].amplitude * (stroke % 2 == 1) * (depth > 0)
     if "screw" in mine:
         true = true + mine["screw"].amplitude * np.sin(2 * np.pi * depth / 1e-3)
@@ -209,7 +224,7 @@ def force(t: Trial, hidden: tuple[Hidden, ...]) -> Array:
 
 
 def _relaxed(time: Array, found: Array, h: Hidden) -> Array:
-    """Maxwell branches beside a spring, stepped in time: one of time `shape`, or four over three decades."""
+    """Force with Maxwell branches in parallel: one of time `shape`, or four over three decades."""
     taus = [h.shape] if h.shape else [0.3, 3.0, 30.0, 300.0]
     total = found * (1.0 - h.amplitude)
     for tau in taus:

@@ -1,8 +1,7 @@
-"""Diagnose made indentation experiments, and score the verdicts: `python -m
-benchmarks.blind.indentation.run`.
+"""Diagnose synthetic indentation experiments and score them: `python -m benchmarks.blind.indentation.run`.
 
-Prints each case, the confusion matrix and the goals. Cases are drawn from --seed; the truth never leaves the
-memory of this process.
+Prints each case, the confusion matrix and the goals. Cases are drawn from --seed; the truth stays in memory
+until all cases are diagnosed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Experiment folders of bars that are let go: one trial for each hung mass."""
+"""Experiment folders of cantilever release tests: one trial for each hung mass."""
 
 from __future__ import annotations
 
@@ -28,8 +28,14 @@ MATERIAL = "S0"
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run:
-    """What a lab cannot know of a run: when the bar was let go [s], from what part of the drop at which it
-    settles, and how far the camera was turned [rad]."""
+    """Unknown quantities of a run.
+
+    Attributes
+    ----------
+    onset : time of the release [s].
+    start : deflection at the release over the static one.
+    angle : rotation of the camera [rad].
+    """
 
     onset: float
     start: float
@@ -38,25 +44,25 @@ class Run:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Setup:
-    """time [s] of all records, true places of the markers [mm], the runs."""
+    """Times [s] of all records, true positions of the markers [mm], and the runs."""
 
     time: Array
     places: dict[str, Array]
     runs: tuple[Run, ...]
 
     def seen(self, truth: Truth, hung: float, run: Run) -> dict[str, Array]:
-        """Displacements (t, 2) [mm] of the markers, without noise."""
+        """Displacements (t, 2) [mm] of each marker, without noise."""
         since = self.time - run.onset
         return displaced(truth, hung, since, self.places, start=run.start, angle=run.angle)
 
 
 def markers(rng: np.random.Generator) -> dict[str, Array]:
-    """True places [mm], half a millimetre off."""
+    """True positions [mm], with deviations of 0.5 mm (standard deviation)."""
     return {name: np.array(at) + 0.5 * rng.standard_normal(3) for name, at in MARKERS.items()}
 
 
 def run_of(rng: np.random.Generator, rate: float) -> Run:
-    """Let go 20 ms or so after the record begins, the frame turned by up to a degree."""
+    """Run released 20 ms after the record's start, plus up to one frame; camera rotated by up to 1 degree."""
     return Run(
         onset=0.02 + float(rng.uniform(0.0, 1.0 / rate)),
         start=float(rng.uniform(0.0, 0.1)),
@@ -65,7 +71,7 @@ def run_of(rng: np.random.Generator, rate: float) -> Run:
 
 
 def noise_of(rng: np.random.Generator, time: Array) -> Array:
-    """Of a run, in standard deviations: (markers, t, 2)."""
+    """Noise of a run in standard deviations, shape (markers, t, 2)."""
     return rng.standard_normal((len(MARKERS), len(time), 2))
 
 
@@ -80,7 +86,7 @@ def write_bars(
     seed: int = 0,
     **changed: object,
 ) -> Path:
-    """An experiment with one trial for each hung mass [kg]; changed: keys of all trials."""
+    """Write an experiment with one trial for each hung mass [kg]; `changed` holds keys of all trials."""
     rng = np.random.default_rng(seed)
     time, places = np.arange(int(seconds * rate)) / rate, markers(rng)
     runs, noise = zip(*((run_of(rng, rate), noise_of(rng, time)) for _ in hung), strict=True)
@@ -98,7 +104,7 @@ def write_runs(
     sd_mm: float,
     **changed: object,
 ) -> Path:
-    """The same, of runs that are set up; noise: see `noise_of`, a run each."""
+    """Write an experiment from given runs; `noise` holds one array of `noise_of` per run."""
     folder.mkdir(parents=True, exist_ok=True)
     trials: list[dict[str, Any]] = []
     for k, (mass, run) in enumerate(zip(hung, made.runs, strict=True)):

@@ -1,8 +1,8 @@
-"""Bars that are let go, as the controls ask for them.
+"""Cantilever release tests for the controls.
 
-Sizes and true shares are to first order around the truth (a swing is no line in its modulus, some periods
-later), beside the modulus, the material's damping, onsets, starting heights, camera angles and the markers'
-places.
+Sizes and true shares are to first order around the truth (after some periods, a free vibration is nonlinear
+in the modulus), with the modulus, the material's damping, onsets, initial deflections, camera angles and
+marker positions projected out.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from benchmarks.blind.under_test import diagnose_release
 
 Array = NDArray[np.float64]
 
-# the largest that a lab meets: rad/Nm, parts of the modulus before it relaxes (a decade of time, the second),
-# 1/s, parts; metres outside
+# largest amplitudes in a lab: rad/Nm, fractions of the unrelaxed modulus (the second: per decade of time),
+# 1/s, fractions; outside the library: metres
 INSIDE = {
     "clamp-compliance": 0.3,
     "relaxation": 0.3,
@@ -36,18 +36,21 @@ INSIDE = {
 }
 OUTSIDE = {"hum": 1e-3, "knock": 1e-3, "sagging-marker": 1e-3}
 KEYS = {"clamp-compliance": "clamp", "air-drag": "drag", "clock-rate": "clock", "image-scale": "scale"}
-NEAR = (0.8, 1.25)  # of the size that is asked of a cause
-STEP = 0.02  # of an amplitude and of a parameter, for slopes
+NEAR = (0.8, 1.25)  # size of a cause relative to the requested one
+STEP = 0.02  # relative change of an amplitude or parameter, for derivatives
 STEPS, TRIES = 4, 40
 HUNG = (0.0, 0.01)  # [kg]
 SD_MM, SECONDS, RATE = 0.02, 1.6, 200.0
-DECADES = 10.0 ** (np.arange(-6, 5) / 3.0)  # [s], three a decade
+DECADES = 10.0 ** (np.arange(-6, 5) / 3.0)  # [s], three per decade
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hidden:
-    """A cause in all runs; shape: of what its name leaves open (a relaxation time [s], an angular frequency
-    [rad/s], when a knock comes [s], how fast a marker sags [s])."""
+    """A cause in all runs.
+
+    `shape` is a parameter besides the amplitude: a relaxation time [s], an angular frequency [rad/s], the
+    time of a knock [s], or the time constant of a sagging marker [s].
+    """
 
     name: str
     amplitude: float
@@ -104,13 +107,13 @@ class Case:
 
     @cached_property
     def slopes(self) -> dict[str, Array]:
-        """What each cause makes of the records, to first order."""
+        """Change of the records by each cause, to first order."""
         seen = self.seen
         return {h.name: (seen - self.resized(h.name, 1.0 - STEP).seen) / STEP for h in self.hidden}
 
     @cached_property
     def free(self) -> Array:
-        """Columns of all that any fit may move."""
+        """Columns of all parameters that any fit may change."""
         seen, made = self.seen, self.made
         moved = [
             replace(self, shear=(1.0 + 1e-4) * self.shear).seen,
@@ -124,11 +127,11 @@ class Case:
                 place = at + 0.1 * np.eye(3)[axis]
                 moved.append(_stacked(replace(made, places={**made.places, name: place}), self.truth))
         columns = np.column_stack(moved) - seen[:, None]
-        return columns[:, np.abs(columns).max(axis=0) > 0.0]  # a marker on a clamp that holds shows no place
+        return columns[:, np.abs(columns).max(axis=0) > 0.0]  # no effect of a marker on a rigid clamp
 
 
 def _extra(hidden: Hidden, time: Array) -> Array:
-    """Height [m] that no beam takes."""
+    """Height [m] added by a cause outside the library."""
     a, shape = hidden.amplitude, hidden.shape
     if hidden.name == "hum":
         return np.asarray(a * np.exp(-time) * np.sin(shape * time))
@@ -160,7 +163,7 @@ def clean(seed: int) -> Case:
 
 
 def sized(case: Case, name: str, size: float, rng: np.random.Generator) -> Hidden:
-    """A cause of that size, or the largest that a lab meets."""
+    """Cause of the requested size, or at the largest amplitude in a lab."""
     largest = {**INSIDE, **OUTSIDE}[name]
     shape = float(rng.uniform(*SHAPES[name])) if name in SHAPES else 0.0
     found = Hidden(name=name, amplitude=0.1 * largest, shape=shape)
@@ -173,12 +176,12 @@ def sized(case: Case, name: str, size: float, rng: np.random.Generator) -> Hidde
 
 
 def make(seed: int, size: float, names: Callable[[np.random.Generator], Sequence[Any]]) -> Case:
-    """A case with these causes, each nearly as large as asked, and seen beside the others.
+    """A case with these causes, each of about the requested size and detectable beside the others.
 
     Raises
     ------
     RuntimeError
-        None was found.
+        If no draw has such sizes.
     """
 
     def beside(case: Case, own: Hidden, others: tuple[Hidden, ...]) -> float:
@@ -202,7 +205,10 @@ def write(case: Case, folder: Path) -> None:
 
 
 def smooth_error(folder: Path, seed: int) -> None:
-    """The height of each marker gets a smooth error of its own; the stated one stays: each must have one."""
+    """Add a smooth error of its own to the height of each marker.
+
+    The stated error stays, since the format requires one.
+    """
     rng = np.random.default_rng([seed, 7])
     size = log_uniform(rng, SMOOTH)
     for path in sorted(folder.glob("run-*.csv")):

@@ -1,5 +1,7 @@
-"""A cantilever that is let go: a Timoshenko beam of linear finite elements, its modes integrated with a
-viscoelastic material, and what its markers show."""
+"""Free vibration of a released cantilever, and the displacements of its markers.
+
+A Timoshenko beam of linear finite elements; its modes are integrated with a viscoelastic material.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ Array = NDArray[np.float64]
 
 LENGTH, WIDTH, HEIGHT, DENSITY, GRAVITY = 0.1, 0.02, 0.02, 1000.0, 9.81
 ELEMENTS, MODES = 60, 3
-CREEPS = 1e-3  # speed below which what rubs moves on slowly [m/s]
+CREEPS = 1e-3  # speed over which dry friction is regularised [m/s]
 MARKERS = {  # x, y, z [mm]
     "top": (100.0, 0.0, 14.0),
     "left": (100.0, 12.0, -6.0),
@@ -26,11 +28,22 @@ MARKERS = {  # x, y, z [mm]
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """shear [Pa]: at rest, all relaxed. branches: (part of it, time [s]) besides. clamp [rad/Nm]. loose: part
-    of the hung mass that does not move with the bar. rub: dry friction against the tip of a bar with a hung
-    mass [N]. held: drop at which a bar without a hung mass is held, of where it settles. extra: a further
-    height of the tip [m], by the time since the release. drag: damping in proportion to mass [1/s]. clock: by
-    which the record's time runs fast. scale: by which displacements are seen too large."""
+    """Parameters of a released cantilever.
+
+    Attributes
+    ----------
+    shear : relaxed shear modulus [Pa].
+    viscous : viscous damping relative to stiffness [s].
+    branches : (fraction of `shear`, relaxation time [s]) of each Maxwell branch.
+    clamp : compliance of the clamp [rad/(N m)].
+    loose : fraction of the hung mass that does not move with the beam.
+    rub : dry friction at the tip of a beam with a hung mass [N].
+    held : fraction of the static deflection that is subtracted for a beam without a hung mass.
+    extra : additional height of the tip's markers [m] as a function of the time since the release [s].
+    drag : damping relative to mass [1/s].
+    clock : relative error by which the record's time is too large.
+    scale : relative error by which displacements are too large.
+    """
 
     shear: float = 6e5
     viscous: float = 4e-4
@@ -46,8 +59,10 @@ class Truth:
 
 
 def beam(truth: Truth, hung: float) -> tuple[Array, Array, Array]:
-    """Stiffness, mass and load of a clamped bar with nodes (w, theta); the root's rotation is free on a
-    spring."""
+    """Stiffness, mass and load of a clamped beam with unknowns (w, theta) per node; w is 0 at the root.
+
+    The rotation of the root is on a spring: that of the clamp, or a stiff one.
+    """
     young, area, inertia = 3.0 * truth.shear, WIDTH * HEIGHT, WIDTH * HEIGHT**3 / 12.0
     sheared = 10.0 * 1.5 / (12.0 + 11.0 * 0.5)
     n, h = ELEMENTS + 1, LENGTH / ELEMENTS
@@ -71,12 +86,14 @@ def beam(truth: Truth, hung: float) -> tuple[Array, Array, Array]:
 
 
 def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Array:
-    """Nodes (t, n, 2) of w and theta at times since the release (0 before it), let go from `start` times
-    where it settles."""
+    """Nodes (t, n, 2) of w and theta at times since the release, 0 before it.
+
+    The beam is released at `start` times its static deflection.
+    """
     stiff, mass, load = beam(truth, hung)
     squares, shapes = eigh(stiff, mass)
     rest = np.linalg.solve(stiff, load)
-    whole = shapes.T @ mass @ rest  # of each mode, where it settles
+    whole = shapes.T @ mass @ rest  # static equilibrium of each mode
     parts = np.array([p for p, _ in truth.branches])
     times = np.array([t for _, t in truth.branches])
     b = len(parts)
@@ -84,7 +101,7 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
     first = np.concatenate([start * whole[:MODES], np.zeros(MODES), np.tile(start * whole[:MODES], b)])
     after = time[time > 0.0]
     friction = truth.rub if hung else 0.0
-    # state: modes' amplitudes, speeds, and what each branch remembers of each mode
+    # state: amplitudes and speeds of the modes, and the internal variable of each branch and mode
     eye, no = np.eye(MODES), np.zeros((MODES, MODES))
     k = np.diag(squares[:MODES])
     rates = np.block(
@@ -101,7 +118,7 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
         values, vectors = np.linalg.eig(rates)
         parts_of = np.linalg.solve(vectors, first - still)[:, None] * np.exp(np.outer(values, after))
         found = (vectors @ parts_of).real[:MODES] + whole[:MODES, None]
-    quick = rest - shapes[:, :MODES] @ whole[:MODES]  # higher modes follow at once
+    quick = rest - shapes[:, :MODES] @ whole[:MODES]  # higher modes are quasi-static
     nodes = np.zeros((len(time), len(rest) + 1))
     below = 0.0 if hung else truth.held
     nodes[time > 0.0, 1:] = found.T @ shapes[:, :MODES].T + quick - below * rest
@@ -109,7 +126,7 @@ def swing(truth: Truth, hung: float, time: Array, *, start: float = 0.0) -> Arra
 
 
 def _rubbing(rates: Array, still: Array, first: Array, after: Array, at_tip: Array, friction: float) -> Array:
-    """States (k, t) of modes that dry friction at the tip holds back besides."""
+    """States (k, t) of the modes with additional dry friction at the tip."""
 
     def rate(_: float, state: Array) -> Array:
         change = rates @ (state - still)
@@ -124,7 +141,7 @@ def _rubbing(rates: Array, still: Array, first: Array, after: Array, at_tip: Arr
 
 
 def moved(nodes: Array, at: tuple[float, float, float], *, on_clamp: bool) -> Array:
-    """Displacement (t, 2) in x and z [m] of a marker on a stalk, to second order of the slopes."""
+    """Displacement (t, 2) in x and z [m] of a marker on a stalk, to second order in the slopes."""
     x, _, z = (1e-3 * v for v in at)
     places = np.linspace(0.0, LENGTH, ELEMENTS + 1)
     if on_clamp:
@@ -141,8 +158,10 @@ def moved(nodes: Array, at: tuple[float, float, float], *, on_clamp: bool) -> Ar
 def displaced(
     truth: Truth, hung: float, since: Array, places: dict[str, Array], *, start: float, angle: float
 ) -> dict[str, Array]:
-    """Displacements (t, 2) in x and z [mm] of markers at `places` [mm], at times since the release by the
-    record's clock, in a frame that is turned by `angle` [rad]."""
+    """Displacements (t, 2) in x and z [mm] of markers at `places` [mm].
+
+    `since` is the time since the release by the record's clock; the frame is rotated by `angle` [rad].
+    """
     true = since / (1.0 + truth.clock)
     nodes = swing(truth, hung, true, start=start)
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])

@@ -1,4 +1,4 @@
-"""A beam that is let hang at time 0 and creeps: the laboratory's bricks with internal stresses at each point.
+"""Creep of a beam that is loaded by its weight at time 0: the laboratory's bricks with internal stresses.
 
 At time 0 the beam takes its instantaneous equilibrium; there is no inertia. Compressibility does not relax.
 """
@@ -18,7 +18,7 @@ from benchmarks.blind.timed.convolution import Memory, step_times
 from benchmarks.blind.timed.material import Prony
 
 Array = NDArray[np.float64]
-GROWTH = 0.3  # of a time step, in parts of the time since release
+GROWTH = 0.3  # longest time step over the time since release
 
 
 def hang(
@@ -29,19 +29,21 @@ def hang(
     resolution: Resolution | None = None,
     growth: float = GROWTH,
 ) -> list[Shape]:
-    """Shapes at times after release [s], rising, 0 among them where wanted.
+    """Shapes at times after release [s], in ascending order; 0 may be among them.
 
     Parameters
     ----------
     beam : Beam
-        `mu` is the long-time modulus; clamps that yield are not for this solver.
+        `mu` is the long-time modulus.
     growth : float
-        Longest time step in parts of the time since release.
+        Longest time step over the time since release.
 
     Raises
     ------
     NoEquilibriumError
-        At a time that it names.
+        Its text names the time.
+    ValueError
+        If a clamp is compliant or pinned.
     """
     if beam.compliance or beam.far_pinned:
         raise ValueError("creeping beam: expected clamps that hold")

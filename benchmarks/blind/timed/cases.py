@@ -1,7 +1,7 @@
-"""Made experiments of time-dependent materials: drawn from a seed, and written with their truth beside them.
+"""Synthetic experiments on time-dependent materials: drawn from a seed, written with their truth beside them.
 
-Every test has a virgin specimen of one material. Deviations of beams from what the lab states (length,
-radius, density) are drawn from the stated standard deviations.
+Every test has a virgin specimen of one material. Deviations of beams from the lab's values (length, radius,
+density) are drawn from the stated standard deviations.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ MATERIAL = "M"
 PARTS = ("prony", "mullins", "fibres")
 RADIUS, RADIUS_SD, LENGTH_SD, DENSITY, DENSITY_SD = 0.010, 0.05e-3, 0.2e-3, 1000.0, 5.0
 PHOTOGRAPHED = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # after release [s]
-TRACED = np.linspace(0.02, 1.0, 40)  # of the free length; a bridge's end at 0.98
+TRACED = np.linspace(0.02, 1.0, 40)  # fractions of the free length; up to 0.98 in a bridge
 
 
 @dataclass(frozen=True, kw_only=True)
 class CouponTest:
-    """One coupon: mode, course of the stretch, standard deviation of a stress [Pa]."""
+    """A homogeneous test: mode, course of the stretch, standard deviation of the stress [Pa]."""
 
     id: str
     mode: str
@@ -43,7 +43,7 @@ class CouponTest:
 
 @dataclass(frozen=True, kw_only=True)
 class HungBeam:
-    """One beam as it truly is, the length that the lab states [m], and when it is photographed [s]."""
+    """A true beam, the length that the lab states [m], and the times of its photographs [s]."""
 
     id: str
     beam: Beam
@@ -53,7 +53,7 @@ class HungBeam:
 
 @dataclass(frozen=True, kw_only=True)
 class Poke:
-    """One indentation: its layer's name, course of the depth, noise as a fraction of the largest force."""
+    """An indentation: name of its layer, course of the depth, noise as a fraction of the largest force."""
 
     id: str
     base: str
@@ -93,9 +93,9 @@ class Case:
 
 
 def draw_coupons(seed: int, parts: Sequence[str] = ("prony", "mullins")) -> Case:
-    """Uniaxial relaxation, uniaxial cycles of growing stretch, pure shear and equibiaxial tension.
+    """Uniaxial relaxation, uniaxial cycles of increasing stretch, pure shear and equibiaxial tension.
 
-    parts: what the material has beside its Ogden law, of PARTS.
+    `parts` (of PARTS) are the parts of the material besides its Ogden law; ValueError for others.
     """
     unknown = [p for p in parts if p not in PARTS]
     if unknown:
@@ -138,7 +138,7 @@ def _coupons_of(case: Case, rng: np.random.Generator, top: float) -> Case:
 
 
 def draw_beams(seed: int) -> Case:
-    """Cantilevers of 60 and 90 mm and a bridge of 150 mm that creep."""
+    """Creeping cantilevers of 60 and 90 mm and a bridge of 150 mm."""
     rng = np.random.default_rng([seed, 21])
     shear = float(np.exp(rng.uniform(np.log(1.8e4), np.log(5e4))))
     return _beams_of(Case(seed=seed, kind="beams", solid=_neo_hookean(shear, _prony(rng))), rng)
@@ -162,7 +162,7 @@ def _beams_of(case: Case, rng: np.random.Generator) -> Case:
 
 
 def draw_indentation(seed: int) -> Case:
-    """A ball and a flat rod: ramp, hold, retraction to three tenths of the depth."""
+    """Spherical and flat indenter: ramp, hold, retraction to three tenths of the depth."""
     rng = np.random.default_rng([seed, 22])
     shear = float(np.exp(rng.uniform(np.log(5e3), np.log(1e5))))
     case = Case(seed=seed, kind="indentation", solid=_neo_hookean(shear, _prony(rng)))
@@ -176,7 +176,7 @@ def draw_indentation(seed: int) -> Case:
 
 
 def draw_together(seed: int) -> Case:
-    """Coupons and creeping beams of one viscous Neo-Hookean material."""
+    """Homogeneous tests and creeping beams of one viscoelastic neo-Hookean material."""
     rng = np.random.default_rng([seed, 23])
     shear = float(np.exp(rng.uniform(np.log(1.8e4), np.log(5e4))))
     case = Case(seed=seed, kind="together", solid=_neo_hookean(shear, _prony(rng)))
@@ -184,7 +184,7 @@ def draw_together(seed: int) -> Case:
 
 
 def draw_pushed_and_hung(seed: int) -> Case:
-    """The indentations of `draw_indentation`, and creeping beams of the same material."""
+    """Indentations of `draw_indentation`, and creeping beams of the same material."""
     return _beams_of(draw_indentation(seed), np.random.default_rng([seed, 25]))
 
 
@@ -202,7 +202,7 @@ def _neo_hookean(shear: float, prony: Prony) -> Solid:
 
 
 def _prony(rng: np.random.Generator) -> Prony:
-    """Two terms more than a decade apart, inside the window of the tests."""
+    """Two terms more than a decade apart, inside the time window of the tests."""
     first = float(10.0 ** rng.uniform(-0.2, 0.5))
     second = first * float(10.0 ** rng.uniform(1.1, 1.5))
     fractions = tuple(float(g) for g in rng.uniform(0.12, 0.4, 2))
@@ -215,13 +215,13 @@ def _fibres(rng: np.random.Generator, shear: float) -> Fibres:
 
 
 def write(case: Case, folder: Path, *, noise: float = 1.0) -> None:
-    """experiment.yaml, its tables and truth.yaml.
+    """Write experiment.yaml, its tables and truth.yaml.
 
     Parameters
     ----------
     noise : float
-        Part of the stated noise that is in the tables; beams' registration and tracing have theirs where it
-        is not 0.
+        Multiplies the stated noise of tables; beams have their full registration and tracing noise unless it
+        is 0.
     """
     rng = np.random.default_rng([case.seed, 24])
     folder.mkdir(parents=True)

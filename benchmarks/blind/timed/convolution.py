@@ -1,9 +1,9 @@
-"""Internal stresses of a Prony series; the isochoric stress is a straight line in time over a step.
+"""Internal stresses of a Prony series, for an isochoric stress that is linear in time over each step.
 
     Q_i(t + dt) = e_i Q_i(t) + g_i a_i (S(t + dt) - S(t)),
     e_i = exp(-dt/tau_i),    a_i = (1 - e_i) tau_i/dt
 
-is exact for such a stress, and of second order in dt for a smooth one. A step of no time is a jump: a_i = 1.
+is exact for such a stress, and of second order in dt for a smooth one. A step with dt = 0 is a jump: a_i = 1.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ Array = NDArray[np.float64]
 
 
 class Memory:
-    """Internal stresses of many points; arrays of stresses have any shape, the same in each call.
+    """Internal stresses of many points; arrays of stresses may have any shape, the same in each call.
 
-    `begin(dt)` gives what a step's stress is made of: S + sum Q = scale S + history. `accept(S)` ends the
-    step.
+    `begin(dt)` gives the terms of a step's stress: S + sum Q = scale S + history. `accept(S)` ends the step.
     """
 
     def __init__(self, prony: Prony, shape: tuple[int, ...]) -> None:
@@ -30,7 +29,7 @@ class Memory:
         self._kept = self._gain = np.zeros(len(prony.times))
 
     def begin(self, dt: float) -> tuple[float, Array]:
-        """Factor of the step's S and the history, an array like S."""
+        """Factor `scale` of the step's S, and `history`, an array like S."""
         x = dt / self.prony.tau
         self._kept = np.exp(-x)
         self._gain = self.prony.g * (-np.expm1(-x) / x if dt > 0.0 else np.ones_like(x))
@@ -38,7 +37,7 @@ class Memory:
         return 1.0 + float(self._gain.sum()), np.asarray(history)
 
     def accept(self, stress: Array) -> None:
-        """The step ended with isochoric stress S."""
+        """End the step with isochoric stress S."""
         ones = (1,) * stress.ndim
         change = self._gain.reshape(-1, *ones) * (stress - self._last)
         self._q = self._kept.reshape(-1, *ones) * self._q + change
@@ -46,9 +45,9 @@ class Memory:
 
 
 def step_times(stops: Array, shortest: float, growth: float) -> Array:
-    """Ends of time steps in (0, stops[-1]], among them `stops` [s] (rising).
+    """Ends of time steps in (0, stops[-1]], including `stops` [s], which are ascending.
 
-    After each stop that begins a piece, steps are growth times the time since time 0 plus shortest/4.
+    A step is growth (t + shortest/4) at time t, shortened to end at the next stop.
     """
     found: list[float] = []
     now = 0.0

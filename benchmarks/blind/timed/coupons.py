@@ -1,12 +1,12 @@
-"""Nominal stress of a coupon whose deformation is homogeneous and keeps its volume, over a course.
+"""Nominal stress of an isochoric homogeneous test over a course.
 
-The internal stresses are written by their memory: Q_i = g_i (S - M_i) with tau_i dM_i/dt + M_i = S, S the
-softened isochoric stress. Where the lateral stretch is free and the material has fibres, it is found from the
-free sides at each evaluation; elsewhere it follows from the volume. The M_i are integrated by Radau's
-implicit Runge-Kutta method (order 5, error control), piece by piece of the course.
+The internal stresses are expressed by memory variables: Q_i = g_i (S - M_i) with tau_i dM_i/dt + M_i = S, S
+the softened isochoric stress. If the lateral stretch is free and the material has fibres, it is solved for
+zero stress on the free sides at each evaluation; otherwise it follows from the volume. The M_i are integrated
+by Radau's implicit Runge-Kutta method (order 5, error control), piece by piece of the course.
 
-A uniaxial coupon with fibres off its axes is a long strip: it shears in its plane, lines along axis 1 stay
-along it, and all of its stress is along axis 1. The grips of other modes hold that shear.
+A uniaxial specimen with fibres off its axes is a long strip: it shears in its plane, lines along axis 1 keep
+their direction, and all of its stress is along axis 1. The grips of other modes prevent that shear.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Response:
-    """A coupon's answer at given times.
+    """Response of a specimen at given times.
 
     Attributes
     ----------
     time, stretch : ndarray, shape (t,)
-        [s]; of axis 1.
+        Time [s] and stretch of axis 1.
     lateral, shear : ndarray, shape (t,)
-        Stretch of axis 2, and how far it leans along axis 1.
+        Stretch of axis 2, and its shear along axis 1.
     stress : ndarray, shape (t,)
         Nominal stress on axis 1 [Pa].
     energy, largest : ndarray, shape (t,)
@@ -53,12 +53,14 @@ class Response:
 def respond(
     solid: Solid, mode: str, course: Course, times: Array | None = None, *, tolerance: float = TOLERANCE
 ) -> Response:
-    """The answer to a course; times: where it is wanted [s], rising (None: those of the record).
+    """Response to a course at ascending `times` [s], by default those of the record.
 
     Raises
     ------
     RuntimeError
-        The integration failed, or W rose and fell within one piece of the course.
+        If the integration failed, or W of a softening material had a maximum within a piece of the course.
+    ValueError
+        If the mode is unknown or a time is beyond the course.
     """
     if mode not in MODES:
         raise ValueError(f"mode: expected one of {', '.join(MODES)}, got {mode!r}")
@@ -105,7 +107,7 @@ def respond(
 def _integrate(
     test: _Test, memory: Array, largest: float, at: Array, first: float, slope: float, tolerance: float
 ) -> Array:
-    """Memories (t, n, 4) at times after the piece's begin; largest: W's maximum before the piece."""
+    """Memory variables (t, n, 4) at times after the piece's start; `largest`: maximum of W before it."""
     tau = test.solid.prony.tau
     if not len(tau):
         return np.zeros((len(at), 0, 4))
@@ -139,7 +141,7 @@ class _Point:
 
 
 class _Test:
-    """One mode of a solid: stresses at a stretch, memories and largest energy.
+    """One mode of a solid: stresses at a stretch, memory variables and largest energy.
 
     Stresses have the components 11, 22, 33, 12; F = [[stretch, shear, 0], [0, lateral, 0], [0, 0, third]].
     """
@@ -149,7 +151,7 @@ class _Test:
         f = solid.fibres
         self.shears = mode == "uniaxial" and f is not None and abs(np.sin(2.0 * f.angle)) > 1e-12
         self._free = 0 if mode != "uniaxial" or f is None else 1 + self.shears
-        # of lateral times sqrt(stretch), and shear
+        # initial guess of lateral times sqrt(stretch), and of shear
         self._guess, self._inverse = np.array([1.0, 0.0])[: self._free], np.zeros((0, 0))
 
     def at(self, stretch: float, memory: Array, largest: float) -> _Point:
@@ -160,7 +162,7 @@ class _Test:
     def _stresses(
         self, stretch: float, lateral: float, shear: float, memory: Array, largest: float
     ) -> tuple[Array, Array, float]:
-        """S_iso, the whole S with the pressure that frees axis 3, W."""
+        """Softened S_iso, total S with the pressure that frees axis 3, and W."""
         solid, prony = self.solid, self.solid.prony
         if self.shears:
             plane = np.array([[stretch**2, stretch * shear], [stretch * shear, shear**2 + lateral**2]])
@@ -178,7 +180,10 @@ class _Test:
         return softened, extra - extra[2] / volume[2] * volume, energy
 
     def _sides(self, stretch: float, memory: Array, largest: float) -> tuple[float, float]:
-        """Lateral stretch and shear, free of stress where nothing drives them; Newton with a kept slope."""
+        """Lateral stretch and shear without stress on free sides, by Newton's method with a kept Jacobian.
+
+        RuntimeError if it does not converge.
+        """
         if self.mode != "uniaxial":
             return (stretch if self.mode == "equibiaxial" else 1.0), 0.0
         thin = float(stretch**-0.5)

@@ -1,4 +1,4 @@
-"""The course of a test: ramps and holds of what is driven, and when the machine writes it down."""
+"""The course of a test: ramps and holds of the driven quantity, and the times of the record."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """A straight line to value `to` in `duration` [s]; the course's corners are the pieces' ends."""
+    """Linear change to the value `to` in `duration` [s]."""
 
     to: float
     duration: float
@@ -20,15 +20,15 @@ class Piece:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """Pieces one after the other, from `start` at time 0.
+    """Consecutive pieces, from `start` at time 0.
 
     Attributes
     ----------
     start : float
-        Value at rest (stretch 1, depth 0).
+        Initial value (stretch 1, depth 0).
     pieces : tuple of Piece
     samples : int
-        Rows of the record in a ramp; a hold has half as many, denser at its start.
+        Rows of the record per ramp; a hold has half as many, denser at its start.
     """
 
     start: float
@@ -36,11 +36,11 @@ class Course:
     samples: int = 40
 
     def ramp(self, to: float, speed: float) -> Course:
-        """This course, then a ramp at a speed [1/s]."""
+        """This course followed by a ramp at a speed [1/s for a stretch, m/s for a depth]."""
         return self._then(to, abs(to - self.last) / speed)
 
     def hold(self, duration: float) -> Course:
-        """This course, then a hold [s]."""
+        """This course followed by a hold [s]."""
         return self._then(self.last, duration)
 
     def _then(self, to: float, duration: float) -> Course:
@@ -55,16 +55,16 @@ class Course:
         return self.pieces[-1].to if self.pieces else self.start
 
     def corners(self) -> tuple[Array, Array]:
-        """Times [s] and values, from the start on."""
+        """Times [s] and values of the start and of the ends of all pieces."""
         times = np.concatenate([[0.0], np.cumsum([p.duration for p in self.pieces])])
         return times, np.array([self.start, *(p.to for p in self.pieces)])
 
     def value(self, time: ArrayLike) -> Array:
-        """What is driven at times [s]."""
+        """Driven value at times [s]."""
         return np.asarray(np.interp(np.asarray(time), *self.corners()))
 
     def record_times(self) -> Array:
-        """Times of the record's rows [s], corners among them."""
+        """Times of the record's rows [s], including the corners."""
         found, now, at = [np.zeros(1)], 0.0, self.start
         for piece in self.pieces:
             ramp = piece.to != at
@@ -76,7 +76,7 @@ class Course:
 
 
 def cycles(course: Course, tops: tuple[float, ...], back: float, speed: float) -> Course:
-    """The course, then a ramp to each of `tops` and back, at a speed [1/s]."""
+    """The course followed by a ramp to each of `tops` and back to `back`, at a speed."""
     for top in tops:
         course = course.ramp(top, speed).ramp(back, speed)
     return course

@@ -1,4 +1,4 @@
-"""Made indentations of a viscous layer: what was pushed, and the forces that `solve_indentation` stored."""
+"""Synthetic indentations of a viscoelastic layer: definitions, and forces stored by `solve_indentation`."""
 
 from __future__ import annotations
 
@@ -21,14 +21,20 @@ STORE = Path(__file__).with_name("indentation.json")
 
 @dataclass(frozen=True, kw_only=True)
 class Layer:
-    """A disc bonded to its base, and the rod, lengths in m.
+    """A disc bonded to its base, and the indenter; lengths in m.
 
     Attributes
     ----------
+    height, side : float
+        Height and radius of the disc.
+    rod, tip : float, str
+        Radius of the indenter, and "flat" or "hemisphere".
     fine : float
-        Radius about the axis with `elements` elements along it.
+        Radius of the fine part of the mesh, with `elements` elements.
+    friction : float
+        Coulomb coefficient.
     penalty : float
-        Stiffness of the contact, in parts of the solver's own.
+        Stiffness of the contact relative to the solver's default.
     bulk_ratio : float
         Bulk modulus over the long-time shear modulus; it does not relax.
     """
@@ -46,7 +52,7 @@ class Layer:
 
 @dataclass(frozen=True, kw_only=True)
 class Push:
-    """One indentation; finer: divides the time steps."""
+    """One indentation; the time steps are divided by `finer`."""
 
     layer: Layer
     prony: Prony
@@ -62,7 +68,7 @@ DEEPEST = {"ball": 1.6e-3, "thick": 1.2e-3}  # [m]
 
 
 def _stiff(layer: Layer) -> Layer:
-    """The layer with a rigid contact and without compression, nearly."""
+    """The layer with a nearly rigid contact and a nearly incompressible material."""
     return replace(layer, penalty=8.0, bulk_ratio=3000.0)
 
 
@@ -83,13 +89,13 @@ CHECKS = {
 
 
 def load() -> dict[str, Any]:
-    """What is stored, by name."""
+    """Stored indentations by name; empty if there is no file."""
     found: dict[str, Any] = json.loads(STORE.read_text(encoding="utf-8")) if STORE.exists() else {}
     return found
 
 
 def save(found: dict[str, Any]) -> None:
-    """Write the store, an entry a line, in one piece."""
+    """Write the store atomically, one entry per line."""
     lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in found.items())
     part = STORE.with_suffix(".part")
     part.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
@@ -97,12 +103,12 @@ def save(found: dict[str, Any]) -> None:
 
 
 def stored_force(name: str, course: Course, times: Array) -> Array:
-    """Force over the long-time modulus [m2] at times [s], of a stored indentation.
+    """Force of a stored indentation over the long-time modulus [m2] at times [s].
 
     Raises
     ------
     KeyError
-        With the command that makes it, where it is not stored.
+        If it is not stored; the text names the command that computes it.
     """
     entry = load().get(name)
     if entry is None:
@@ -118,18 +124,18 @@ def stored_force(name: str, course: Course, times: Array) -> Array:
         inside = (stored_times >= begin * (1 - 1e-8)) & (stored_times <= end * (1 + 1e-8))
         mine = (times >= begin) & (times <= end)
         since, asked = (np.maximum(t - begin, 0.0) for t in (stored_times[inside], times[mine]))
-        # what the force is smooth in: the root of the time from first touch on; in a hold the logarithm, as
-        # the steps grow; else time itself. In its root the force after a reversal was 0.7 % too low.
+        # variable in which the force is smooth: the root of time after first contact; in a hold its logarithm
+        # (the steps grow); else time itself. With its root the force after a reversal was 0.7 % too low.
         if before == after:
             since, asked = np.log1p(4.0 * since / shortest), np.log1p(4.0 * asked / shortest)
         elif before == 0.0:
             since, asked = np.sqrt(since), np.sqrt(asked)
         found[mine] = CubicSpline(since, forces[inside])(np.minimum(asked, since[-1]))
-    return np.maximum(found, 0.0)  # the rod does not pull; interpolation may round below 0
+    return np.maximum(found, 0.0)  # no adhesion; interpolation may give values below 0
 
 
 def pushes_of(seed: int) -> dict[str, Push]:
-    """The indentations of a seed, by the names they are stored under."""
+    """Indentations of a seed, by the names under which they are stored."""
     from benchmarks.blind.timed.cases import draw_indentation
 
     case = draw_indentation(seed)

@@ -1,13 +1,13 @@
-"""Write made experiments of time-dependent materials, each with its truth beside it.
+"""Write synthetic experiments on time-dependent materials, each with its truth beside it.
 
     python -m benchmarks.blind.timed.make coupons --seeds 1 2 3 --out DIR
     python -m benchmarks.blind.timed.make coupons --parts fibres prony --seeds 4 --out DIR
     python -m benchmarks.blind.timed.make beams --seeds 1 --out DIR          # some 20 s of CPU an experiment
     python -m benchmarks.blind.timed.make indentation --seeds 1 --out DIR    # stored forces
 
-An experiment is a folder `DIR/KIND-SEED` (docs/reference/experiment-format.md); no command under test reads
-its `truth.yaml`: the material's law and parts in SI units, and beams' true sizes. The forces of
-indentations are solved by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and
+An experiment is a folder `DIR/KIND-SEED` (docs/reference/experiment-format.md). No command under test reads
+its `truth.yaml`, which holds the material's law and parts in SI units, and the true sizes of beams. The
+forces of indentations are computed by `benchmarks.blind.timed.solve_indentation`, which needs FElupe, and
 stored in `indentation.json`.
 """
 
@@ -22,7 +22,7 @@ from benchmarks.blind.timed.cases import KINDS, PARTS, Case, draw_coupons, write
 
 
 def drawn(kind: str, seed: int, parts: Sequence[str] | None) -> Case:
-    """The case of a seed; parts: of coupons only."""
+    """Case of a seed; `parts` applies to coupons only."""
     return draw_coupons(seed, parts) if kind == "coupons" and parts is not None else KINDS[kind](seed)
 
 

@@ -1,4 +1,4 @@
-"""What the laboratory's time-dependent materials are made of; all moduli are long-time ones."""
+"""Constitutive laws of the laboratory's time-dependent materials; all moduli are long-time ones."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Prony:
         return np.asarray(1.0 + np.exp(-np.asarray(time)[..., None] / self.tau) @ self.g)
 
     def compliance(self, time: Array) -> Array:
-        """Creep after a step of stress, times the long-time modulus.
+        """Creep function after a step of stress, times the long-time modulus.
 
         The creep function of a Prony series is one as well: with G(s) = 1 + sum g_i s tau_i/(1 + s tau_i),
         the Laplace transform of the creep rate is 1/(s G(s)), whose poles are the zeros of G.
@@ -77,7 +77,7 @@ class Softening:
     beta: float = 0.0
 
     def eta(self, energy: Array, largest: Array) -> Array:
-        """Factor of the stress at an energy below the largest so far [J/m3]."""
+        """Factor of the stress at an energy, given the largest one so far [J/m3]."""
         return np.asarray(1.0 - erf((largest - energy) / (self.m + self.beta * largest)) / self.r)
 
 
@@ -100,7 +100,7 @@ class Fibres:
 
 @dataclass(frozen=True, kw_only=True)
 class Solid:
-    """An incompressible material whose long-time stress follows an Ogden law; fibres and softening join that.
+    """An incompressible material with an Ogden law for the long-time stress, optionally fibres and softening.
 
     W = sum_p mu_p/alpha_p (lambda_1^alpha_p + lambda_2^alpha_p + lambda_3^alpha_p - 3) + W_fibres
 
@@ -108,8 +108,10 @@ class Solid:
     ----------
     mu, alpha : tuple of float
         Ogden's constants [Pa], [-]; small-strain shear modulus 1/2 sum mu_p alpha_p.
-    prony, softening, fibres :
-        What the material has besides.
+    prony : Prony
+        Relaxation.
+    softening : Softening or None
+    fibres : Fibres or None
     """
 
     mu: tuple[float, ...]
@@ -138,8 +140,8 @@ class Solid:
     def deviator(self, stretches: Array) -> Array:
         """Normal components of S_iso = 2 dW/dC without softening (..., 3) [Pa].
 
-        S_iso : C = 0. Fibres that lie off the axes add a shear component, which these do not feel where the
-        axes do not turn.
+        S_iso : C = 0. Fibres off the axes add a shear component, which does not affect these components if
+        the axes do not rotate.
         """
         stretches = np.asarray(stretches)
         kirchhoff = np.zeros_like(stretches)
@@ -154,9 +156,9 @@ class Solid:
         return np.asarray(kirchhoff / stretches**2)
 
     def sheared(self, plane: Array) -> tuple[float, Array]:
-        """W, and the components 11, 22, 33, 12 of S_iso without softening, where axes 1 and 2 shear.
+        """W, and the components 11, 22, 33, 12 of S_iso without softening, under shear of axes 1 and 2.
 
-        plane (2, 2): C in the plane of axes 1 and 2; the volume stays.
+        `plane` (2, 2) is C in the plane of axes 1 and 2; the deformation is isochoric.
         """
         squares, axes = np.linalg.eigh(plane)
         third = 1.0 / float(squares[0] * squares[1])
