@@ -214,6 +214,19 @@ def test_bonded_and_pulled() -> None:
     assert (found.nominal_stress > 0).all()
 
 
+def test_bonded_pulled_then_pressed_on_a_course() -> None:
+    """The side comes down once: it may stick. Released after being pressed, it would lift off again."""
+    pulled_first = (
+        tisim.Course(start=1.0, frames=(1.0, 3.0)).ramp(to=1.1, duration=1.0).ramp(to=0.9, duration=2.0)
+    )
+    found = solve(course=pulled_first, refinement=0.5, side="stick")
+    assert found.ok
+    assert found.nominal_stress[0] > 0.0 > found.nominal_stress[1]
+    released = tisim.Course(start=1.0).ramp(to=0.9, duration=1.0).ramp(to=0.95, duration=1.0)
+    with pytest.raises(ValueError, match="'stop' where a bonded cylinder is let go again"):
+        solve(course=released, refinement=0.5, side="stick")
+
+
 @pytest.mark.parametrize(
     ("changes", "word"),
     [

@@ -10,7 +10,9 @@ import pytest
 
 import tisim
 from tisim.discretisation.body import DiscretisedBody
+from tisim.linear.direct import LinearSolveError
 from tisim.problems.beam import course as beam_course
+from tisim.problems.beam.system import BeamSystem
 from tisim.problems.compression import solve as press_solve
 from tisim.problems.dynamics import implicit
 from tisim.problems.homogeneous import solve as coupon_solve
@@ -113,3 +115,23 @@ def _stored(body: DiscretisedBody) -> np.ndarray:
 
 def _dissipated(body: DiscretisedBody) -> np.ndarray:
     return body.history.dissipated  # type: ignore[union-attr]
+
+
+def test_a_tangent_that_cannot_be_factorised_is_no_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The step with few factors then gives way to Newton's method, with the same result."""
+    scene = CASES["beam"][0]
+    wanted = tisim.simulate(scene)
+    monkeypatch.setattr(beam_course, "PATIENCE", 0)  # each step asks for a new tangent
+    inner, failed = BeamSystem.step, []
+
+    def step(self: BeamSystem, gradient: Any, *, forcing: float) -> Any:
+        if forcing == 0.0:
+            failed.append(True)
+            raise LinearSolveError("singular")
+        return inner(self, gradient, forcing=forcing)
+
+    monkeypatch.setattr(BeamSystem, "step", step)
+    found = tisim.simulate(scene)
+    assert failed
+    assert found.ok
+    assert found.positions[-1] == pytest.approx(wanted.positions[-1], abs=1e-6)

@@ -147,7 +147,8 @@ def _alike(one: Record, other: Record) -> bool:
         return False
     reaches = [float(r.stretch[np.argmax(np.abs(r.stretch - 1.0))] - 1.0) for r in (one, other)]
     rates = [float(np.median(r.rate)) for r in (one, other)]
-    same_rate = np.isnan(rates).all() or max(rates) <= SAME_RATE * min(rates)
+    clocks = [not np.isnan(rate) for rate in rates]
+    same_rate = max(rates) <= SAME_RATE * min(rates) if all(clocks) else not any(clocks)
     return bool(abs(reaches[0] - reaches[1]) <= SAME_REACH * abs(reaches[0])) and bool(same_rate)
 
 

@@ -197,7 +197,8 @@ def _needed(phases: list[Phase], k: int, time: Array, depth: Array, sd: float) -
     held = sum(_line_misfit(time[p], depth[p], level=p == hold.points) for p in three if p.stop - p.start > 2)
     if len(beside) == 2:
         cuts = time[low + 3 : high - 2]
-        two = min(_bent_misfit(time[low:high], depth[low:high], at, *beside) for at in cuts)
+        # without samples around the hold there is no evidence against it
+        two = min((_bent_misfit(time[low:high], depth[low:high], at, *beside) for at in cuts), default=np.inf)
     else:
         two = _line_misfit(time[low:high], depth[low:high], level=False)
     return two > held + MORE * sd**2

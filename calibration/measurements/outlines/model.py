@@ -303,6 +303,7 @@ class OutlineModel(MeasurementModel):
             workers=self.workers,
             pose=pose,
             baseline=self.baseline,
+            setup=self.scenes.setup,
         )
 
     def _photographed(
@@ -406,7 +407,7 @@ class OutlineModel(MeasurementModel):
         return Shown(
             axis="point of the outline",
             x=np.arange(float(len(p.basis))),
-            quantity="simulated less measured, registered",
+            quantity="measured less simulated, registered",
             unit=self.unit,
             measured=np.zeros(len(p.basis)),
             of_rows=p.basis,

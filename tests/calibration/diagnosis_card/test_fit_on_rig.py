@@ -90,6 +90,9 @@ def test_what_is_not_known_of_the_rig_is_a_nuisance(experiment: Path, tmp_path: 
     lifted = photograph.basis @ noise.columns[:, noise.names.index("clamp-tilt (rig)")]
     x = np.concatenate([photograph.outline.upper, photograph.outline.lower])[:, 0]
     assert np.abs(lifted).max() == pytest.approx(np.radians(0.1) * x.max(), rel=0.3)
+    # further photographs of the same specimens are on the same rig
+    further = outlines.model.measuring(data, lambda beam, _: beam)
+    assert further.scenes.setup is rig
 
 
 def test_it_says_so_on_the_page_and_on_the_card(corrected: Path) -> None:

@@ -21,6 +21,7 @@ from calibration.diagnosis.laws import LawChoice, LawScore, choose_law, law_of
 from calibration.errors import InputError
 from calibration.measurements._effect import Candidate
 from calibration.measurements._state import State
+from calibration.measurements.homogeneous._record import _alike
 from calibration.measurements.homogeneous.model import HomogeneousModel
 from calibration.measurements.homogeneous.stress import nominal_stress
 from tisim import Material
@@ -109,6 +110,10 @@ def test_what_goes_on_from_test_to_test(
     trials = [trial(f"A{k}", "uniaxial", stretch, w, sd=20.0, seed=k) for k, w in enumerate(wanted)]
     model = coupon_model(experiment(*trials), further=True)
     assert [(r.earlier, r.alike) for r in model.records] == [(0, 3), (1, 3), (2, 3)]
+    # a test of unknown rate is no repeat of one of known rate, whichever comes first
+    untimed = replace(model.records[0], rate=np.full_like(model.records[0].rate, np.nan))
+    assert not _alike(untimed, model.records[1])
+    assert not _alike(model.records[1], untimed)
     found = model.stresses(State(u=np.full(1, np.log(G)), amplitudes={Candidate(effect=name): amplitude}))
     for stress, w in zip(found, wanted, strict=True):
         assert stress == pytest.approx(w, rel=2e-3, abs=1e-6 * G)

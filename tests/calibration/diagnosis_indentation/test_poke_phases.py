@@ -60,3 +60,13 @@ def test_a_noisy_shallow_record_is_cut_where_it_is(protocol: str) -> None:
                 break
             first = end - 1
     assert len(wrong) <= 1, wrong
+
+
+def test_a_record_of_few_samples_is_cut_too() -> None:
+    """Around a hold of so few samples no turning point can be fitted: the hold stays."""
+    time = np.array([0.0, 1.0, 6.0, 11.0, 12.0, 32.0, 33.0, 33.1, 53.1])
+    depth = np.array([0.0, 0.013, 0.284, 0.21, 0.011, 0.028, 0.164, 0.099, 0.082]) * 1e-3
+    found = phases_of(trial("p", time, depth, 1e3 * depth, depth_sd=NOISE))
+    assert found[0].points.start == 0
+    assert found[-1].points.stop == time.size
+    assert [p.points.start for p in found[1:]] == [p.points.stop for p in found[:-1]]

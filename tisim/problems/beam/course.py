@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tisim import laws
 from tisim.course import Stop
 from tisim.discretisation.body import Discretisation
+from tisim.linear.direct import LinearSolveError
 from tisim.nonlinear.newton import CRUSHED, Outcome, newton
 from tisim.parts import Spectrum
 from tisim.problems._stops import shortest_time
@@ -303,7 +304,8 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
     Returns
     -------
     Outcome or None
-        None if it does not converge in CHEAP iterations and MOST_FACTORS new tangents, or an element inverts.
+        None if it does not converge in CHEAP iterations and MOST_FACTORS new tangents, an element inverts or
+        a tangent cannot be factorised.
     """
     system = path.system
     body, discretisation = system.body, system.body.discretisation
@@ -331,6 +333,8 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
             system.free_pressures(body.pressures(path.outcome.x))  # those of a trial may be far too large
             try:
                 step = system.step(system.linearise(x)[0], forcing=0.0)
+            except LinearSolveError:
+                return None
             finally:
                 system.free_pressures(None)
             path.warped = Warped(body, x)
