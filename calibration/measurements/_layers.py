@@ -32,6 +32,7 @@ class Curve:
     name, material, specimen : of the record.
     test : key that repeats of one test share; None for a record that is not a repeat.
     x : driven quantity, in the order of the record, shape (k,).
+    branch : number of the stroke of each point, shape (k,): loading and unloading are compared separately.
     misfit : simulated minus measured [SI], shape (k,).
     scale : full scale [SI].
     """
@@ -41,6 +42,7 @@ class Curve:
     specimen: str
     test: Hashable | None
     x: Array
+    branch: NDArray[np.int64]
     misfit: Array
     scale: float
 
@@ -125,20 +127,26 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
 
 
 def _together(group: Sequence[Curve]) -> Array | None:
-    """Misfits over full scale on a grid of their common range of x, shape (records, GRID).
+    """Misfits over full scale on a grid of their common range of x in each branch, shape (records, m).
 
-    None if they have no common range.
+    None if they have no common range in any branch.
     """
-    low = max(float(c.x.min()) for c in group)
-    high = min(float(c.x.max()) for c in group)
-    if not high > low:
-        return None
-    grid = np.linspace(low, high, GRID)
     found = []
-    for c in group:
-        order = np.argsort(c.x, kind="stable")
-        found.append(np.interp(grid, c.x[order], c.misfit[order]) / c.scale)
-    return np.array(found)
+    for branch in np.unique(group[0].branch):
+        own = [c.branch == branch for c in group]
+        if not all(mine.any() for mine in own):
+            continue
+        low = max(float(c.x[mine].min()) for c, mine in zip(group, own, strict=True))
+        high = min(float(c.x[mine].max()) for c, mine in zip(group, own, strict=True))
+        if not high > low:
+            continue
+        grid = np.linspace(low, high, GRID)
+        values = []
+        for c, mine in zip(group, own, strict=True):
+            order = np.argsort(c.x[mine], kind="stable")
+            values.append(np.interp(grid, c.x[mine][order], c.misfit[mine][order]) / c.scale)
+        found.append(np.array(values))
+    return np.concatenate(found, axis=1) if found else None
 
 
 def deviations(curves: Sequence[Curve], repeat: float) -> list[list[Array]]:

@@ -267,6 +267,7 @@ class MeasurementModel(ForwardModel):
                 specimen=r.specimen,
                 test=self.repeat_of(k),
                 x=a[1],
+                branch=self.branch(k),
                 misfit=misfit[self.row_record == k],
                 scale=float(scale[k]),
             )
@@ -296,6 +297,10 @@ class MeasurementModel(ForwardModel):
         """Driven quantity of record `k`: its name, and its values at the rows; None if it has none."""
         del k
         return None
+
+    def branch(self, k: int) -> NDArray[np.int64]:
+        """Number of the stroke of each row of record `k`; 0 throughout where rows are not in strokes."""
+        return np.zeros(int(np.count_nonzero(self.row_record == k)), dtype=np.int64)
 
     def shown(self, k: int) -> Shown:
         """Record `k` for display."""

@@ -398,6 +398,9 @@ class HomogeneousModel(MeasurementModel):
         r = self.records[k]
         return "strain", np.abs(r.stretch - 1.0)
 
+    def branch(self, k: int) -> NDArray[np.int64]:
+        return np.asarray(self.records[k].branch, dtype=np.int64)
+
     def noise_sentence(self) -> str:
         stated = [r for r in self.records if not r.estimated]
         parts = []

@@ -297,7 +297,12 @@ def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Cu
             for k in range(1, 5)
         )
         misfit = 2.0 * (np.sin(3.0 * x) + own + trend * n / max(tests - 1, 1))
-        found.append(Curve(name=f"t{n}", material="m", specimen="s", test=0, x=x, misfit=misfit, scale=2.0))
+        branch = np.zeros(x.size, dtype=np.int64)
+        found.append(
+            Curve(
+                name=f"t{n}", material="m", specimen="s", test=0, x=x, branch=branch, misfit=misfit, scale=2.0
+            )
+        )
     return found
 
 
@@ -309,6 +314,24 @@ def test_repeats_show_their_scatter_beside_the_trend_of_their_order() -> None:
     assert "6 repeats differ by" in found[0].sentences()[0]
     assert layers_of(curves(trend=0.0, spread=0.01, seed=1, tests=3)).repeat is None
     assert layers_of([]).sentences() == []
+
+
+def test_a_loop_of_loading_and_unloading_is_no_scatter_between_repeats() -> None:
+    """Similar repeats, sampled at other strains, with a misfit of +h in loading and -h in unloading."""
+    random = np.random.default_rng(0)
+    found = []
+    for n in range(5):
+        x = np.concatenate([np.sort(random.uniform(0, 1, 40)), np.sort(random.uniform(0, 1, 40))[::-1]])
+        branch = np.repeat([0, 1], 40)
+        misfit = np.where(branch == 0, 0.1, -0.1) + 0.001 * (n % 2)
+        found.append(
+            Curve(
+                name=f"t{n}", material="m", specimen="s", test=0, x=x, branch=branch, misfit=misfit, scale=1.0
+            )
+        )
+    repeat = layers_of(found).repeat
+    assert repeat is not None
+    assert 0.0 < repeat < 0.002
 
 
 def test_a_records_own_deviation_is_as_large_as_repeats_differ() -> None:
