@@ -147,7 +147,7 @@ LARGEST = {
     "second-invariant": 0.6,
     "limited-extensibility": 0.5,
     "tension-compression-asymmetry": 2.0,
-    "permanent-set": 0.4,
+    "permanent-set": 0.3,
     "gauge-length": 0.4,
     "cell-drift": 0.4,
     "slip": 0.3,
@@ -303,7 +303,8 @@ def curve(p: Protocol, hidden: tuple[Hidden, ...]) -> Array:
     wave = waves * np.sin(2.0 * np.pi * shape.get("wavy-gauge", 1.0) * (recorded - 1.0) / (p.top - 1.0))
     true = recorded + offset - slipped + wave
     if "permanent-set" in a:  # back at zero stress before it is back at its length
-        true = np.where(ramp >= 1, true - a["permanent-set"] * (p.top - true), true)
+        kept = a["permanent-set"]  # of the largest strain
+        true = np.where(ramp >= 1, true - kept / (1.0 - kept) * (p.top - true), true)
     if "gauge-length" in a and p.mode == "uniaxial" and p.top > 1.0:
         true = 1.0 + (1.0 + a["gauge-length"]) * (true - 1.0)
     if soft:

@@ -82,6 +82,16 @@ def test_zero_is_the_baseline_and_more_is_not(name: str) -> None:
     assert max(np.abs(a - b).max() for a, b in zip(moved, base, strict=True)) > 1e-4 * G
 
 
+def test_permanent_set_is_the_part_of_the_largest_strain_that_stays() -> None:
+    model = coupon_model(experiment(trial("pull", "uniaxial", ramps(1.8, 2))), further=True)
+    (stress,) = with_effect(model, "permanent-set", 0.1)
+    (record,) = model.records
+    back = record.branch == record.branch.max()
+    order = np.argsort(stress[back])
+    left = np.interp(0.0, stress[back][order], record.stretch[back][order])
+    assert left - 1.0 == pytest.approx(0.1 * 0.8, rel=1e-2)
+
+
 @pytest.mark.parametrize(
     ("name", "amplitude", "law"),
     [

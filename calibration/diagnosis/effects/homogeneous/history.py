@@ -179,8 +179,8 @@ MULLINS = HomogeneousEffect(
 
 
 # -- permanent-set --
-# Permanent set: after the first reversal the elastic stretch is s + a (s - s_max), so that the specimen keeps
-# a / (1 + a) of its largest strain when it is unloaded.
+# Permanent set: after the first reversal the elastic stretch is s + a / (1 - a) (s - s_max), so that the
+# specimen keeps the part a of its largest strain when it is unloaded.
 
 
 def _shift_permanent_set(s: Array, amplitude: float, record: Record) -> Array:
@@ -189,7 +189,7 @@ def _shift_permanent_set(s: Array, amplitude: float, record: Record) -> Array:
     new = np.where(gone >= np.maximum.accumulate(gone), np.arange(gone.size), 0)
     furthest = record.stretch[np.maximum.accumulate(new)]
     turned = np.maximum.accumulate(np.isfinite(record.turn))
-    return np.asarray(np.where(turned, amplitude * (record.stretch - furthest), 0.0))
+    return np.asarray(np.where(turned, amplitude / (1.0 - amplitude) * (record.stretch - furthest), 0.0))
 
 
 PERMANENT_SET = HomogeneousEffect(
