@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from benchmarks.references import __file__ as references
+from benchmarks import references
 
 Array = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 def stored() -> dict:
     from pathlib import Path
 
-    return json.loads((Path(references).parent / "history.json").read_text(encoding="utf-8"))
+    return json.loads((Path(references.__file__).parent / "history.json").read_text(encoding="utf-8"))
 
 
 def gradients(stored: dict, displacement: Array) -> tuple[Array, Array, Array]:
