@@ -87,18 +87,7 @@ def _panel(
     shear = trial.mode == "simple-shear"
     axes.set_xlabel("shear" if shear else "stretch", fontsize=9)
     start = 1.0 if shear else 0.0
-    axes.axhline(0.0, color=FAINT, lw=0.5)
-    axes.errorbar(
-        record.stretch - start,
-        record.stress / 1e3,
-        yerr=2e-3 * record.sd,
-        fmt="o",
-        ms=3,
-        lw=0.7,
-        color=INK,
-        label="measured",
-        zorder=1,
-    )
+    _measured(axes, record, record.stretch - start, size=3)
     stretch = np.linspace(float(trial.stretch.min()), float(trial.stretch.max()), 120)
     for r in fitted:
         if r.parts:  # damage alone: loading and unloading without a clock
@@ -120,21 +109,26 @@ def _over_time(
     trial, record = coupon
     plain(axes).set_title(f"{trial.id}, {trial.mode}", fontsize=9, loc="left")
     axes.set_xlabel("time / s", fontsize=9)
+    _measured(axes, record, record.time, size=2)
+    for r in fitted:
+        along = predicted(material_of(r), [(record, record.stretch)])[0]
+        _line(axes, record.time, along, r.label, chosen, by_law)
+
+
+def _measured(axes: Any, record: Record, x: Array, *, size: float) -> None:
+    """Measured stress over x, with bars of two standard deviations."""
     axes.axhline(0.0, color=FAINT, lw=0.5)
     axes.errorbar(
-        record.time,
+        x,
         record.stress / 1e3,
         yerr=2e-3 * record.sd,
         fmt="o",
-        ms=2,
-        lw=0.5,
+        ms=size,
+        lw=0.25 * size,
         color=INK,
         label="measured",
         zorder=1,
     )
-    for r in fitted:
-        along = predicted(material_of(r), [(record, record.stretch)])[0]
-        _line(axes, record.time, along, r.label, chosen, by_law)
 
 
 def _line(

@@ -33,8 +33,6 @@ class DirectSolver:
         BSR structure.
     single : bool
         Factorise in single precision, for use as a preconditioner (PARDISO only).
-    positive : bool
-        Refuse matrices that are not positive definite (PARDISO only).
 
     Attributes
     ----------
@@ -48,10 +46,9 @@ class DirectSolver:
         indices: NDArray[np.int32],
         *,
         single: bool = False,
-        positive: bool = False,
     ) -> None:
         self._indptr, self._indices = indptr, indices
-        self._single, self._positive = single, positive
+        self._single = single
         self._pardiso: Any = None
         self._lu: Any = None
         self.negative = 0
@@ -69,7 +66,7 @@ class DirectSolver:
         from tisim.linear.pardiso import FactorisationError, Pardiso
 
         if self._pardiso is None:
-            self._pardiso = Pardiso(self._indptr, self._indices, single=self._single, positive=self._positive)
+            self._pardiso = Pardiso(self._indptr, self._indices, single=self._single)
         try:
             self._pardiso.factorise(blocks)
         except FactorisationError as error:

@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 
 _ANALYSE, _FACTOR, _SOLVE, _RELEASE = 11, 22, 33, -1
 _FORWARD, _BACKWARD = 331, 333
-_POSITIVE, _INDEFINITE = 2, -2
+_TYPE = -2  # real and symmetric, indefinite: LDL^T
 
 
 class FactorisationError(RuntimeError):
-    """The matrix could not be factorised: it is singular, or indefinite though a positive one is required."""
+    """The matrix could not be factorised."""
 
 
 def _library() -> Any:
@@ -65,8 +65,6 @@ class Pardiso:
         BSR structure.
     single : bool
         Factorise in single precision (as a preconditioner).
-    positive : bool
-        Use Cholesky, with a FactorisationError for a matrix that is not positive definite; else LDL^T.
 
     Attributes
     ----------
@@ -82,7 +80,6 @@ class Pardiso:
         indices: NDArray[np.int32],
         *,
         single: bool = False,
-        positive: bool = False,
     ) -> None:
         if Pardiso._function is None:
             Pardiso._function = _library()
@@ -90,7 +87,6 @@ class Pardiso:
         self._n = len(indptr) - 1
         self._ia = np.ascontiguousarray(indptr, dtype=np.int32)
         self._ja = np.ascontiguousarray(indices, dtype=np.int32)
-        self._type = _POSITIVE if positive else _INDEFINITE
         self._pt = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
         self._iparm[0] = 1  # no defaults
@@ -134,7 +130,7 @@ class Pardiso:
 
         assert Pardiso._function is not None
         Pardiso._function(
-            pointer(self._pt), integer(1), integer(1), integer(self._type), integer(phase),
+            pointer(self._pt), integer(1), integer(1), integer(_TYPE), integer(phase),
             integer(self._n), pointer(self._values), pointer(self._ia), pointer(self._ja),
             pointer(self._order), integer(1), pointer(self._iparm), integer(0),
             pointer(dummy if b is None else b), pointer(dummy if x is None else x), ctypes.byref(error),

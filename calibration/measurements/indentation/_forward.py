@@ -67,19 +67,7 @@ class ForwardMap:
             move = self.effects[name].shift
             if move is not None:
                 shift = shift + move(a, record)
-
-        def elastic(depth: Array, loading: NDArray[np.bool_]) -> Array:
-            unit = curve.at(depth)
-            for (name, _, variant), a in acting.items():
-                if self.effects[name].scene is not None:
-                    change = self._change(record, name, variant, a, depth, loading=loading, across=False)
-                    unit = unit + change
-            return unit
-
-        if spectrum is None:
-            unit = elastic(record.depth + shift, record.direction > 0)
-        else:
-            unit = remembered(record, spectrum, elastic, shift)
+        unit = self._unit(record, curve.at, acting, spectrum, shift, across=False)
         force = shear_modulus * np.maximum(unit, 0.0)
         for (name, _, variant), a in sorted(acting.items(), key=lambda item: self.effects[item[0][0]].stage):
             apply = self.effects[name].force
@@ -99,18 +87,35 @@ class ForwardMap:
 
         Effects of the load cell and of the depth are modelled along the indenter. Parameters as in `along`.
         """
+        still = np.zeros(record.points)
+        return shear_modulus * self._unit(record, curve.sides, acting, spectrum, still, across=True)
+
+    def _unit(
+        self,
+        record: Record,
+        base: Callable[[Array], Array],
+        acting: Acting,
+        spectrum: Spectrum | None,
+        shift: Array,
+        *,
+        across: bool,
+    ) -> Array:
+        """Force for a unit shear modulus, with effects of the scene, at depths that are wrong by `shift` [m].
+
+        base : force without effects as a function of the depth, along or across the indenter.
+        """
 
         def elastic(depth: Array, loading: NDArray[np.bool_]) -> Array:
-            unit = curve.sides(depth)
+            unit = base(depth)
             for (name, _, variant), a in acting.items():
                 if self.effects[name].scene is not None:
-                    change = self._change(record, name, variant, a, depth, loading=loading, across=True)
+                    change = self._change(record, name, variant, a, depth, loading=loading, across=across)
                     unit = unit + change
             return unit
 
         if spectrum is None:
-            return shear_modulus * elastic(record.depth, record.direction > 0)
-        return shear_modulus * remembered(record, spectrum, elastic, np.zeros(record.points))
+            return elastic(record.depth + shift, record.direction > 0)
+        return remembered(record, spectrum, elastic, shift)
 
     def prepare(self, needed: Sequence[tuple[Record, Acting]]) -> None:
         """Simulate, in one batch, the curves that these records need for these effects."""
