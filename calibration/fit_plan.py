@@ -119,6 +119,7 @@ def plan_fit(
         terms=terms,
         objective="likelihood" if objective == "likelihood" else "dice",
         setup=setup,
+        setup_file="" if rig is None else str(rig),
         specs=specs,
         free_bulk_ratio=free_bulk_ratio,
         cards=cards,

@@ -6,10 +6,11 @@ Files hold millimetres; everything here is in m, N, Pa, kg, s and radians.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from html import escape
 from pathlib import Path
-from typing import Literal
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -321,6 +322,11 @@ class Experiment:
             found[kind] = found.get(kind, 0) + 1
         return found
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: a read-only view of a mapping cannot be sent."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return _experiment, (type(self), values | {"materials": dict(self.materials)})
+
     def __repr__(self) -> str:
         kinds = ", ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in self.counts.items())
         return f"Experiment({self.name!r}: {kinds} of {', '.join(self.materials)}; {self.folder})"
@@ -333,3 +339,7 @@ class Experiment:
         )
         head = "<tr><th>trial</th><th>kind</th><th>material</th></tr>"
         return f"<p>{escape(self.name)} ({escape(str(self.folder))})</p><table>{head}{rows}</table>"
+
+
+def _experiment(kind: type[Experiment], values: dict[str, Any]) -> Experiment:
+    return kind(**values | {"materials": MappingProxyType(values["materials"])})

@@ -151,7 +151,7 @@ def _remarks(found: Prony, moduli: laws.Moduli, window: ProtocolWindow, *, state
         listed = ", ".join(f"{t:.3g}" for t in found.times)
         said.append(f"the relaxation times {listed} s are stated, not fitted")
         return said
-    seen = f"what the tests show ({window.first:.3g} s, the shortest ramp, to {window.last:.3g} s)"
+    seen = f"what the tests show ({window.first:.3g} s to {window.last:.3g} s)"
     for i, t in enumerate(found.times):
         if not window.first <= t <= window.last:
             said.append(f"relaxation time {i + 1}, {t:.3g} s, is outside {seen}")

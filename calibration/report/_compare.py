@@ -24,27 +24,38 @@ class Comparison:
     chosen: the law with the smallest chi-square + 2 n among finished fits, else the best so far of stopped
     ones. differences: by label, (chi2 - chi2 of the chosen) / scale + 2 (n - n of the chosen), of finished
     fits only. scale: reduced chi-square of the chosen law, at least 1, so that a law which misses the data by
-    more than the noise does not beat others by parts of its own error.
+    more than the noise does not beat others by parts of its own error. passed_over: labels of laws with a
+    constant at a bound of the search, where the chosen one has none.
     """
 
     chosen: Calibration
     differences: Mapping[str, float]
     scale: float
+    passed_over: tuple[str, ...] = ()
+
+    @property
+    def compared(self) -> Mapping[str, float]:
+        """Differences of the laws that the chosen one was chosen among."""
+        return {n: d for n, d in self.differences.items() if n not in self.passed_over}
 
     @property
     def alike(self) -> tuple[str, ...]:
         """Labels that cannot be told from the chosen law, which is one of them."""
-        return tuple(n for n, d in self.differences.items() if d < ALIKE)
+        return tuple(n for n, d in self.compared.items() if d < ALIKE)
 
     @property
     def refuted(self) -> tuple[str, ...]:
-        return tuple(n for n, d in self.differences.items() if d > REFUTED)
+        return tuple(n for n, d in self.compared.items() if d > REFUTED)
+
+    @property
+    def better(self) -> Mapping[str, float]:
+        """Differences of laws that were passed over although they fit better."""
+        return {n: d for n, d in self.differences.items() if n in self.passed_over and d < -ALIKE}
 
     @property
     def misses(self) -> bool:
         """True if the chosen law's chi-square is above what noise makes of it, by three sd."""
-        freedom = max(1, self.chosen.points - len(self.chosen.u))
-        return self.chosen.reduced_chi2 > 1.0 + 3.0 * sqrt(2.0 / freedom)
+        return self.chosen.reduced_chi2 > 1.0 + 3.0 * sqrt(2.0 / self.chosen.freedom)
 
 
 def compare(results: Sequence[Calibration]) -> Comparison | None:
@@ -57,15 +68,16 @@ def compare(results: Sequence[Calibration]) -> Comparison | None:
         chosen = min(stopped, key=_akaike)
     scale = max(1.0, chosen.reduced_chi2)
     differences = {
-        r.label: (r.chi2 - chosen.chi2) / scale + 2.0 * (len(r.u) - len(chosen.u))
+        r.label: (r.chi2 - chosen.chi2) / scale + 2.0 * (r.constants - chosen.constants)
         for r in results
         if usable(r)
     }
-    return Comparison(chosen=chosen, differences=differences, scale=scale)
+    passed = tuple(r.label for r in results if usable(r) and r.unsettled and not chosen.unsettled)
+    return Comparison(chosen=chosen, differences=differences, scale=scale, passed_over=passed)
 
 
 def _akaike(result: Calibration) -> float:
-    return result.chi2 + 2.0 * len(result.u)
+    return result.chi2 + 2.0 * result.constants
 
 
 FAR = 2.0

@@ -35,7 +35,7 @@ def coupon_errors(coupon: Coupon, results: Sequence[Calibration]) -> Mapping[str
         return {r.label: float("nan") for r in results}
     found = {}
     for r in results:
-        if r.parts:  # along the record's course
+        if r.parts or r.held:  # along the record's course
             left = predicted(material_of(r), [(record, record.stretch)])[0] - record.stress
             found[r.label] = 100.0 * float(np.sqrt(np.mean(left**2))) / largest
         else:
@@ -90,7 +90,7 @@ def _panel(
     _measured(axes, record, record.stretch - start, size=3)
     stretch = np.linspace(float(trial.stretch.min()), float(trial.stretch.max()), 120)
     for r in fitted:
-        if r.parts:  # damage alone: loading and unloading without a clock
+        if r.parts or r.held:  # damage alone: loading and unloading without a clock
             along = predicted(material_of(r), [(record, record.stretch)])[0]
             _line(axes, record.stretch - start, along, r.label, chosen, by_law)
         else:

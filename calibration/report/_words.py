@@ -80,9 +80,21 @@ def verdict(results: Sequence[Calibration]) -> str:
 
 
 def _laws(found: Comparison, results: Sequence[Calibration]) -> str:
-    fitted = len(found.differences)
+    said = _compared(found, results)
+    for label, difference in found.better.items():
+        said += (
+            f"; {label} fits better (Akaike difference {significant(difference)}), but a constant of it is at"
+            " a bound of the search"
+        )
+    return said
+
+
+def _compared(found: Comparison, results: Sequence[Calibration]) -> str:
+    fitted = len(found.compared)
     if fitted == 1:
         others = len(results) - 1
+        if found.passed_over:
+            return f"of {others} other laws none has a fit with all constants inside their bounds"
         return f"of {others} other laws none has a fit" if others else "no other law was tried"
     alike = [n for n in found.alike if n != found.chosen.label]
     if len(alike) + 1 == fitted:
@@ -90,7 +102,7 @@ def _laws(found: Comparison, results: Sequence[Calibration]) -> str:
     if alike:
         return f"this data cannot tell it from {listed(alike)}{_span(found, results)}"
     next_one, margin = min(
-        ((n, d) for n, d in found.differences.items() if n != found.chosen.label), key=lambda pair: pair[1]
+        ((n, d) for n, d in found.compared.items() if n != found.chosen.label), key=lambda pair: pair[1]
     )
     how = "prefer it to all others" if margin > REFUTED else "slightly prefer it to others"
     return f"the data {how} (next {next_one}, Akaike difference {significant(margin)})"
@@ -105,12 +117,13 @@ def _span(found: Comparison, results: Sequence[Calibration]) -> str:
 def rule() -> str:
     """Explanation of how laws are compared, by their Akaike values."""
     return (
-        "The law with the lowest Akaike value (chi-square + 2 per constant) leads. The Akaike difference of"
+        "The law with the lowest Akaike value (chi-square + 2 per constant) leads; a law with a constant at a"
+        " bound of the search leads only where all have one. The Akaike difference of"
         " another law is the difference of the two chi-squares, divided by the leading law's reduced"
         " chi-square where that is above 1, plus 2 for each constant more. Below"
         f" {ALIKE:g} the data cannot tell two laws apart; above {REFUTED:g} they speak clearly against"
-        " the other law (Burnham and Anderson 2002). A negative difference means a law with"
-        " fewer constants does as well."
+        " the other law (Burnham and Anderson 2002). A negative difference belongs to a law that fits better"
+        " but ends at a bound."
     )
 
 

@@ -43,6 +43,12 @@ def command(folder: Path, results: Sequence[Calibration], experiment: Experiment
         asks = part_kind(spec).option
         words += [f"--{asks}"] if asks == spec else [f"--{asks}", spec]
     header = _header(folder, results[0])
+    if header.get("objective", "likelihood") != "likelihood":
+        words += ["--objective", str(header["objective"])]
+    if header.get("free_bulk_ratio"):
+        words.append("--free-bulk-ratio")
+    if header.get("rig_file"):
+        words += ["--rig", str(header["rig_file"])]
     for option in ("start", "seed", "population", "generations", "restarts"):
         if header.get(option) is not None:
             words += [f"--{option}", str(header[option])]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from calibration.errors import InputError
 from calibration.inference import Generation
 from calibration.study.calibration import Calibration
 
+_NOT_COMPARED = {"rig_file"}  # a path: "rig" is the content
 _ANEW = "--overwrite starts anew, --out writes elsewhere"
 
 
@@ -41,13 +41,26 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def remove_fits(folder: Path) -> None:
-    """Remove all fits of a folder. InputError where another process is at work there."""
+    """Remove all fits of a folder, whole or damaged, and nothing else.
+
+    InputError where another process is at work there.
+    """
     with locked(folder):
         for path in folder.iterdir():
-            if path.is_dir():
-                shutil.rmtree(path)
-            elif path.name != ".lock":
+            if path.is_file() and _is_fit(path):
                 path.unlink()
+
+
+def _is_fit(path: Path) -> bool:
+    """True for a file that a fit wrote, or that has a fit's name but cannot be read."""
+    if not path.name.endswith((".json", ".jsonl", ".json.part")):
+        return False
+    try:
+        text = path.read_text(encoding="utf-8")
+        found = json.loads(text.partition("\n")[0] if path.suffix == ".jsonl" else text)
+    except (ValueError, RecursionError):
+        return True
+    return isinstance(found, dict) and ("format" if path.suffix == ".jsonl" else "header") in found
 
 
 def _take(handle: int) -> bool:
@@ -157,7 +170,8 @@ class FitStore:
     def _check(self, found: object, path: Path) -> None:
         if not isinstance(found, dict):
             raise InputError(f"{path}: damaged, expected the header of a fit ({_ANEW})")
-        other = [k for k in self.header if found.get(k) != self.header[k]]
+        compared = {**self.header, **found}.keys() - _NOT_COMPARED
+        other = sorted(k for k in compared if found.get(k) != self.header.get(k))
         if other:
             raise InputError(
                 f"{path}: made with another {' and '.join(other)}; expected the same to go on ({_ANEW})"

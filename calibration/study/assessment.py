@@ -112,8 +112,7 @@ def misfit_lacking(result: Calibration) -> tuple[str, ...]:
     if result.objective != "likelihood" or not result.parameters:
         return ()
     phrases = []
-    freedom = max(1, result.points - len(result.u))
-    if result.reduced_chi2 > max(NOISE_OFF, 1.0 + 3.0 * sqrt(2.0 / freedom)):
+    if result.reduced_chi2 > max(NOISE_OFF, 1.0 + 3.0 * sqrt(2.0 / result.freedom)):
         phrases.append(f"reduced chi-square {result.reduced_chi2:.3g}")
     phrases += nuisances_lacking(result.nuisances)
     return tuple(phrases)

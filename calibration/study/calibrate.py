@@ -297,7 +297,7 @@ def _point(
     for o in problem.objectives:
         if isinstance(o, ModelObjective):
             nuisances = {**nuisances, **o.nuisances(u)}
-    return Calibration(
+    found = Calibration(
         material=data.material,
         law=p.law,
         label=p.label,
@@ -305,18 +305,19 @@ def _point(
         message=message,
         density=data.density,
         u=tuple(float(x) for x in u),
+        held_coordinates=sum(c.held for c in p.coordinates),
         parameters=p.parameters(u),
         shear_modulus=moduli.shear_modulus,
         bulk_modulus=moduli.bulk_modulus,
         chi2=chi2,
         points=problem.points,
-        reduced_chi2=chi2 / max(1, problem.points - len(u)),
         rms=rms,
         nuisances=nuisances,
         note="; ".join(n for n in (_note(data, moduli.shear_modulus), *p.remarks(u)) if n),
         **_parts(p),
         objective="dice" if any(_is_dice(o) for o in data.objectives) else "likelihood",
     )
+    return replace(found, reduced_chi2=chi2 / found.freedom)
 
 
 def _parts(p: Parametrisation) -> dict[str, Any]:

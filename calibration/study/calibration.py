@@ -67,6 +67,8 @@ class Calibration:
         As the lab states it [kg/m3].
     u : tuple of float
         The law's search coordinates.
+    held_coordinates : int
+        Number of these that the fit held (K/G where the data do not show it).
     parameters : mapping
         As `tisim.Material` takes them.
     shear_modulus, shear_modulus_sd, bulk_modulus : float
@@ -78,7 +80,7 @@ class Calibration:
         the sum of (1 - Dice) / SCALE^2 over `points` photographs, and no measure of likelihood.
     points : int
     reduced_chi2 : float
-        Over points minus coordinates.
+        Over `freedom`.
     rms : float, optional
         Of the outlines' distances, registered [m].
     nuisances : mapping
@@ -111,6 +113,7 @@ class Calibration:
     message: str
     density: float | None
     u: tuple[float, ...] = ()
+    held_coordinates: int = 0
     parameters: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     shear_modulus: float = float("nan")
     shear_modulus_sd: float = float("nan")
@@ -180,6 +183,16 @@ class Calibration:
     def candidate_seconds(self) -> float:
         """Core time of one candidate of the search, all its trials [s]."""
         return self.search_seconds / max(1, self.candidates)
+
+    @property
+    def constants(self) -> int:
+        """Number of constants that were fitted."""
+        return len(self.u) - self.held_coordinates
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom: points minus fitted constants, at least 1."""
+        return max(1, self.points - self.constants)
 
     def to_json(self) -> dict[str, Any]:
         """Plain values, NaN as None."""

@@ -8,7 +8,7 @@ Parts that were fitted beside the best law (`tisim.parts`) stand under the keys 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ def best(results: Sequence[Calibration]) -> Calibration | None:
     """
     found = [r for r in results if usable(r)]
     found = [r for r in found if not r.unsettled] or found
-    return min(found, key=lambda r: r.chi2 + 2.0 * len(r.u)) if found else None
+    return min(found, key=lambda r: r.chi2 + 2.0 * r.constants) if found else None
 
 
 def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, Any]:
@@ -54,6 +54,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
             by_law[r.law] = r
     parameters: dict[str, dict[str, Any]] = {}
     filled = []
+    fitted = {r.law for r in results if r.parameters}
     for name in laws.names():
         if name in by_law:
             parameters[name] = _plain(by_law[name].parameters)
@@ -67,7 +68,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "material": chosen.material,
         "mixture": f"softener ratio {ratio:g}" if ratio is not None else chosen.material,
         "derived": False,
-        "provenance": _provenance(results, chosen, filled, experiment),
+        "provenance": _provenance(results, chosen, filled, fitted, experiment),
         "uncertainty": {
             "shear_modulus_low": -bound if bound is not None else None,
             "shear_modulus_high": bound,
@@ -114,7 +115,11 @@ def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
 
 
 def _provenance(
-    results: Sequence[Calibration], chosen: Calibration, filled: Sequence[str], experiment: Experiment
+    results: Sequence[Calibration],
+    chosen: Calibration,
+    filled: Sequence[str],
+    fitted: Collection[str],
+    experiment: Experiment,
 ) -> str:
     lines = [
         f"Calibrated on experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.fit:"
@@ -135,8 +140,15 @@ def _provenance(
         lines.append(f"Held beside {chosen.law}, as another card states them: {', '.join(chosen.held)}.")
     if chosen.note:
         lines.append(f"Note: {chosen.note}.")
-    if filled:
-        lines.append(f"Not fitted, moduli taken from {chosen.label}: {', '.join(filled)}.")
+    for why, names in (
+        ("Not fitted", [n for n in filled if n not in fitted]),
+        (
+            "Fitted but not taken (not converged, or a constant at a bound)",
+            [n for n in filled if n in fitted],
+        ),
+    ):
+        if names:
+            lines.append(f"{why}, moduli taken from {chosen.label}: {', '.join(names)}.")
     if experiment.materials[chosen.material].density is None:
         lines.append("Density not stated by the lab: 1000 kg/m3 assumed.")
     return "\n".join(lines)

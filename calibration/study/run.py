@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import logging
 import multiprocessing
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from multiprocessing import connection
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from calibration.errors import InputError
-from calibration.experiment import Experiment, read
+from calibration.experiment import Experiment
 from calibration.inference import Generation, HistoryError
 from calibration.measurements.outlines.setup import Setup
 from calibration.parameters import parametrisation
@@ -33,7 +34,7 @@ from tisim import laws
 log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 5
+FORMAT = 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,10 +43,8 @@ class Task:
 
     Attributes
     ----------
-    experiment : Path
-        Folder, absolute.
-    digest : str
-        Of the experiment's files.
+    experiment : Experiment
+        As it was read, or as the caller changed it: trials left out, rows cut.
     material, law : str
     terms : int
         Of a series law.
@@ -56,6 +55,8 @@ class Task:
         "likelihood" or "dice".
     setup : Setup, optional
         What is known of rig and camera.
+    setup_file : str
+        Where it was read from, for the command that repeats the fit.
     parts : tuple of str
         What the material has beside the law (`calibration.study.parts`).
     free_bulk_ratio : bool
@@ -64,8 +65,7 @@ class Task:
         Of the material: parts that are held, or begin the search.
     """
 
-    experiment: Path
-    digest: str
+    experiment: Experiment
     material: str
     law: str
     terms: int
@@ -73,6 +73,7 @@ class Task:
     folder: Path
     objective: ObjectiveName = "likelihood"
     setup: Setup | None = None
+    setup_file: str = ""
     parts: tuple[str, ...] = ()
     free_bulk_ratio: bool = False
     card: CardParts | None = None
@@ -107,7 +108,8 @@ class Task:
     def store(self) -> FitStore:
         header: dict[str, Any] = {
             "format": FORMAT,
-            "data": self.digest,
+            "data": self.experiment.digest,
+            "trials": _content(self.experiment),
             "material": self.material,
             "law": self.label,
             "seed": self.options.cma.seed,
@@ -126,6 +128,8 @@ class Task:
             header["card"] = self.card.content
         if self.free_bulk_ratio:
             header["free_bulk_ratio"] = True
+        if self.setup_file:
+            header["rig_file"] = self.setup_file
         return FitStore(self.folder, self.name, header)
 
 
@@ -139,6 +143,7 @@ def tasks_for(
     terms: int = 1,
     objective: ObjectiveName = "likelihood",
     setup: Setup | None = None,
+    setup_file: str = "",
     specs: Sequence[str] = (),
     free_bulk_ratio: bool = False,
     cards: Mapping[str, parts.CardParts] | None = None,
@@ -147,8 +152,7 @@ def tasks_for(
     by material, whose parts are held or begin the search."""
     return [
         Task(
-            experiment=experiment.folder.resolve(),
-            digest=experiment.digest,
+            experiment=experiment,
             material=material,
             law=law,
             terms=terms if law == "ogden" else 1,
@@ -156,6 +160,7 @@ def tasks_for(
             folder=folder,
             objective=objective,
             setup=setup,
+            setup_file=setup_file,
             parts=tuple(specs),
             free_bulk_ratio=free_bulk_ratio,
             card=(cards or {}).get(material),
@@ -172,6 +177,30 @@ def by_cost(names: Sequence[str]) -> list[str]:
         names,
         key=lambda n: (n == "st-venant-kirchhoff", len(parametrisation(n).coordinates), n != "neo-hookean"),
     )
+
+
+def _content(experiment: Experiment) -> str:
+    """sha256 of trials and materials as they are fitted, which may be fewer than the files hold."""
+    total = hashlib.sha256()
+
+    def add(value: Any) -> None:
+        if is_dataclass(value) and not isinstance(value, type):
+            add([(f.name, getattr(value, f.name)) for f in fields(value)])
+        elif isinstance(value, np.ndarray):
+            total.update(f"{value.dtype}{value.shape}".encode() + np.ascontiguousarray(value).tobytes())
+        elif isinstance(value, Mapping):
+            add(list(value.items()))
+        elif isinstance(value, list | tuple):
+            total.update(f"({len(value)}".encode())
+            for part in value:
+                add(part)
+        elif isinstance(value, Path):  # of a photograph; its content counts in the experiment's digest
+            add(value.name)
+        else:
+            total.update(f"{type(value).__name__}:{value!r};".encode())
+
+    add([experiment.materials, experiment.trials])
+    return total.hexdigest()
 
 
 def run(
@@ -286,7 +315,7 @@ def fit_task(
         result = parts.choose(found)
         store.finish(result)
         return result
-    experiment = OnSetup.of(read(task.experiment), task.setup)
+    experiment = OnSetup.of(task.experiment, task.setup)
 
     def keep(generation: Generation) -> None:
         if not generation.replayed:

@@ -142,6 +142,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
     branches : strokes of each trial.
     """
     ramps, waits, lengths, peaks = [], [], [], []
+    intervals: list[float] = []  # between rows: what a record of a hold alone shows first
     for trial, strokes in zip(trials, branches, strict=True):
         excess = first_excess(trial.mode, trial.stretch)
         for a, b in pairwise(strokes):
@@ -150,18 +151,24 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
         if trial.time is None:
             continue
         lengths.append(float(trial.time[-1] - trial.time[0]))
+        intervals += np.diff(trial.time).tolist()
         rests = holds_of(trial)
         waits += [float(trial.time[h.stop - 1] - trial.time[h.start]) for h in rests]
         corners = {0, trial.stretch.size - 1, *(s.points.start for s in strokes[1:])}
         corners |= {i for h in rests for i in (h.start, h.stop - 1)}
         still = {(h.start, h.stop - 1) for h in rests}
         inside = sorted(c for c in corners if not any(h.start < c < h.stop - 1 for h in rests))
-        ramps += [float(trial.time[b] - trial.time[a]) for a, b in pairwise(inside) if (a, b) not in still]
+        least = STILL * float(np.abs(trial.stretch - 1.0).max())
+        ramps += [
+            float(trial.time[b] - trial.time[a])
+            for a, b in pairwise(inside)
+            if (a, b) not in still and abs(trial.stretch[b] - trial.stretch[a]) > least
+        ]
     different = 0
     for k, peak in enumerate(sorted(peaks)):
         different += k == 0 or peak > DIFFERENT * sorted(peaks)[k - 1]
     last = max(waits or lengths, default=0.0)
-    first = min([r for r in ramps if r > 0.0], default=last)
+    first = min([r for r in ramps if r > 0.0] or [i for i in intervals if i > 0.0], default=last)
     return ProtocolWindow(first=min(first, last), last=last, peaks=different)
 
 

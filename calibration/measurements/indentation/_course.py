@@ -113,9 +113,11 @@ def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
 def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
     """Range of times of ramps and holds, and number of different peak depths, of indentations."""
     ramps, waits, lengths, peaks = [], [], [], []
+    intervals: list[float] = []  # between rows: what a record of a hold alone shows first
     for trial in trials:
         time, phases = trial.record.time, with_holds(trial, phases_of(trial))
         lengths.append(float(time[-1] - time[0]))
+        intervals += np.diff(time).tolist()
         for p in phases:
             took = float(time[min(p.points.stop, time.size - 1)] - time[p.points.start])
             if p.direction != 0.0:
@@ -128,5 +130,5 @@ def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
     peaks.sort()
     different = sum(k == 0 or peak > DIFFERENT * peaks[k - 1] for k, peak in enumerate(peaks))
     last = max(waits or lengths, default=0.0)
-    first = min([r for r in ramps if r > 0.0], default=last)
+    first = min([r for r in ramps if r > 0.0] or [i for i in intervals if i > 0.0], default=last)
     return ProtocolWindow(first=min(first, last), last=last, peaks=different)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import logging
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -73,6 +74,36 @@ def test_functions_are_not_hidden_by_the_commands_of_their_names(orders: str) ->
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_an_experiment_is_fitted_as_it_is_given(tmp_path: Path) -> None:
+    """Of two strips of 30 and 60 kPa one is left out; a fit of both is not taken for it."""
+    stretch = np.linspace(1.05, 2.0, 20)
+    shape = stretch - stretch**-2
+    whole = calibration.read_experiment(
+        write_experiment(
+            tmp_path / "two",
+            [
+                coupon_entry("soft", "soft.csv", material="rubber"),
+                coupon_entry("hard", "hard.csv", material="rubber"),
+            ],
+            tables={
+                "soft.csv": {"stretch": stretch, "nominal_stress_kPa": 30.0 * shape},
+                "hard.csv": {"stretch": stretch, "nominal_stress_kPa": 60.0 * shape},
+            },
+        )
+    )
+    options = {"model": "neo-hookean", "out": tmp_path / "out", "generations": 20, "held_out": False}
+    alone = replace(whole, trials=tuple(t for t in whole.trials if t.id == "soft"))
+    for workers in (1, 2):
+        found = calibration.fit(alone, **options, workers=workers, overwrite=True)[0]
+        assert found.points == 20
+        assert found.shear_modulus == pytest.approx(30e3, rel=0.01)
+    with pytest.raises(InputError, match="made with another trials; expected the same to go on"):
+        calibration.fit(whole, **options, workers=1)
+    assert pickle.loads(pickle.dumps(whole)) == whole or repr(pickle.loads(pickle.dumps(whole))) == repr(
+        whole
+    )
 
 
 def test_fits_print_themselves(fits: Fits) -> None:

@@ -42,6 +42,13 @@ def test_some_laws_are_alike() -> None:
     assert found.refuted == ("mooney-rivlin",)
 
 
+def test_a_law_at_a_bound_is_not_alike_but_better() -> None:
+    said = verdict([calibration(), calibration("ogden", chi2=60.0, unsettled=("alpha",))])
+    assert "cannot be told apart" not in said
+    assert "none has a fit with all constants inside their bounds" in said
+    assert "ogden fits better (Akaike difference -28.0), but a constant of it is at a bound" in said
+
+
 def test_misfit_shrinks_differences() -> None:
     # a difference of 30 in chi-square is decisive at the noise level, but not if all laws miss by ten times
     # it

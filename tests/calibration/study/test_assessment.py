@@ -134,12 +134,31 @@ def test_the_card_holds_the_priors_ratio_and_says_so(tmp_path: Path) -> None:
     assert "Lack of fit:" in made["provenance"]
 
 
-def test_a_constant_at_a_bound_gives_way_to_a_settled_law() -> None:
+def test_a_constant_at_a_bound_gives_way_to_a_settled_law(tmp_path: Path) -> None:
     """Ogden fits slightly better with its exponent at a bound; the card has the law without this problem."""
     settled = fitted(Linear(20e3, 250.0))
     at_bound = replace(settled, law="ogden", label="ogden", chi2=settled.chi2 - 50.0, unsettled=("alpha",))
     assert best([at_bound, settled]) is settled
     assert best([at_bound]) is at_bound
+    experiment = read(
+        write_experiment(
+            tmp_path,
+            [coupon_entry("pull", "a.csv")],
+            tables={"a.csv": {"stretch": [1.0, 1.1, 1.2], "nominal_stress_kPa": [0.0, 1.0, 2.0]}},
+        )
+    )
+    provenance = card([at_bound, settled], experiment)["provenance"]
+    _, _, not_fitted = provenance.partition("Not fitted")
+    assert "ogden" not in not_fitted.splitlines()[0]
+    assert "Fitted but not taken (not converged, or a constant at a bound), moduli taken from" in provenance
+
+
+def test_a_constant_that_is_held_takes_no_degree_of_freedom() -> None:
+    held, free = fitted(Linear(20e3, 250.0), free=False), fitted(Linear(20e3, 250.0))
+    assert (held.constants, free.constants) == (len(held.u) - 1, len(free.u))
+    for found in (held, free):
+        assert found.freedom == found.points - found.constants
+        assert found.reduced_chi2 == pytest.approx(found.chi2 / found.freedom)
 
 
 def test_a_bound_that_is_a_simpler_law_is_no_lack_of_fit() -> None:

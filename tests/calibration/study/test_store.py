@@ -142,3 +142,30 @@ def test_one_process_at_a_time(tmp_path: Path) -> None:
     assert not store(tmp_path).history_path.exists()
     with locked(tmp_path):
         pass
+
+
+def test_overwriting_removes_fits_alone(tmp_path: Path) -> None:
+    """Whole, unfinished and damaged fits go; what a lab keeps beside them stays."""
+    store(tmp_path).append(generation(0))
+    (tmp_path / "S1-ogden.json").write_text('{"header": {}, "calibration": {}}')
+    (tmp_path / "S2-ogden.json").write_text('{"header": ')
+    (tmp_path / "S2-ogden.json.part").write_text("")
+    kept = ["notes.txt", "raw.csv", "settings.json", "thesis"]
+    (tmp_path / "notes.txt").write_text("x")
+    (tmp_path / "raw.csv").write_text("1,2")
+    (tmp_path / "settings.json").write_text('{"camera": 1}')
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.tex").write_text("x")
+    remove_fits(tmp_path)
+    assert sorted(p.name for p in tmp_path.iterdir() if p.name != ".lock") == kept
+    assert (tmp_path / "thesis" / "chapter.tex").exists()
+
+
+def test_an_option_that_is_left_out_now_is_another_fit(tmp_path: Path) -> None:
+    FitStore(tmp_path, "S0-neo-hookean", HEADER | {"free_bulk_ratio": True}).append(generation(0))
+    with pytest.raises(InputError, match="made with another free_bulk_ratio; expected the same to go on"):
+        store(tmp_path).history()
+    moved = FitStore(tmp_path, "S1-neo-hookean", HEADER | {"rig": "abc", "rig_file": "rig.yaml"})
+    moved.append(generation(0))
+    again = FitStore(tmp_path, "S1-neo-hookean", HEADER | {"rig": "abc", "rig_file": "copy/rig.yaml"})
+    assert len(again.history()) == 1

@@ -55,6 +55,16 @@ def test_a_smooth_oscillation_has_no_holds() -> None:
     assert holds_of(oscillating) == []
 
 
+def test_the_window_of_a_hold_alone_begins_with_the_interval_between_rows() -> None:
+    at = np.concatenate([[0.0], np.geomspace(0.1, 1000.0, 50)])
+    held = CouponTrial(
+        id="t", material="M", mode="uniaxial", stretch=np.full(51, 1.3), stress=np.exp(-at), time=at
+    )
+    window = protocol_window([held])
+    assert window.first == pytest.approx(np.diff(at).min())
+    assert window.last == pytest.approx(1000.0)
+
+
 def test_the_window_goes_from_the_shortest_ramp_to_the_longest_hold() -> None:
     slow = drive([0, 40, 340, 380], [1.0, 1.4, 1.4, 1.0])
     fast = drive([0, 5, 65, 70], [1.0, 1.5, 1.5, 1.0])
