@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 REPEATS = 4  # least number of repeats of one test: mean and trend take two degrees of freedom
 GRID = 24  # points along the records at which they are compared
+NOTABLE = 4.0  # least ratio of the mean square of a trend in the order of repeats to that by chance
 BEND = 4  # highest polynomial degree of a record's own deviation
 _NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
 
@@ -34,6 +35,7 @@ class Curve:
     x : driven quantity, in the order of the record, shape (k,).
     branch : number of the stroke of each point, shape (k,): loading and unloading are compared separately.
     misfit : simulated minus measured [SI], shape (k,).
+    sd : standard deviation of the noise from point to point [SI], shape (k,).
     scale : full scale [SI].
     """
 
@@ -44,6 +46,7 @@ class Curve:
     x: Array
     branch: NDArray[np.int64]
     misfit: Array
+    sd: Array
     scale: float
 
 
@@ -53,9 +56,10 @@ class Layers:
 
     Attributes
     ----------
-    repeat : standard deviation between repeats on one specimen, without the trend in their order.
+    repeat : standard deviation between repeats on one specimen, without the trend in their order and beyond
+        the noise from point to point; 0 if repeats differ by this noise only.
     order : change of the misfit from the first to the last repeat by that trend: rms along the record, with
-        the sign of its mean.
+        the sign of its mean. None if noise and scatter make as much (NOTABLE).
     specimen : standard deviation between the means of specimens of one material in one test.
     repeats : names of the records that `repeat` and `order` are estimated from.
     dof : degrees of freedom of `repeat`.
@@ -74,10 +78,12 @@ class Layers:
     def sentences(self) -> list[str]:
         if self.repeat is None:
             return []
-        text = (
-            f"{len(self.repeats)} repeats differ by {100.0 * self.repeat:.2g} % of full scale from one to the"
-            " next, which counts as noise"
-        )
+        text = f"{len(self.repeats)} repeats differ by no more than the noise from point to point"
+        if self.repeat > 0.0:
+            text = (
+                f"{len(self.repeats)} repeats differ by {100.0 * self.repeat:.2g} % of full scale from one to"
+                " the next, which counts as noise"
+            )
         if self.order is not None:
             text += (
                 f"; the order of the tests, taken out first, makes {100.0 * self.order:+.2g} % from the first"
@@ -101,9 +107,10 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
     squares, orders, dofs, names = [], [], 0.0, []
     means: dict[Hashable, list[Array]] = {}
     for (material, _, test), group in ((k, g) for k, g in groups.items() if isinstance(k, tuple)):
-        values = _together(group)
-        if values is None:
+        together = _together(group)
+        if together is None:
             continue
+        values, noise = together
         means.setdefault((material, test), []).append(values.mean(axis=0))
         if len(group) < REPEATS:
             continue
@@ -111,9 +118,14 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
         trend = number @ values / (number @ number)
         left = values - values.mean(axis=0) - number[:, None] * trend
         free = sqrt(len(group) / (len(group) - 2.0))
-        squares.append((free * _NORMAL * np.median(np.abs(left))) ** 2)
+        found = float((free * _NORMAL * np.median(np.abs(left))) ** 2)
+        # the median of the squares has the scatter of some two of five of them
+        certain = 1.0 + 3.0 * sqrt(2.0 / (0.4 * left.size * (1.0 - 2.0 / len(group))))
+        squares.append(found - noise if found > certain * noise else 0.0)
         whole = trend * (len(group) - 1)
-        orders.append(float(np.sign(whole.mean()) * np.sqrt(np.mean(whole**2))))
+        by_chance = (squares[-1] + noise) * (len(group) - 1) ** 2 / (number @ number)
+        if np.mean(whole**2) > NOTABLE * by_chance:
+            orders.append(float(np.sign(whole.mean()) * np.sqrt(np.mean(whole**2))))
         dofs += len(group) - 2.0
         names += [c.name for c in group]
     apart = [np.var(np.array(m), axis=0, ddof=1).mean() for m in means.values() if len(m) > 1]
@@ -126,12 +138,13 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
     )
 
 
-def _together(group: Sequence[Curve]) -> Array | None:
+def _together(group: Sequence[Curve]) -> tuple[Array, float] | None:
     """Misfits over full scale on a grid of their common range of x in each branch, shape (records, m).
 
-    None if they have no common range in any branch.
+    Also the mean variance that the noise from point to point gives them. None if they have no common range in
+    any branch.
     """
-    found = []
+    found, noise = [], []
     for branch in np.unique(group[0].branch):
         own = [c.branch == branch for c in group]
         if not all(mine.any() for mine in own):
@@ -144,9 +157,17 @@ def _together(group: Sequence[Curve]) -> Array | None:
         values = []
         for c, mine in zip(group, own, strict=True):
             order = np.argsort(c.x[mine], kind="stable")
-            values.append(np.interp(grid, c.x[mine][order], c.misfit[mine][order]) / c.scale)
+            x, y, sd = (a[mine][order] for a in (c.x, c.misfit, c.sd))
+            values.append(np.interp(grid, x, y) / c.scale)
+            right = np.clip(np.searchsorted(x, grid), 1, max(len(x) - 1, 1)) if len(x) > 1 else None
+            if right is None:
+                noise.append(np.full(GRID, (sd[0] / c.scale) ** 2))
+                continue
+            gap = x[right] - x[right - 1]
+            part = np.divide(grid - x[right - 1], gap, out=np.zeros(GRID), where=gap > 0.0)
+            noise.append((((1.0 - part) * sd[right - 1]) ** 2 + (part * sd[right]) ** 2) / c.scale**2)
         found.append(np.array(values))
-    return np.concatenate(found, axis=1) if found else None
+    return (np.concatenate(found, axis=1), float(np.mean(noise))) if found else None
 
 
 def deviations(curves: Sequence[Curve], repeat: float) -> list[list[Array]]:

@@ -182,6 +182,10 @@ class MeasurementModel(ForwardModel):
         """Description of the noise model, for reports."""
         return ""
 
+    def noise_freedom(self) -> float:
+        """Degrees of freedom of the noise's sd: few if estimated from few points, infinite if stated."""
+        return np.inf
+
     def point_noise(self) -> list[PointNoise]:
         """Noise of each record from point to point: scatter of the misfit at `start` about a smooth curve.
 
@@ -240,8 +244,8 @@ class MeasurementModel(ForwardModel):
         if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
             curves = self._curves()
             layers = layers_of(curves)
-            if layers.repeat is not None:
-                repeats = layers.repeats
+            repeats = layers.repeats
+            if layers.repeat:
                 rows = [self.row_record == k for k in range(len(self.records))]
                 columns = []
                 for own, bends in zip(rows, deviations(curves, layers.repeat), strict=True):
@@ -269,6 +273,7 @@ class MeasurementModel(ForwardModel):
                 x=a[1],
                 branch=self.branch(k),
                 misfit=misfit[self.row_record == k],
+                sd=self.noise.sd[self.row_record == k],
                 scale=float(scale[k]),
             )
             for k, (r, a) in enumerate(zip(self.records, along, strict=True))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees, sqrt
+from math import degrees
 
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.measurements.outlines._nuisances import CORNER_SD
+from calibration.study.assessment import largest_by_chance
 from calibration.study.calibration import Calibration
 from calibration.study.cards import best, usable
 from tisim import Circle
@@ -54,8 +55,8 @@ class Comparison:
 
     @property
     def misses(self) -> bool:
-        """True if the chosen law's chi-square is above what noise makes of it, by three sd."""
-        return self.chosen.reduced_chi2 > 1.0 + 3.0 * sqrt(2.0 / self.chosen.freedom)
+        """True if the chosen law's chi-square is above what noise makes of it."""
+        return self.chosen.reduced_chi2 > largest_by_chance(self.chosen)
 
 
 def compare(results: Sequence[Calibration]) -> Comparison | None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.stats import f as f_distribution
 
 from calibration.parameters import Parametrisation
 
@@ -112,10 +113,20 @@ def misfit_lacking(result: Calibration) -> tuple[str, ...]:
     if result.objective != "likelihood" or not result.parameters:
         return ()
     phrases = []
-    if result.reduced_chi2 > max(NOISE_OFF, 1.0 + 3.0 * sqrt(2.0 / result.freedom)):
+    if result.reduced_chi2 > max(NOISE_OFF, largest_by_chance(result)):
         phrases.append(f"reduced chi-square {result.reduced_chi2:.3g}")
     phrases += nuisances_lacking(result.nuisances)
     return tuple(phrases)
+
+
+def largest_by_chance(result: Calibration) -> float:
+    """Reduced chi-square that noise alone exceeds in 1 of 740 fits (three standard deviations).
+
+    With a noise that is itself estimated, with d degrees of freedom, it follows F(freedom, d).
+    """
+    if result.noise_freedom is None:
+        return 1.0 + 3.0 * sqrt(2.0 / result.freedom)
+    return float(f_distribution.isf(0.5 * erfc(3.0 / sqrt(2.0)), result.freedom, result.noise_freedom))
 
 
 def nuisances_lacking(nuisances: Mapping[str, float]) -> list[str]:

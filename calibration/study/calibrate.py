@@ -311,6 +311,7 @@ def _point(
         bulk_modulus=moduli.bulk_modulus,
         chi2=chi2,
         points=problem.points,
+        noise_freedom=_noise_freedom(data.objectives),
         rms=rms,
         nuisances=nuisances,
         note="; ".join(n for n in (_note(data, moduli.shear_modulus), *p.remarks(u)) if n),
@@ -318,6 +319,13 @@ def _point(
         objective="dice" if any(_is_dice(o) for o in data.objectives) else "likelihood",
     )
     return replace(found, reduced_chi2=chi2 / found.freedom)
+
+
+def _noise_freedom(objectives: Sequence[Objective]) -> float | None:
+    """Of the noise of all objectives: each counts by its share of the points. None if all of it is stated."""
+    models = [o.model for o in objectives if isinstance(o, ModelObjective)]
+    doubt = sum(m.points**2 / m.noise_freedom() for m in models)
+    return float(sum(o.points for o in objectives) ** 2 / doubt) if doubt else None
 
 
 def _parts(p: Parametrisation) -> dict[str, Any]:

@@ -81,6 +81,8 @@ class Calibration:
     points : int
     reduced_chi2 : float
         Over `freedom`.
+    noise_freedom : float, optional
+        Degrees of freedom of a noise estimated from the scatter of the records; None if it is stated.
     rms : float, optional
         Of the outlines' distances, registered [m].
     nuisances : mapping
@@ -123,6 +125,7 @@ class Calibration:
     chi2: float = float("nan")
     points: int = 0
     reduced_chi2: float = float("nan")
+    noise_freedom: float | None = None
     rms: float | None = None
     nuisances: Mapping[str, float] = field(default_factory=dict)
     held_out: tuple[HeldOut, ...] = ()

@@ -54,6 +54,8 @@ class Record:
     rate : rate of the stretch [1/s]; in a hold, the stretch of its ramp over the time since the ramp began;
         NaN without a clock.
     estimated : True if the lab states no error of the stress, so that sd comes from the scatter.
+    scatter_points : number of points from whose scatter it comes; 0 if it is stated, or the least error that
+        is assumed (SMALLEST_RELATIVE).
     ranges : see `calibration.measurements._model.Record`.
     earlier : number of earlier repeats (same specimen, mode, largest strain and rate).
     alike : number of all repeats, including this record.
@@ -75,6 +77,7 @@ class Record:
     remembers: bool
     rate: Array
     estimated: bool
+    scatter_points: int
     ranges: Mapping[str, tuple[float, float]]
     earlier: int = 0
     alike: int = 1
@@ -205,6 +208,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
         reloaded=again,
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
+        scatter_points=trial.stretch.size if _scatters(trial, sd) else 0,
         ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))}
         | ({} if trial.time is None else {"time_s": (float(trial.time[0]), float(trial.time[-1]))}),
         course=None
@@ -242,7 +246,9 @@ def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Arr
     own = _own_sd(trial, b, trial.stretch[b.points], stress, count)
     if trial.stretch_sd == 0.0:
         return own
-    return np.asarray(np.hypot(own, slope(stretch, stress) * trial.stretch_sd / np.sqrt(count)))
+    return np.asarray(
+        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / np.sqrt(count))
+    )
 
 
 def _sd_over_time(
@@ -262,7 +268,7 @@ def _sd_over_time(
     moves = ~np.array([any(h.start <= i < h.stop for h in holds) for i in rows])
     if np.count_nonzero(moves) < 5:
         return own
-    slopes = slope(mean["stretch"][moves], mean["stress"][moves])
+    slopes = slope(mean["stretch"][moves], mean["stress"][moves], trial.stretch_sd)
     last = np.maximum(np.cumsum(moves) - 1, 0)
     return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(count)))
 
@@ -275,6 +281,12 @@ def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Ar
             SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
         )
     return np.asarray(trial.stress_sd / np.sqrt(count))
+
+
+def _scatters(trial: CouponTrial, sd: Array) -> bool:
+    """True if the standard deviation of the means (k,) comes from the scatter of the curve."""
+    least = SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0))
+    return trial.stress_sd is None and float(np.median(sd)) > 1.01 * least
 
 
 def turning(trial: CouponTrial) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import mannwhitneyu
 
 Array = NDArray[np.float64]
 
@@ -16,7 +17,9 @@ FLOOR = 0.05
 SMALLEST_RELATIVE = 0.005
 ENOUGH = 24  # least number of points to decide if the scatter grows with the stress:
 CLEARLY = 2.0  # its ratio between the half with larger stresses and the half with smaller ones
+CHANCE = 0.005
 _NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
+REACH = 10.0  # least half width of the window of the slope, in standard deviations of the stretch
 _WINDOW = 0.15  # fraction of the points in the window of the slope
 
 
@@ -41,12 +44,17 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
 
 
 def grows(over: Array, measured: Array) -> bool:
-    """True if the larger half of a curve's |values| scatters over CLEARLY times as much as the smaller."""
+    """True if the larger half of a curve's |values| scatters over CLEARLY times as much as the smaller.
+
+    And if chance makes that in fewer than CHANCE of curves with a constant scatter (Mann and Whitney 1947).
+    """
     left = _left(over, measured)
     if left is None or len(left[0]) < ENOUGH:
         return False
     smaller, larger = np.array_split(left[0][np.argsort(np.abs(left[1]))], 2)
-    return bool(np.median(larger) > CLEARLY * np.median(smaller))
+    if not np.median(larger) > CLEARLY * np.median(smaller):
+        return False
+    return bool(mannwhitneyu(larger, smaller, alternative="greater").pvalue < CHANCE)
 
 
 def relative_sd(stretch: Array, stress: Array) -> float:
@@ -86,15 +94,16 @@ def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:
     return np.abs(left) / spread, y[inner]
 
 
-def slope(stretch: Array, stress: Array) -> Array:
+def slope(stretch: Array, stress: Array, stretch_sd: float = 0.0) -> Array:
     """d stress / d stretch of the measured curve [Pa], shape (k,), by local linear regression.
 
-    The window has the nearest 15 % of the points, at least 5, with tricube weights.
+    The window has the nearest 15 % of the points, at least 5, and those within REACH `stretch_sd`, with
+    tricube weights: in a narrower one the stretch error would flatten the slope.
     """
     k = len(stretch)
     take = min(k, max(5, int(np.ceil(_WINDOW * k))))
     distance = np.abs(stretch[:, None] - stretch[None, :])
-    reach = np.sort(distance, axis=1)[:, take - 1] * 1.001
+    reach = np.maximum(np.sort(distance, axis=1)[:, take - 1] * 1.001, REACH * stretch_sd)
     if not (reach > 0.0).all():
         return np.zeros(k)
     weight = np.clip(1.0 - (distance / reach[:, None]) ** 3, 0.0, None) ** 3

@@ -401,6 +401,11 @@ class HomogeneousModel(MeasurementModel):
     def branch(self, k: int) -> NDArray[np.int64]:
         return np.asarray(self.records[k].branch, dtype=np.int64)
 
+    def noise_freedom(self) -> float:
+        # the median of the scatter about a curve tells a third of what as many independent points would
+        doubt = sum(3.0 * r.points**2 / r.scatter_points for r in self.records if r.scatter_points)
+        return float(sum(r.points for r in self.records) ** 2 / doubt) if doubt else np.inf
+
     def noise_sentence(self) -> str:
         stated = [r for r in self.records if not r.estimated]
         parts = []

@@ -286,6 +286,28 @@ def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytes
     assert np.median(model.noise.sd) == pytest.approx(0.1, rel=0.4)
 
 
+def repeat(
+    n: int,
+    x: np.ndarray,
+    branch: np.ndarray,
+    misfit: np.ndarray,
+    *,
+    sd: float = 0.0,
+    scale: float = 1.0,
+) -> Curve:
+    return Curve(
+        name=f"t{n}",
+        material="m",
+        specimen="s",
+        test=0,
+        x=x,
+        branch=branch,
+        misfit=misfit,
+        sd=np.full(x.size, sd),
+        scale=scale,
+    )
+
+
 def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Curve]:
     """Repeats of a test of full scale 2, each with its own smooth deviation, and a trend with their order."""
     random = np.random.default_rng(seed)
@@ -297,12 +319,7 @@ def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Cu
             for k in range(1, 5)
         )
         misfit = 2.0 * (np.sin(3.0 * x) + own + trend * n / max(tests - 1, 1))
-        branch = np.zeros(x.size, dtype=np.int64)
-        found.append(
-            Curve(
-                name=f"t{n}", material="m", specimen="s", test=0, x=x, branch=branch, misfit=misfit, scale=2.0
-            )
-        )
+        found.append(repeat(n, x, np.zeros(x.size, dtype=np.int64), misfit, scale=2.0))
     return found
 
 
@@ -324,14 +341,26 @@ def test_a_loop_of_loading_and_unloading_is_no_scatter_between_repeats() -> None
         x = np.concatenate([np.sort(random.uniform(0, 1, 40)), np.sort(random.uniform(0, 1, 40))[::-1]])
         branch = np.repeat([0, 1], 40)
         misfit = np.where(branch == 0, 0.1, -0.1) + 0.001 * (n % 2)
-        found.append(
-            Curve(
-                name=f"t{n}", material="m", specimen="s", test=0, x=x, branch=branch, misfit=misfit, scale=1.0
-            )
-        )
-    repeat = layers_of(found).repeat
-    assert repeat is not None
-    assert 0.0 < repeat < 0.002
+        found.append(repeat(n, x, branch, misfit))
+    scatter = layers_of(found).repeat
+    assert scatter is not None
+    assert 0.0 < scatter < 0.002
+
+
+def test_noise_from_point_to_point_is_not_scatter_between_repeats() -> None:
+    """Identical tests with white noise of 2 %, and the same with a scatter of 3 % between them."""
+    x, branch = np.linspace(0.0, 1.0, 60), np.zeros(60, dtype=np.int64)
+    alike, apart = [], []
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        noisy = [0.02 * random.standard_normal(60) for _ in range(6)]
+        alike.append(layers_of([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(noisy)]))
+        moved = [z + 0.03 * random.standard_normal() for z in noisy]
+        apart.append(layers_of([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(moved)]))
+    assert sum(f.repeat == 0.0 for f in alike) >= 18
+    assert sum(f.order is None for f in alike) >= 18
+    assert "6 repeats differ by no more than the noise" in alike[0].sentences()[0]
+    assert np.median([f.repeat for f in apart if f.repeat is not None]) == pytest.approx(0.03, rel=0.3)
 
 
 def test_a_records_own_deviation_is_as_large_as_repeats_differ() -> None:

@@ -1,0 +1,92 @@
+"""Noise of homogeneous tests that the lab does not state, and errors of the stretch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.experiment.model import CouponTrial, Experiment, MaterialBelief
+from calibration.measurements.homogeneous._scatter import grows, slope
+from calibration.parameters import parametrisation
+from calibration.study import Calibration, FitOptions, calibrate, measurements
+from calibration.study.assessment import largest_by_chance, misfit_lacking
+
+SHEAR = 30e3
+
+
+def neo_hookean(stretch: np.ndarray) -> np.ndarray:
+    return np.asarray(SHEAR * (stretch - stretch**-2))
+
+
+def fitted(trial: CouponTrial) -> Calibration:
+    experiment = Experiment(
+        name="made",
+        folder=Path(),
+        notes="",
+        materials={"M": MaterialBelief(name="M")},
+        trials=(trial,),
+        digest="",
+    )
+    data = measurements(experiment, "M", parametrisation("neo-hookean"))
+    return calibrate(data, options=FitOptions(leave_one_out=False))
+
+
+def test_constant_scatter_is_seldom_taken_for_growing() -> None:
+    stretch = np.linspace(1.0, 1.6, 30)
+    found = 0
+    for seed in range(200):
+        noise = np.random.default_rng([1, seed]).standard_normal(30)
+        found += grows(stretch, neo_hookean(stretch) + 1e3 * noise)
+    assert found <= 14
+    stress = SHEAR * np.expm1(4.0 * (stretch - 1.0))
+    growing = sum(
+        grows(stretch, stress * (1.0 + 0.03 * np.random.default_rng([2, seed]).standard_normal(30)))
+        for seed in range(40)
+    )
+    assert growing >= 26
+
+
+def test_a_slope_is_not_flattened_by_errors_of_the_stretch() -> None:
+    true = np.linspace(1.0, 1.6, 30)
+    slopes = []
+    for seed in range(50):
+        seen = true + 0.01 * np.random.default_rng([3, seed]).standard_normal(30)
+        slopes.append(slope(seen, SHEAR * true, 0.01).mean())
+    assert np.mean(slopes) == pytest.approx(SHEAR, rel=0.1)
+
+
+def test_noise_that_is_estimated_from_few_points_is_not_certain() -> None:
+    """Perfect data of a neo-Hookean strip without a stated error: no lack of fit; of another law there is."""
+    stretch = np.linspace(1.0, 1.6, 30)
+    lacking, freedoms = 0, set()
+    for seed in range(25):
+        noise = 1e3 * np.random.default_rng([4, seed]).standard_normal(30)
+        trial = CouponTrial(
+            id="a", material="M", mode="uniaxial", stretch=stretch, stress=neo_hookean(stretch) + noise
+        )
+        found = fitted(trial)
+        freedoms.add(found.noise_freedom)
+        lacking += found.status != "converged"
+    assert freedoms == {10.0}
+    assert lacking <= 1
+    stiffening = neo_hookean(stretch) * (1.0 + 2.0 * (stretch - 1.0) ** 2)
+    noise = 50.0 * np.random.default_rng(5).standard_normal(30)
+    assert fitted(replace(trial, stress=stiffening + noise)).status == "lack of fit"
+    assert fitted(replace(trial, stress_sd=1e3)).noise_freedom is None
+
+
+def test_the_largest_misfit_by_chance() -> None:
+    known = Calibration(
+        material="M", law="neo-hookean", label="neo-hookean", status="converged", message="", density=None,
+        u=(1.0, 2.0), held_coordinates=1, points=51, reduced_chi2=1.7, parameters={"mu": 1.0},
+    )  # fmt: skip
+    assert largest_by_chance(known) == pytest.approx(1.6)
+    assert misfit_lacking(known)
+    doubtful = replace(known, noise_freedom=10.0)
+    random = np.random.default_rng(0)
+    drawn = (random.chisquare(50, 200_000) / 50) / (random.chisquare(10, 200_000) / 10)
+    assert np.mean(drawn > largest_by_chance(doubtful)) == pytest.approx(1.35e-3, rel=0.2)
+    assert not misfit_lacking(doubtful)
