@@ -18,7 +18,14 @@ depend on the material alone by `OfMaterial`.
 from calibration.inference.polish import FINE_LADDER, Polished, polish
 from calibration.inference.problem import Linearised, MaterialObjective, Objective, OfMaterial, Problem
 from calibration.inference.search import CmaOptions, Found, Generation, HistoryError, guess, search
-from calibration.inference.uncertainty import Estimate, Identification, identify, profile, with_prior_sd
+from calibration.inference.uncertainty import (
+    Estimate,
+    Identification,
+    between_specimens,
+    identify,
+    profile,
+    with_prior_sd,
+)
 
 __all__ = [
     "FINE_LADDER",
@@ -34,6 +41,7 @@ __all__ = [
     "OfMaterial",
     "Polished",
     "Problem",
+    "between_specimens",
     "guess",
     "identify",
     "polish",

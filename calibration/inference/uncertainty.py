@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
+from scipy.stats import t as student
 
 from calibration.inference.polish import AT_BOUND, Polished
 from calibration.inference.problem import Problem
@@ -19,6 +22,8 @@ Seen = Literal["identified", "weak", "not identified", "at a bound", "held"]
 # UNSEEN (a factor of e^0.5 or half the range) it is not a number to print.
 PRIOR_SHARE = 0.7
 WEAK, UNSEEN = 0.15, 0.5
+
+DIFFER = 0.01  # p-value of the differences between specimens below which they scatter beyond the noise
 
 FLAT = 12.0**-0.5  # sd of a flat prior over a range, as a fraction of the range
 
@@ -139,6 +144,68 @@ def with_prior_sd(
         estimates=_estimates(parametrisation, u, covariance, prior_sd),
         covariance=covariance,
         shear_modulus_sd=_shear_sd(parametrisation, u, covariance),
+    )
+
+
+def between_specimens(
+    known: Identification, parametrisation: Parametrisation, end: Polished, specimens: Sequence[str]
+) -> Identification:
+    """The uncertainty with the scatter between specimens, where they differ by more than the noise.
+
+    With scores g_s = J_s' r_s of the k specimens and H = J' J, the covariance of what specimens of the
+    material have on average is H^-1 (sum_s g_s g_s') H^-1 k / (k - 1) (S.-L. Liang and K.-Y. Zeger,
+    Biometrika 73, 1986). In each direction the larger of it and the noise's is taken; intervals have
+    Student's t with k - 1 degrees of freedom. Nothing changes for one specimen, or if the scores are as the
+    noise makes them (W. G. Cochran, Biometrics 10, 1954: sum_s g_s' H_s^-1 g_s, chi-square, p above DIFFER).
+
+    Parameters
+    ----------
+    known : Identification
+    parametrisation : Parametrisation
+    end : Polished
+        With m residuals and their Jacobian.
+    specimens : sequence of str, length m
+        Specimen of each residual; "" for the prior's, and where there is none.
+    """
+    names = [n for n in dict.fromkeys(specimens) if n]
+    if len(names) < 2:
+        return known
+    J, r, label = end.jacobian, end.residuals, np.array(specimens)
+    scores, heterogeneity, freedom = [], 0.0, 0
+    for name in names:
+        own = J[label == name]
+        scores.append(own.T @ r[label == name])
+        information = own.T @ own
+        heterogeneity += float(
+            scores[-1] @ np.linalg.pinv(information, rcond=1e-9, hermitian=True) @ scores[-1]
+        )
+        freedom += int(np.linalg.matrix_rank(information, rtol=1e-9, hermitian=True))
+    freedom -= int(np.linalg.matrix_rank(J[label != ""], rtol=1e-9))
+    if freedom < 1 or chi2.sf(heterogeneity / known.scale, freedom) > DIFFER:
+        return known
+    span = np.ptp(parametrisation.bounds, axis=1)
+    inverse = np.linalg.inv(J.T @ J + np.diag(span**-2.0))
+    k = len(names)
+    robust = inverse @ (np.array(scores).T @ np.array(scores)) @ inverse * k / (k - 1.0)
+    root = np.linalg.cholesky(known.covariance)
+    back = np.linalg.inv(root)
+    ratios, directions = np.linalg.eigh(back @ robust @ back.T)
+
+    def widened(factor: float) -> Array:
+        turned = root @ directions
+        return np.asarray(turned @ np.diag(np.maximum(1.0, factor * ratios)) @ turned.T)
+
+    _, prior_sd = parametrisation.prior()
+    covariance = widened(1.0)
+    wide = _estimates(parametrisation, end.u, widened(float(student.ppf(0.975, k - 1) / 1.96) ** 2), prior_sd)
+    return replace(
+        known,
+        estimates=tuple(
+            replace(e, low=w.low, high=w.high)
+            for e, w in zip(_estimates(parametrisation, end.u, covariance, prior_sd), wide, strict=True)
+        ),
+        covariance=covariance,
+        shear_modulus_sd=_shear_sd(parametrisation, end.u, covariance),
     )
 
 

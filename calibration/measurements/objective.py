@@ -70,6 +70,12 @@ class ModelObjective(Generic[Model]):
         """Number of residuals: the measurements, and one prior row per extra."""
         return self.model.points + len(self.model.baseline.extras)
 
+    def specimens(self) -> list[str]:
+        """Specimen of each residual; "" for the priors of the extras."""
+        rows = self.model.row_record[self.model.noise.used]
+        own = [self.model.records[k].specimen for k in rows]
+        return own + [""] * len(self.model.baseline.extras)
+
     def state(self, u: Array) -> State:
         """State of the model at u (n,), with the extras of the last `linearise`."""
         return State(u=np.concatenate([u, self.extras]))

@@ -21,6 +21,7 @@ from calibration.inference import (
     OfMaterial,
     Polished,
     Problem,
+    between_specimens,
     guess,
     identify,
     polish,
@@ -363,6 +364,15 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen:
     estimates = profile(problem, end, known)
     if p.parts:
         estimates = _widest(estimates, known.estimates)
+    labels = [n for o in problem.objectives for n in _specimens(o)]
+    labels += [""] * (len(end.residuals) - len(labels))
+    scattered = between_specimens(known, p, end, labels)
+    if scattered is not known:
+        known = scattered
+        estimates = _widest(estimates, known.estimates)
+        count = len(set(labels) - {""})
+        note = f"the {count} specimens differ by more than the noise: error bars are those of their mean"
+        fitted = replace(fitted, note="; ".join(n for n in (fitted.note, note) if n))
     if bulk_seen and any(c.held for c in p.coordinates if c.name == BULK):
         known = with_prior_sd(known, p.believed(), end.u, BULK)
         estimates = _widest(estimates, known.estimates)
@@ -372,6 +382,13 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen:
         blind=known.blind,
         shear_modulus_sd=known.shear_modulus_sd,
     )
+
+
+def _specimens(objective: Objective) -> list[str]:
+    """Specimen of each residual of an objective; "" where it is not known."""
+    if isinstance(objective, ModelObjective):
+        return objective.specimens()
+    return [""] * objective.size()
 
 
 def _widest(profiled: Sequence[Estimate], linear: Sequence[Estimate]) -> tuple[Estimate, ...]:

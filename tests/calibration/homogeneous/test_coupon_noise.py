@@ -21,13 +21,13 @@ def neo_hookean(stretch: np.ndarray) -> np.ndarray:
     return np.asarray(SHEAR * (stretch - stretch**-2))
 
 
-def fitted(trial: CouponTrial) -> Calibration:
+def fitted(*trials: CouponTrial) -> Calibration:
     experiment = Experiment(
         name="made",
         folder=Path(),
         notes="",
         materials={"M": MaterialBelief(name="M")},
-        trials=(trial,),
+        trials=trials,
         digest="",
     )
     data = measurements(experiment, "M", parametrisation("neo-hookean"))
@@ -90,3 +90,41 @@ def test_the_largest_misfit_by_chance() -> None:
     drawn = (random.chisquare(50, 200_000) / 50) / (random.chisquare(10, 200_000) / 10)
     assert np.mean(drawn > largest_by_chance(doubtful)) == pytest.approx(1.35e-3, rel=0.2)
     assert not misfit_lacking(doubtful)
+
+
+def specimens(count: int, scatter: float, seed: int) -> Calibration:
+    """Fit of strips whose shear moduli scatter by `scatter`, with a stated noise of 0.5 kPa."""
+    random = np.random.default_rng([6, seed])
+    stretch = np.linspace(1.0, 1.6, 60)
+    return fitted(
+        *(
+            CouponTrial(
+                id=f"pull {k}",
+                material="M",
+                specimen=f"S{k}",
+                mode="uniaxial",
+                stretch=stretch,
+                stress=neo_hookean(stretch) * np.exp(scatter * random.standard_normal())
+                + 500.0 * random.standard_normal(stretch.size),
+                stress_sd=500.0,
+            )
+            for k in range(count)
+        )
+    )
+
+
+def test_error_bars_hold_the_scatter_between_specimens() -> None:
+    """95 % intervals of the mean of four specimens contain the truth; without scatter nothing changes."""
+    inside = 0
+    for seed in range(30):
+        found = specimens(4, 0.03, seed)
+        (shear,) = (e for e in found.estimates if e.name == "shear_modulus")
+        inside += shear.low <= SHEAR <= shear.high
+        assert "the 4 specimens differ by more than the noise" in found.note
+    assert inside >= 26
+    alike = [specimens(4, 0.0, seed) for seed in range(30)]
+    assert sum("specimens differ" in found.note for found in alike) <= 2
+    one = specimens(1, 0.0, 0)
+    assert np.median([f.shear_modulus_sd for f in alike]) == pytest.approx(
+        one.shear_modulus_sd / 2.0, rel=0.1
+    )
