@@ -7,7 +7,6 @@ Parts that were fitted beside the best law (`tisim.parts`) stand under the keys 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -61,8 +60,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         else:
             filled.append(name)
             parameters[name] = _plain(laws.get(name).from_moduli(chosen.shear_modulus, chosen.bulk_modulus))
-    relative = chosen.shear_modulus_sd / chosen.shear_modulus  # NaN without a polish
-    bound = round(1.96 * relative, 5) if math.isfinite(relative) else None
+    low, high = _interval(chosen)
     ratio = belief.softener_ratio
     return {
         "material": chosen.material,
@@ -70,8 +68,8 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "derived": False,
         "provenance": _provenance(results, chosen, filled, fitted, experiment),
         "uncertainty": {
-            "shear_modulus_low": -bound if bound is not None else None,
-            "shear_modulus_high": bound,
+            "shear_modulus_low": low,
+            "shear_modulus_high": high,
             "text": _certainty(chosen),
         },
         "density": float(belief.density if belief.density is not None else 1000.0),
@@ -171,6 +169,14 @@ def _agreement(chosen: Calibration) -> str:
     if chosen.mean_dice is not None:
         return f"fitted to overlaps, mean Dice {chosen.mean_dice:.4f} of {chosen.points} photographs"
     return f"reduced chi-square {chosen.reduced_chi2:.2f} over {chosen.points} points"
+
+
+def _interval(chosen: Calibration) -> tuple[float | None, float | None]:
+    """95 % interval of the shear modulus, relative to it; None if there is none or it is not identified."""
+    found = next((e for e in chosen.estimates if e.name == "shear_modulus"), None)
+    if found is None or found.seen in ("not identified", "at a bound"):
+        return None, None
+    return round(found.low / found.value - 1.0, 5), round(found.high / found.value - 1.0, 5)
 
 
 def _certainty(chosen: Calibration) -> str:

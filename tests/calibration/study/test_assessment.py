@@ -147,7 +147,12 @@ def test_a_constant_at_a_bound_gives_way_to_a_settled_law(tmp_path: Path) -> Non
             tables={"a.csv": {"stretch": [1.0, 1.1, 1.2], "nominal_stress_kPa": [0.0, 1.0, 2.0]}},
         )
     )
-    provenance = card([at_bound, settled], experiment)["provenance"]
+    made = card([at_bound, settled], experiment)
+    (shear,) = (e for e in settled.estimates if e.name == "shear_modulus")
+    assert made["uncertainty"]["shear_modulus_low"] == pytest.approx(shear.low / shear.value - 1, abs=1e-5)
+    blind = replace(settled, estimates=(replace(shear, low=-1e4, seen="not identified"),))
+    assert card([blind], experiment)["uncertainty"]["shear_modulus_low"] is None
+    provenance = made["provenance"]
     _, _, not_fitted = provenance.partition("Not fitted")
     assert "ogden" not in not_fitted.splitlines()[0]
     assert "Fitted but not taken (not converged, or a constant at a bound), moduli taken from" in provenance
