@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -74,6 +75,14 @@ class Rod:
     def edge(self) -> float:
         """Radius of the tip's edge [m]: `radius` for a hemisphere, else `edge_radius`, at most `radius`."""
         return self.radius if self.tip == "hemisphere" else min(self.edge_radius, self.radius)
+
+    def reach(self, down: float) -> float:
+        """Height of the tip's centre over its lowest point [m], for an axis of vertical component `down`.
+
+        The lowest point is on the torus of the edge, whose centre circle lies `edge` behind the tip.
+        """
+        tilt = math.sqrt(max(0.0, 1.0 - down**2))
+        return (self.radius - self.edge) * tilt + self.edge * (1.0 - down)
 
 
 __all__ = [

@@ -109,8 +109,8 @@ def check_course(scene: Any, *, start: float, instead_of: tuple[str, ...] = ()) 
     check_type("course", course, (Course,))
     course.check(start=start)
     for name in instead_of:
-        default = next(f.default for f in fields(scene) if f.name == name)
-        if getattr(scene, name) != default:
+        default: Any = next(f.default for f in fields(scene) if f.name == name)
+        if not np.array_equal(getattr(scene, name), default):
             raise FieldError(name, "nothing, where a course is given", getattr(scene, name))
 
 

@@ -30,7 +30,7 @@ def approach(trial: PokeTrial) -> float:
     -------
     float
         Travel [m]: 0 for a start on the block's top, from which depth is counted; for a start above it, the
-        distance to the top along the indenter's axis.
+        way along the indenter's axis to where its tip touches, a tilted one with its rim.
 
     Raises
     ------
@@ -43,7 +43,21 @@ def approach(trial: PokeTrial) -> float:
             f"trial {trial.id}: start_mm: expected a start on or above the block's top, got one"
             f" {-above * 1e3:.3g} mm below it"
         )
-    return max(0.0, above) / abs(trial.direction[2]) if above > ON_TOP else 0.0
+    if above <= ON_TOP:
+        return 0.0
+    down = abs(trial.direction[2])
+    return max(0.0, (above - _rod(trial).reach(down)) / down)
+
+
+def _site(trial: PokeTrial) -> tuple[float, float]:
+    """Where the indenter's axis meets the plane of the block's top [m]."""
+    way = (trial.start[2] - trial.block.size[2]) / abs(trial.direction[2])
+    return trial.start[0] + way * trial.direction[0], trial.start[1] + way * trial.direction[1]
+
+
+def _rod(trial: PokeTrial, edge_radius: float | None = None) -> Rod:
+    edge = EDGE * trial.rod_radius if edge_radius is None else edge_radius
+    return Rod(radius=trial.rod_radius, tip=trial.rod_tip, edge_radius=edge)
 
 
 def poke_scene(
@@ -75,15 +89,13 @@ def poke_scene(
         raise InputError(
             f"trial {trial.id}: inclusion.mesh: expected a sphere, box or cylinder; a mesh cannot be fitted"
         )
-    way = (trial.start[2] - trial.block.size[2]) / abs(trial.direction[2])
-    edge = EDGE * trial.rod_radius if edge_radius is None else edge_radius
     return Poke(
         material=material,
-        site=(trial.start[0] + way * trial.direction[0], trial.start[1] + way * trial.direction[1]),
+        site=_site(trial),
         direction=trial.direction,
         depth=depth,
         block=trial.block,
-        rod=Rod(radius=trial.rod_radius, tip=trial.rod_tip, edge_radius=edge),
+        rod=_rod(trial, edge_radius),
         friction=friction,
         frame_spacing=max(min(0.5e-3, depth / 6.0), 1e-5),
         refinement=refinement,

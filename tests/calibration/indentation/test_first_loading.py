@@ -12,6 +12,7 @@ import pytest
 import tisim
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
+from calibration.measurements.indentation import approach, poke_scene
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
 
 UP = np.linspace(0.0, 3e-3, 61)
@@ -26,6 +27,29 @@ def first_loading(trial: PokeTrial, **options: Any) -> tuple[Record, str]:
     """The record up to the end of its first loading, and the remarks on the rest."""
     (record,), said = part_of(records_of([trial]), **{"max_depth": None, "first_loading": True, **options})
     return record, "; ".join(said)
+
+
+@pytest.mark.parametrize("tip", ["flat", "hemisphere"])
+@pytest.mark.parametrize("degrees", [0.0, 30.0])
+def test_depth_counts_from_where_the_tip_touches(tip: str, degrees: float) -> None:
+    """A tilted indenter that starts 5 mm above the block touches with its rim, before its tip's centre."""
+    tilt = np.radians(degrees)
+    axis = np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
+    simple = made.trial(UP, force(UP))
+    start = np.array([0.0, 0.0, simple.block.size[2]]) - 5e-3 * axis
+    trial = replace(simple, rod_tip=tip, start=tuple(start), direction=tuple(axis))
+    edge = trial.rod_radius if tip == "hemisphere" else 0.4 * trial.rod_radius
+    # the lowest point of a circle of radius R - e about the tip, rounded by e
+    rim = (trial.rod_radius - edge) * np.sin(tilt) + edge * (1.0 - np.cos(tilt))
+    assert approach(trial) == pytest.approx(5e-3 - rim / np.cos(tilt), abs=1e-12)
+    found = tisim.simulate(
+        poke_scene(
+            trial, tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=2e5), depth=1e-3
+        )
+    )
+    assert found.rod_tip is not None
+    travel = (found.rod_tip - start) @ axis
+    assert travel - approach(trial) == pytest.approx(found.load, abs=1e-9)
 
 
 def test_it_ends_at_the_reversal() -> None:
@@ -87,8 +111,9 @@ def test_a_steady_or_sparse_record_is_whole() -> None:
 
 
 def test_a_start_above_the_block_is_a_way_to_go() -> None:
-    """A start 2 mm above, at 30 degrees from the vertical: first touch is after 2 / cos 30 mm."""
-    way = 2e-3 / np.cos(np.pi / 6)
+    """A start 2 mm above, at 30 degrees from the vertical: the rim, 0.88 mm below the tip, touches first."""
+    rim = 1.5e-3 * np.sin(np.pi / 6) + 1e-3 * (1.0 - np.cos(np.pi / 6))
+    way = (2e-3 - rim) / np.cos(np.pi / 6)
     depth = np.linspace(0.0, way + 3e-3, 200)
     t = made.trial(
         depth, force(depth - way), start=(0.0, 0.0, 0.032), direction=(0.5, 0.0, -float(np.sqrt(0.75)))

@@ -12,6 +12,7 @@ import tisim
 from benchmarks.blind.timed.material import Fibres, Prony
 from calibration.experiment.model import CouponMode, CouponTrial
 from calibration.measurements.homogeneous import nominal_stress, predicted
+from calibration.measurements.homogeneous._memory_stress import stresses_along
 from calibration.measurements.homogeneous._record import Record, records_of
 from calibration.measurements.indentation._memory_force import loads
 from tisim.course import Course
@@ -96,6 +97,38 @@ def test_a_strip_with_oblique_fibres_is_tisims() -> None:
     )
     own = stress(material, record(made))[1:]
     assert np.abs(own - simulated.nominal_stress).max() < 2e-3 * simulated.nominal_stress.max()
+
+
+@pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
+def test_a_test_without_an_answer_leaves_the_others_alone() -> None:
+    """Stiff fibres at a stretch of 4 have no finite stress; the test to 1.2 beside it is what it is alone."""
+    material = replace(
+        tisim.material_from_moduli("neo-hookean", shear_modulus=2e4, bulk_modulus=1e6),
+        fibres=tisim.HolzapfelGasserOgden(direction=(1.0, 1.0, 0.0), k1=1e4, k2=30.0),
+        viscosity=PRONY,
+    )
+    tests = []
+    for top in (1.2, 4.0):
+        stretch = np.linspace(1.0, top, 20)
+        time = np.linspace(0.0, 10.0, 20)
+        made = record(
+            CouponTrial(
+                id="t",
+                material="M",
+                mode="uniaxial",
+                stretch=stretch,
+                stress=stretch,
+                time=time,
+                stress_sd=1.0,
+            )
+        )
+        assert made.course is not None
+        tests.append(("uniaxial", made.course, made.course.stretch))
+    (alone,) = stresses_along(material, tests[:1])
+    beside, lost = stresses_along(material, tests)
+    assert np.isfinite(alone).all()
+    assert beside == pytest.approx(alone, rel=1e-9)
+    assert np.isnan(lost).any()
 
 
 def test_a_cylinder_that_its_platens_have_left_recovers_freely() -> None:

@@ -36,7 +36,9 @@ LOOSEST = 1e-3  # largest tolerance of the first step
 # SLOW times the last. The tangent is renewed after PATIENCE slow iterations in a row, or if a step is more
 # than GROWN times the last, at most MOST_FACTORS times.
 CHEAP, SLOW, PATIENCE, MOST_FACTORS, GROWN = 24, 0.5, 3, 3, 4.0
-NEAR = 1e-4  # allowed error of a state between frames, relative to the largest displacement
+# Allowed error of a state between frames, relative to the largest displacement; a tighter tolerance than
+# USUAL lowers it.
+NEAR, USUAL = 1e-4, 1e-6
 ELASTIC = Spectrum(equilibrium=1.0, strengths=np.zeros(0), times=np.zeros(0))
 
 
@@ -149,6 +151,7 @@ def _first(
     linear = LinearCreep(ELASTIC if viscosity is None else viscosity.spectrum())
     stiffness = laws.get(scene.material.law).moduli(scene.material.parameters).shear_modulus
     trail = Trail(scene, scene.material.density / stiffness)
+    tolerance = scene.solver.tolerance
     if not stop.frame:
         loose = scene.solver.tolerance * BETWEEN
         scene = replace(scene, solver=replace(scene.solver, tolerance=min(loose, LOOSEST)))
@@ -160,13 +163,16 @@ def _first(
         system, clamps = beam_system(scene, discretisation), None
         if not at_once:
             rest = Outcome(discretisation.mesh.nodes.copy(), Status.CONVERGED, 0.0, 0)
+            system.tolerance = tolerance
             return Path(system, rest, linear, trail), None
         if neighbour is not None and neighbour.discretisation is discretisation:
             beside = _beside(scene, system, linear, trail, neighbour, kept=stop.frame)
             if beside is not None:
+                system.tolerance = tolerance
                 _begin(beside, stop)
                 return beside, neighbour
         outcome, counts, next_one = equilibrium(scene, system, neighbour)
+    system.tolerance = tolerance  # later frames are not loose
     steps, cuts = counts["steps"], counts["cuts"]
     path = Path(system, outcome, linear, trail, value=1.0, steps=steps, cuts=cuts, clamps=clamps)
     if outcome.status is Status.CONVERGED:
@@ -257,7 +263,8 @@ def _clamped(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outc
 
 def _near(path: Path) -> float:
     """Allowed position error of a state between frames [m]."""
-    return NEAR * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
+    part = NEAR * min(1.0, path.system.tolerance / USUAL)
+    return part * float(np.abs(path.outcome.x - path.system.body.discretisation.mesh.nodes).max())
 
 
 def _solve(scene: Beam, path: Path, start: Array, *, tolerance: float) -> Outcome:
@@ -310,7 +317,6 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
     system = path.system
     body, discretisation = system.body, system.body.discretisation
     free, held = discretisation.pattern.free, discretisation.held
-    load = max(system.load_norm(), system.least_load)
     seen: list[tuple[Array, Array]] = []  # positions of free nodes, and the step from there
     renewed, slow, before = 0, 0, np.inf
     assert path.warped is not None
@@ -319,7 +325,8 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
         force, min_jacobian = body.internal_forces(x)
         residual = (force - body.dead_load)[free]
         residual[held] = 0.0
-        relative = float(np.linalg.norm(residual)) / load
+        load = system.load_scale(force)
+        relative = float(np.linalg.norm(residual)) / load if load > 0.0 else np.nan
         if not min_jacobian > CRUSHED or not np.isfinite(relative):
             return None
         if relative <= tolerance:

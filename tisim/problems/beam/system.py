@@ -131,11 +131,15 @@ class BeamSystem:
         residual[discretisation.held] = 0.0
         if self.min_jacobian <= 0.0:
             residual[:] = np.nan
-        load = self.load_norm()
+        return residual, max(self.load_scale(force), self._rounding(x) / self.tolerance)
+
+    def load_scale(self, force: Array) -> float:
+        """What a residual is relative to [N], for internal forces (n, 3): the load, or that of the clamps."""
+        load = max(self.load_norm(), self.least_load)
         if self.clamps_load:
-            held = (force - self.body.dead_load)[discretisation.fixed]
+            held = (force - self.body.dead_load)[self.body.discretisation.fixed]
             load = max(load, CLAMPS_PART * float(np.linalg.norm(held)))
-        return residual, max(load, self.least_load, self._rounding(x) / self.tolerance)
+        return load
 
     def load_norm(self) -> float:
         """Norm of the load at the free nodes [N]."""

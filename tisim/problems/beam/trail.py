@@ -89,8 +89,8 @@ class Trail:
         return (
             len(self.states) >= KNOWN
             and scene.course == self.scene.course
-            and scene.gravity == self.scene.gravity
-            and scene.tip_force == self.scene.tip_force
+            and tuple(scene.gravity) == tuple(self.scene.gravity)
+            and tuple(scene.tip_force) == tuple(self.scene.tip_force)
         )
 
     def at(self, time: float, strain: float) -> Array | None:

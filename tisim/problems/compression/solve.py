@@ -98,10 +98,11 @@ class PressSystem(BeamSystem):
         return State(1.0, self.body.discretisation.mesh.nodes.copy(), carried)
 
     def linearise(self, x: Array) -> tuple[Array, float]:
-        residual, _ = super().linearise(x)
+        residual, rounding = super().linearise(x)
         force, _ = self.body.internal_forces(x)
         # a floor, since there is no reaction at rest
-        return residual, float(np.linalg.norm(force[self.body.discretisation.held])) + self._at_rest
+        load = float(np.linalg.norm(force[self.body.discretisation.held])) + self._at_rest
+        return residual, max(load, rounding)
 
     def plane(self, stretch: float) -> float:
         """Height of the upper platen above the middle plane [m]."""

@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 
 SAFETY = 0.9  # time step as a fraction of the stable step
 LIMIT = 0.01  # error of the energy balance, relative to the largest energy so far, that ends a run
+ROUNDING = 1e-13  # energy that is rounding, over shear modulus and volume
 RECHECK = 500  # number of steps after which the largest frequency is computed again
 
 
@@ -107,6 +108,8 @@ def march(
     v -= 0.5 * dt * _acceleration(body, solver, x, v, f, dt, mass)
     before = np.zeros_like(f)
     state = np.zeros(STATE_SIZE)
+    # energies below are rounding: of a body without load, which stays at rest
+    state[SCALE] = ROUNDING * body.moduli.shear_modulus * float(body.discretisation.nodal_volume().sum())
     common = body._common(x)  # without a state
     kernel = leapfrog_kernel(body.law, body.features)
     frames = Frames(body)

@@ -45,7 +45,7 @@ def solve_coupon(scene: Coupon, *, on_step: OnStep = skip) -> Result:
     """
     start = time.process_time()
     discretisation = _discretise(scene.mode)
-    system = CouponSystem(DiscretisedBody(discretisation, scene.material))
+    system = CouponSystem(DiscretisedBody(discretisation, scene.material), tolerance=scene.solver.tolerance)
     x, here = discretisation.mesh.nodes.copy(), 1.0
     frames: list[CouponFrame] = []
     status, steps, cuts = Status.CONVERGED, 0, 0
@@ -103,12 +103,12 @@ class CouponSystem(BeamSystem):
     """A cube driven by its held components, whose values x contains (`tisim.nonlinear.newton.System`)."""
 
     def linearise(self, x: Array) -> tuple[Array, float]:
-        residual, _ = super().linearise(x)
+        residual, rounding = super().linearise(x)
         discretisation = self.body.discretisation
         force, _ = self.body.internal_forces(x)
         load = float(np.linalg.norm(force[discretisation.pattern.free][discretisation.held]))
         # a floor, since there is no reaction at rest
-        return residual, load + 1e-6 * self.body.moduli.shear_modulus * EDGE**2
+        return residual, max(load + 1e-6 * self.body.moduli.shear_modulus * EDGE**2, rounding)
 
 
 def _drive(

@@ -94,13 +94,9 @@ class Remembered(NamedTuple):
 
 def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
     """Centre of the tip [m] at first contact with the plane z = height, the axis passing through the site."""
-    edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
-    core = rod.radius - edge
-    tilt = np.sqrt(max(0.0, 1.0 - axis[2] ** 2))
-    # lowest point below the tip's centre: the edge torus, e ahead of its centre circle
-    reach = core * tilt + edge - edge * abs(axis[2])
+    down = float(abs(axis[2]))
     target = np.array([site[0], site[1], height])
-    return target - axis * (reach / abs(axis[2]))
+    return target - axis * (rod.reach(down) / down)
 
 
 class PokeSystem:
