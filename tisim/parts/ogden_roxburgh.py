@@ -5,11 +5,12 @@
 with W the isochoric energy (fibres included) and W_m its largest value so far at the point. First loading
 (W = W_m) follows the law without softening. The stress derives from the energy
 
-    f(W) = W + d/r [z erf z + exp(-z^2)/sqrt(pi)],    z = (W_m - W)/d,    d = m + beta W_m,
+    f(W) = W + d/r [g(z) - g(z_0)],    g(z) = z erf z + exp(-z^2)/sqrt(pi),
+    z = (W_m - W)/d,    z_0 = W_m/d,    d = m + beta W_m,
 
-and the energy dissipated per rest volume is d/r [z_0 erf z_0 + (exp(-z_0^2) - 1)/sqrt(pi)] with z_0 = W_m/d.
-Permanent set, recovery at rest, and the further loss in the second and later cycles to the same stretch are
-not modelled.
+which is 0 at rest: what the material gives back. The energy dissipated per rest volume is
+d/r [g(z_0) - g(0)]. Permanent set, recovery at rest, and the further loss in the second and later cycles to
+the same stretch are not modelled.
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type"
@@ -53,7 +54,10 @@ def energy(W, largest, prm):
     second = 0.0
     if largest > W:
         second = 2.0 * bell / (prm[0] * d)
-    return ti.Vector([W + d / prm[0] * (z * lost + bell), 1.0 - lost / prm[0], second])
+    # less its value at rest, so that it is what the material gives back
+    rest = largest / d
+    at_rest = rest * error_function(rest) + ti.exp(-rest * rest) / _SQRT_PI
+    return ti.Vector([W + d / prm[0] * (z * lost + bell - at_rest), 1.0 - lost / prm[0], second])
 
 
 @dataclass(frozen=True, kw_only=True)
