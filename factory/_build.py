@@ -157,7 +157,9 @@ def build_dataset(
             simulated = _simulate(plan, staging, means, on_progress)
             for left in reversed(range(_ROUNDS)):
                 try:
+                    _keep_complete(target, plan, staging)
                     assemble(plan, staging, target)
+                    staging.overwriting.unlink(missing_ok=True)
                     break
                 except DamagedResultError as error:
                     if not left:
@@ -185,10 +187,35 @@ def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
     if missing == len(plan.pokes):
         staging.remove()
         raise InputError(f"{target}: --partial: no poke of it is finished yet: begin it without --partial")
+    if missing and _is_whole(target):
+        raise InputError(
+            f"{target}: --partial: holds a complete dataset, which a part of another would replace: give"
+            " another --out"
+        )
     assemble(plan, staging, target)
     if not missing and not staging.errors():
         staging.remove()
     return Built(target, len(plan.pokes), 0, staging.errors(), tuple(damaged), missing)
+
+
+def _is_whole(target: Path) -> bool:
+    """True if the target is a dataset with all its pokes."""
+    try:
+        found = root_attributes(target)
+    except DamagedError:
+        return False
+    return found is not None and bool(found["pokes_done"] == found["pokes"])
+
+
+def _keep_complete(target: Path, plan: Plan, staging: Staging) -> None:
+    """Raise InputError if a store with failed pokes would replace a complete one."""
+    errors = staging.errors()
+    if errors and _is_whole(target):
+        index, said = next(iter(errors.items()))
+        raise InputError(
+            f"{target}: {len(errors)} of {len(plan.pokes)} pokes failed (first: poke {index}: {said}); the"
+            " complete dataset that is there stays. The same command without --overwrite tries them again"
+        )
 
 
 def check_target(target: Path, *, overwrite: bool = False) -> None:
@@ -233,13 +260,14 @@ def warn_of_full_disk(target: Path, needed: float) -> bool:
 def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
     """True if the target is complete; if not, prepare the building folder for this plan."""
     if overwrite:
-        staging.begin(plan.identity)
+        staging.begin(plan.identity, overwrites=target.exists())
         return False
     finished, begun = root_attributes(target), staging.read_plan()
     if begun is not None and begun != plan.identity:
         raise _changed(f"{staging.folder}: was begun", begun, plan, target)
     if finished is not None and finished["fingerprint"] == plan.fingerprint:
-        if finished["pokes_done"] == finished["pokes"]:
+        replaces = begun is not None and staging.overwriting.exists()
+        if finished["pokes_done"] == finished["pokes"] and not replaces:
             staging.remove()  # remains of a build killed during its clean-up, or our lock
             return True
         if begun is None:

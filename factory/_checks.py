@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -190,6 +191,15 @@ def forces(data: Dataset) -> list[str]:
     return _frames(data, gap > FORCE_BALANCE, f"base reaction is not the rod's force to {FORCE_BALANCE:.0%}")
 
 
+# what a poke has in common with the one whose solve it takes, and what its rows count
+_MOVED: dict[str, Literal["frame", "node", "triangle", "value"]] = {
+    "grid_displacement": "frame",
+    "surface_rest": "node",
+    "surface_triangle": "triangle",
+    "surface_displacement": "value",
+}
+
+
 def one_solve(data: Dataset) -> list[str]:
     """Check that pokes which reuse another's solve have its displacements and proportional forces."""
     table = data.table
@@ -202,9 +212,13 @@ def one_solve(data: Dataset) -> list[str]:
             faults.append(f"poke {index}: takes the solve of poke {other}, which has none of its own")
             continue
         rows, its = data.rows(index, "frame"), data.rows(other, "frame")
-        moved, still = (data.read("grid_displacement", frames) for frames in (rows, its))
-        force = factor * table["rod_force"][its]
-        if not (np.array_equal(moved, still) and np.array_equal(table["rod_force"][rows], force)):
+        same = np.array_equal(table["depth"][rows], table["depth"][its])
+        for name in ("rod_force", "base_force"):
+            same &= np.array_equal(table[name][rows], factor * table[name][its])
+        for name, count in _MOVED.items():
+            own, theirs = (data.rows(k, count) for k in (index, other))
+            same &= np.array_equal(data.read(name, own), data.read(name, theirs))
+        if not same:
             faults.append(f"poke {index}: is not {factor:.4g} times the solve of poke {other}")
     return faults
 

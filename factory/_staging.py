@@ -63,6 +63,7 @@ class Staging:
         self.results = self.folder / "parts"
         self.plan_file = self.folder / "plan.json"
         self.ledger_file = self.folder / "ledger.jsonl"
+        self.overwriting = self.folder / "overwriting"  # there while a whole store is to be replaced
         self.store = self.folder / "store"
         self._lock: int | None = None
 
@@ -104,13 +105,19 @@ class Staging:
             raise InputError(f"{self.plan_file}: is damaged: give --overwrite to simulate everything again")
         return found
 
-    def begin(self, identity: dict[str, Any]) -> None:
-        """Clear the folder and write the identity of the plan to build."""
+    def begin(self, identity: dict[str, Any], *, overwrites: bool = False) -> None:
+        """Clear the folder and write the identity of the plan to build.
+
+        overwrites : whether the target holds a store that this build replaces when it is complete.
+        """
         self.plan_file.unlink(missing_ok=True)  # first, since results without a plan are never used
         self.ledger_file.unlink(missing_ok=True)
         for folder in (self.results, self.store):
             shutil.rmtree(folder, ignore_errors=True)
         self.results.mkdir(parents=True)
+        self.overwriting.unlink(missing_ok=True)
+        if overwrites:
+            write_atomic(self.overwriting, b"")
         write_atomic(self.plan_file, json.dumps(identity, indent=1, sort_keys=True).encode())
 
     def stage(self, outcome: Outcome) -> None:

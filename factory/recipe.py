@@ -136,7 +136,7 @@ class Recipe(Strict):
     levels: Annotated[tuple[Name, ...], Field(min_length=1, alias="softness")]
     border_mm: Natural
     cover_mm: Natural
-    refinement: Annotated[float, Field(ge=0.1, le=10)] = 1.0
+    refinement: Annotated[float, Field(ge=0.5, le=6)] = 1.0
     shapes: Annotated[
         tuple[Annotated[SerializeAsAny[Shape], BeforeValidator(of_its_kind)], ...], Field(min_length=1)
     ]

@@ -86,6 +86,44 @@ def test_overwrite_keeps_the_old_store_until_the_new_one_is_whole(
     assert digest(target) == digest(reference)
 
 
+def test_failed_pokes_do_not_replace_a_complete_store(
+    plan: Plan, other: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target, reference = tmp_path / "a.zarr", tmp_path / "reference.zarr"
+    standin_build(plan, target)
+    standin_build(other, reference)
+    before = digest(target)
+    with monkeypatch.context() as patch:
+        patch.setenv("STANDIN_FAIL", f"{round(other.pokes[1].scene.site[0] * 1e6)}")
+        with pytest.raises(
+            InputError, match=r"1 of 4 pokes failed .*the complete dataset that is there stays"
+        ):
+            standin_build(other, target, overwrite=True)
+        assert digest(target) == before
+        with pytest.raises(InputError, match="--partial: holds a complete dataset"):
+            build_dataset(other, target, partial=True)
+    assert digest(target) == before
+    assert standin_build(other, target).simulated == 1
+    assert digest(target) == digest(reference)
+
+
+def test_a_stopped_overwrite_of_the_same_plan_goes_on(
+    plan: Plan, standin_build: Builder, tmp_path: Path
+) -> None:
+    target = tmp_path / "a.zarr"
+    standin_build(plan, target)
+
+    def stop(state: BuildProgress) -> None:
+        if state.done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        standin_build(plan, target, overwrite=True, on_progress=stop)
+    assert standin_build(plan, target).simulated == 1
+    assert not building_folder(target).exists()
+    assert standin_build(plan, target).simulated == 0
+
+
 def test_two_builders(plan: Plan, standin_build: Builder, tmp_path: Path) -> None:
     target = tmp_path / "a.zarr"
     with Staging(target), pytest.raises(InputError, match="another builder is at work"):

@@ -259,6 +259,9 @@ def _mesh(raw: _Raw, body: str | None) -> Mesh:
     ((kind, elements),) = solids.items()
     if not np.isfinite(raw.nodes).all():
         raise MeshError("expected finite coordinates")
+    # Gmsh 2.2 repeats an element in each of its physical groups
+    _, once = np.unique(np.sort(elements, axis=1), axis=0, return_index=True)
+    elements = elements[np.sort(once)]
     used, flat = np.unique(elements, return_inverse=True)
     if used[0] < 0 or used[-1] >= len(raw.nodes):
         raise MeshError("an element names a node that is not there")

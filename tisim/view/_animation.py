@@ -41,7 +41,7 @@ def animate(view: View, path: str | Path, *, colour: str | None, seconds: float,
         raise ValueError(f"colour {colour!r}: expected one of {known}")
     checked_path(path)
     if ending == ".gif":
-        _gif(list(_pictures(view, colour, width)), path, seconds)
+        _gif(list(_pictures(view, colour, width)), path, seconds, turns=len(view.labels) == 1)
     else:
         _mp4(list(_pictures(view, colour, width)), path, seconds, _ffmpeg(path))
     return path
@@ -147,11 +147,11 @@ def _limits(view: View, camera: Camera, *, all_around: bool) -> tuple[Array, Arr
     return low - margin, high + margin
 
 
-def _gif(pictures: list[Image], path: Path, seconds: float) -> None:
+def _gif(pictures: list[Image], path: Path, seconds: float, *, turns: bool) -> None:
     from PIL.Image import Dither
 
     each = max(20, round(1e3 * seconds / len(pictures)))
-    last = each if len(pictures) == TURN else each + round(1e3 * REST_AT_END)
+    last = each if turns else each + round(1e3 * REST_AT_END)
     palette = _palette()
     small = [picture.quantize(palette=palette, dither=Dither.NONE) for picture in pictures]
     small[0].save(

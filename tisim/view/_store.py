@@ -39,7 +39,11 @@ def view_of_poke(path: Path, index: int | None) -> View:
         raise ValueError(
             f"{path}: --poke: expected one that was simulated, of {store['done'].shape[0]}{asked}"
         )
-    return _view(path, store, index)
+    try:
+        return _view(path, store, index)
+    except Exception as error:  # of any layer below: codec, zip, shapes, attributes
+        said = " ".join(str(error).split())[:120]
+        raise ValueError(f"{path}: poke {index} cannot be read ({type(error).__name__}: {said})") from None
 
 
 def _view(path: Path, store: Any, index: int) -> View:

@@ -77,12 +77,19 @@ def main(
             if path is not None
         ]
         if out is not None or show or not written:
-            page = out or Path(f"{files[0].resolve().name.split('.')[0]}.html")
+            page = out or Path(f"{_bare(files[0].resolve().name)}.html")
             written.append(view.open(page) if show else view.save(page))
     except (ValueError, OSError) as error:
         _fail(error)
     for path in written:
         typer.echo(f"{path}: {path.stat().st_size / 1e6:.2f} MB, {view.title}")
+
+
+def _bare(name: str) -> str:
+    """A file's name without the ending of a store or a result."""
+    for ending in (".zip", ".zarr", ".vtu", ".pvd", ".inp", ".msh"):
+        name = name.removesuffix(ending)
+    return name
 
 
 def _fail(error: ValueError | OSError) -> NoReturn:
