@@ -7,6 +7,7 @@ Parts that were fitted beside the best law (`tisim.parts`) stand under the keys 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -174,7 +175,10 @@ def _agreement(chosen: Calibration) -> str:
 def _interval(chosen: Calibration) -> tuple[float | None, float | None]:
     """95 % interval of the shear modulus, relative to it; None if there is none or it is not identified."""
     found = next((e for e in chosen.estimates if e.name == "shear_modulus"), None)
-    if found is None or found.seen in ("not identified", "at a bound"):
+    if found is None:  # of a diagnosis, which has the sd alone
+        half = 1.96 * chosen.shear_modulus_sd / chosen.shear_modulus
+        return (-round(half, 5), round(half, 5)) if math.isfinite(half) else (None, None)
+    if found.seen in ("not identified", "at a bound"):
         return None, None
     return round(found.low / found.value - 1.0, 5), round(found.high / found.value - 1.0, 5)
 
