@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -98,6 +99,21 @@ def test_a_store_whose_forces_are_not_in_proportion(
     for name in ("rod_force", "base_force"):
         array = zarr.open_array(target / name, mode="r+")
         array[row] = 1.001 * np.asarray(array[row])
+    (fault,) = verify_dataset(target).faults["solves taken over"]
+    assert f"poke {index}: is not" in fault
+
+
+@pytest.mark.parametrize(("name", "count"), [("surface_displacement", "value"), ("base_force", "frame")])
+def test_a_store_whose_surfaces_are_not_those_of_the_solve(
+    quick: Plan, standin_build: Builder, tmp_path: Path, name: str, count: Any
+) -> None:
+    target = tmp_path / "a.zarr"
+    standin_build(quick, target)
+    data = open_dataset(target)
+    index = int(np.flatnonzero(data.table["solved_as"] != np.arange(data.n_pokes))[0])
+    rows = data.rows(index, count)
+    array = zarr.open_array(target / name, mode="r+")
+    array[rows] = 1.005 * np.asarray(array[rows]) + 1e-9
     (fault,) = verify_dataset(target).faults["solves taken over"]
     assert f"poke {index}: is not" in fault
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from factory._archive import release_store
 from factory.reader import open_dataset
 from tisim.view import view_of_file
+from tisim.view.command import _bare
 
 
 def test_a_poke_of_a_store_is_shown(finished_store: Path, tmp_path: Path) -> None:
@@ -24,3 +26,23 @@ def test_a_poke_of_a_store_is_shown(finished_store: Path, tmp_path: Path) -> Non
     assert "poke 0" in view_of_file(finished_store).title
     with pytest.raises(ValueError, match="expected one that was simulated, of 4, 9 is none"):
         view_of_file(finished_store, poke=9)
+
+
+def test_a_poke_that_cannot_be_read_is_one_sentence(finished_store: Path, tmp_path: Path) -> None:
+    store = tmp_path / "damaged.zarr"
+    shutil.copytree(finished_store, store)
+    (chunk,) = [p for p in (store / "surface_displacement" / "c").rglob("*") if p.is_file()][:1]
+    content = bytearray(chunk.read_bytes())
+    content[40:120] = bytes(80)
+    chunk.write_bytes(bytes(content))
+    with pytest.raises(ValueError, match=r"damaged\.zarr: poke 0 cannot be read \("):
+        view_of_file(store)
+
+
+def test_a_page_has_its_files_whole_name() -> None:
+    assert [_bare(n) for n in ("G=1.5kPa.vtu", "quick.zarr.zip", "quick.zarr", "a.b")] == [
+        "G=1.5kPa",
+        "quick",
+        "quick",
+        "a.b",
+    ]

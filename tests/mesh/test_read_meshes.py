@@ -149,6 +149,25 @@ $EndElements
 """
 
 
+def test_an_element_in_two_physical_groups_is_one_element(tmp_path: Path) -> None:
+    """Gmsh 2.2 writes it once for each of its groups."""
+    mesh = small("tet4")
+    n = mesh.n_elements
+    path = tmp_path / "beam.msh"
+    meshio.Mesh(
+        mesh.nodes,
+        [("tetra", np.concatenate([mesh.elements, mesh.elements]))],
+        cell_data={"gmsh:physical": [np.repeat([1, 2], n).astype(np.int32)],
+                   "gmsh:geometrical": [np.ones(2 * n, np.int32)]},
+        field_data={"all": np.array([1, 3]), "soft": np.array([2, 3])},
+    ).write(path, file_format="gmsh22", binary=False)  # fmt: skip
+    found = tisim.read(path)
+    assert found.n_elements == n
+    assert tisim.mesh.volumes(found).sum() == pytest.approx(tisim.mesh.volumes(mesh).sum())
+    assert len(found.facet_sets["surface"]) == len(mesh.facet_sets["surface"])
+    assert len(found.node_sets["soft"]) == mesh.n_nodes
+
+
 def test_gmsh_as_it_is_written_today(tmp_path: Path) -> None:
     mesh = tisim.read(written(tmp_path, GMSH_41, "tet.msh"))
     assert (mesh.kind, mesh.n_nodes, sorted(mesh.node_sets)) == ("tet4", 4, ["base", "body"])
