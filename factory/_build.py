@@ -257,6 +257,15 @@ def warn_of_full_disk(target: Path, needed: float) -> bool:
     return True
 
 
+def is_built(plan: Plan, target: Path, staging: Staging) -> bool:
+    """True if the target has all pokes of this plan, and no stopped build is to replace it."""
+    finished = root_attributes(target)
+    if finished is None or finished["fingerprint"] != plan.fingerprint:
+        return False
+    replaces = staging.read_plan() is not None and staging.overwriting.exists()
+    return bool(finished["pokes_done"] == finished["pokes"]) and not replaces
+
+
 def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
     """True if the target is complete; if not, prepare the building folder for this plan."""
     if overwrite:
@@ -265,11 +274,10 @@ def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) ->
     finished, begun = root_attributes(target), staging.read_plan()
     if begun is not None and begun != plan.identity:
         raise _changed(f"{staging.folder}: was begun", begun, plan, target)
+    if is_built(plan, target, staging):
+        staging.remove()  # remains of a build killed during its clean-up, or our lock
+        return True
     if finished is not None and finished["fingerprint"] == plan.fingerprint:
-        replaces = begun is not None and staging.overwriting.exists()
-        if finished["pokes_done"] == finished["pokes"] and not replaces:
-            staging.remove()  # remains of a build killed during its clean-up, or our lock
-            return True
         if begun is None:
             staging.remove()
             raise InputError(

@@ -19,7 +19,7 @@ from tisim.scene import Poke
 if TYPE_CHECKING:
     from factory.plan import PlannedPoke
 
-STATUSES = tuple(Status)
+STATUSES = tuple(status for status in Status if status is not Status.NOT_MESHED)  # of stored pokes
 COUNTERS = ("steps", "newton_iterations", "factorisations", "linear_iterations", "step_cuts")
 Arrays = dict[str, NDArray[np.generic]]
 
@@ -80,6 +80,8 @@ class Outcome:
 def record(scene: Poke, result: Result) -> Arrays:
     """Arrays stored for one poke (names and units as in `_schema`); ValueError if the result is invalid."""
     mesh = result.mesh
+    if result.status is Status.NOT_MESHED:
+        raise ValueError(result.message)
     if mesh.symmetry:
         raise ValueError("the poke came back on a mesh cut by a mirror plane: expected the whole block")
     if result.rod_tip is None or result.rod_force is None or result.penetration is None:

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from factory._build import BuildProgress, Built
+from factory._build import BuildProgress, Built, is_built
 from factory._cli import duration, size_text
 from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
@@ -75,14 +75,22 @@ class Estimate:
     measured: bool
 
 
-def estimate(plan: Plan, target: Path, workers: int) -> Estimate:
-    """Estimate time and size from the ledger of the run so far, or else roughly from measured defaults."""
+def estimate(plan: Plan, target: Path, workers: int, *, overwrite: bool = False) -> Estimate:
+    """Estimate time and size from the ledger of the run so far, or else roughly from measured defaults.
+
+    DamagedError if the target is a damaged store that is not overwritten.
+    """
     staging = Staging(target)
     ledger = read_ledger(staging.ledger_file)
     walls = [float(entry["wall_seconds"]) for entry in ledger.values() if not entry.get("error")]
     asked = plan.recipe.protocol.depth_mm / 10.0
     each = fmean(walls) if walls else SECONDS_TO_10_MM * asked**GROWTH
-    finished = staging.finished()
+    if overwrite:
+        finished = set()
+    elif is_built(plan, target, staging):
+        finished = {poke.index for poke in plan.pokes}
+    else:
+        finished = staging.finished()
     missing = max(len(plan.pokes) - len(finished), 0)
     solves = sum(not poke.derived and poke.index not in finished for poke in plan.pokes)
     frames = FRAMES_REACHED * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm

@@ -219,6 +219,22 @@ def manifest_faults(folder: Path) -> list[str]:
     return faults
 
 
+def missing_files(store: Path | zipfile.Path) -> list[str]:
+    """Files of the manifest that the store lacks; none if the manifest cannot be read."""
+    try:
+        content = read_json(store / MANIFEST)
+    except (OSError, ValueError, KeyError):
+        return []
+    listed = content.get("sha256") if isinstance(content, dict) else None
+    if not isinstance(listed, dict):
+        return []
+    if isinstance(store, zipfile.Path):
+        found = set(store.root.namelist())
+    else:
+        found = {name for name, _, _ in plain_files(store)}
+    return sorted(name for name in listed if name not in found)
+
+
 def _stays_inside(name: str) -> bool:
     path = PurePosixPath(name)
     plain = bool(name) and "\\" not in name and "\0" not in name and path.as_posix() == name

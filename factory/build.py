@@ -135,10 +135,10 @@ def main(
             plan = make_plan(load_recipe(recipe), model, materials, levels=wanted)
             target = (out or default_target(plan.recipe.name, model, materials)).absolute()
             count = workers or cores()
-            expected = estimate(plan, target, count)
             if partial and not resume:
                 raise InputError("--partial: expected without --overwrite, which would discard what is there")
             check_target(target, overwrite=not resume)
+            expected = estimate(plan, target, count, overwrite=not resume)
             if dry_run:
                 console.print(plan_table(plan, target, expected, count))
                 return

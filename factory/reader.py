@@ -25,7 +25,7 @@ from factory._errors import InputError, describe_os_error, one_line
 from factory._record import STATUSES
 from factory._schema import NOT_SIMULATED, Spec, specs_of
 from factory._staging import building_folder
-from factory._store import DamagedError, plain_files, root_attributes
+from factory._store import DamagedError, missing_files, plain_files, root_attributes
 from factory.plan import FORMAT
 from tisim import Inclusion, inclusions
 
@@ -139,17 +139,25 @@ class Dataset:
         return "time" in self.specs
 
     def array(self, name: str) -> Any:
-        """The Zarr array itself; DamagedError if it is missing or its metadata are damaged."""
+        """The Zarr array itself; DamagedError if its metadata or one of its files is missing or damaged."""
         with self._damage_named(name):
             if not (self.root / name / "zarr.json").is_file():  # the root's metadata list it nonetheless
                 raise KeyError(name)
-            return self.group[name]
+            array = self.group[name]
+        if name in self._lost:  # Zarr reads a missing chunk as zeros
+            raise DamagedError(f"{self.path / self._lost[name]}: missing, and the manifest lists it")
+        return array
 
     def read(self, name: str, rows: slice | int = slice(None)) -> NDArray[Any]:
         """Rows of an array; DamagedError if they cannot be read."""
         array = self.array(name)
         with self._damage_named(name):
             return np.asarray(array[rows])
+
+    @cached_property
+    def _lost(self) -> dict[str, str]:
+        """A missing file of each array that lacks one of those that the manifest lists."""
+        return {name.partition("/")[0]: name for name in missing_files(self.root)}
 
     @contextlib.contextmanager
     def _damage_named(self, name: str) -> Iterator[None]:

@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,6 +75,12 @@ class Course:
     frames: tuple[float, ...] | None = None
     growth: float = 0.7
 
+    def __post_init__(self) -> None:
+        for name in ("times", "values", "frames"):  # an array has no truth value
+            value = getattr(self, name)
+            if isinstance(value, np.ndarray):
+                object.__setattr__(self, name, tuple(value.tolist()))
+
     def ramp(self, *, to: float, speed: float | None = None, duration: float | None = None) -> Course:
         """This course, then a ramp to a value, at a speed [value/s] (of either sign) or in a duration [s]."""
         if (speed is None) == (duration is None):
@@ -126,6 +132,9 @@ class Course:
 
     def check(self, field: str = "course", *, start: float | None = None) -> None:
         """Raise FieldError for an invalid course, or one that does not begin at `start` (if given)."""
+        for name, given in (("times", self.times), ("values", self.values)):
+            if not isinstance(given, Sequence):
+                raise FieldError(f"{field}.{name}", "a sequence of numbers", given)
         if len(self.times) != len(self.values) or not self.times:
             raise FieldError(f"{field}.times", "at least one piece, each with a time and a value", self.times)
         for value in (self.start, *self.values):
@@ -141,7 +150,7 @@ class Course:
             return
         first = 0.0 if self.times[0] == 0.0 else np.nextafter(0.0, 1.0)
         within = f"times within the course, {'from' if first == 0.0 else 'after'} 0 to {self.duration:g} s"
-        if not self.frames:
+        if not isinstance(self.frames, Sequence) or not self.frames:
             raise FieldError(f"{field}.frames", "at least one time, or None", self.frames)
         for time in self.frames:
             check_number(f"{field}.frames", time, within, lambda v: first <= v <= self.duration)

@@ -23,6 +23,7 @@ class Status(StrEnum):
     SINGULAR = "singular"  # the linear solver failed
     DIVERGED = "diverged"  # a dynamic run lost its energy balance or became non-finite
     UNFINISHED = "unfinished"  # a run with until_rest reached its duration before rest
+    NOT_MESHED = "not-meshed"  # no mesh fits the body: the result has an empty mesh and no frames
 
 
 @dataclass(frozen=True, kw_only=True)

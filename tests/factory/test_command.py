@@ -185,6 +185,15 @@ def test_a_law_that_the_cards_lack_has_their_moduli(tiny_file: Path, tmp_path: P
     assert "material S0: its card has no parameters of yeoh: small-strain moduli." in output
 
 
+def test_dry_run_of_a_complete_dataset_has_nothing_to_do(store: Path, tiny_file: Path) -> None:
+    arguments = ("--model", "ogden", "--recipe", str(tiny_file), "--out", str(store), "--dry-run")
+    for more, left in (((), "0"), (("--overwrite",), "4")):
+        code, output, _ = _call(*arguments, *more)
+        assert code == 0
+        (line,) = (line for line in output.splitlines() if "to do" in line)
+        assert line.split("│")[2].split()[0].rstrip(",") == left
+
+
 def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     code, output, _ = _call("--model", "mooney-rivlin", "--dry-run", "--workers", "2")

@@ -16,7 +16,7 @@ import zarr
 from factory import _build, verify_dataset
 from factory._build import Built, build_dataset
 from factory._errors import InputError
-from factory._store import MANIFEST, write_manifest
+from factory._store import MANIFEST, DamagedError, write_manifest
 from factory.build import app as build_app
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
@@ -139,6 +139,17 @@ def test_a_truncated_shard_of_fields_is_named(name: str, store: Path) -> None:
     shown = run_app(inspect_app, store, "--poke", "0")
     assert shown.exit_code == 2
     assert f"{store / name}: the array cannot be read (" in shown.stderr
+
+
+@pytest.mark.parametrize("name", ["grid_displacement", "depth", "profile"])
+def test_a_missing_chunk_is_not_read_as_zeros(name: str, store: Path) -> None:
+    _shard(store, name).unlink()
+    with pytest.raises(DamagedError, match=rf"{name}/c.*: missing, and the manifest lists it"):
+        open_dataset(store).poke(0)
+    shown = run_app(inspect_app, store, "--poke", "0")
+    assert shown.exit_code == 2
+    assert "missing, and the manifest lists it" in " ".join(shown.stderr.split())
+    assert run_app(verify_app, store).exit_code == 1
 
 
 def _edited(name: str, change: Callable[[Any], Any]) -> Callable[[Path], None]:

@@ -86,6 +86,23 @@ def test_included_files_are_read(tmp_path: Path) -> None:
     assert len(mesh.node_sets["clamp"]) == 4
 
 
+def test_data_lines_in_other_files_are_read(tmp_path: Path) -> None:
+    """A keyword with INPUT=, an included file of data lines alone, data lines after it, a byte order mark."""
+    whole = tisim.read(written(tmp_path, CUBE), unit="mm")
+    head, nodes = CUBE.split("*ELEMENT", 1)[0].rsplit("*Node", 1)
+    options, *rows = nodes.splitlines(keepends=True)
+    rest = CUBE[CUBE.index("*ELEMENT") :]
+    written(tmp_path, "".join(rows), "all.dat")
+    written(tmp_path, "".join(rows[:3]), "some.dat")
+    named = f"\ufeff{head}*NODE{options.rstrip()}, INPUT=all.dat\n{rest}"
+    included = f"{head}*NODE{options}*INCLUDE, INPUT=some.dat\n{''.join(rows[3:])}{rest}"
+    for text in (named, included):
+        mesh = tisim.read(written(tmp_path, text), unit="mm")
+        assert np.array_equal(mesh.nodes, whole.nodes)
+        assert np.array_equal(mesh.elements, whole.elements)
+        assert sorted(mesh.node_sets) == sorted(whole.node_sets)
+
+
 @pytest.mark.parametrize("kind", ["tet4", "tet10"])
 def test_a_gmsh_file_with_physical_groups(tmp_path: Path, kind: str) -> None:
     """Faces are separate cells with their own group, here oriented inwards."""
@@ -201,6 +218,8 @@ def test_a_result_read_again_is_its_rest_shape(tmp_path: Path) -> None:
         (("*STEP", "*NODE\n3, 1., 1., 1.\n*STEP"), r"\*NODE: node 3 is stated twice, in two places"),
         (("*STEP", "*INSTANCE, NAME=A, PART=B\n0., 1., 0.\n*STEP"), r"\*INSTANCE: expected one part"),
         (("*MATERIAL", "*INCLUDE, INPUT=no.inp\n*MATERIAL"), r"\*INCLUDE: there is no file"),
+        (("*MATERIAL", "*NSET, NSET=A, INPUT=no.dat\n*MATERIAL"), r"\*NSET: there is no file"),
+        ((CUBE[: CUBE.index("*NODE")], "1, 2, 3\n"), r"line 1: expected a keyword, which begins with \*"),
         ((CUBE[CUBE.index("*ELEMENT") : CUBE.index("*NSET,")], ""), r"expected \*NODE and \*ELEMENT"),
         (("20., 20., 20.", "nan, 20., 20."), r"expected finite coordinates"),
     ],

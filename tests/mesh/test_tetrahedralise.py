@@ -76,6 +76,8 @@ def test_inclusion_in_mid_block_is_a_cavity():
         ({"edge_length": 0.0}, "edge length must lie between 0 and the body's size"),
         ({"edge_length": 4.0}, "edge length must lie between 0 and the body's size"),
         ({"edge_length": 2e-5}, "would give about .* tetrahedra"),
+        ({"edge_length": 0.004, "kind": "hex8"}, "kind: expected tet4 or tet10, got 'hex8'"),
+        ({"edge_length": 0.004, "tolerance": -1e-4}, "tolerance: expected a length above 0"),
         ({"edge_length": 0.001, "time_limit": 0.01}, r"not done after 0\.01 s"),
     ],
 )

@@ -95,11 +95,22 @@ def test_frames_are_where_they_are_asked_for() -> None:
         (Course(frames=(0.0,)).hold(1.0), "times within the course, after 0 to 1 s"),
         (Course(frames=(0.5, 0.5)).hold(1.0), "course.frames: expected times that rise"),
         (Course(frames=()).hold(1.0), "at least one time, or None"),
+        (Course(frames=0.5).hold(1.0), "course.frames: expected at least one time, or None, got 0.5"),  # type: ignore[arg-type]
+        (Course(times=None, values=(1.0,)), "course.times: expected a sequence of numbers, got None"),  # type: ignore[arg-type]
+        (Course(times=(1.0,), values=1.0), "course.values: expected a sequence of numbers"),  # type: ignore[arg-type]
     ],
 )
 def test_a_course_that_cannot_be_is_refused_in_one_sentence(course: Course, sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         course.check()
+
+
+def test_arrays_are_taken_for_tuples() -> None:
+    times, values = np.array([1.0, 2.0]), np.array([1.2, 1.3])
+    course = Course(start=1.0, times=times, values=values, frames=np.array([0.5, 2.0]))  # type: ignore[arg-type]
+    assert course == Course(start=1.0, times=(1.0, 2.0), values=(1.2, 1.3), frames=(0.5, 2.0))
+    course.check()
+    assert [stop.time for stop in course.stops(None) if stop.frame] == [0.5, 2.0]
 
 
 def test_a_piece_that_cannot_be_is_refused_as_it_is_written() -> None:

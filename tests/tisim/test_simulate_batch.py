@@ -58,6 +58,10 @@ BAD: list[tuple[tisim.Scene, str]] = [
     (tisim.Beam(material=replace(SOFT, parameters={"mu": 1e4}), length=0.05), "lam"),
     (tisim.Poke(material=SOFT, direction=(1.0, 0.0, -0.1)), "direction"),
     (tisim.Poke(material=SOFT, friction=-0.1), "friction"),
+    (
+        tisim.Beam(material=replace(SOFT, parameters=None), length=0.05),
+        "expected parameters by name",
+    ),
     (tisim.Coupon(material=SOFT, stretches=(0.0,)), "stretch"),
     (tisim.Poke(material=SOFT, refinement=7.0), "refinement"),
     (tisim.Poke(material=SOFT, site=(0.049, 0.0)), "site"),
@@ -205,9 +209,31 @@ def test_export_and_picture(tmp_path: Path) -> None:
     assert tisim.write(result, tmp_path / "beam.ply").stat().st_size > 1000
     tisim.picture(result, tmp_path / "beam.png")
     assert (tmp_path / "beam.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(ValueError, match=r"beam\.pdf: expected a name that ends in \.png"):
+        tisim.picture(result, tmp_path / "beam.pdf")
+    tisim.write(replace(result, scene=None), tmp_path / "series.pvd")  # without the fields of a scene
+    (file,) = (tmp_path / "series").iterdir()
+    assert "volume_ratio" in meshio.read(file).cell_data
 
 
 def test_the_example_in_the_docstring() -> None:
     found = doctest.testmod(tisim)
     assert found.attempted > 0
     assert found.failed == 0
+
+
+def test_a_body_that_cannot_be_meshed_does_not_lose_the_batch(tmp_path: Path) -> None:
+    thin = tisim.BoxInclusion(centre=(0.001, -0.004, 0.005), size=(0.0013, 0.054, 0.01), angle=0.634)
+    bad = tisim.Poke(material=SOFT, block=tisim.Block(inclusion=thin), depth=0.001, refinement=0.5)
+    first, result, last = tisim.simulate([scenes()[0], bad, scenes()[1]], workers=1)
+    assert first.ok
+    assert last.ok
+    assert result.scene is bad
+    assert result.status is tisim.Status.NOT_MESHED
+    assert "meets its outline" in result.message
+    assert len(result.load) == len(result.positions) == result.mesh.n_nodes == 0
+    assert "not-meshed" in repr(result)
+    with pytest.raises(ValueError, match="has no frame: inclusion: no grid"):
+        tisim.picture(result, tmp_path / "poke.png")
+    apart = tisim.simulate([bad, scenes()[0]], workers=2)
+    assert [r.status.value for r in apart] == ["not-meshed", "converged"]

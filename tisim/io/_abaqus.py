@@ -1,8 +1,9 @@
 """Parser of Abaqus and CalculiX input files (.inp): nodes, elements and sets.
 
 The keywords *NODE, *ELEMENT, *NSET and *ELSET (also GENERATE, and sets of sets), *SURFACE of element faces
-and *INCLUDE are read. Keywords that move, copy or generate nodes are refused; all others do not concern the
-mesh and are ignored. Names are case-insensitive and are converted to lower case.
+and *INCLUDE are read, and data lines in another file (INPUT=). Keywords that move, copy or generate nodes are
+refused; all others do not concern the mesh and are ignored. Names are case-insensitive and are converted to
+lower case.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ _REFUSED = {
     "NMAP": "nodes that are mapped", "ELGEN": "elements that are generated", "SYSTEM": "a coordinate system",
     "ELCOPY": "elements that are copied", "SUBMODEL": "a part of another model",
 }  # fmt: skip
+_WITH_INPUT = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE")  # their data lines may be in a file
 _DEEPEST = 10  # levels of included files
 Names = dict[str, list["int | str"]]
 
@@ -170,41 +172,58 @@ def _real(text: str) -> float:
     return float(text.lower().replace("d", "e") or 0.0)
 
 
-def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
-    """Location, keyword, options and data rows of each block; included files are expanded in place."""
+def _blocks(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
+    """Location, keyword, options and data rows of each block of a file and of those that it includes."""
+    block: tuple[str, str, dict[str, str], list[list[str]]] | None = None
+    for where, text in _lines(path):
+        if text.startswith("*"):
+            if block is not None:
+                yield block
+            keyword, options = _keyword(text)
+            block = where, keyword, options, []
+        elif block is None:
+            raise MeshError(f"{where}: expected a keyword, which begins with *, got {text[:40]!r}")
+        else:
+            block[3].append([x.strip() for x in text.removesuffix(",").split(",")])
+    if block is not None:
+        yield block
+
+
+def _lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
+    """Location and text of each line but comments: continued keyword lines joined, other files' in place.
+
+    A file is named by *INCLUDE, INPUT=, or by the option INPUT= of a keyword, of which it has data lines.
+    """
     if depth > _DEEPEST:
         raise MeshError(f"{path}: expected at most {_DEEPEST} files that include one another")
     try:
-        lines = path.read_text(encoding="utf-8", errors="strict").splitlines()
+        lines = path.read_text(encoding="utf-8-sig", errors="strict").splitlines()
     except UnicodeDecodeError:
         raise MeshError(f"{path}: expected a text file") from None
-    block: tuple[str, str, dict[str, str], list[list[str]]] | None = None
     unfinished = ""
     for number, line in enumerate(lines, start=1):
-        text = unfinished + line.strip()
+        where, text = f"{path}: line {number}", unfinished + line.strip()
         unfinished = ""
         if not text or text.startswith("**"):
             continue
-        if text.startswith("*") and text.endswith(","):  # a keyword line that is continued
+        if text.startswith("*") and text.endswith(","):
             unfinished = text
             continue
-        if not text.startswith("*"):
-            if block is not None:
-                block[3].append([x.strip() for x in text.removesuffix(",").split(",")])
-            continue
-        if block is not None:
-            yield block
-        keyword, *rest = [x.strip() for x in text[1:].split(",")]
-        options = {k.strip().upper(): v.strip().strip('"') for k, _, v in (x.partition("=") for x in rest)}
-        block = f"{path}: line {number}", " ".join(keyword.upper().split()), options, []
-        if block[1] == "INCLUDE":
-            block = None
-            other = path.parent / options.get("INPUT", "").strip('"')
+        keyword, options = _keyword(text) if text.startswith("*") else ("", {})
+        if keyword != "INCLUDE":
+            yield where, text
+        if keyword == "INCLUDE" or (keyword in _WITH_INPUT and "INPUT" in options):
+            other = path.parent / options.get("INPUT", "")
             if not other.is_file():
-                raise MeshError(f"{path}: line {number}: *INCLUDE: there is no file {other}")
-            yield from _blocks(other, depth + 1)
-    if block is not None:
-        yield block
+                raise MeshError(f"{where}: *{keyword}: there is no file {other}")
+            yield from _lines(other, depth + 1)
+
+
+def _keyword(text: str) -> tuple[str, dict[str, str]]:
+    """Keyword and options of a keyword line, in upper case but for the options' values."""
+    keyword, *rest = [x.strip() for x in text[1:].split(",")]
+    options = {k.strip().upper(): v.strip().strip('"') for k, _, v in (x.partition("=") for x in rest)}
+    return " ".join(keyword.upper().split()), options
 
 
 def as_arrays(found: InputFile) -> tuple[np.ndarray, dict[int, int]]:

@@ -113,10 +113,11 @@ def _write_series(result: Result, path: Path) -> None:
     folder = path.with_suffix("")
     folder.mkdir(exist_ok=True)
     moments = result.load if result.time is None else result.time
+    series = [None] * len(moments) if result.scene is None else fields_of_frames(result)
     rows = []
-    for found, moment in zip(fields_of_frames(result), moments, strict=True):
-        name = f"{path.stem}-{found.frame:03d}.vtu"
-        _write_vtu(result, found.frame, found, folder / name)
+    for frame, (found, moment) in enumerate(zip(series, moments, strict=True)):
+        name = f"{path.stem}-{frame:03d}.vtu"
+        _write_vtu(result, frame, found, folder / name)
         rows.append(
             f'    <DataSet timestep="{moment:.9g}" part="0" file="{escape(f"{folder.name}/{name}")}"/>'
         )

@@ -80,7 +80,7 @@ def picture(
     Raises
     ------
     ValueError
-        If the result does not have the frame.
+        For another extension than .png, or if the result does not have the frame.
     FileNotFoundError
         If the folder does not exist.
     """
@@ -88,7 +88,10 @@ def picture(
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
-    path = checked_path(path)
+    path = Path(path)
+    if path.suffix.lower() != ".png":
+        raise ValueError(f"{path.name}: expected a name that ends in .png")
+    checked_path(path)
     frame = frame_index(result, frame)
     mesh, x = unfold(result.mesh, result.positions[frame])
     scene = result.scene

@@ -66,6 +66,10 @@ def body_from_surface(
     MeshError
         If the surface or the edge length does not result in a body; the message is one sentence.
     """
+    if kind not in ("tet4", "tet10"):
+        raise MeshError(f"kind: expected tet4 or tet10, got {kind!r}")
+    if tolerance is not None and not (np.isfinite(tolerance) and tolerance > 0):
+        raise MeshError(f"tolerance: expected a length above 0 [m], or None, got {tolerance!r}")
     shell = checked_surface(surface, units=units, allow_cavities=allow_cavities)
     extent = float(np.linalg.norm(shell.extents))
     if not (np.isfinite(edge_length) and 0 < edge_length <= extent):

@@ -9,12 +9,14 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
 
+import numpy as np
+
 from tisim import laws
-from tisim.mesh import Mesh
+from tisim.mesh import Mesh, MeshError
 from tisim.parallel.extensions import Extension, needed
 from tisim.parallel.threads import one_thread
-from tisim.problems import kind_of
-from tisim.result import Result
+from tisim.problems import SceneKind, kind_of
+from tisim.result import Result, Status
 
 # Scenes of a chain start from one another: the division into chains affects the bytes of the results, so it
 # must not depend on the number of workers. Eight use many cores and amortise mesh, sparsity and first solve.
@@ -142,7 +144,7 @@ def solve_chunk(chunk: Chunk, on_step: Callable[[float], None] = _no_step) -> It
     if chain is not None and all(kind.chained(s) for kind, s in zip(kinds, scenes, strict=True)):
         solving = chain(scenes, on_step)
     else:
-        solving = (kind.solve(scene, on_step) for kind, scene in zip(kinds, scenes, strict=True))
+        solving = (_solve(kind, scene, on_step) for kind, scene in zip(kinds, scenes, strict=True))
     for index in chunk.indices:
         try:
             with one_thread():
@@ -153,3 +155,20 @@ def solve_chunk(chunk: Chunk, on_step: Callable[[float], None] = _no_step) -> It
             error.add_note(f"while solving scene {index}")
             raise
         yield index, result
+
+
+def _solve(kind: SceneKind, scene: Any, on_step: Callable[[float], None]) -> Result:
+    try:
+        return kind.solve(scene, on_step)
+    except MeshError as error:  # the checks of a scene make no mesh, since that takes as long as a step
+        return Result(
+            scene=scene,
+            status=Status.NOT_MESHED,
+            message=str(error),
+            mesh=Mesh(kind="tet4", nodes=np.zeros((0, 3)), elements=np.zeros((0, 4), dtype=np.int32)),
+            load=np.zeros(0),
+            positions=np.zeros((0, 0, 3)),
+            support_force=np.zeros((0, 3)),
+            min_jacobian=np.zeros(0),
+            residual=np.zeros(0),
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -42,6 +43,8 @@ def check_material(material: Material) -> None:
     check_type("material", material, (Material,))
     check_choice("material.law", material.law, laws.all_names())
     check_positive("material.density", material.density, "a density above 0 kg/m3")
+    if not isinstance(material.parameters, Mapping):
+        raise FieldError("material.parameters", "parameters by name", material.parameters)
     try:
         laws.get(material.law).check(material.parameters)
         # packing has additional rules (non-zero exponents)

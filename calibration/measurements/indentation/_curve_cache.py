@@ -23,7 +23,7 @@ from calibration.measurements.indentation._curve import (
     deepened,
 )
 from calibration.measurements.indentation._scene import Geometry
-from tisim import Mesh, Poke, simulate
+from tisim import Mesh, Poke, Status, simulate
 
 Array = NDArray[np.float64]
 
@@ -152,6 +152,8 @@ class CurveCache:
         except ValueError as error:
             raise InputError(f"indentation: {error}") from error
         for key, result in zip(missing, results, strict=True):
+            if result.status is Status.NOT_MESHED:
+                raise InputError(f"indentation: {result.message}")
             # a finer mesh without a solution is replaced by the coarser one
             if refinement == COARSE and len(result.load) < LEAST:
                 raise ValueError(f"an indentation at {key[0].site} has no equilibrium ({result.message})")
