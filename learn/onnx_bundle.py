@@ -27,7 +27,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from learn.data import MemoryDataset, Store, split_of
+from learn.data import MemoryDataset, Store, split_of_run
 from learn.data.loaders import no_clock
 from learn.errors import InputError
 from learn.models import Cegnn, InvariantGnn, Pokes, Scene, pokes_of, scene_of
@@ -231,7 +231,7 @@ def write_bundle(
     the difference is above `TOLERANCE`; the files are then removed.
     """
     scene = scene_of(store)
-    test = MemoryDataset(store, split_of(store, run.recipe).test)
+    test = MemoryDataset(store, split_of_run(store, run).test)
     files = export(run, scene, folder)
     some = np.linspace(0, len(test) - 1, min(_CHECKED, len(test))).astype(int)
     wrong = largest_difference(folder, run, scene, pokes_of(test.__getitems__(some)))

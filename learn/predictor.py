@@ -23,7 +23,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from learn.data import Store, open_store, split_of
+from learn.data import Store, open_store, split_of_run
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
@@ -334,7 +334,7 @@ def known_domain(run: Run, store: Store) -> Domain | None:
     """The domain recorded with a run, or derived from its dataset; None if neither is available."""
     if run.domain is not None:
         return run.domain
-    return domain_of(store, split_of(store, run.recipe).train) if run.uuid == store.uuid else None
+    return domain_of(store, split_of_run(store, run).train) if run.uuid == store.uuid else None
 
 
 def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:

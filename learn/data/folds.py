@@ -13,6 +13,7 @@ from learn.errors import InputError
 
 SplitBy = Literal["shape", "site"]
 FOLDS = 5
+PAPER_SHAPES = 11
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +37,15 @@ def split_pokes(
 ) -> Split:
     """Split a store into parts in the ratio 7 : 2 : 2 of its groups, rotated by the fold (0 to 4).
 
-    With `by` "shape" the groups are the inclusion shapes in the store's order, as in the paper (arXiv
-    2509.10125 and its successor): no tested shape was trained on. With "site" they are sites (in random
-    order), for stores of few shapes; pokes of one site at several softness levels stay together, since
-    their displacements are similar. Training and validation parts are restricted to `train_softness` and to
-    depths up to `train_depth` [m]; the test part is not. Of pokes that share one solve, scaled by the modulus
-    (`Store.copies`), training and validation parts contain one, the test part all. Frames in which the
-    retracting rod does not press are in no part: there is no force to predict. InputError if a part would be
-    empty.
+    With `by` "shape" the groups are the inclusion shapes: no tested shape was trained on. Up to 11 of them,
+    the number of the paper (arXiv 2509.10125), are taken in the store's order, as there; more, which a recipe
+    has drawn kind by kind, are dealt in turn, so that each part has shapes of every kind. With "site" they
+    are sites (in random order), for stores of few shapes; pokes of one site at several softness levels stay
+    together, since their displacements are similar. Training and validation parts are restricted to
+    `train_softness` and to depths up to `train_depth` [m]; the test part is not. Of pokes that share one
+    solve, scaled by the modulus (`Store.copies`), training and validation parts contain one, the test part
+    all. Frames in which the retracting rod does not press are in no part: there is no force to predict.
+    InputError if a part would be empty.
     """
     if not 0 <= fold < FOLDS:
         raise InputError(f"fold {fold}: expected 0 to {FOLDS - 1}")
@@ -55,7 +57,7 @@ def split_pokes(
         raise InputError(
             f"{store.location}: {count} {by}s cannot be split into training, validation and test{hint}"
         )
-    order = (np.arange(count) + fold * held) % count
+    order = np.roll(_in_turn(count) if by == "shape" else np.arange(count), -fold * held)
     parts = {"train": order[2 * held :], "validation": order[held : 2 * held], "test": order[:held]}
     seen = _seen(store, train_softness, train_depth)
     of_frame = np.where(store.presses, group[store.frame_poke], -1)
@@ -72,6 +74,12 @@ def split_pokes(
         test=rows["test"],
         groups={part: [names[i] for i in sorted(members)] for part, members in parts.items()},
     )
+
+
+def _in_turn(count: int) -> NDArray[np.int64]:
+    """Order of the shapes in which each of the parts in turn has every fifth; their own if they are few."""
+    shapes = np.arange(count)
+    return shapes if count <= PAPER_SHAPES else np.argsort(shapes % FOLDS, kind="stable")
 
 
 class SplitRecipe(Protocol):
@@ -96,6 +104,37 @@ def split_of(store: Store, recipe: SplitRecipe) -> Split:
     return split_pokes(
         store, fold=recipe.fold, by=recipe.split, train_softness=recipe.train_softness, train_depth=depth
     )
+
+
+class SplitRun(Protocol):
+    """What a run knows of its split."""
+
+    @property
+    def recipe(self) -> SplitRecipe: ...
+
+    @property
+    def uuid(self) -> str: ...
+
+    @property
+    def groups(self) -> dict[str, list[str]]: ...
+
+    @property
+    def folder(self) -> object: ...
+
+
+def split_of_run(store: Store, run: SplitRun) -> Split:
+    """Split a store as for a run.
+
+    InputError if the run was trained on it with other parts: when it was a part of what it is now, or by an
+    earlier rule. Shapes that the run has seen would count as unseen.
+    """
+    split = split_of(store, run.recipe)
+    if store.uuid == run.uuid and split.groups != run.groups:
+        raise InputError(
+            f"{run.folder}: was trained on other {run.recipe.split}s of {store.location} than its recipe now"
+            " takes (the store was not complete, or the rule has changed): train it again"
+        )
+    return split
 
 
 def _groups(store: Store, by: SplitBy, seed: int) -> tuple[NDArray[np.int64], list[str]]:

@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store, split_of
+from learn.data import MemoryDataset, Split, Store, split_of_run
 from learn.data.clouds import SurfaceField, scattered
 from learn.errors import InputError
 from learn.evaluation.intervals import (
@@ -54,7 +54,7 @@ def parts_of(store: Store, run: Run) -> Split:
     split by site is tested on all frames of another dataset. InputError if no shape is new.
     """
     if store.uuid == run.uuid:
-        return split_of(store, run.recipe)
+        return split_of_run(store, run)
     used = store.done & (store.frame_count > 0)
     names = np.array(store.shapes)[store.shape]
     seen = run.groups["train"] + run.groups["validation"] if run.recipe.split == "shape" else []

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learn.data import Store, split_of
+from learn.data import Store, split_of_run
 from learn.data._format import GRID, RIGID
 from learn.errors import InputError
 from learn.models import InvariantGnn, scene_of
@@ -72,7 +72,7 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
     for name in shapes or ():
         if name not in store.shapes:
             raise InputError(f"--shape {name}: expected one of {', '.join(store.shapes)}")
-    split = split_of(store, run.recipe)
+    split = split_of_run(store, run)
     tested = np.unique(store.frame_poke[split.test])
     seen = {store.shapes[k] for k in store.shape[store.frame_poke[split.train]].tolist()}
     # shapes of the test part first: on them the surrogate is evaluated

@@ -92,6 +92,16 @@ def second(store: Path, run: Path) -> Path:
     return folder
 
 
+def test_a_run_whose_dataset_is_now_divided_otherwise_is_refused(store: Path, run: Path) -> None:
+    """A store that was a part of what it is now: shapes that the run has seen would count as unseen."""
+    loaded, data = load_run(run), open_store(store)
+    parts = parts_of(data, loaded)
+    assert parts.groups == loaded.groups
+    moved = {**loaded.groups, "train": loaded.groups["test"], "test": loaded.groups["train"]}
+    with pytest.raises(InputError, match=r"was trained on other shapes of .*: train it again"):
+        parts_of(data, replace(loaded, groups=moved))
+
+
 @pytest.mark.slow
 def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
     """Each run's intervals come from the other folds' test parts, in the tables and in its folder."""

@@ -183,6 +183,24 @@ def test_folds_by_shape_never_share_a_shape(tmp_path: Path) -> None:
         split_pokes(store, fold=5)
 
 
+def test_many_shapes_are_dealt_to_the_folds_in_turn(tmp_path: Path) -> None:
+    """Shapes drawn kind by kind are neighbours in the store: no part may lack a kind."""
+    store = open_store(write_store(tmp_path / "s.zarr", shapes=42, sites=1, frames=1))
+    kind = np.repeat([0, 1, 2], [14, 12, 16])
+    tested: list[int] = []
+    for fold in range(5):
+        split = split_pokes(store, fold=fold)
+        shapes = {
+            part: sorted({*store.shape[store.frame_poke[getattr(split, part)]].tolist()})
+            for part in ("train", "validation", "test")
+        }
+        assert [len(shapes[p]) for p in ("train", "validation", "test")] == [26, 8, 8]
+        assert sorted(shape for part in shapes.values() for shape in part) == list(range(42))
+        assert all(set(kind[part]) == {0, 1, 2} for part in shapes.values())
+        tested += shapes["test"]
+    assert len(set(tested)) == 40
+
+
 def test_folds_by_site_keep_softness_levels_together(whole: Path) -> None:
     store = open_store(whole)
     split = split_pokes(store, by="site")
