@@ -86,7 +86,8 @@ def fetch(name: str, folder: str | Path, *, base: str | None = None) -> Path:
     if name not in _SOURCES:
         raise InputError(f"{name}: expected one of {', '.join(_SOURCES)}")
     source, folder = _SOURCES[name], Path(folder)
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+    # files of a fetch that was cut off may be there: each is compared with its checksum
+    if folder.exists() and (not folder.is_dir() or any(p.name != "source" for p in folder.iterdir())):
         raise InputError(f"--out {folder}: expected an empty folder, or none yet")
     raw = folder / "source"
     found: dict[str, Path] = {}

@@ -33,6 +33,8 @@ class Importer:
     read: Callable[[LabFile], tuple[LabTest, ...]]
 
 
+FEWEST_ROWS = 3  # of a test
+
 _IMPORTERS: dict[str, Importer] = {}
 
 
@@ -80,7 +82,13 @@ def read_lab_file(path: str | Path, *, format: str | None = None) -> tuple[str, 
         if not found:
             raise _unknown(file)
         format = found[0]
-    return format, _IMPORTERS[format].read(file)
+    tests = _IMPORTERS[format].read(file)
+    long_enough = tuple(test for test in tests if len(test.rows) >= FEWEST_ROWS)
+    if not long_enough:  # next to longer ones these are steps that were stopped at once, or find the contact
+        few = tests[0]
+        got = f"expected at least {FEWEST_ROWS} rows of numbers, got {len(few.rows)}"
+        raise file.error(got, few.rows[0] if few.rows else None, sheet=few.sheet)
+    return format, long_enough
 
 
 def _recognises(importer: Importer, file: LabFile) -> bool:

@@ -27,12 +27,12 @@ DIMENSIONS: dict[Quantity, str] = {
 # Columns of the same words that are no record of a test: rates, set values, results, oscillation.
 _NOT = re.compile(
     r"\bdate\b|\bat\b|break|maximum|minimum|constant|strain ratio"
-    r"|rate|speed|velocity|geschw|modul|energy|arbeit|work|cycle|target|set ?point|oscillat|amplitude"
+    r"|rates?\b|speed|velocity|geschw|modul|energy|arbeit|work|cycle|target|set ?point|oscillat|amplitude"
     r"|normal stress|torque|temperature|count|index|viscosity|compliance|frequency|vorlauf|lateral"
     r"|transverse|quer"
 )
 # English, German and French words of Bluehill, testXpert, TRIOS and Mach-1 Motion. The first line that fits
-# decides; where it has two quantities, the unit does, or nothing.
+# the name, and the unit if there is one, decides; without a unit a line of two quantities decides nothing.
 _WORDS: tuple[tuple[re.Pattern[str], tuple[Quantity, ...]], ...] = (
     (re.compile(r"\btime\b|\bzeit\b|pruefzeit|prufzeit|testzeit|\btemps\b|\bdauer\b"), ("time",)),
     (re.compile(r"\b(true|log|logarithmic|hencky|wahre)\b.*(strain|dehnung|deformation)"), ("true-strain",)),
@@ -44,16 +44,17 @@ _WORDS: tuple[tuple[re.Pattern[str], tuple[Quantity, ...]], ...] = (
         re.compile(r"dehnung|stauchung|deformation|allongement|elongation|verformung"),
         ("strain", "displacement"),
     ),
+    # before displacement: "Compression force", "Indentation load"
+    (
+        re.compile(r"force\b|\bload\b|kraft\b|\bf[xyz]?\b|\bcharge\b|\blast\b"),
+        ("force",),
+    ),
     (
         re.compile(
             r"extension|displacement|position|crosshead|travers|stroke|travel|\bweg\b|standardweg|deplacement"
             r"|\bdepth\b|indentation|compression\b|\bgap\b|tiefe|hub\b"
         ),
         ("displacement",),
-    ),
-    (
-        re.compile(r"force\b|\bload\b|kraft\b|\bf[xyz]?\b|\bcharge\b|\blast\b"),
-        ("force",),
     ),
 )
 
@@ -90,7 +91,6 @@ def quantity(name: str, unit: Unit | None) -> Quantity | None:
             return fitting[0]
         if text == "extension" and unit.dimension == "ratio":
             return "strain"
-        return None
     return None
 
 

@@ -170,7 +170,8 @@ def _find(file: LabFile, sheet: Sheet) -> tuple[tuple[Block, ...], str]:
 
 def _block(file: LabFile, sheet: Sheet, above: Sequence[Row], rows: tuple[Row, ...], separator: str) -> Block:
     given = [r for r in above if not r.empty]
-    units = given.pop() if given and is_units(split(given[-1], separator)) else None
+    names = split(given[-2], separator) if len(given) > 1 else ()
+    units = given.pop() if given and is_units(split(given[-1], separator), names) else None
     if not given or any(is_number(c) for c in split(given[-1], separator)):
         raise file.error(
             "expected a line with the names of the columns above the numbers", rows[0], sheet=sheet.name
@@ -179,10 +180,14 @@ def _block(file: LabFile, sheet: Sheet, above: Sequence[Row], rows: tuple[Row, .
     return Block(above=tuple(given), header=header, units=units, rows=rows)
 
 
-def is_units(cells: Sequence[str]) -> bool:
-    """True if a row holds units, two or more, and nothing else."""
+def is_units(cells: Sequence[str], names: Sequence[str] = ()) -> bool:
+    """True if a row holds units, two or more; of a table with this many names above it, most may suffice."""
     given = [c for c in cells if c]
-    return len(given) > 1 and all(unit(c) is not None or c in ("()", "[]") for c in given)
+    known = sum(unit(c) is not None or c in ("()", "[]") for c in given)
+    if known < 2 or any(is_number(c) for c in given):
+        return False
+    below = len([c for c in names if c]) >= len(given) and not any(is_number(c) for c in names)
+    return known == len(given) or (below and 2 * known > len(given) and all(len(c) < 12 for c in given))
 
 
 def table(
@@ -251,8 +256,6 @@ def table(
                 header=own, unit=stated, quantity=quantity(own, stated), cells=tuple(row[k] for row in cells)
             )
         )
-    if len(cells) < 3:
-        raise file.error(f"expected at least 3 rows of numbers, got {len(cells)}", header_line, sheet=sheet)
     return LabTest(
         file=file,
         name=name,

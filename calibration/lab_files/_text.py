@@ -18,8 +18,8 @@ SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 _MARK = re.compile(r"\[[A-Za-z][\w /-]*\]|<[A-Za-z][\w /-]*>")
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?")
-_THOUSANDS_POINT = re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+")  # 1,234.5
-_THOUSANDS_COMMA = re.compile(r"[+-]?\d{1,3}(\.\d{3})+,\d+")  # 1.234,5
+_THOUSANDS_POINT = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d+)?")  # 1,234.5 and 1,234
+_THOUSANDS_COMMA = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d+)?")  # 1.234,5 and 1.234
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,8 +195,8 @@ def decimals_of(file: LabFile, cells: Sequence[str], stated: str | None = None) 
     commas = [c for c in cells if "," in c]
     points = [c for c in cells if "." in c]
     # a comma before other than three digits, or behind a zero, is no mark of thousands; and the reverse
-    decimal_comma = [c for c in commas if not re.fullmatch(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d+)?", c)]
-    decimal_point = [c for c in points if not re.fullmatch(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d+)?", c)]
+    decimal_comma = [c for c in commas if not _THOUSANDS_POINT.fullmatch(c)]
+    decimal_point = [c for c in points if not _THOUSANDS_COMMA.fullmatch(c)]
     if stated is not None:
         wrong = decimal_comma if stated == "point" else decimal_point
         if wrong:

@@ -31,8 +31,10 @@ class Unit:
 _GRAVITY = 9.80665  # m/s2, of a gram-force: CGPM 1901
 
 _OTHER = (
-    *("°c", "c", "k", "hz", "rad/s", "1/s", "s^-1", "pa.s", "pa·s", "mm/s", "mm/min", "µm/s", "g", "kg", "j"),
-    *("nm/s", "n/s", "n/mm", "n/tex", "v", "mv", "kg/m3", "kg/m³", "g/cm3", "g/cm³"),
+    *("°c", "c", "k", "hz", "rpm", "cycles", "1/s", "1/min", "s^-1", "rad/s", "%/s", "%/min", "mm/s"),
+    *("mm/sec", "mm/min", "µm/s", "nm/s", "cm/s", "cm/min", "m/s", "in/s", "in/min", "g", "kg", "kg/m3"),
+    *("kg/m³", "g/cm3", "g/cm³", "mm3", "mm³", "j", "mj", "kj", "j/m2", "j/m²", "kj/m2", "kj/m²", "w", "v"),
+    *("mv", "pa.s", "pa·s", "kpa/s", "mpa/s", "n/s", "n/min", "kn/s", "n/m", "n/mm", "kn/m", "n/tex"),
 )
 # by the text in lower case; MPa and mPa are told apart below
 _TABLE: dict[str, tuple[Dimension, float]] = {
@@ -48,11 +50,12 @@ _TABLE: dict[str, tuple[Dimension, float]] = {
     **dict.fromkeys(("n", "newton", "newtons"), ("force", 1.0)),
     "kn": ("force", 1e3),
     "cn": ("force", 1e-2),
+    "dan": ("force", 10.0),
     "µn": ("force", 1e-6),
     "μn": ("force", 1e-6),
     **dict.fromkeys(("gf", "grf", "gram-force"), ("force", 1e-3 * _GRAVITY)),
     **dict.fromkeys(("kgf", "kp"), ("force", _GRAVITY)),
-    "lbf": ("force", 4.4482216152605),
+    **dict.fromkeys(("lbf", "lb", "lbs"), ("force", 4.4482216152605)),
     **dict.fromkeys(("%", "percent", "pct", "prozent"), ("ratio", 1e-2)),
     **dict.fromkeys(("-", "1", "mm/mm", "m/m", "in/in"), ("ratio", 1.0)),
     "pa": ("stress", 1.0),
@@ -60,12 +63,17 @@ _TABLE: dict[str, tuple[Dimension, float]] = {
     "gpa": ("stress", 1e9),
     **dict.fromkeys(("n/mm²", "n/mm2", "n/mm^2"), ("stress", 1e6)),
     **dict.fromkeys(("n/m²", "n/m2", "n/m^2"), ("stress", 1.0)),
+    **dict.fromkeys(("n/cm²", "n/cm2", "n/cm^2"), ("stress", 1e4)),
+    **dict.fromkeys(("kn/m²", "kn/m2", "kn/m^2"), ("stress", 1e3)),
+    **dict.fromkeys(("kn/mm²", "kn/mm2", "kn/mm^2"), ("stress", 1e9)),
     "psi": ("stress", 6894.757293168),
+    "ksi": ("stress", 6894757.293168),
     "bar": ("stress", 1e5),
+    **dict.fromkeys(("mbar", "hpa"), ("stress", 1e2)),
     **dict.fromkeys(("mm²", "mm2", "mm^2"), ("area", 1e-6)),
     **dict.fromkeys(("cm²", "cm2", "cm^2"), ("area", 1e-4)),
     **dict.fromkeys(("m²", "m2", "m^2"), ("area", 1.0)),
-    **dict.fromkeys(("n.m", "n·m", "nm", "µn.m", "un.m"), ("torque", 1.0)),
+    **dict.fromkeys(("n.m", "n·m", "n*m", "nm", "nmm", "n·mm", "n.mm", "µn.m", "un.m"), ("torque", 1.0)),
     **dict.fromkeys(("rad", "deg", "°"), ("angle", 1.0)),
     **dict.fromkeys(_OTHER, ("other", 1.0)),
 }
@@ -100,22 +108,26 @@ def unit(text: str) -> Unit | None:
 
 
 _BRACKETS = re.compile(r"^(?P<name>.*\S)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
-_SEPARATED = re.compile(r"^(?P<name>.*\S)\s*(?:,|/|_|\s)\s*(?P<unit>[^\s,/_]+(?:/[^\s,/_]+)?)\s*$")
+_SEPARATED = re.compile(r"^(?P<name>.*\S)\s*(?:,|_|\s)\s*(?P<unit>[^\s,_]+)\s*$")
+_SLASH = re.compile(r"^(?P<name>.*?[^\s/])\s*/\s*(?P<unit>[^\s,_]+)\s*$")
 
 
 def name_and_unit(header: str) -> tuple[str, Unit | None]:
     """The two parts of a column's header; no unit where it states none.
 
-    "Force [N]", "Extension (mm)", "strain %", "Time/s", "Fz, gf" and "depth_mm" state one;
-    "Tensile strain (Extension)" and "Cycle count" do not.
+    "Force [N]", "Extension (mm)", "strain %", "strain mm/mm", "Time/s", "Stress/N/mm²", "Fz, gf" and
+    "depth_mm" state one; "Tensile strain (Extension)", "Rate %/d" and "Cycle count" do not.
     """
     header = header.strip().strip('"').strip()
-    for pattern in (_BRACKETS, _SEPARATED):
+    for pattern in (_BRACKETS, _SEPARATED, _SLASH):
         found = pattern.match(header)
-        if found:
-            given = unit(found["unit"])
-            if given is not None and (pattern is _BRACKETS or found["unit"] != "1"):
-                return re.sub(r"\s+in$", "", found["name"].strip().rstrip(",/_")), given
+        given = unit(found["unit"]) if found else None
+        if found is None or given is None or (pattern is not _BRACKETS and found["unit"] == "1"):
+            continue
+        name = re.sub(r"\s+in$", "", found["name"].strip().rstrip(",/_").strip())
+        if pattern is _SLASH and unit(name.split()[-1]) is not None:
+            continue  # a part of a unit that is not known
+        return name, given
     if header.endswith("%") and len(header) > 1:
         return header[:-1].strip(), unit("%")
     return header, None

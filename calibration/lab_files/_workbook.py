@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from datetime import date, datetime, time
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from calibration.errors import InputError
 from calibration.lab_files._text import LARGEST_FILE, LabFile, Row, Sheet
@@ -40,7 +41,7 @@ def workbook(path: Path, content: bytes) -> LabFile:
                 sheets = []
                 for sheet in book.worksheets:
                     sheet.reset_dimensions()  # as stated in the file, by some programs wrongly
-                    rows = tuple(_rows(sheet.iter_rows(values_only=True), f"{path}: sheet {sheet.title}:"))
+                    rows = tuple(_rows(sheet.iter_rows(), f"{path}: sheet {sheet.title}:"))
                     if not all(row.empty for row in rows):
                         sheets.append(Sheet(name=sheet.title, rows=rows))
         except (InputError, MemoryError):
@@ -69,7 +70,7 @@ def _damaged(path: Path) -> InputError:
     return InputError(f"{path}: expected a workbook (.xlsx) that can be unpacked, it is damaged")
 
 
-def _rows(values: Iterator[tuple[object, ...]], where: str) -> Iterator[Row]:
+def _rows(values: Iterator[tuple[Any, ...]], where: str) -> Iterator[Row]:
     """Rows, counted from 1 as the workbook shows them; of empty ones that follow each other the first."""
     filled = True
     for number, row in enumerate(values, 1):
@@ -77,14 +78,19 @@ def _rows(values: Iterator[tuple[object, ...]], where: str) -> Iterator[Row]:
             raise InputError(f"{where} expected at most {_MOST_ROWS} rows")
         if len(row) > _MOST_COLUMNS:
             raise InputError(f"{where} row {number}: expected at most {_MOST_COLUMNS} columns")
-        cells = tuple(_text(value) for value in row)
+        cells = tuple(_text(cell.value, cell.number_format) for cell in row)
         if filled or any(cells):
             yield Row(number=number, text="\t".join(cells), cells=cells)
         filled = any(cells)
 
 
-def _text(value: object) -> str:
-    """A cell as the importers read it: numbers without loss, dates and clock times as text, no numbers."""
+def _text(value: object, shown: str) -> str:
+    """A cell as the importers read it: numbers without loss, dates and clock times as text, no numbers.
+
+    A share that the workbook shows in percent (`shown` is its format) is the number that it shows.
+    """
+    if isinstance(value, int | float) and not isinstance(value, bool) and "%" in shown:
+        value = float(f"{100 * value:.15g}")
     match value:
         case None:
             return ""

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from calibration.lab_files._formats import Importer, register
 from calibration.lab_files._table import LabTest, parameters_of, table
-from calibration.lab_files._text import LabFile, Row, split
+from calibration.lab_files._text import LabFile, Row, is_numeric, split
 
 _TAB = "\t"
 
@@ -55,7 +55,10 @@ def _step(file: LabFile, mark: Row, rows: list[Row], parameters: dict[str, str])
         name, at, skip = (rows[0].text.strip() if rows else ""), 1, 0
     if len(rows) <= at + 1:
         return None  # a step without points: conditioning, or stopped at once
+    stated_units: tuple[str, ...] | None = keys[at + 1][skip:]
     body = rows[at + 2 :]
+    if not skip and is_numeric(keys[at + 1]):  # its row of units is blank
+        stated_units, body = None, rows[at + 1 :]
     if skip:
         body = [r for r in body if split(r, _TAB)[0].lower() == "data point"]
         stated = next((c[1] for c in keys[:at] if c[0].lower() == "number of points" and len(c) > 1), None)
@@ -63,11 +66,10 @@ def _step(file: LabFile, mark: Row, rows: list[Row], parameters: dict[str, str])
             raise file.error(f"step {name}: expected {stated} points, as it states, got {len(body)}", mark)
     if not body:
         return None
-    units = keys[at + 1]
     return table(
         file,
         keys[at][skip:],
-        units[skip:],
+        stated_units,
         body,
         _TAB,
         name=name,

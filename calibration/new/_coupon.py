@@ -58,6 +58,16 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
             f"rest_length_mm: expected only where the stretch comes from a displacement, here it comes from"
             f" the column {strain_column.header} (columns: {{displacement: NAME}} takes the other)"
         )
+    if length is None and strain_kind != "displacement" and entry.displacement_zero_mm is not None:
+        raise record.error(
+            f"displacement_zero_mm: expected only where the stretch comes from a displacement, here it comes"
+            f" from the column {strain_column.header}"
+        )
+    if stress_kind != "force" and entry.force_zero_N:
+        raise record.error(
+            f"force_zero_N: expected only where the stress comes from a force, here it comes from the column"
+            f" {stress_column.header} (columns: {{force: NAME}} takes the other)"
+        )
     load = record.si(stress_column, stress_kind) - (entry.force_zero_N if stress_kind == "force" else 0.0)
     load = load * record.force_sign(load, stretch)
     force = area = None

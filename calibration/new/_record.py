@@ -29,7 +29,9 @@ from calibration.new._asking import above_zero, any_number, one_of, some_text
 from calibration.new._trial import Array, Work
 
 _PUSHED = re.compile(r"compress|druck|indent|stauch", re.IGNORECASE)
-_PULLED = re.compile(r"tensi|pull|traction|\bzug", re.IGNORECASE)
+_PULLED = re.compile(r"\b(tensi|pull|traction|zug)", re.IGNORECASE)  # neither "extension" nor "pretension"
+# dimensions of the machine, and of more than what is stretched
+_NOT_THE_SPECIMEN = re.compile(r"\b(platen|jaw|indenter|probe|punch|overall|total|final|speed|rates?)\b")
 _USUAL: dict[str, str] = {"time": "s", "length": "mm", "force": "N", "ratio": "1 or %", "stress": "kPa"}
 
 
@@ -58,16 +60,18 @@ class Record:
         if named is not None:
             if named.lower() == "none":
                 return None
-            bare = name_and_unit(named)[0]
-            for column in self.test.columns:
-                if column.header in (named, bare):
-                    return column
+            bare, given = name_and_unit(named)
+            fitting = [c for c in self.test.columns if c.header in (named, bare)]
+            if fitting:  # with the unit that is named, where several have the name
+                return next((c for c in fitting if c.unit == given), fitting[0])
             known = ", ".join(c.header for c in self.test.columns if c.header)
             raise self.error(f"expected a column {named!r} (columns.{quantity}), there are {known}")
         found = self.test.with_quantity(quantity)
         if len(found) < 2:
             return found[0] if found else None
         headers = [c.header for c in found]
+        if len(set(headers)) < len(headers):
+            headers = [f"{c.header} ({c.unit.text})" if c.unit else c.header for c in found]
         name = self.work.settle(
             self.where,
             f"columns.{quantity}",
@@ -277,18 +281,21 @@ class Record:
         return None if width is None or thickness is None else width * thickness
 
     def stated(self, pattern: str, dimension: str) -> float | None:
-        """A parameter above the table by its name, in SI; None where there is none, or none with a unit."""
+        """A parameter above the table by its name, in SI.
+
+        None where there is none with a unit, or several that differ: which of them is meant is asked.
+        """
+        found: list[float] = []
         for name, text in self.test.parameters.items():
-            if re.search(r"final|speed|rate", plain(name)) or not re.search(pattern, plain(name)):
+            if _NOT_THE_SPECIMEN.search(plain(name)) or not re.search(pattern, plain(name)):
                 continue
             own, in_name = name_and_unit(name)
-            found = re.match(r'"?([-+]?\d+(?:[.,]\d+)?)"?\s*(\S*)', text)
-            given = in_name if found and not found[2] else unit(found[2]) if found else None
-            if found and given is not None and given.dimension == dimension and own:
-                value = float(found[1].replace(",", ".")) * given.factor
-                if value > 0:
-                    return value
-        return None
+            value = re.match(r'"?([-+]?\d+(?:[.,]\d+)?)"?\s*(\S*)', text)
+            given = in_name if value and not value[2] else unit(value[2]) if value else None
+            if value and given is not None and given.dimension == dimension and own:
+                found.append(float(value[1].replace(",", ".")) * given.factor)
+        found = [value for value in found if value > 0]
+        return found[0] if found and max(found) <= (1 + 1e-6) * min(found) else None
 
     def error(self, text: str) -> InputError:
         """An error of this test as a whole."""

@@ -118,5 +118,7 @@ def _brief(value: Any) -> str:
 def csv_text(columns: dict[str, Array]) -> str:
     """A table in the experiment's format."""
     rows = [",".join(columns)]
-    rows += [",".join(f"{v:.9g}" for v in row) for row in np.column_stack(list(columns.values()))]
+    digits = [12 if name == "time_s" else 9 for name in columns]  # a clock may have run for days
+    for row in np.column_stack(list(columns.values())):
+        rows.append(",".join(f"{value:.{n}g}" for value, n in zip(row, digits, strict=True)))
     return "\n".join(rows) + "\n"

@@ -81,6 +81,7 @@ def write_copy(
     and a beam that has nothing else with it. Raises InputError where nothing would be left.
     """
     raw = load((folder / "experiment.yaml").read_bytes(), folder / "experiment.yaml")
+    theirs = _named(raw)  # and no old file of the folder that has the name of an outline traced now
     dropped, trials = 0, []
     for trial in raw["trials"]:
         captures = trial.get("captures")
@@ -102,7 +103,7 @@ def write_copy(
     if any("photo" in entry for entry in figures.values()):
         origin = f"outlines traced from the photographs of {folder.name}"
         raw["notes"] = f"{raw['notes']}; {origin}" if raw.get("notes") else origin
-    for name in sorted(_named(raw)):
+    for name in sorted(_named(raw) & theirs):
         source, target = folder / name, out / name
         if not target.resolve().is_relative_to(out.resolve()):
             raise InputError(f"{folder / 'experiment.yaml'}: {name} leads out of the folder")

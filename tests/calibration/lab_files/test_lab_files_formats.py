@@ -70,6 +70,19 @@ def test_the_examples_are_what_their_maker_writes(tmp_path: Path) -> None:
         ("Strain constant", "Strain constant", None, None),
         ("Strain ratio", "Strain ratio", None, None),
         ("Stretch ratio", "Stretch ratio", None, "stretch"),
+        ("Dehnung mm/mm", "Dehnung", "mm/mm", "strain"),
+        ("Elongation in/in", "Elongation", "in/in", "strain"),
+        ("Stress, N/mm²", "Stress", "N/mm²", "stress"),
+        ("Spannung in N/mm²", "Spannung", "N/mm²", "stress"),
+        ("Stress/N/mm²", "Stress", "N/mm²", "stress"),
+        ("Kraft / N", "Kraft", "N", "force"),
+        ("Strain rate %/d", "Strain rate %/d", None, None),
+        ("Compression force (N)", "Compression force", "N", "force"),
+        ("Indentation load", "Indentation load", None, "force"),
+        ("Stroke force [mN]", "Stroke force", "mN", "force"),
+        ("Calibrated force (N)", "Calibrated force", "N", "force"),
+        ("Compression (mm)", "Compression", "mm", "displacement"),
+        ("Dehnrate (1/s)", "Dehnrate", "1/s", None),
     ],
 )
 def test_headers_state_a_quantity_and_a_unit(
@@ -162,6 +175,48 @@ def test_thousands_are_told_from_decimals(tmp_path: Path) -> None:
     text = "Time (s);Force (N);Weg (mm)\n" + "".join(f"{k};1.{k}00,5;0,{k}\n" for k in range(1, 5))
     _, (test,) = read_lab_file(write(tmp_path, "a.csv", text))
     assert column(test, "Force") == pytest.approx([1100.5, 1200.5, 1300.5, 1400.5])
+
+
+def test_thousands_without_decimals_are_read(tmp_path: Path) -> None:
+    text = "Time (s);Extension (mm);Force (mN)\n0,5;0,1;980\n1,0;0,2;1.080\n1,5;0,3;1.234.567\n"
+    _, (test,) = read_lab_file(write(tmp_path, "a.csv", text))
+    assert column(test, "Force").tolist() == pytest.approx([0.98, 1.08, 1234.567])
+    text = "Time (s);Force (mN)\n1;980\n2;1,080\n3;2,639\n"
+    _, (test,) = read_lab_file(write(tmp_path, "b.csv", text))
+    (found,) = test.with_quantity("force")
+    assert test.numbers(found, "point").tolist() == [980.0, 1080.0, 2639.0]
+    with pytest.raises(InputError, match="may be either: state decimals"):
+        test.numbers(found)
+
+
+@pytest.mark.parametrize("odd", ["lbf/in", "cN/tex", "J/g"])
+def test_a_row_of_units_may_hold_one_that_is_not_known(odd: str, tmp_path: Path) -> None:
+    rows = "".join(f"{k};{0.1 * k:.1f};{0.02 * k:.2f};{k}\n" for k in range(5))
+    path = write(tmp_path, "a.txt", f"testXpert\nZeit;Weg;Kraft;Sonst\ns;mm;N;{odd}\n{rows}")
+    format, (test,) = read_lab_file(path)
+    assert format == "zwick"
+    assert len(test.rows) == 5
+    assert [c.unit and c.unit.text for c in test.columns] == ["s", "mm", "N", None]
+    # names alone are no units: of these two words most are none
+    words = write(tmp_path, "b.txt", f"Zeit;Weg;Kraft;Sonst\ns;Weg;Kraft;{odd}\n{rows}")
+    with pytest.raises(InputError):
+        read_lab_file(words, format="zwick")
+
+
+def test_a_short_step_does_not_refuse_its_file(tmp_path: Path) -> None:
+    text = (SAMPLES / "trios.txt").read_text(encoding="utf-8")
+    step = text.lower().index("[step]")
+    short = "[step]\nConditioning\nTime\tStrain\ns\t%\n0.0\t1.0\n\n"
+    _, tests = read_lab_file(write(tmp_path, "a.txt", text[:step] + short + text[step:]))
+    assert [t.name for t in tests] == [t.name for t in read_lab_file(SAMPLES / "trios.txt")[1]]
+    with pytest.raises(InputError, match="expected at least 3 rows of numbers, got 1"):
+        read_lab_file(write(tmp_path, "b.txt", text[:step] + short))
+
+
+def test_a_step_of_trios_without_units_keeps_its_first_row(tmp_path: Path) -> None:
+    text = "[step]\nAxial\nStep time\tStretch\n\t\n" + "".join(f"{k}.0\t{1 + 0.1 * k}\n" for k in range(5))
+    _, (test,) = read_lab_file(write(tmp_path, "a.txt", text))
+    assert len(test.rows) == 5
 
 
 def test_a_further_format_is_one_registration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

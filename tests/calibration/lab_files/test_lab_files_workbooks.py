@@ -120,6 +120,18 @@ def test_cells_keep_their_values(tmp_path: Path) -> None:
     assert sheet.rows[1].cells[5:] == ("2026-11-23T00:00:00", "09:30:00", "a", "", "#DIV/0!")
 
 
+def test_a_share_shown_in_percent_is_the_number_that_is_shown(tmp_path: Path) -> None:
+    path = workbook(
+        tmp_path / "a.xlsx", {"Sheet1": [["Strain [%]", "Stress (kPa)"], *([0.1 * k, k] for k in range(6))]}
+    )
+    book = openpyxl.load_workbook(path)
+    for row in range(2, 8):
+        book.active.cell(row, 1).number_format = "0.00%"
+    book.save(path)
+    (test,) = read_lab_file(path)[1]
+    assert column(test, "Strain") == pytest.approx(0.1 * np.arange(6))
+
+
 def test_openpyxl_warns_nobody(tmp_path: Path) -> None:
     """openpyxl's warnings, for example about missing styles, are suppressed."""
     main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"

@@ -96,7 +96,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "strip",
         lines(4, 40),
         {},
-        "plain.csv: line 1:",
+        "plain.csv: line 2:",
         "expected at least 3 rows of numbers, got 2",
     ),
     "a column twice": (

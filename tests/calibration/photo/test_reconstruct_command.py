@@ -62,6 +62,9 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "gravity_m_s2": [0.0, 0.0, -9.81],
         "captures": captures,
     }
+    # a file that experiment.yaml does not name, with the name of an outline that is traced
+    (folder / "outlines").mkdir()
+    (folder / "outlines" / "hang-1.csv").write_text("side,x_mm,z_mm\nan old one\n")
     raw = {"format": 1, "name": "lab", "materials": {"S": {}}, "trials": [trial]}
     (folder / "experiment.yaml").write_text(yaml.safe_dump(raw))
     return folder
