@@ -160,9 +160,7 @@ class Domain(BaseModel):
         for key, value in values.items():
             if key in self.ranges:
                 low, high = self.ranges[key]
-                size = max(abs(low), abs(high))
-                width = high - low if high - low > NARROW * size else size
-                total += (max(_excess(_ALL[key], low, high, value), 0.0) / width) ** 2 if width else 0.0
+                total += (max(_excess(_ALL[key], low, high, value), 0.0) / unit_of(key, low, high)) ** 2
         return math.sqrt(total)
 
     def rows(self) -> list[tuple[str, str]]:
@@ -200,6 +198,15 @@ class Domain(BaseModel):
             return cls.model_validate(values)
         except ValidationError as error:
             raise InputError(f"{where}: domain: {first_fault(error)}") from None
+
+
+def unit_of(key: str, low: float, high: float) -> float:
+    """What an excess over a range is measured in: its width, or the value of a narrow one.
+
+    Of a range that is 0 alone it is the quantity's tolerance over NARROW, 10 degrees for an angle.
+    """
+    size = max(abs(low), abs(high))
+    return (high - low if high - low > NARROW * size else size) or _ALL[key].slack / NARROW
 
 
 def _excess(quantity: Quantity, low: float, high: float, value: float) -> float:

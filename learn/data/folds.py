@@ -61,7 +61,7 @@ def split_pokes(
     parts = {"train": order[2 * held :], "validation": order[held : 2 * held], "test": order[:held]}
     seen = _seen(store, train_softness, train_depth)
     of_frame = np.where(store.presses, group[store.frame_poke], -1)
-    seen &= ~store.copies[store.frame_poke]
+    seen &= _one_of_each(store, seen)[store.frame_poke]
     rows = {}
     for part, members in parts.items():
         keep = np.isin(of_frame, members) & (seen if part != "test" else True)
@@ -74,6 +74,17 @@ def split_pokes(
         test=rows["test"],
         groups={part: [names[i] for i in sorted(members)] for part, members in parts.items()},
     )
+
+
+def _one_of_each(store: Store, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """True for the first poke (p,) of each solve that has frames in `seen`, or all if none are copies."""
+    if not store.copies.any():
+        return np.ones(store.pokes, dtype=bool)
+    pokes = np.unique(store.frame_poke[seen])
+    _, first = np.unique(store.solved_as[pokes], return_index=True)
+    kept = np.zeros(store.pokes, dtype=bool)
+    kept[pokes[first]] = True
+    return kept
 
 
 def _in_turn(count: int) -> NDArray[np.int64]:

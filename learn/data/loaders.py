@@ -154,8 +154,18 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         self.batch, self.shuffle_buffer, self.seed = batch, max(1, shuffle_buffer), seed
         self.rank, self.world = rank, world
         self._block, self._chunk = self.store.block, self.store.chunk  # slow to look up
-        self.epoch = 0
+        # shared, so that workers of a DataLoader see it change
+        self._epoch = torch.zeros(1, dtype=torch.int64).share_memory_()
         self._spare: list[list[Floats32]] = []
+
+    @property
+    def epoch(self) -> int:
+        """Number of the epoch, of which the order is a function."""
+        return int(self._epoch)
+
+    @epoch.setter
+    def epoch(self, number: int) -> None:
+        self._epoch.fill_(number)
 
     @property
     def bytes_held(self) -> int:

@@ -21,6 +21,7 @@ from learn.evaluation.intervals import (
     across_folds,
     coverage,
     fit_intervals,
+    force_fault,
     inside_alone,
     rank_correlation,
     too_few,
@@ -66,7 +67,7 @@ def parts_of(store: Store, run: Run) -> Split:
             "has not seen"
         )
     none = np.zeros(0, dtype=np.int64)
-    rows = np.flatnonzero(test[store.frame_poke])
+    rows = np.flatnonzero(test[store.frame_poke] & store.presses)
     groups = {"train": [], "validation": [], "test": sorted(set(names[test].tolist()))}
     return Split(train=none, validation=none, test=rows, groups=groups)
 
@@ -91,7 +92,7 @@ class Evaluation:
     device : device on which the models predict.
     models : names of the trained models; `folds` also has the baselines.
     folds : metrics by softness level: by name, one entry per fold.
-    frames, pokes : total numbers in the test parts.
+    frames, pokes : numbers of different frames and pokes in the test parts.
     symmetry, symmetry_vertical : symmetry errors by run, for random motions, and for quarter turns about the
         vertical.
     covered, across : coverage of intervals from the run's own validation part, and from the other folds.
@@ -161,8 +162,9 @@ def evaluate(
     scene = here.to(found.device)
     fitted: set[str] = set()
     predicted: list[Predicted] = []
+    tested = np.zeros(store.frames, dtype=bool)
     joined = ensembles(runs) if ensemble else []
-    every = [*joined, *((run, run.recipe.model) for run in runs)]
+    every = [*joined, *zip(runs, _names(runs), strict=True)]
     steps = _Steps(len(every) + (len(BASELINES) if baselines else 0), on_progress)
     for run, name in every:
         split = parts_of(store, run)
@@ -172,9 +174,7 @@ def evaluate(
         predictions = predict_part(run.model, scene, test)
         found.folds.setdefault(name, []).append(by_softness(predictions))
         found.models += [name] if name not in found.models else []
-        if run in runs:
-            found.frames += len(test)
-            found.pokes += predictions.pokes
+        tested[split.test] = True
         if found.predictions is None:
             found.predictions = predictions
         for band, row in by_depth(predictions).items():
@@ -192,7 +192,9 @@ def evaluate(
             baseline = kind()
             baseline.fit(train, here)
             found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, here, test)))
-    for one, intervals in across_folds([p for p in predicted if p.run.uuid == store.uuid]):
+    found.frames, found.pokes = int(tested.sum()), len(np.unique(store.frame_poke[tested]))
+    own = [p for p in predicted if p.run.uuid == store.uuid]
+    for one, intervals in across_folds(own, copies=store.copies):
         found.across[f"{one.name}, fold {one.run.recipe.fold}"] = _covered(intervals, one)
         found.intervals = [(r, i) for r, i in found.intervals if r is not one.run] + [(one.run, intervals)]
     return found
@@ -235,6 +237,21 @@ def join_runs(runs: list[Run]) -> Run:
         model=Ensemble([run.model for run in runs]).eval(),
         members=tuple(run.folder for run in runs),
     )
+
+
+def _names(runs: list[Run]) -> list[str]:
+    """Model of each run, with the recipe's name and number where recipes of one model differ."""
+    alike: dict[str, list[str]] = {}
+    texts = [repr(run.recipe.model_copy(update={"fold": 0, "seed": 0, "name": "-"})) for run in runs]
+    for run, text in zip(runs, texts, strict=True):
+        known = alike.setdefault(run.recipe.model, [])
+        known += [text] if text not in known else []
+    names = []
+    for run, text in zip(runs, texts, strict=True):
+        known, name = alike[run.recipe.model], run.recipe.model
+        number = f" {known.index(text) + 1}" if len(known) > 1 else ""
+        names.append(f"{name} ({run.recipe.name}{number})" if number else name)
+    return names
 
 
 def _part(recipe: Recipe) -> str:
@@ -298,8 +315,9 @@ def _own_intervals(
         if kept is None:
             found.no_intervals[name] = f"{run.folder} has no intervals of its own dataset yet"
         return kept
-    if validation.pokes < LEAST_POKES:
-        found.no_intervals[name] = too_few(validation.pokes)
+    fault = too_few(validation.pokes) if validation.pokes < LEAST_POKES else force_fault(validation)
+    if fault is not None:
+        found.no_intervals[name] = fault
         return None
     return fit_intervals(inside_alone(validation, _distance(run, found.store, validation)))
 

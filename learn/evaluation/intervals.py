@@ -246,7 +246,9 @@ def _ring(away: Floats) -> NDArray[np.int64]:
 
 
 def _force_error(predictions: Predictions) -> Floats:
-    return np.asarray(np.abs(np.log(predictions.force_predicted / predictions.force)))
+    ratio = predictions.force_predicted / predictions.force
+    positive = ratio > 0.0
+    return np.where(positive, np.abs(np.log(np.where(positive, ratio, 1.0))), np.inf)
 
 
 def _size(predictions: Predictions) -> Floats:
@@ -343,8 +345,23 @@ class Predicted(NamedTuple):
     distance: Floats
 
 
-def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Intervals]]:
-    """Intervals of each run from the test parts of the other runs, two or more, that differ only in fold."""
+def force_fault(predictions: Predictions) -> str | None:
+    """Sentence stating that forces are predicted which have no logarithm; None if there are none."""
+    bad = ~(predictions.force_predicted > 0.0)
+    if not bad.any():
+        return None
+    count = f"{int(bad.sum())} of {len(bad)}"
+    return f"intervals need predicted forces above 0 N, which {count} are not: train for more epochs"
+
+
+def across_folds(
+    predicted: Sequence[Predicted], *, copies: NDArray[np.bool_] | None = None
+) -> list[tuple[Predicted, Intervals]]:
+    """Intervals of each run from the test parts of the other runs, two or more, that differ only in fold.
+
+    Pokes of the run's own test part do not calibrate (parts of few groups overlap), nor do `copies`, pokes of
+    the dataset (p,) that repeat the solve of another (`learn.data.Store.copies`): they are no further draws.
+    """
     groups: dict[str, list[Predicted]] = {}
     for one in predicted:
         alike = one.run.recipe.model_copy(update={"fold": 0})
@@ -352,9 +369,20 @@ def across_folds(predicted: Sequence[Predicted]) -> list[tuple[Predicted, Interv
     found = []
     for group in groups.values():
         folds = {one.run.recipe.fold for one in group}
-        if len(folds) != len(group) or len(folds) < LEAST_FOLDS:
+        if len(folds) != len(group) or any(force_fault(one.predictions) for one in group):
             continue
         for one in group:
-            others = [inside_alone(o.predictions, o.distance) for o in group if o is not one]
-            found.append((one, fit_intervals(join_predictions(others))))
+            others = [_calibrating(other, one, copies) for other in group if other is not one]
+            others = [part for part in others if part.pokes]
+            if len(others) + 1 >= LEAST_FOLDS:
+                found.append((one, fit_intervals(join_predictions(others))))
     return found
+
+
+def _calibrating(other: Predicted, one: Predicted, copies: NDArray[np.bool_] | None) -> Predictions:
+    """Frames of another run's test part that calibrate the intervals of `one`."""
+    poke = other.predictions.poke
+    keep = ~np.isin(poke, one.predictions.poke)
+    if copies is not None:
+        keep &= ~copies[poke]
+    return inside_alone(other.predictions.where(keep), other.distance[keep])

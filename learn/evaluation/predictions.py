@@ -96,8 +96,9 @@ def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
     field = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     wrong = []
     for batch in _batches(store, rows, store.points, field):
-        first = int(batch.frame[0])
-        stored = torch.from_numpy(store.displacement(slice(first, first + len(batch))))
+        frames = batch.frame.numpy()
+        first = int(frames[0])
+        stored = torch.from_numpy(store.displacement(slice(first, int(frames[-1]) + 1))[frames - first])
         wrong.append(float((batch.displacement - stored).norm(dim=2).mean()))
     return float(np.mean(wrong)) * 1e3
 

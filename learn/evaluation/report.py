@@ -222,8 +222,8 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
             interval_table(found),
             [
                 *no_intervals(found),
-                "Conformal, calibrated on half the validation pokes, each poke one draw, in rings of "
-                "distance from first contact; counted on test pokes. Frames inside what was trained "
+                "Conformal, calibrated on the validation pokes in five parts, each poke one draw, in rings "
+                "of distance from first contact; counted on test pokes. Frames inside what was trained "
                 "calibrate, outside the intervals are wider. Few pokes cannot promise 90 %. By the other "
                 "folds: calibrated on the predictions by runs of other folds for unseen shapes; kept with "
                 "the run.",

@@ -223,7 +223,7 @@ def _notes(predictor: Predictor, content: Content) -> list[str]:
     if predictor.intervals is not None:
         level = predictor.intervals.level
         lines.append(
-            f"Intervals: split-conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; "
+            f"Intervals: conformal at {100 * level:.0f} %, from {predictor.intervals.pokes} pokes; "
             "calibrated inside the trained ranges; wider, and not calibrated, outside."
         )
     steps = [step for poke in content.about["simulated"] for step in poke["steps"]]

@@ -34,7 +34,7 @@ from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
 from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
-from learn.validity import NARROW, QUANTITIES, RELATIVE_SLACK, Domain, interior_of
+from learn.validity import QUANTITIES, RELATIVE_SLACK, Domain, interior_of, unit_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
 _FAR = 1e30  # limit of a range on a side that is not checked
@@ -207,8 +207,7 @@ class _Ranges(nn.Module):
             low.append(a if quantity.sides != "high" else -_FAR)
             high.append(b if quantity.sides != "low" else _FAR)
             slack.append(quantity.slack + RELATIVE_SLACK * largest if known else 0.0)
-            across = b - a if b - a > NARROW * largest else largest
-            width.append(across or _FAR)
+            width.append(unit_of(key, a, b) if known else _FAR)
         self.low, self.high, self.slack, self.width = (
             torch.tensor(column, dtype=torch.float64) for column in (low, high, slack, width)
         )

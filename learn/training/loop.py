@@ -16,7 +16,7 @@ import torch
 from torch import Tensor, nn
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
-from learn.data.clouds import SurfaceField, jittered, nearest_columns
+from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns
 from learn.data.folds import split_of
 from learn.errors import InputError
 from learn.models import MODELS, Scene, make_model, pokes_of, scene_of
@@ -102,7 +102,6 @@ class Trainer:
         self.ema = copy.deepcopy(self.model).requires_grad_(False)
         self.optimiser = make_optimiser(self.model, recipe)
         self.step, self.epoch, self.best, self.first = 0, 0, math.inf, math.inf
-        torch.manual_seed(recipe.seed + 1 + group.rank)  # dropout
         if kept is not None:
             self._restore(kept)
         scene = scene_of(store).to(group.device)
@@ -159,6 +158,12 @@ class Trainer:
 
     def _dataset(self) -> MemoryDataset | StreamDataset:
         if self.recipe.data == "memory":
+            if self.group.world > 1 and len(self.split.train) < self.recipe.batch:
+                raise InputError(
+                    f"{self.store.location}: {len(self.split.train)} frames to train on are no batch of"
+                    f" {self.recipe.batch} for {self.group.world} processes: expected one process, or a"
+                    " smaller key batch"
+                )
             return MemoryDataset(self.store, self.split.train)
         blocks = len(np.unique(self.split.train // self.store.block))
         if blocks < self.group.world:
@@ -208,6 +213,9 @@ class Trainer:
 
     def _epoch(self) -> dict[str, float]:
         self.model.train()
+        # of dropout: a function of the epoch, so that a resumed run of any number of processes is the same
+        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(3, self.epoch, self.group.rank))
+        torch.manual_seed(int(key.generate_state(1)[0]))
         done, total = 0, len(self.split.train)
         sums = torch.zeros(3, dtype=torch.float64)
         for batch in self._batches():
@@ -247,7 +255,9 @@ class Trainer:
         if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
             points = jittered(self.store, jitter)
             scene = replace(
-                scene.at(nearest_columns(self.store, points)), points=torch.from_numpy(points).to(device)
+                scene.at(nearest_columns(self.store, points)),
+                points=torch.from_numpy(points).to(device),
+                area=torch.from_numpy(areas(points)).to(device),
             )
             moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
             batch, prepared = replace(batch, displacement=moved.to(device)), None
@@ -334,7 +344,6 @@ class Trainer:
             "model": self.model.state_dict(),
             "averaged": self.ema.state_dict(),
             "optimiser": self.optimiser.state_dict(),
-            "random": torch.get_rng_state(),
             "step": self.step,
             "best": self.best,
             "first": self.first,
@@ -365,7 +374,6 @@ class Trainer:
         load_weights(self.ema, content["averaged"], path, self.recipe.model)
         try:
             self.optimiser.load_state_dict(content["optimiser"])
-            torch.set_rng_state(content["random"])
         except (ValueError, KeyError, TypeError, RuntimeError) as error:
             raise InputError(
                 f"{path}: not a readable checkpoint ({' '.join(str(error).split())[:120]})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -28,7 +29,7 @@ OLD_KEYS = {
     "thin": "point_dropout",
 }
 _SMOOTH = 1e-3  # [mm]: smaller distances count quadratically
-_LEAST = 1e-6  # [N], lower limit of a predicted force under the logarithm
+_LEAST_RATIO = 0.05  # of a predicted to the true force: below, the logarithm goes on along its tangent
 
 
 class Recipe(BaseModel):
@@ -53,8 +54,9 @@ class Recipe(BaseModel):
         [mm].
     depth_power : a frame has the weight depth^-depth_power in that loss: 0 weights absolute errors, 1 errors
         relative to the depth.
-    force_loss, force_weight : "log" is ``|ln(predicted / true)|``, "square" the squared error over the
-        training part's mean square; the weight is relative to the displacement's loss.
+    force_loss, force_weight : "log" is ``|ln(predicted / true)|``, below a ratio of 0.05 along its tangent;
+        "square" the squared error over the training part's mean square. The weight is relative to the
+        displacement's loss.
     point_dropout : fraction of the batches that have a random 40 to 100 % of the points, for other clouds.
     point_jitter : fraction of the batches in which each point is moved at random within its cell of the grid,
         with the displacement interpolated from the surface meshes. This trains positions that are far from
@@ -182,6 +184,12 @@ class Loss:
     force: Tensor
 
 
+def _log_error(ratio: Tensor) -> Tensor:
+    """``|ln(ratio)|``; with a slope, towards the truth, also for forces of 0 or less."""
+    far = math.log(_LEAST_RATIO) + (ratio - _LEAST_RATIO) / _LEAST_RATIO
+    return torch.where(ratio > _LEAST_RATIO, torch.log(ratio.clamp_min(_LEAST_RATIO)), far).abs()
+
+
 def loss_of(response: Response, batch: Batch, scene: Scene, recipe: Recipe, statistics: Statistics) -> Loss:
     """The recipe's loss for a batch."""
     wrong = (response.displacement.float() - batch.displacement) * 1e3
@@ -192,7 +200,7 @@ def loss_of(response: Response, batch: Batch, scene: Scene, recipe: Recipe, stat
     displacement = (weight * distance).sum() / weight.sum()
     force = response.force.float()
     if recipe.force_loss == "log":
-        wrong_force = torch.log(force.clamp_min(_LEAST) / batch.force).abs().mean()
+        wrong_force = _log_error(force / batch.force).mean()
     else:
         wrong_force = ((force - batch.force) / statistics.force_rms).square().mean()
     return Loss(displacement + recipe.force_weight * wrong_force, displacement, wrong_force)

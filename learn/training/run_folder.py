@@ -97,7 +97,7 @@ class _Content(BaseModel):
 class _Resumable(_Content):
     averaged: dict[str, torch.Tensor]
     optimiser: dict[str, Any]
-    random: torch.Tensor
+    random: torch.Tensor | None = None  # in checkpoints of before 2026-11-27
     step: Annotated[int, Field(strict=True, ge=0)]
     best: Annotated[float, Field(strict=True)]
     first: Annotated[float, Field(strict=True)]

@@ -11,7 +11,14 @@ from typing import cast
 import numpy as np
 import pytest
 
-from learn.evaluation.intervals import Predicted, across_folds, coverage, fit_intervals, inside_alone
+from learn.evaluation.intervals import (
+    Predicted,
+    across_folds,
+    coverage,
+    fit_intervals,
+    force_fault,
+    inside_alone,
+)
 from learn.evaluation.intervals_file import load_intervals, replaced_text, save_intervals
 from learn.metrics import Predictions, join_predictions
 from learn.training import Recipe, Run
@@ -77,6 +84,45 @@ def test_frames_outside_what_was_trained_calibrate_nothing() -> None:
     found = [intervals for _, intervals in across_folds(whole)]
     assert found == [intervals for _, intervals in across_folds(alone)]
     assert coverage(found[0], whole[0].predictions).points < 0.7
+
+
+def test_pokes_of_the_own_test_part_calibrate_nothing() -> None:
+    """Test parts of few groups overlap: here folds 0 and 3 are tested on the same pokes."""
+    answers = [_answers(fold, 1.0) for fold in range(4)]
+    same = answers[0].predictions
+    answers[3] = answers[3]._replace(predictions=replace(same, predicted=5 * same.predicted))
+    found = {one.run.recipe.fold: i for one, i in across_folds(answers)}
+    alone = {one.run.recipe.fold: i for one, i in across_folds(answers[:3])}
+    assert found[0] == alone[0]
+    assert found[1].pokes == alone[1].pokes  # a poke that two runs predict is one draw
+
+
+def test_copies_of_a_solve_are_no_further_draws() -> None:
+    """Three levels that differ by the modulus alone calibrate as one."""
+    alone = [_answers(fold, 1.0) for fold in range(3)]
+    copies = np.zeros(3000, dtype=bool)
+    whole = []
+    for one in alone:
+        again = [replace(one.predictions, poke=one.predictions.poke + 100 * k) for k in (1, 2)]
+        for part in again:
+            copies[part.poke] = True
+        both = join_predictions([one.predictions, *again])
+        whole.append(one._replace(predictions=both, distance=np.zeros(len(both.depth))))
+    expected = [intervals for _, intervals in across_folds(alone)]
+    assert [intervals for _, intervals in across_folds(whole, copies=copies)] == expected
+    assert [intervals.pokes for _, intervals in across_folds(whole)] == [72, 72, 72]
+
+
+def test_a_model_without_positive_forces_has_no_intervals() -> None:
+    answers = [_answers(fold, 1.0) for fold in range(3)]
+    bad = answers[0].predictions
+    force = np.where(np.arange(len(bad.depth)) < 4, -1.0, bad.force_predicted)
+    answers[0] = answers[0]._replace(predictions=replace(bad, force_predicted=force))
+    assert "which 4 of 36 are not" in str(force_fault(answers[0].predictions))
+    assert force_fault(answers[1].predictions) is None
+    assert across_folds(answers) == []
+    intervals = fit_intervals(answers[1].predictions)
+    assert coverage(intervals, answers[0].predictions).force <= 32 / 36  # they count as misses
 
 
 def test_where_hardly_any_frame_is_inside_all_calibrate() -> None:

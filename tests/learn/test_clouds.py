@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from learn.data import MemoryDataset, Store, open_store
-from learn.data.clouds import SurfaceField, jittered, nearest_columns, scattered
+from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns, scattered
 from learn.training import RECIPES, Recipe, Trainer
 from tests.learn.small_store import field, write_store
 
@@ -74,6 +74,7 @@ def test_a_jittered_batch_has_the_displacement_of_its_own_points(store: Store, t
     np.testing.assert_array_equal(moved.displacement.numpy(), expected)
     columns = nearest_columns(store, points)
     np.testing.assert_array_equal(scene.rigid.numpy(), trainer.scene.rigid[:, columns].numpy())
+    np.testing.assert_allclose(scene.area.numpy(), areas(points))
     again, _, _ = trainer._augmented(batch)
     np.testing.assert_array_equal(again.points.numpy(), points)  # depends on seed and step only
     plain = Trainer(store, recipe.model_copy(update={"point_jitter": 0.0}), tmp_path / "plain")

@@ -20,7 +20,7 @@ import learn.train
 from learn.data import MemoryDataset, open_store, split_pokes
 from learn.data.clouds import scattered
 from learn.errors import InputError
-from learn.evaluation import parts_of, summarise
+from learn.evaluation import evaluate, parts_of, summarise
 from learn.evaluation.predictions import interpolation_error_mm, predict_on
 from learn.metrics import METRICS
 from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_of
@@ -100,6 +100,19 @@ def test_a_run_whose_dataset_is_now_divided_otherwise_is_refused(store: Path, ru
     moved = {**loaded.groups, "train": loaded.groups["test"], "test": loaded.groups["train"]}
     with pytest.raises(InputError, match=r"was trained on other shapes of .*: train it again"):
         parts_of(data, replace(loaded, groups=moved))
+
+
+def test_runs_that_differ_in_more_than_the_fold_have_rows_of_their_own(store: Path, run: Path) -> None:
+    """Two runs tested on the same pokes: these count once, and recipes of one model are not averaged."""
+    loaded, data = load_run(run), open_store(store)
+    other = replace(loaded, recipe=loaded.recipe.model_copy(update={"epochs": 77}))
+    same = replace(loaded, recipe=loaded.recipe.model_copy(update={"seed": 5}))
+    alone = evaluate([loaded], data, baselines=False, clouds=False)
+    both = evaluate([loaded, same], data, baselines=False, clouds=False)
+    assert (both.pokes, both.frames, both.models) == (alone.pokes, alone.frames, ["invariant-gnn"])
+    apart = evaluate([loaded, other], data, baselines=False, clouds=False)
+    name = loaded.recipe.name
+    assert apart.models == [f"invariant-gnn ({name} 1)", f"invariant-gnn ({name} 2)"]
 
 
 @pytest.mark.slow

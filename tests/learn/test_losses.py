@@ -11,7 +11,7 @@ import torch
 
 from learn.models import Response
 from learn.training import Recipe
-from learn.training.recipe import loss_of
+from learn.training.recipe import _log_error, loss_of
 
 DEPTH = (0.002, 0.008)  # m
 WRONG_MM = np.array([[3.0, 1.0], [0.5, 2.0]])  # frame, point
@@ -48,6 +48,18 @@ def test_displacement_weighs_the_near_and_the_shallow(power: float, near: float,
     weight = of_point * np.array(DEPTH)[:, None] ** -power
     found, _ = _loss(near_weight=near, near_width_mm=width, depth_power=power)
     assert found == pytest.approx((weight * WRONG_MM).sum() / weight.sum(), rel=2e-3)
+
+
+def test_a_force_of_the_wrong_sign_has_a_slope_towards_the_truth() -> None:
+    """The logarithm alone has none: a network that begins there would never learn the force."""
+    ratio = torch.tensor([-1.0, 0.0, 0.02, 0.05, 0.5, 2.0], dtype=torch.float64, requires_grad=True)
+    error = _log_error(ratio)
+    error.sum().backward()
+    assert ratio.grad is not None
+    assert (ratio.grad[:5] < 0).all()
+    assert ratio.grad[5] > 0
+    np.testing.assert_allclose(error[3:].detach(), np.abs(np.log([0.05, 0.5, 2.0])))
+    assert (np.diff(error[:5].detach().numpy()) < 0).all()
 
 
 def test_force_in_logarithms_or_squares() -> None:

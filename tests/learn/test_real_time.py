@@ -95,6 +95,9 @@ def test_distance_is_in_units_of_the_trained_ranges() -> None:
     assert distance(depth_mm=31.0, rod_radius_mm=4.0) == pytest.approx(math.hypot(0.5, 0.6), abs=5e-3)
     assert [domain.knows(kind) for kind in ("cube", None, "sphere")] == [True, True, False]
     assert all(check.inside for check in domain.check(plain, "cube"))
+    upright = Domain(ranges={"angle_deg": (0.0, 0.0)}, kinds=("cube",), law="ogden")  # vertical pokes alone
+    assert upright.distance({"angle_deg": 0.05}) == 0.0
+    assert upright.distance({"angle_deg": 40.1}) == pytest.approx(4.0)
     assert domain.distance(plain, "ogden") == 0.0
     assert domain.distance({**plain, "depth_mm": 31.0}, "yeoh") == pytest.approx(
         math.hypot(0.5, OTHER_LAW), abs=5e-3

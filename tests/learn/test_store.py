@@ -213,6 +213,27 @@ def test_folds_by_site_keep_softness_levels_together(whole: Path) -> None:
     assert len(split.train) + len(split.validation) + len(split.test) == store.frames
 
 
+def test_any_softness_can_be_trained_on_where_levels_share_solves(tmp_path: Path) -> None:
+    """Of the pokes of the levels asked for, one of each solve, whichever level was solved."""
+    folder = write_store(tmp_path / "s.zarr")
+    store = open_store(folder)
+    seen: dict[tuple[float, ...], int] = {}
+    key = np.column_stack([store.shape, store.path_start, store.direction])
+    solved = [seen.setdefault(tuple(row), k) for k, row in enumerate(key)]
+    group = zarr.open_group(folder, mode="r+")
+    group.create_array("solved_as", data=np.array(solved, dtype=np.int32))
+    group.attrs["scales_with_modulus"] = True
+    write_manifest(folder)
+    store = open_store(folder)
+    assert store.copies.sum() == store.pokes / 2
+    counts = [
+        len(split_pokes(store, train_softness=levels).train) for levels in (["S0"], ["S1"], ["S0", "S1"])
+    ]
+    assert counts[0] == counts[1] == counts[2] > 0
+    rows = split_pokes(store, train_softness=["S1"]).train
+    assert set(store.softness[store.frame_poke[rows]].tolist()) == {1}
+
+
 def test_training_can_be_kept_from_a_softness_and_from_depth(whole: Path) -> None:
     store = open_store(whole)
     split = split_pokes(store, train_softness=["S0"], train_depth=2.5e-3)

@@ -86,6 +86,16 @@ def test_workers_of_a_loader_share_the_work(store: Store, workers: int) -> None:
     assert sorted(_frames(iter(loader))) == list(range(store.frames))
 
 
+def test_workers_that_stay_see_the_next_epoch(store: Store) -> None:
+    data = StreamDataset(store, np.arange(store.frames), batch=8, seed=1)
+    loader = torch.utils.data.DataLoader(data, batch_size=None, num_workers=1, persistent_workers=True)
+    orders = []
+    for data.epoch in (0, 1, 0):
+        orders.append(_frames(iter(loader)))
+    assert orders[0] == orders[2] != orders[1]
+    assert sorted(orders[1]) == list(range(store.frames))
+
+
 def test_ranks_share_the_work(store: Store) -> None:
     rows = np.arange(store.frames)
     shares = [_frames(StreamDataset(store, rows, batch=8, rank=rank, world=2)) for rank in (0, 1)]

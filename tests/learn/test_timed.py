@@ -16,6 +16,8 @@ import zarr
 import learn
 from learn.data import MemoryDataset, StreamDataset, open_store, split_pokes, statistics
 from learn.errors import InputError
+from learn.evaluation import parts_of
+from learn.evaluation.predictions import interpolation_error_mm
 from learn.models import Pokes, make_model, pokes_of, scene_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import CLOCK as CLOCK_NAMES
@@ -91,6 +93,20 @@ def test_frames_without_a_force_are_in_no_part(folder: Path) -> None:
     split = split_pokes(store)
     every = np.sort(np.concatenate([split.train, split.validation, split.test]))
     np.testing.assert_array_equal(every, np.flatnonzero(store.presses))
+
+
+def test_frames_without_a_force_are_not_tested_on_another_dataset(run: Path, tmp_path: Path) -> None:
+    other = write_timed_store(tmp_path / "other.zarr")
+    group = zarr.open_group(other, mode="r+")
+    group.attrs["uuid"], group.attrs["shapes"] = "another", ["a", "b", "c"]
+    write_manifest(other)
+    store = open_store(other)
+    parts = parts_of(store, load_run(run))
+    np.testing.assert_array_equal(parts.test, np.flatnonzero(store.presses))
+    # the frames of a poke that is tested need not follow each other
+    rows = np.flatnonzero(np.arange(store.frames) % 4 != 1)
+    whole = interpolation_error_mm(store, np.arange(store.frames))
+    assert interpolation_error_mm(store, rows) == pytest.approx(whole, abs=2e-3)
 
 
 def test_a_dataset_without_time_is_as_before(tmp_path: Path) -> None:

@@ -259,3 +259,29 @@ def test_a_stream_of_fewer_shards_than_processes_is_refused(folder: Path, tmp_pa
     group = ProcessGroup(0, 2, torch.device("cpu"))
     with pytest.raises(InputError, match="1 shards to train on cannot be split among 2 processes"):
         Trainer(open_store(folder), recipe, tmp_path / "run", process_group=group)
+
+
+def test_fewer_frames_than_a_batch_are_refused_by_several_processes(folder: Path, tmp_path: Path) -> None:
+    """One process would train on a batch that the other does not have."""
+    group = ProcessGroup(0, 2, torch.device("cpu"))
+    with pytest.raises(InputError, match=r"frames to train on are no batch of 64 for 2 processes"):
+        Trainer(
+            open_store(folder), TINY.model_copy(update={"batch": 64}), tmp_path / "run", process_group=group
+        )
+
+
+def test_dropout_of_an_epoch_does_not_depend_on_where_the_run_was_resumed(
+    folder: Path, tmp_path: Path
+) -> None:
+    """Of each process apart: a checkpoint holds the state of one alone."""
+    recipe = TINY.model_copy(update={"model": "cegnn", "epochs": 1})
+    drawn = []
+    for rank in (0, 1):
+        trainer = Trainer(open_store(folder), recipe, tmp_path / f"run{rank}")
+        trainer.group = ProcessGroup(rank, 1, torch.device("cpu"))
+        for before in (1, 2):  # whatever was drawn before
+            torch.manual_seed(before)
+            trainer._batches = lambda: iter(())  # type: ignore[method-assign]
+            trainer._epoch()
+            drawn.append(torch.rand(3).tolist())
+    assert drawn[0] == drawn[1] != drawn[2] == drawn[3]

@@ -69,9 +69,11 @@ def test_a_file_that_is_not_what_it_was_is_refused(served: tuple[str, Path], tmp
 
 def test_what_cannot_be_had_is_one_sentence(served: tuple[str, Path], tmp_path: Path) -> None:
     base, root = served
-    (root / "CITATION.cff").unlink()
+    (root / "CITATION.cff").rename(root / "away")
     with pytest.raises(InputError, match=r"CITATION\.cff: cannot be had"):
         fetch("ecoflex-cylinders", tmp_path / "got", base=base)
+    (root / "away").rename(root / "CITATION.cff")
+    assert (fetch("ecoflex-cylinders", tmp_path / "got", base=base) / "SOURCE.md").is_file()  # goes on
     with pytest.raises(InputError, match="expected an empty folder"):
         fetch("ecoflex-cylinders", tmp_path / "got", base=base)
     with pytest.raises(InputError, match="expected one of ecoflex-cylinders"):
