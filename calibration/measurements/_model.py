@@ -22,7 +22,7 @@ from calibration.measurements._effect import Candidate, HandedOn, Occurrence
 from calibration.measurements._folds import folds_of
 from calibration.measurements._forward_model import ForwardModel
 from calibration.measurements._layers import Curve, Layers, deviations, layers_of
-from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, roughness
+from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, Source, roughness
 from calibration.measurements._state import State
 from calibration.parameters import Parameters
 
@@ -232,11 +232,12 @@ class MeasurementModel(ForwardModel):
         del k
         return None
 
-    def noise_known(self) -> NoiseKnown:
-        """Summary of the noise; adds the scatter between repeats to `noise` as nuisances.
+    def settle_noise(self, source: Source) -> NoiseKnown:
+        """Complete `noise` before the search, and return its summary; to be called once.
 
-        The scatter (`layers_of`) is estimated and added if the kind has no repeats of its own, no nuisances
-        and no correlated rows.
+        The scatter between repeats (`layers_of`) is estimated and added as nuisances, if the kind has no
+        repeats of its own, no nuisances and no correlated rows. With source "data", records whose scatter
+        contradicts the stated noise get the standard deviation that they show.
         """
         stated = all(self.states_noise(k) for k in range(len(self.records)))
         repeats, layers = self.repeated(), Layers()
@@ -253,9 +254,17 @@ class MeasurementModel(ForwardModel):
                         columns.append(np.zeros(len(own)))
                         columns[-1][own] = bend
                 self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
-        return NoiseKnown(
+        known = NoiseKnown(
             known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
         )
+        if source == "stated":
+            return known
+        factors = {p.record: p.factor for p in points if p.contradicts}
+        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
+        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
+        # a median of third differences tells a third of what as many independent points would
+        dof = float(np.median([p.points for p in points])) / 3.0 if factors else known.dof
+        return replace(known, source="data", dof=dof)
 
     def _curves(self) -> list[Curve]:
         """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity."""
@@ -279,16 +288,6 @@ class MeasurementModel(ForwardModel):
             for k, (r, a) in enumerate(zip(self.records, along, strict=True))
             if a is not None
         ]
-
-    def with_noise_of_data(self) -> NoiseKnown:
-        """Rescale the sd of records whose scatter contradicts the stated noise; return the noise summary."""
-        known = self.noise_known()
-        factors = {p.record: p.factor for p in known.points if p.contradicts}
-        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
-        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
-        # a median of third differences tells a third of what as many independent points would
-        dof = float(np.median([p.points for p in known.points])) / 3.0 if factors else known.dof
-        return replace(known, source="data", dof=dof)
 
     def full_scale(self) -> Array | None:
         """Largest |measured value| of each record [SI], shape (records,).

@@ -90,7 +90,7 @@ def searched(
     """
     begun = time.monotonic()
     rules = rules or Rules()
-    known = model.with_noise_of_data() if noise == "data" else model.noise_known()
+    known = model.settle_noise(noise)
     model.noise_scale = known.scale
     earlier = None if before is None else before.finding
     finding = search(model, rules=rules, before=earlier, on_progress=on_progress)

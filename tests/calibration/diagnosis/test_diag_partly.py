@@ -281,7 +281,7 @@ def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytes
     assert any("less than the lab states" in n for n in stated.notes)
     assert stated.to_json()["noise"]["source"] == "stated"
     model = FakeModel(drawn=small)
-    known = model.with_noise_of_data()
+    known = model.settle_noise("data")
     assert known.source == "data"
     assert np.median(model.noise.sd) == pytest.approx(0.1, rel=0.4)
 
