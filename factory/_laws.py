@@ -62,17 +62,20 @@ class ArrudaBoyce(Strict):
 
 
 class Laws(Strict):
-    """The parameters of one mixture, law by law: the paper's six, and others that tisim knows."""
+    """The parameters of one mixture, law by law; those of the neo-Hookean law are required.
+
+    Under a law without parameters a material has the small-strain moduli of the neo-Hookean ones.
+    """
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, dict[str, float | tuple[float, ...]]]
 
-    st_venant_kirchhoff: Annotated[Lame, Field(alias="st-venant-kirchhoff")]
+    st_venant_kirchhoff: Annotated[Lame | None, Field(alias="st-venant-kirchhoff")] = None
     neo_hookean: Annotated[Lame, Field(alias="neo-hookean")]
-    stable_neo_hookean: Annotated[Lame, Field(alias="stable-neo-hookean")]
-    mooney_rivlin: Annotated[MooneyRivlin, Field(alias="mooney-rivlin")]
-    ogden: Ogden
-    arruda_boyce: Annotated[ArrudaBoyce, Field(alias="arruda-boyce")]
+    stable_neo_hookean: Annotated[Lame | None, Field(alias="stable-neo-hookean")] = None
+    mooney_rivlin: Annotated[MooneyRivlin | None, Field(alias="mooney-rivlin")] = None
+    ogden: Ogden | None = None
+    arruda_boyce: Annotated[ArrudaBoyce | None, Field(alias="arruda-boyce")] = None
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -89,4 +92,4 @@ class Laws(Strict):
         return None if found is None else dict(found)
 
 
-LAWS = tuple(field.alias or name for name, field in Laws.model_fields.items())  # in every card
+LAWS = tuple(field.alias or name for name, field in Laws.model_fields.items())  # the paper's six

@@ -1,8 +1,8 @@
 """Material cards: one YAML file per mixture, with parameters of the laws and effects found by a diagnosis.
 
-A card holds the parameters of the paper's six laws, and of any other law that is registered in
-`tisim.laws` if they are known. Under a law that a card does not hold, its material has the card's
-small-strain moduli and the law's other constants at their plain default (`Card.holds`).
+A card holds the parameters of the neo-Hookean law, and of any other law of `tisim.laws` for which they are
+known. Under a law that a card does not hold, its material has the card's small-strain moduli and the law's
+other constants at their plain default (`Card.holds`).
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from factory._errors import InputError
 from factory.materials import LAWS, load_card
@@ -55,7 +56,8 @@ def test_cards_are_what_their_script_writes(monkeypatch: pytest.MonkeyPatch) -> 
         ("stiffness: 0.8", "stiffness: 1.0", "key stiffness: "),
         ("alpha: [3.0]", "alpha: [3.0, 2.0]", "expected as many mu as alpha, got 1 and 2"),
         ("alpha: [3.0]", "alpha: [-3.0]", "mu and alpha of one sign"),
-        ("  ogden:", "  odgen:", "key laws.ogden: this key is missing"),
+        ("  ogden:", "  odgen:", "odgen: law: expected one of"),
+        ("  neo-hookean:", "  yeoh:", "key laws.neo-hookean: this key is missing"),
         ("locking: 2.828427", "locking: 0.5", "key laws.arruda-boyce.locking: "),
         ("mu: 30341.0, lam", "mu: -1.0, lam", "key laws.st-venant-kirchhoff.mu: "),
     ],
@@ -68,6 +70,18 @@ def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
         load_card("S0", tmp_path)
     assert words in str(caught.value)
     assert str(tmp_path / "S0.yaml") in str(caught.value)
+
+
+def test_a_card_of_one_law_has_its_moduli_under_the_others(tmp_path: Path) -> None:
+    content = yaml.safe_load((ROOT / "datasets" / "materials" / "S0.yaml").read_text())
+    content["laws"] = {"neo-hookean": {"mu": 25e3, "lam": 5e6}}
+    (tmp_path / "S0.yaml").write_text(yaml.safe_dump(content))
+    card = load_card("S0", tmp_path)
+    assert card.holds("neo-hookean")
+    for law in LAWS:
+        assert card.holds(law) == (law == "neo-hookean")
+        shear, bulk = _moduli(law, dict(card.for_law(law).parameters))
+        assert (shear, bulk) == pytest.approx((25e3, 5e6 + 2 * 25e3 / 3), rel=1e-9)
 
 
 def _own_cards(folder: Path, *names: str) -> Path:

@@ -49,13 +49,13 @@ def main(
     ] = None,
     gif: Annotated[Path | None, typer.Option(help="Write an animated GIF.")] = None,
     mp4: Annotated[
-        Path | None, typer.Option(help="Write an MP4 video; needs ffmpeg, or tisim[video].")
+        Path | None, typer.Option(help="Write an MP4 video; needs ffmpeg, or tisim\\[video].")
     ] = None,
     colour: Annotated[
         str | None,
         typer.Option(help="Quantity that colours GIF and MP4, as named on the page. Default: displacement."),
     ] = None,
-    seconds: Annotated[float, typer.Option(help="Duration of GIF and MP4 [s].")] = 4.0,
+    seconds: Annotated[float, typer.Option(help="Duration of GIF and MP4 \\[s].")] = 4.0,
     width: Annotated[int, typer.Option(help="Width of GIF and MP4 in pixels.")] = 800,
     show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     version: Annotated[  # noqa: ARG001 - shown before anything else
