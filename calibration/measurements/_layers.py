@@ -21,7 +21,7 @@ REPEATS = 4  # least number of repeats of one test: mean and trend take two degr
 GRID = 24  # points along the records at which they are compared
 NOTABLE = 4.0  # least ratio of the mean square of a trend in the order of repeats to that by chance
 BEND = 4  # highest polynomial degree of a record's own deviation
-_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
+CERTAIN = 3.0  # standard errors by which the scatter between repeats exceeds what noise makes of it
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -35,7 +35,8 @@ class Curve:
     x : driven quantity, in the order of the record, shape (k,).
     branch : number of the stroke of each point, shape (k,): loading and unloading are compared separately.
     misfit : simulated minus measured [SI], shape (k,).
-    sd : standard deviation of the noise from point to point [SI], shape (k,).
+    sd : standard deviation of the noise from point to point [SI], shape (k,); what the record shows, if it is
+        not stated.
     scale : full scale [SI].
     """
 
@@ -58,6 +59,9 @@ class Layers:
     ----------
     repeat : standard deviation between repeats on one specimen, without the trend in their order and beyond
         the noise from point to point; 0 if repeats differ by this noise only.
+    bends : the same by degree of the record's own deviation, 0 to BEND (`deviations`); the root of the sum of
+        their squares is `repeat`. A scatter of areas or load cells is one of low degrees. Empty without
+        repeats.
     order : change of the misfit from the first to the last repeat by that trend: rms along the record, with
         the sign of its mean. None if noise and scatter make as much (NOTABLE).
     specimen : standard deviation between the means of specimens of one material in one test.
@@ -66,6 +70,7 @@ class Layers:
     """
 
     repeat: float | None = None
+    bends: tuple[float, ...] = ()
     order: float | None = None
     specimen: float | None = None
     repeats: tuple[str, ...] = ()
@@ -104,33 +109,33 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
     for c in curves:
         if c.test is not None:
             groups.setdefault((c.material, c.specimen, c.test), []).append(c)
-    squares, orders, dofs, names = [], [], 0.0, []
+    scatter, orders, dofs, names = np.zeros(BEND + 1), [], 0.0, []
     means: dict[Hashable, list[Array]] = {}
     for (material, _, test), group in ((k, g) for k, g in groups.items() if isinstance(k, tuple)):
         together = _together(group)
         if together is None:
             continue
-        values, noise = together
+        values = together.values
         means.setdefault((material, test), []).append(values.mean(axis=0))
         if len(group) < REPEATS:
             continue
         number = np.arange(len(group)) - 0.5 * (len(group) - 1)
         trend = number @ values / (number @ number)
         left = values - values.mean(axis=0) - number[:, None] * trend
-        free = sqrt(len(group) / (len(group) - 2.0))
-        found = float((free * _NORMAL * np.median(np.abs(left))) ** 2)
-        # the median of the squares has the scatter of some two of five of them
-        certain = 1.0 + 3.0 * sqrt(2.0 / (0.4 * left.size * (1.0 - 2.0 / len(group))))
-        squares.append(found - noise if found > certain * noise else 0.0)
+        free = len(group) - 2.0  # after mean and trend
+        own = _scatter(left, together, free)
+        scatter += free * own
         whole = trend * (len(group) - 1)
-        by_chance = (squares[-1] + noise) * (len(group) - 1) ** 2 / (number @ number)
+        by_chance = (own.sum() + together.noise) * (len(group) - 1) ** 2 / (number @ number)
         if np.mean(whole**2) > NOTABLE * by_chance:
             orders.append(float(np.sign(whole.mean()) * np.sqrt(np.mean(whole**2))))
-        dofs += len(group) - 2.0
+        dofs += free
         names += [c.name for c in group]
     apart = [np.var(np.array(m), axis=0, ddof=1).mean() for m in means.values() if len(m) > 1]
+    bends = np.sqrt(scatter / dofs) if dofs else np.zeros(0)
     return Layers(
-        repeat=float(np.sqrt(np.mean(squares))) if squares else None,
+        repeat=float(np.linalg.norm(bends)) if dofs else None,
+        bends=tuple(bends.tolist()),
         order=float(np.mean(orders)) if orders else None,
         specimen=float(np.sqrt(np.mean(apart))) if apart else None,
         repeats=tuple(names),
@@ -138,13 +143,54 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
     )
 
 
-def _together(group: Sequence[Curve]) -> tuple[Array, float] | None:
-    """Misfits over full scale on a grid of their common range of x in each branch, shape (records, m).
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Together:
+    """Misfits of repeats on a common grid, over full scale.
 
-    Also the mean variance that the noise from point to point gives them. None if they have no common range in
-    any branch.
+    Attributes
+    ----------
+    x : places in the common range of x, branch after branch, shape (m,).
+    values : shape (records, m).
+    noise : mean variance that the noise from point to point gives them.
+    coefficient_noise : variance that it gives a coefficient of an orthonormal function along x.
     """
-    found, noise = [], []
+
+    x: Array
+    values: Array
+    noise: float
+    coefficient_noise: float
+
+
+def _scatter(left: Array, together: _Together, free: float) -> Array:
+    """Variance between repeats by degree, shape (BEND + 1,), beyond the noise; zeros if noise makes as much.
+
+    `left` (records, m): values without mean and trend; `free`: degrees of freedom of each degree.
+    """
+    functions = _functions(together.x, np.unique(together.x).size)
+    fitted = np.linalg.lstsq(functions.T, left.T, rcond=None)[0]
+    found = np.zeros(BEND + 1)
+    found[: len(functions)] = (fitted**2).sum(axis=1) / free
+    by_noise = len(functions) * together.coefficient_noise
+    if found.sum() <= (1.0 + CERTAIN * sqrt(2.0 / (free * len(functions)))) * by_noise:
+        return np.zeros(BEND + 1)
+    found[: len(functions)] -= together.coefficient_noise
+    return np.maximum(found, 0.0)
+
+
+def _functions(x: Array, places: int) -> Array:
+    """Legendre polynomials over the range of x (k,), as many as there are places and at most to degree BEND.
+
+    Their mean square over the range is 1; shape (degrees, k).
+    """
+    return np.array([sqrt(2.0 * d + 1.0) * legendre(x, d) for d in range(min(BEND + 1, places))])
+
+
+def _together(group: Sequence[Curve]) -> _Together | None:
+    """Misfits over full scale on a grid of their common range of x in each branch.
+
+    None if they have no common range in any branch.
+    """
+    places, found, noise, independent = [], [], [], 0.0
     for branch in np.unique(group[0].branch):
         own = [c.branch == branch for c in group]
         if not all(mine.any() for mine in own):
@@ -159,24 +205,32 @@ def _together(group: Sequence[Curve]) -> tuple[Array, float] | None:
             order = np.argsort(c.x[mine], kind="stable")
             x, y, sd = (a[mine][order] for a in (c.x, c.misfit, c.sd))
             values.append(np.interp(grid, x, y) / c.scale)
-            right = np.clip(np.searchsorted(x, grid), 1, max(len(x) - 1, 1)) if len(x) > 1 else None
-            if right is None:
-                noise.append(np.full(GRID, (sd[0] / c.scale) ** 2))
-                continue
-            gap = x[right] - x[right - 1]
-            part = np.divide(grid - x[right - 1], gap, out=np.zeros(GRID), where=gap > 0.0)
-            noise.append((((1.0 - part) * sd[right - 1]) ** 2 + (part * sd[right]) ** 2) / c.scale**2)
+            # interpolated white noise has two thirds of its variance
+            independent += min(float(np.count_nonzero((x >= low) & (x <= high))), 1.5 * GRID) / len(group)
+            noise.append(float(np.mean(sd**2)) / c.scale**2)
+        places.append(grid)
         found.append(np.array(values))
-    return (np.concatenate(found, axis=1), float(np.mean(noise))) if found else None
+    if not found:
+        return None
+    point = float(np.mean(noise))
+    return _Together(
+        x=np.concatenate(places),
+        values=np.concatenate(found, axis=1),
+        noise=2.0 / 3.0 * point,
+        coefficient_noise=point / independent,
+    )
 
 
-def deviations(curves: Sequence[Curve], repeat: float) -> list[list[Array]]:
+def deviations(curves: Sequence[Curve], bends: Sequence[float]) -> list[list[Array]]:
     """Nuisance columns [SI] for the own deviation of each record: Legendre polynomials of degree 0 to BEND.
 
-    Each is one standard deviation; together their variance, averaged over the range of x, is repeat**2 (times
-    scale**2).
+    Each is one standard deviation: bends[d] times full scale is its root mean square over the range of x.
     """
-    part = repeat / sqrt(BEND + 1.0)
     return [
-        [c.scale * part * sqrt(2.0 * d + 1.0) * legendre(c.x, d) for d in range(BEND + 1)] for c in curves
+        [
+            c.scale * size * column
+            for size, column in zip(bends, _functions(c.x, c.x.size), strict=False)
+            if size
+        ]
+        for c in curves
     ]

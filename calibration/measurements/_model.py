@@ -243,13 +243,13 @@ class MeasurementModel(ForwardModel):
         repeats, layers = self.repeated(), Layers()
         points = tuple(self.point_noise())
         if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
-            curves = self._curves()
+            curves = self._curves({p.record: min(p.factor, 1.0) for p in points if not p.stated})
             layers = layers_of(curves)
             repeats = layers.repeats
             if layers.repeat:
                 rows = [self.row_record == k for k in range(len(self.records))]
                 columns = []
-                for own, bends in zip(rows, deviations(curves, layers.repeat), strict=True):
+                for own, bends in zip(rows, deviations(curves, layers.bends), strict=True):
                     for bend in bends:
                         columns.append(np.zeros(len(own)))
                         columns[-1][own] = bend
@@ -266,8 +266,11 @@ class MeasurementModel(ForwardModel):
         dof = float(np.median([p.points for p in points])) / 3.0 if factors else known.dof
         return replace(known, source="data", dof=dof)
 
-    def _curves(self) -> list[Curve]:
-        """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity."""
+    def _curves(self, shown: Mapping[str, float]) -> list[Curve]:
+        """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity.
+
+        shown : factor on the standard deviation of records whose noise is not stated.
+        """
         scale = self.full_scale()
         along = [self.along(k) for k in range(len(self.records))]
         if scale is None or any(a is None for a in along):
@@ -282,7 +285,7 @@ class MeasurementModel(ForwardModel):
                 x=a[1],
                 branch=self.branch(k),
                 misfit=misfit[self.row_record == k],
-                sd=self.noise.sd[self.row_record == k],
+                sd=self.noise.sd[self.row_record == k] * shown.get(str(r.name), 1.0),
                 scale=float(scale[k]),
             )
             for k, (r, a) in enumerate(zip(self.records, along, strict=True))

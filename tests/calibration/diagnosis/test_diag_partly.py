@@ -364,9 +364,30 @@ def test_noise_from_point_to_point_is_not_scatter_between_repeats() -> None:
 
 
 def test_a_records_own_deviation_is_as_large_as_repeats_differ() -> None:
-    (bends,) = deviations(curves(trend=0.0, spread=0.0, seed=1, tests=1), 0.01)
-    whole = np.sqrt(np.sum(np.array(bends) ** 2, axis=0).mean())
-    assert whole == pytest.approx(2.0 * 0.01, rel=0.1)
+    (columns,) = deviations(curves(trend=0.0, spread=0.0, seed=1, tests=1), [0.01, 0.02, 0.0, 0.005, 0.0])
+    assert len(columns) == 3
+    assert [np.sqrt(np.mean(c**2)) for c in columns] == pytest.approx([0.02, 0.04, 0.01], rel=0.1)
+
+
+@pytest.mark.parametrize(("size", "records"), [(0.01, 8), (0.02, 8), (0.03, 12)])
+def test_a_scatter_of_the_load_cell_is_found_in_full(size: float, records: int) -> None:
+    """Each test has its own gain: the deviation is small in most of the curve, large at its end."""
+    x, branch = np.linspace(1.0, 1.5, 40), np.zeros(40, dtype=np.int64)
+    curve = (x - x**-2) / (1.5 - 1.5**-2)
+    found, bends = [], []
+    for seed in range(30):
+        random = np.random.default_rng(seed)
+        misfits = [
+            size * random.standard_normal() * curve + 0.002 * random.standard_normal(40)
+            for _ in range(records)
+        ]
+        layers = layers_of([repeat(n, x, branch, m, sd=0.002) for n, m in enumerate(misfits)])
+        assert layers.repeat is not None
+        found.append(layers.repeat**2)
+        bends.append(layers.bends)
+    assert np.sqrt(np.mean(found)) == pytest.approx(size * np.sqrt(np.mean(curve**2)), rel=0.15)
+    # of degrees 0 to 2 alone, as the gain's
+    assert np.sqrt(np.mean(np.array(bends)[:, 3:] ** 2)) < 0.1 * size
 
 
 # -- the file --
