@@ -236,35 +236,75 @@ class MeasurementModel(ForwardModel):
         """Complete `noise` before the search, and return its summary; to be called once.
 
         The scatter between repeats (`layers_of`) is estimated and added as nuisances, if the kind has no
-        repeats of its own, no nuisances and no correlated rows. With source "data", records whose scatter
-        contradicts the stated noise get the standard deviation that they show.
+        repeats of its own, no nuisances and no correlated rows. With repeats, records whose noise is not
+        stated get the standard deviation that they show together (`_shown_together`). With
+        source "data", records whose scatter contradicts the stated noise get the one that each shows.
         """
         stated = all(self.states_noise(k) for k in range(len(self.records)))
         repeats, layers = self.repeated(), Layers()
         points = tuple(self.point_noise())
         if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
-            curves = self._curves({p.record: min(p.factor, 1.0) for p in points if not p.stated})
-            layers = layers_of(curves)
+            shown = self._shown_together(points)
+            layers = layers_of(self._curves(shown))
             repeats = layers.repeats
-            if layers.repeat:
-                rows = [self.row_record == k for k in range(len(self.records))]
-                columns = []
-                for own, bends in zip(rows, deviations(curves, layers.bends), strict=True):
-                    for bend in bends:
-                        columns.append(np.zeros(len(own)))
-                        columns[-1][own] = bend
-                self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
+            if repeats:
+                points = self._rescale(shown, points)
+            self.take_scatter(layers)
         known = NoiseKnown(
             known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
         )
         if source == "stated":
             return known
         factors = {p.record: p.factor for p in points if p.contradicts}
-        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
-        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
+        self._rescale(factors, points)
         # a median of third differences tells a third of what as many independent points would
         dof = float(np.median([p.points for p in points])) / 3.0 if factors else known.dof
         return replace(known, source="data", dof=dof)
+
+    def _shown_together(self, points: Sequence[PointNoise]) -> dict[str, float]:
+        """Factors on the standard deviation of records whose noise is not stated, by name: one noise a test.
+
+        An assumed noise exceeds what scatters from point to point, for errors that all points of a record
+        share: with repeats, these are the scatter between them. One in proportion to the largest value of its
+        record would give records that read too high a smaller weight.
+        """
+        by_name = {p.record: p for p in points if not p.stated}
+        groups: dict[Hashable, list[PointNoise]] = {}
+        for k, r in enumerate(self.records):
+            test = self.repeat_of(k)
+            if test is not None and str(r.name) in by_name:
+                groups.setdefault((r.material, test), []).append(by_name[str(r.name)])
+        factors: dict[str, float] = {}
+        for group in groups.values():
+            shown = np.sqrt(np.average([p.shown**2 for p in group], weights=[p.points for p in group]))
+            sd = min(float(shown), float(np.median([p.assumed for p in group])))
+            factors |= {p.record: sd / p.assumed for p in group}
+        return factors
+
+    def _rescale(self, factors: Mapping[str, float], points: Sequence[PointNoise]) -> tuple[PointNoise, ...]:
+        """Multiply the standard deviation of records by a factor; the points with what is assumed then."""
+        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
+        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
+        return tuple(replace(p, assumed=p.assumed * factors.get(p.record, 1.0)) for p in points)
+
+    def take_scatter(self, layers: Layers, *, predicted: bool = False) -> None:
+        """Add the scatter between repeats to `noise`: as nuisances, or to the standard deviation.
+
+        The own deviation of a record that is fitted is estimated with the fit; a predicted record is off by
+        it.
+        """
+        if not layers.repeat:
+            return
+        columns = []
+        for k, bends in enumerate(deviations(self._curves({}), layers.bends)):
+            for bend in bends:
+                columns.append(np.zeros(len(self.row_record)))
+                columns[-1][self.row_record == k] = bend
+        if predicted:
+            sd = np.sqrt(self.noise.sd**2 + np.sum(np.square(columns), axis=0))
+            self.noise = replace(self.noise, sd=sd)
+        else:
+            self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
 
     def _curves(self, shown: Mapping[str, float]) -> list[Curve]:
         """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity.

@@ -19,6 +19,7 @@ from calibration.errors import InputError, OptionError
 from calibration.experiment.model import Experiment, Trial
 from calibration.measurements._effect import Candidate
 from calibration.measurements._kinds import Kind, kind_of
+from calibration.measurements._layers import Layers
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.prediction._interval import Calibrated, all_moduli, of_unseen, predict_records
@@ -113,13 +114,14 @@ def _same_kind(kind: Kind, wanted: Experiment) -> bool:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Fitted:
-    """Fits to the trials that are fitted, by name; the model's options; what was found, for people; fits of
-    what the trials cannot tell from the extension."""
+    """Fits to the trials that are fitted, by name; the model's options; what was found, for people; scatter
+    between repeats; fits of what the trials cannot tell from the extension."""
 
     model: MeasurementModel
     options: dict[str, Any]
     fits: dict[Name, Fit]
     sentence: str
+    layers: Layers
     alternatives: tuple[Fit, ...] = ()
 
 
@@ -146,7 +148,12 @@ def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fi
         best = {e.names: e.fit for e in sorted(found.finding.explanations, key=lambda e: -e.score)}
         alternatives = tuple(best[names] for names in sorted(alike))
     return _Fitted(
-        model=model, options=asked[id(model)], fits=fits, sentence=found.sentence(), alternatives=alternatives
+        model=model,
+        options=asked[id(model)],
+        fits=fits,
+        sentence=found.sentence(),
+        layers=found.noise.layers,
+        alternatives=alternatives,
     )
 
 
@@ -158,6 +165,7 @@ def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMess
     options: dict[str, Any] = {} if law == AUTO else dict(zip(("law", "terms"), law_of(law), strict=True))
     model = make(**options)
     on_progress("fitting the baseline")
+    known = model.settle_noise("stated")
     start = State(u=model.start())
     model.update_nuisances(start)
     base = best = fit(model, start)
@@ -168,14 +176,15 @@ def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMess
         ]
         tried = [f for c in forms if (f := _with(model, best, c)) is not None]
         if not tried:
-            known = ", ".join(dict.fromkeys(c.effect for c in model.candidates if c.at == "all"))
-            raise OptionError("extend", name, f"expected effects that these trials can show, of {known}")
+            others = ", ".join(dict.fromkeys(c.effect for c in model.candidates if c.at == "all"))
+            raise OptionError("extend", name, f"expected effects that these trials can show, of {others}")
         best = min(tried, key=lambda f: f.chi2)
     return _Fitted(
         model=model,
         options=options,
         fits={BASELINE: base, EXTENDED: best},
         sentence=f"The extension was asked for, not found: {best.label}.",
+        layers=known.layers,
     )
 
 
@@ -228,7 +237,13 @@ def _within(
         model = model_of(together, kind=kind.name, workers=workers, **found.options)
         fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
         train = model.subset(fold, others=True)
+        train.take_scatter(found.layers)
         on_progress("predicting")
+
+        def ahead() -> MeasurementModel:
+            test = model.subset(fold, others=False)
+            test.take_scatter(found.layers, predicted=True)
+            return test
 
         def again(old: Fit, name: str) -> tuple[MeasurementModel, Calibrated]:
             known = dict(zip(found.model.names, old.state.u, strict=True))
@@ -238,7 +253,7 @@ def _within(
             new = fit(train, start, old.candidates)
             if not new.converged:
                 notes.append(f"the fit of {name} did not converge: {new.message}")
-            return model.subset(fold, others=False), _calibrated(model, fold, new, name)
+            return ahead(), _calibrated(model, fold, new, name)
 
         made: dict[Name, tuple[MeasurementModel, Calibrated]] = {
             name: again(old, name) for name, old in found.fits.items()
@@ -247,9 +262,7 @@ def _within(
         if alternatives:
             others = ", ".join(known.label for _, known in alternatives)
             notes.append(f"the trials that were fitted do not tell {made[EXTENDED][1].label} from {others}")
-        records = predict_records(
-            model.subset(fold, others=False), made, {EXTENDED: alternatives} if alternatives else {}
-        )
+        records = predict_records(ahead(), made, {EXTENDED: alternatives} if alternatives else {})
     except ValueError as error:
         raise InputError(f"{experiment.folder}: the trials cannot be predicted: {error}") from error
     materials = model.baseline.materials
