@@ -14,7 +14,7 @@ from calibration.experiment.model import CouponTrial, Experiment
 from calibration.export import _readme, _registry
 from calibration.export._convert import convert
 from calibration.export._job import PARTS, Job, Target, Written
-from calibration.export._response import elastic
+from calibration.export._response import elastic, long_time
 from calibration.export._scene import predict, scene_of, solve
 from calibration.parameters import part_of
 from calibration.prediction._cards import BASE, CardFile, read_cards
@@ -187,6 +187,7 @@ def _job(
     with_scene: bool, refinement: float, most_loss: float,
 ) -> tuple[Job, list[str], float]:  # fmt: skip
     """The job, notes on the card, and the largest stretch at which the law was compared."""
+    material = long_time(material)
     plain = elastic(material)
     bare = replace(plain, fibres=None)
     notes = _notes(file, experiment)
@@ -223,7 +224,7 @@ def _job(
         most_poisson=target.most_poisson,
     )
     keeps = frozenset(target.keeps(material, conversion.form))
-    job = Job(name=file.material, material=_stated(material, plain), conversion=conversion, keeps=keeps)
+    job = Job(name=file.material, material=material, conversion=conversion, keeps=keeps)
     if scene is None or found is None:
         return job, notes, high
     if "fibres" in keeps:
@@ -231,11 +232,6 @@ def _job(
         found = solve(scene)
     prediction = predict(scene, found, job.form, element_error=target.element_share(refinement))
     return replace(job, scene=scene, prediction=prediction), notes, high
-
-
-def _stated(material: Material, plain: Material) -> Material:
-    """The material with long-time moduli in its law, and a viscosity whose fractions still fit them."""
-    return replace(material, parameters=plain.parameters)
 
 
 def _notes(file: CardFile, experiment: Experiment | None) -> list[str]:

@@ -34,6 +34,9 @@ def writes(form: Form, material: Material) -> Form | None:  # noqa: ARG001 - one
     return replace(form, volume="linear") if plain else None
 
 
+SMALLEST = 1e-6  # k2 of fibres: the programs divide by it
+
+
 def has_fibres(material: Material, form: Form) -> bool:
     """The programs' fibres are those of tisim, and lie in a neo-Hookean body alone."""
     known = isinstance(material.fibres, HolzapfelGasserOgden)

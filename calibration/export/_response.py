@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from calibration.export._forms import Form
 from tisim import Material, laws
-from tisim.parts import MaterialPoints
+from tisim.parts import HolzapfelGasserOgden, MaterialPoints, OgdenRoxburgh, Prony
 
 Array = NDArray[np.float64]
 Stress = Callable[[Array], Array]  # principal stretches (n, 3) to principal nominal stresses (n, 3) [Pa]
@@ -42,13 +42,32 @@ class Difference:
     largest: float
 
 
-def elastic(material: Material) -> Material:
-    """The material without memory, its law with the long-time modulus; fibres stay."""
-    plain = replace(material, viscosity=None, softening=None)
+def long_time(material: Material) -> Material:
+    """The same material, stated by its long-time moduli: of the law, the fibres and the softening energy."""
     if material.viscosity is None:
-        return plain
-    left = material.viscosity.spectrum().equilibrium
-    return plain if left == 1.0 else replace(plain, parameters=scaled(plain, left))
+        return material
+    spectrum = material.viscosity.spectrum()
+    left = spectrum.equilibrium
+    if left == 1.0:
+        return material
+    fractions, times = ((tuple(float(v) for v in x)) for x in (spectrum.strengths / left, spectrum.times))
+    fibres, softening = material.fibres, material.softening
+    if isinstance(fibres, HolzapfelGasserOgden):
+        fibres = replace(fibres, k1=left * fibres.k1)
+    if isinstance(softening, OgdenRoxburgh):
+        softening = replace(softening, m=left * softening.m)
+    return replace(
+        material,
+        parameters=scaled(material, left),
+        viscosity=Prony(fractions=fractions, times=times, modulus="long-time"),
+        fibres=fibres,
+        softening=softening,
+    )
+
+
+def elastic(material: Material) -> Material:
+    """The material after relaxation, without memory; fibres stay."""
+    return replace(long_time(material), viscosity=None, softening=None)
 
 
 def scaled(material: Material, factor: float) -> dict[str, float | tuple[float, ...]]:

@@ -19,6 +19,7 @@ from calibration.export._response import (
     compare,
     elastic,
     fibre_loss,
+    long_time,
     nominal,
     percent,
     softening_loss,
@@ -29,7 +30,7 @@ from calibration.export._scene import _tip_forces
 from calibration.export.targets import calculix, febio
 from tisim import Material, laws
 from tisim.mesh import beam_mesh
-from tisim.parts import Spectrum
+from tisim.parts import MaterialPoints, Spectrum
 
 OGDEN = {"mu": (8e3, -3e3), "alpha": (3.0, -2.0), "bulk": 6e5}
 PARAMETERS = {"ogden": OGDEN, "mooney-rivlin": {"c10": 8e3, "c01": 2e3, "bulk": 6e5}}
@@ -131,6 +132,32 @@ def test_losses_of_parts_have_the_size_of_the_parts() -> None:
     assert moduli.shear_modulus == pytest.approx(0.6 * 2e4)
     assert moduli.bulk_modulus == pytest.approx(6e6)
     assert percent(0.0314) == "3.1 %"
+
+
+def test_long_time_moduli_state_the_same_material() -> None:
+    """Law, fibres and softening energy together: the same stress at once, relaxed, and in unloading."""
+    card = replace(
+        material("mooney-rivlin"),
+        viscosity=tisim.Prony(fractions=(0.3, 0.2), times=(1.0, 30.0), modulus="instantaneous"),
+        fibres=tisim.HolzapfelGasserOgden(direction=(1.0, 0.0, 0.0), k1=5e3, k2=0.5),
+        softening=tisim.OgdenRoxburgh(r=2.0, m=800.0, beta=0.1),
+    )
+    stated = long_time(card)
+    assert stated.viscosity.modulus == "long-time"  # type: ignore[union-attr]
+    assert long_time(stated) is stated
+    stresses = []
+    for m in (card, stated):
+        points, found = MaterialPoints(m, 1), []
+        for stretch, seconds in ((1.3, 1e-6), (1.3, 1.0), (1.3, 1e4), (1.1, 1e-6), (1.1, 1e4)):
+            F = np.diag([stretch, stretch**-0.5, stretch**-0.5])[None]
+            points.begin(seconds)
+            found.append(points.evaluate(F)[1][0])
+            points.accept(F)
+        stresses.append(found)
+    np.testing.assert_allclose(stresses[1], stresses[0], rtol=1e-9, atol=1e-6)
+    relaxed = elastic(card)
+    assert relaxed == elastic(stated)
+    assert relaxed.fibres.k1 == 2.5e3  # type: ignore[union-attr]
 
 
 def test_fewer_terms_relax_alike() -> None:

@@ -160,6 +160,16 @@ def test_softening_and_fibres_go_to_those_who_have_them(tmp_path: Path) -> None:
     assert any("fibres are left out: along them" in s for s in gone.lost)
 
 
+def test_abaqus_fibres_without_stiffening_and_their_volumetric_part(tmp_path: Path) -> None:
+    """A diagnosis' fibres have k2 = 0, by which HOLZAPFEL divides; it has a volumetric part of its own."""
+    fibres = {"kind": "holzapfel-gasser-ogden", "direction": [1, 0, 0], "k1_Pa": 5000.0, "k2": 0.0}
+    done = export.export_card(card(tmp_path, fibres=fibres), to="abaqus", out=tmp_path / "a", scene=False)
+    deck = text(tmp_path / "a" / "material.inp").splitlines()
+    at = next(k for k, line in enumerate(deck) if line.startswith("*ANISOTROPIC"))
+    assert [float(x) for x in deck[at + 1].split(",")[2:5]] == [5000.0, 1e-6, 0.0]
+    assert any("K/2 ((J^2 - 1)/2 - ln J)" in s for s in done.lost)
+
+
 @pytest.mark.parametrize("program", ["febio", "abaqus", "sofa", "mujoco"])
 def test_scenes_hold_the_beam(program: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The files are complete, have the beam's weight, and clamp its end; tisim's solution is not computed."""

@@ -7,6 +7,7 @@ fibres in a neo-Hookean body (kappa 0: not dispersed).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -31,13 +32,20 @@ def keeps(material: Material, form: Form) -> set[str]:
     return found
 
 
+def writes(form: Form, material: Material) -> Form | None:
+    found = _inp.writes(form, material)
+    if found is None or material.fibres is None or not _inp.has_fibres(material, found):
+        return found
+    return replace(found, volume="square")  # of HOLZAPFEL; the others have (J - 1)^2
+
+
 def material_lines(job: Job) -> list[str]:
     form, m = job.form, job.material
     out = [f"** {job.name}: Pa, kg/m3, s", "*MATERIAL, NAME=SOFT", "*DENSITY", f"{_inp.number(m.density)},"]
     moduli = ", MODULI=LONG TERM" if "viscosity" in job.keeps else ""
     if "fibres" in job.keeps:
         assert isinstance(m.fibres, HolzapfelGasserOgden)
-        constants = [form.terms[0][1], 2.0 / form.bulk, m.fibres.k1, m.fibres.k2, 0.0]
+        constants = [form.terms[0][1], 2.0 / form.bulk, m.fibres.k1, max(m.fibres.k2, _inp.SMALLEST), 0.0]
         # directions belong to the orientation that the section names; the fibres are its first axis
         a = m.fibres.axis()
         across = np.cross(a, np.eye(3)[int(np.abs(a).argmin())])
@@ -93,7 +101,7 @@ def write(job: Job, folder: Path) -> Written:
 TARGET = Target(
     name="abaqus",
     title="Abaqus/Standard 2021 and newer",
-    writes=_inp.writes,
+    writes=writes,
     keeps=keeps,
     write=write,
     # C3D10H has pressures as tisim's element has, continuous or not

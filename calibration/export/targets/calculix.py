@@ -22,7 +22,6 @@ from tisim import Material
 from tisim.parts import HolzapfelGasserOgden
 
 FURTHER = 1e3  # D of the further terms, so large that they carry no pressure; 0 would be set to a default
-SMALLEST = 1e-6  # k2: the program divides by it
 SECONDS = 3600.0
 
 
@@ -37,7 +36,14 @@ def material_lines(job: Job) -> list[str]:
         assert isinstance(fibres, HolzapfelGasserOgden)
         axis = fibres.axis()
         axis = axis if axis[2] >= 0.0 else -axis  # its third component is taken as positive
-        constants = [form.terms[0][1], 2.0 / form.bulk, axis[0], axis[1], fibres.k1, max(fibres.k2, SMALLEST)]
+        constants = [
+            form.terms[0][1],
+            2.0 / form.bulk,
+            axis[0],
+            axis[1],
+            fibres.k1,
+            max(fibres.k2, _inp.SMALLEST),
+        ]
         out = [out[0], "*MATERIAL, NAME=ELASTIC_FIBER_SOFT", "*USER MATERIAL, CONSTANTS=6"]
         out += _inp.rows(constants)
     else:
