@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis.engine.fitting import Fit
+from calibration.diagnosis.engine.screening import basis_of
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._effect import Candidate
 
@@ -82,7 +84,7 @@ def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[st
     """Card entry of the material without the effects, as a reference for predictions."""
     numbers, fit = diagnosis.baseline, diagnosis.finding.baseline
     n = len(fit.state.u)
-    covariance = fit.covariance()[:n, :n] * max(numbers.reduced_chi2, 1.0)
+    covariance = fit.covariance()[:n, :n] * widened(fit, modulus.direction) ** 2
     return {
         "law": diagnosis.subject.law,
         "shear_modulus": rounded(numbers.shear_modulus_Pa[name]),
@@ -94,16 +96,33 @@ def baseline_entry(name: str, modulus: Modulus, diagnosis: Diagnosis) -> dict[st
     }
 
 
+def own_misfit(fit: Fit, direction: Array) -> tuple[float, float]:
+    """Sum of squares of the whitened residuals that a modulus affects, and their degrees of freedom.
+
+    direction : change of u (n,) that increases ln G of a material by 1. The misfit of other materials is
+        theirs.
+    """
+    change = np.abs(fit.linear.by_u @ direction)
+    rows = change > 1e-9 * change.max(initial=0.0)
+    leverage = (basis_of(fit.jacobian)[rows] ** 2).sum()
+    return float(fit.z[rows] @ fit.z[rows]), float(np.count_nonzero(rows) - leverage)
+
+
+def widened(fit: Fit, direction: Array) -> float:
+    """Factor on a modulus' standard deviation: root of the reduced chi-square of its misfit, at least 1."""
+    chi2, free = own_misfit(fit, direction)
+    return sqrt(max(chi2 / free, 1.0)) if free > 0.0 else 1.0
+
+
 def model_error(fit: Fit, direction: Array) -> float:
     """Relative error of the moduli with the same whitened sum of squares as the misfit in excess of noise.
 
-    direction : change of u (n,) that increases ln G by 1. Returns 0 if the residuals do not depend on it.
+    direction : as in `own_misfit`. Returns 0 if the residuals do not depend on it.
     """
-    used = np.linalg.norm(fit.jacobian, axis=0) > 0.0
-    excess = fit.chi2 - (len(fit.z) - np.count_nonzero(used))
+    chi2, free = own_misfit(fit, direction)
     change = fit.linear.by_u @ direction
     size = float(change @ change)
-    return rounded(float(np.sqrt(max(excess, 0.0) / size))) if size > 0.0 else 0.0
+    return rounded(sqrt(max(chi2 - free, 0.0) / size)) if size > 0.0 else 0.0
 
 
 def valid_range(candidate: Candidate, diagnosis: Diagnosis) -> dict[str, list[float]]:

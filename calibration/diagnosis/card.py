@@ -8,7 +8,7 @@ can read it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import prod, sqrt
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from calibration.diagnosis._card_numbers import (
     moduli,
     rounded,
     valid_range,
+    widened,
 )
 from calibration.diagnosis._handed_on import becomes, handed_on, law_of
 from calibration.diagnosis._rig_file import FORMAT, USES, corrects
@@ -66,7 +67,7 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     numbers = diagnosis.extended or diagnosis.baseline
     handed = handed_on(name, diagnosis)
     stated = shear * prod(h.modulus_ratio for h in handed.values())
-    relative_sd = modulus.relative_sd * sqrt(max(numbers.reduced_chi2, 1.0))
+    relative_sd = modulus.relative_sd * widened(diagnosis.fit, modulus.direction)
     if diagnosis.model_error is not None:
         relative_sd = max(relative_sd, diagnosis.model_error.shear_modulus_relative_sd.get(name, 0.0))
     own, parameters = _law(name, stated / shear, bulk_ratio * shear, stated, diagnosis)
@@ -87,9 +88,10 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
-        " root of the reduced chi-square where that is above 1, and at least the modulus' spread over"
-        " resampled measurements where the data are explained in part or not at all. The bulk"
-        f" modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the effects."
+        " root of the reduced chi-square of the material's own records where that is above 1, and at least"
+        " the modulus' spread over resampled measurements where the data are explained in part or not at all."
+        f" The bulk modulus is {bulk_ratio:g} shear moduli by assumption, but for a compressibility among the"
+        " effects."
     )
     content["model_error"] = model_error(diagnosis.fit, modulus.direction)
     content["baseline"] = baseline_entry(name, modulus, diagnosis)

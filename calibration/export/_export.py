@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from calibration.export._job import PARTS, Job, Target, Written
 from calibration.export._response import elastic, long_time
 from calibration.export._scene import predict, scene_of, solve
 from calibration.parameters import part_of
-from calibration.prediction._cards import BASE, CardFile, read_cards
+from calibration.prediction._cards import BASE, FITTED_TO, CardFile, read_cards
 from tisim import Material, laws
 
 MOST_LOSS = 0.5  # of stress, rms
@@ -25,7 +24,6 @@ OWN = (
     0.005  # what a program's own tolerances and time steps may make of a beam, a fraction of its displacement
 )
 RANGE = (0.8, 1.25)  # principal stretches, where there is neither a scene nor a coupon
-NAMED = re.compile(r"experiment '(?P<name>[^']*)' \(sha256 (?P<digest>[0-9a-f]{16})\)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,7 +234,7 @@ def _job(
 
 def _notes(file: CardFile, experiment: Experiment | None) -> list[str]:
     found = []
-    named = NAMED.search(str(file.provenance or ""))
+    named = FITTED_TO.search(str(file.provenance or ""))
     if named and experiment is None:
         found.append(
             f"the card was calibrated on experiment {named['name']!r}: give --experiment FOLDER for a scene"

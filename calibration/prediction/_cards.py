@@ -6,6 +6,7 @@ are known.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -56,6 +57,10 @@ class _Effect(_Lenient):
 
 class _Uncertainty(_Lenient):
     shear_modulus_high: NotNegative | None = None
+
+
+# in a card's provenance: what it was fitted to
+FITTED_TO = re.compile(r"experiment '(?P<name>[^']*)' \(sha256 (?P<digest>[0-9a-f]{16})\)")
 
 
 class _Baseline(_Lenient):

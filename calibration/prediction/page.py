@@ -25,7 +25,9 @@ PAGE = """\
 {% block body %}
 <h1>Prediction: {{ title }}</h1>
 <p><strong>{{ sentence }}</strong></p>
-<p>Predicted by {{ source }}; no model was fitted to the trials below.</p>
+<p>Predicted by {{ source }};
+{% if fitted %}the models were fitted to these trials: this is no prediction.
+{% else %}no model was fitted to the trials below.{% endif %}</p>
 {% for note in notes %}
 <p class="note">{{ note }}</p>
 {% endfor %}
@@ -75,6 +77,7 @@ def render(found: Prediction, shown: Picture) -> str:
         title=found.experiment.name,
         sentence=found.sentence(),
         source=found.source,
+        fitted=found.fitted,
         notes=found.notes,
         shown=shown,
         headings=_headings(found),

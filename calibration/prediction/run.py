@@ -19,6 +19,7 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.parameters import OPTIONS
 from calibration.prediction._cards import (
+    FITTED_TO,
     CardFile,
     CardModel,
     baseline_model,
@@ -34,6 +35,7 @@ Name = Literal["baseline", "extended"]
 BASELINE: Final = "baseline"
 EXTENDED: Final = "extended"
 NAMES: tuple[Name, ...] = (BASELINE, EXTENDED)
+SAME_MODULUS = 1e-4  # of ln G: cards have six digits
 NARROW = 0.8  # of the points in their 95 % intervals, below which these are said to be too narrow
 
 
@@ -51,6 +53,7 @@ class Prediction:
     records : measured and predicted.
     notes : what a reader must know, a sentence each.
     seconds : that it took.
+    fitted : True if the models were fitted to this very experiment.
     """
 
     experiment: Experiment
@@ -61,6 +64,7 @@ class Prediction:
     records: Sequence[Record]
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    fitted: bool = False
 
     @property
     def models(self) -> tuple[Name, ...]:
@@ -107,8 +111,9 @@ class Prediction:
             )
             skill, inside = self.skill(mine), self.coverage(mine, self.models[-1])
             quality = "" if skill is None else f" (skill {skill:.2f})"
+            unseen = ", to which the models were fitted" if self.fitted else " that no model was fitted to"
             text = (
-                f"In {trials} trial{'s' * (trials > 1)} ({kind}) that no model was fitted to, {best} rms"
+                f"In {trials} trial{'s' * (trials > 1)} ({kind}){unseen}, {best} rms"
                 f"{''.join(f', {o}' for o in others)}, and noise alone would be"
                 f" {per_si * self.noise(mine):.3g} {unit}{quality}. {inside:.0%} of the points lie within the"
                 " 95 % intervals"
@@ -167,11 +172,20 @@ def from_cards(
     labels: dict[Name, str] = {}
     errors: dict[str, dict[str, float]] = {}
     moduli: dict[str, dict[str, float]] = {}
-    for material in wanted:
-        models = _of_card(known[material], yardstick.get(material))
+    of_material = {m: _of_card(known[m], yardstick.get(m)) for m in wanted}
+    if any(len(models) == len(NAMES) for models in of_material.values()):
+        # what was found in one material only leaves another's model as it was
+        of_material = {
+            m: {**models, EXTENDED: models[BASELINE]} if set(models) == {BASELINE} else models
+            for m, models in of_material.items()
+        }
+    for material, models in of_material.items():
         for name, m in models.items():
             old = labels.get(name, m.label)
-            labels[name] = m.label if old in (m.label, BASELINE) else f"{old}, {m.label}"
+            if m.label == BASELINE:
+                labels.setdefault(name, old)
+            else:
+                labels[name] = m.label if old in (m.label, BASELINE) else f"{old}, {m.label}"
             errors.setdefault(name, {})[material] = m.model_error
             moduli.setdefault(name, {})[material] = m.law.moduli(m.u).shear_modulus
             notes += m.notes
@@ -188,6 +202,13 @@ def from_cards(
             f"{experiment.folder / 'experiment.yaml'}: trials: expected some that can be compared"
             + ("" if domain is None else f" as {domain}")
         )
+    fitted = any(
+        (found := FITTED_TO.search(str(known[m].provenance or ""))) is not None
+        and experiment.digest.startswith(found["digest"])
+        for m in wanted
+    )
+    if fitted:
+        notes.append("the cards were fitted to these measurements: this is a fit, not a prediction")
     if len({frozenset(r.predicted) for r in records}) > 1:
         raise InputError(f"{cards}: expected a baseline in all cards, or in none")
     return Prediction(
@@ -199,17 +220,32 @@ def from_cards(
         records=records,
         notes=tuple(dict.fromkeys(notes)),
         seconds=time.monotonic() - begun,
+        fitted=fitted,
     )
 
 
 def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[Name, CardModel]:
-    """The models that a card has; a card without effects and parts is its own baseline."""
+    """The models that a card has: one, if it has no effects and parts, and the modulus of its baseline.
+
+    With another modulus, a fault of the rig or of the camera was found, and taken out of it.
+    """
     extended = extended_model(card)
     base = baseline_model(card) if yardstick is None else replace(extended_model(yardstick), label=BASELINE)
     if base is None:
         return {EXTENDED: extended}
-    plain = yardstick is None and not card.effects and not extended.law.parts
-    return {BASELINE: base} if plain else {BASELINE: base, EXTENDED: extended}
+    if yardstick is not None or card.effects or extended.law.parts:
+        return {BASELINE: base, EXTENDED: extended}
+    moved = extended.u[0] - base.u[0]  # of ln G
+    if extended.law.law == base.law.law and abs(moved) < SAME_MODULUS:
+        return {BASELINE: base}
+    note = (
+        f"the modulus of {card.material} differs by {100.0 * (np.exp(moved) - 1.0):+.2g} % from that of its"
+        " baseline, since faults of the rig or the camera were taken out of its measurements"
+    )
+    return {
+        BASELINE: base,
+        EXTENDED: replace(extended, label="corrected for the rig", notes=(*extended.notes, note)),
+    }
 
 
 def _by_cards(

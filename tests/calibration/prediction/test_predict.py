@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -101,6 +102,50 @@ def test_a_card_predicts_what_it_was_not_fitted_to(measured: Path, tmp_path: Pat
     assert whole.models["baseline"].sd["model error"] > 4.0 * sd["parameters"]
     curve = found.records[1].curves["extended"]
     assert all(low < p < high for low, p, high in zip(curve.low, curve.predicted, curve.high, strict=True))
+
+
+def test_a_card_corrected_for_its_rig_predicts_with_its_own_modulus(measured: Path, tmp_path: Path) -> None:
+    """Without effects and parts, but with another modulus than the baseline: this is what the card is for."""
+    where = card(tmp_path / "cards", viscosity=None)
+    found = calibration.predict(measured, cards=where).prediction
+    assert {m: found.shear_moduli[m]["S0"] for m in found.models} == pytest.approx(
+        {"baseline": 1.2 * G, "extended": G}
+    )
+    assert found.labels == {"baseline": "baseline", "extended": "corrected for the rig"}
+    assert any("the modulus of S0 differs by -17 % from that of its baseline" in n for n in found.notes)
+    plain = content()["baseline"] | {"shear_modulus": G}
+    same = calibration.predict(
+        measured, cards=card(tmp_path / "same", viscosity=None, baseline=plain)
+    ).prediction
+    assert same.models == ("baseline",)
+
+
+def test_a_cause_in_one_material_leaves_the_others_model_as_it_was(measured: Path, tmp_path: Path) -> None:
+    """Two materials, of which one has a part: both have both models, so that they can be compared."""
+    where = card(tmp_path / "cards")
+    other = content(viscosity=None, material="S1", baseline=content()["baseline"] | {"shear_modulus": G})
+    (where / "S1.yaml").write_text(yaml.safe_dump(other), encoding="utf-8")
+    folder = tmp_path / "two"
+    shutil.copytree(measured, folder)
+    file = folder / "experiment.yaml"
+    raw = yaml.safe_load(file.read_text(encoding="utf-8"))
+    raw["materials"]["S1"] = {}
+    raw["trials"].append({**raw["trials"][0], "id": "other", "material": "S1"})
+    file.write_text(yaml.safe_dump(raw), encoding="utf-8")
+    found = calibration.predict(folder, cards=where).prediction
+    assert found.models == ("baseline", "extended")
+    (own,) = (r for r in found.records if r.trial == "other")
+    np.testing.assert_array_equal(own.predicted["extended"].value, own.predicted["baseline"].value)
+    assert found.labels["extended"] == "neo-hookean + prony"
+
+
+def test_measurements_that_a_card_was_fitted_to_are_no_prediction(measured: Path, tmp_path: Path) -> None:
+    digest = calibration.read_experiment(measured).digest
+    where = card(tmp_path / "cards", provenance=f"Fitted to experiment 'x' (sha256 {digest[:16]}) by a test.")
+    found = calibration.predict(measured, cards=where).prediction
+    assert found.fitted
+    assert ", to which the models were fitted, the extended model" in found.sentence()
+    assert any("this is a fit, not a prediction" in n for n in found.notes)
 
 
 def test_a_wide_band_leaves_the_lines_to_be_seen(measured: Path, tmp_path: Path) -> None:
