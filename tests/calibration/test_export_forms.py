@@ -246,5 +246,15 @@ def test_calculix_has_the_cards_fibres(tmp_path: Path) -> None:
     assert force > 1.15 * nominal(stress_of(replace(m, fibres=None)), "uniaxial", np.array([1.3]))[0]
 
 
+@pytest.mark.parametrize("direction", [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 3.0, 0.0), (2.0, 3.0, 0.0)])
+def test_calculix_takes_any_fibre_in_the_plane(direction: tuple[float, float, float]) -> None:
+    """Its user material stops at a sum of squares above 1 of the two components that it reads."""
+    fibres = tisim.HolzapfelGasserOgden(direction=direction, k1=6e3, k2=0.8)
+    lines = calculix.material_lines(job(replace(material("neo-hookean"), fibres=fibres)))
+    row = [float(x) for x in lines[lines.index("*USER MATERIAL, CONSTANTS=6") + 1].split(",") if x.strip()]
+    assert row[2] ** 2 + row[3] ** 2 <= 1.0
+    assert row[3] / row[2] == pytest.approx(direction[1] / direction[0])
+
+
 def test_coupled_forms_are_tisims_laws() -> None:
     assert set(COUPLED) <= set(laws.all_names())

@@ -189,6 +189,8 @@ BAD: list[tuple[str, str, str]] = [
     ),
     # YAML beyond limits
     (TINY + "seed: 4\n", "line 14: key seed is given twice (first at line 4)", ""),
+    ("yes: 1\ntrue: 2\n", "line 2: key true is given twice (first at line 1)", ""),
+    ("1: a\n0x1: b\n", "line 2: key 0x1 is given twice (first at line 1)", ""),
     (
         TINY.replace("radius_mm: 2.5,", "radius_mm: 2.5, radius_mm: 3,"),
         "key radius_mm is given twice",

@@ -254,3 +254,36 @@ def test_other_files_that_cannot_be_read(tmp_path: Path, capfd: pytest.CaptureFi
     with pytest.raises(MeshError, match=r"elements of type wedge: expected tetra or"):
         tisim.read(wedge)
     assert capfd.readouterr().out == ""
+
+
+def test_names_in_quotes_and_comments_in_latin(tmp_path: Path) -> None:
+    """A dot in a quoted name is no prefix of an instance, and what follows it no node."""
+    sets = '*NSET, NSET="Set 1.2"\n10, 1\n*NSET, NSET=B\n"Set 1.2", 3\n'
+    path = tmp_path / "latin.inp"
+    path.write_bytes(("** Körper\n" + CUBE.replace("** a comment\n", sets)).encode("latin-1"))
+    mesh = tisim.read(path, unit="mm")
+    assert len(mesh.node_sets["b"]) == 3
+    assert set(mesh.node_sets["set 1.2"].tolist()) < set(mesh.node_sets["b"].tolist())
+
+
+def gmsh_41(first: str, second: str) -> str:
+    """Two tetrahedra, and a face of each as an entity with physical groups."""
+    names = '$PhysicalNames\n4\n2 2 "clamp"\n2 3 "glued"\n2 4 "tip"\n3 1 "body"\n$EndPhysicalNames\n'
+    surfaces = "".join(f"{k} 0 0 0 1 1 1 {groups} 0\n" for k, groups in ((1, first), (2, second)))
+    nodes = "3 1 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n"
+    elements = "3 4 1 4\n2 1 2 1\n1 1 3 2\n2 2 2 1\n2 2 3 5\n3 1 4 2\n3 1 2 3 4\n4 2 3 4 5\n"
+    return (
+        f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{names}"
+        f"$Entities\n0 0 2 1\n{surfaces}1 0 0 0 1 1 1 1 1 2 1 2\n"
+        f"$EndEntities\n$Nodes\n1 5 1 5\n{nodes}$EndNodes\n$Elements\n{elements}$EndElements\n"
+    )
+
+
+def test_groups_of_gmsh_4(tmp_path: Path) -> None:
+    """A surface in two groups is in both, a reversed one (a negative tag) in its own."""
+    mesh = tisim.read(written(tmp_path, gmsh_41("2 2 3", "1 -4"), "two.msh"))
+    assert {"body", "clamp", "glued", "tip"} <= set(mesh.node_sets)
+    np.testing.assert_array_equal(mesh.node_sets["clamp"], mesh.node_sets["glued"])
+    assert len(mesh.facet_sets["glued"]) == len(mesh.facet_sets["tip"]) == 1
+    with pytest.raises(MeshError, match="expected every entity in a physical group"):
+        tisim.read(written(tmp_path, gmsh_41("1 2", "0"), "one.msh"))

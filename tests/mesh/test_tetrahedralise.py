@@ -145,3 +145,23 @@ def test_slivers_in_a_plane_are_left_out():
     assert_positive(flattened)
     assert len(flattened.facet_sets["top"]) == 2
     assert (flattened.nodes[:4, 2] == 1).all()
+
+
+@pytest.mark.parametrize(
+    ("move", "plane"),
+    [((0.0, 0.0, 0.0248), "top"), ((0.0, 0.0, 0.0051), "base"), ((0.0149, 0.0, 0.012), "sides")],
+)
+def test_an_inclusion_closer_to_a_plane_than_the_tolerance_is_refused(move, plane):
+    """The tissue between them would be taken for a part of the plane, and the block would have a hole."""
+    box = trimesh.creation.box((0.01, 0.01, 0.01)).apply_translation(move)
+    with pytest.raises(
+        MeshError, match=f"comes within .* of the block's {plane}, which the mesh's tolerance"
+    ):
+        block_around(box, size=(0.04, 0.04, 0.03), edge_length=0.006)
+
+
+@pytest.mark.slow
+def test_a_plain_block_of_few_edges_is_meshed():
+    """With edges of 5 mm the default tolerance alone fails in most attempts."""
+    mesh = block_around(None, size=(0.04, 0.04, 0.03), edge_length=0.005)
+    assert quality(mesh).volume == pytest.approx(0.04 * 0.04 * 0.03, rel=1e-6)

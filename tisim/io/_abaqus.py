@@ -162,8 +162,10 @@ def _labels(rows: list[list[str]], generate: bool) -> list[int | str]:
 
 
 def _label(text: str) -> int | str:
-    """A label or the name of a set, without the prefix of an instance."""
-    own = text.strip('"').lower().rpartition(".")[2]
+    """A label or the name of a set, without the prefix of an instance; a name in quotes stays as it is."""
+    if text.startswith('"'):
+        return text.strip('"').lower()
+    own = text.lower().rpartition(".")[2]
     return int(own) if own.isdigit() else own
 
 
@@ -196,10 +198,13 @@ def _lines(path: Path, depth: int = 0) -> Iterator[tuple[str, str]]:
     """
     if depth > _DEEPEST:
         raise MeshError(f"{path}: expected at most {_DEEPEST} files that include one another")
+    content = path.read_bytes()
     try:
-        lines = path.read_text(encoding="utf-8-sig", errors="strict").splitlines()
+        lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise MeshError(f"{path}: expected a text file") from None
+        if b"\0" in content:
+            raise MeshError(f"{path}: expected a text file") from None
+        lines = content.decode("latin-1").splitlines()
     unfinished = ""
     for number, line in enumerate(lines, start=1):
         where, text = f"{path}: line {number}", unfinished + line.strip()

@@ -178,10 +178,21 @@ def _check_keys(node: yaml.MappingNode) -> None:
     for key, _ in node.value:
         if not isinstance(key, yaml.ScalarNode):
             raise _fault("key", "expected a plain word as key", key)
-        first = seen.setdefault((key.tag, key.value), key)
+        first = seen.setdefault(_value(key), key)
         if first is not key:
             text = f"key {_short(key)} is given twice (first at line {first.start_mark.line + 1})"
             raise _fault("twice", text, key, str(key.value))
+
+
+def _value(key: yaml.ScalarNode) -> Hashable:
+    """What a key stands for: 1 and 0x1, or yes and true, are the same in a mapping."""
+    if key.tag == "tag:yaml.org,2002:str":
+        return str(key.value)
+    try:
+        value = _Loader("", Limits()).construct_object(key)
+    except (YamlError, yaml.YAMLError):  # said where the values are made
+        return key.tag, key.value
+    return value if isinstance(value, Hashable) else (key.tag, key.value)
 
 
 def _fault(problem: Problem, text: str, node: yaml.Node, key: str = "") -> YamlError:

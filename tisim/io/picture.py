@@ -224,6 +224,6 @@ def _finish(figure: Any, axes: Any, flat: list[Array], scale: Any, title: str, *
     axes.text(left + 0.5 * bar, y - 0.012 * width, f"{bar:g} mm", ha="center", va="top", color="#333333")
     if whole:
         axes.text(axes.dataLim.x1, y - 0.012 * width, "grey: at rest", ha="right", va="top", color="#888888")
-    axes.set_title(title, fontsize=11)
+    axes.set_title(title, fontsize=11, parse_math=False)
     mappable = ScalarMappable(norm=scale, cmap=_colour_map())
     figure.colorbar(mappable, ax=axes, label="displacement [mm]", shrink=0.75, pad=0.02)

@@ -181,6 +181,10 @@ def meshio_file(path: Path) -> Any:
             return meshio.read(path, file_format="gmsh" if path.suffix.lower() == ".msh" else "vtu")
     except (Exception, SystemExit) as error:  # its parsers may raise any error on a broken file
         said = " ".join(str(error).split()) or type(error).__name__
+        if "Incompatible cell data" in said and path.suffix.lower() == ".msh":
+            raise MeshError(
+                "expected every entity in a physical group: save the mesh without Gmsh's option to save all"
+            ) from None
         name = "Gmsh mesh (2.2, 4.0 or 4.1)" if path.suffix.lower() == ".msh" else "VTU file"
         raise MeshError(f"expected a {name}, which it is not ({said[:120]})") from None
 
@@ -223,20 +227,30 @@ def _read_meshio(path: Path) -> _Raw:
 
 def _groups(m: Any) -> dict[str, list[tuple[int, Index]]]:
     """Cells of a meshio mesh by name of their set, as pairs of a block and its rows."""
-    found: dict[str, list[tuple[int, Index]]] = {}
+    found: dict[str, dict[int, Index]] = {}
+
+    def add(name: str, block: int, rows: Any) -> None:
+        own = found.setdefault(name, {})
+        own[block] = np.union1d(own.get(block, np.empty(0, dtype=np.int64)), np.asarray(rows, dtype=np.int64))
+
     tags = m.cell_data.get("gmsh:physical")
     if tags is not None:
         named = {(int(dim), int(tag)): name for name, (tag, dim) in m.field_data.items()}
         for k, (block, values) in enumerate(zip(m.cells, tags, strict=True)):
-            for tag in np.unique(values[values > 0]):
+            numbers = np.abs(values)  # negative for a surface that is reversed
+            for tag in np.unique(numbers[numbers > 0]):
                 name = named.get((block.dim, int(tag)), f"physical-{block.dim}d-{tag}")
-                found.setdefault(name, []).append((k, np.flatnonzero(values == tag)))
+                add(name, k, np.flatnonzero(numbers == tag))
+        for name, blocks in m.cell_sets.items():  # of Gmsh 4.1: also where an entity is in several groups
+            for k, rows in enumerate(blocks):
+                if not name.startswith("gmsh:") and rows is not None and len(rows):
+                    add(name, k, rows)
     for name, arrays in m.cell_data.items():
         if not name.startswith("gmsh:") and all(map(is_mask, arrays)):
             for k, values in enumerate(arrays):
                 if np.any(values):
-                    found.setdefault(name.removeprefix("set_"), []).append((k, np.flatnonzero(values)))
-    return found
+                    add(name.removeprefix("set_"), k, np.flatnonzero(values))
+    return {name: list(blocks.items()) for name, blocks in found.items()}
 
 
 def is_mask(values: Any) -> bool:

@@ -13,8 +13,8 @@ from tisim.mesh.surface import Units, checked_surface
 from tisim.mesh.tetrahedralise import body_from_surface
 
 # fTetWild makes a different mesh each time. A mesh in which moving nodes onto the planes inverts or flattens
-# an element is made again (the least scaled Jacobian is 0.09 to 0.12 in most, below 0.02 in about one of some
-# hundreds).
+# an element is made again, with half of the tolerance if none was asked for (with blocks of 6 to 8 edges the
+# first one often has nodes within the tolerance of one another).
 _ATTEMPTS = 5
 _LEAST_SHAPE = 0.02
 
@@ -61,13 +61,13 @@ def block_around(
         raise MeshError(f"the block's size must be three positive lengths in metres, got {size!r}")
     block = trimesh.creation.box(extents=size)
     block.apply_translation((0.0, 0.0, size[2] / 2))
-    if tolerance is None:
-        tolerance = edge_length / 50
+    reach = edge_length / 50 if tolerance is None else tolerance
     if surface is not None:
-        block = _cut_out(block, checked_surface(surface, units=units), size)
+        block = _cut_out(block, checked_surface(surface, units=units), size, 2 * reach)
     for attempt in range(_ATTEMPTS):
-        body = body_from_surface(block, edge_length=edge_length, tolerance=tolerance, allow_cavities=True)
-        mesh = _onto_planes(body, size, 2 * tolerance)
+        own = reach if tolerance is not None else reach / 2**attempt
+        body = body_from_surface(block, edge_length=edge_length, tolerance=own, allow_cavities=True)
+        mesh = _onto_planes(body, size, 2 * own)
         if scaled_jacobian(mesh).min() > _LEAST_SHAPE:
             break
         if attempt == _ATTEMPTS - 1:
@@ -116,7 +116,12 @@ def _onto_planes(body: Mesh, size: tuple[float, float, float], reach: float) -> 
     )
 
 
-def _cut_out(block: Any, inclusion: Any, size: tuple[float, float, float]) -> Any:
+def _cut_out(block: Any, inclusion: Any, size: tuple[float, float, float], thinnest: float) -> Any:
+    """The block without the inclusion; MeshError unless it is further than `thinnest` [m] from the planes.
+
+    Thinner tissue would be taken for a part of a plane. The inclusion may stand on the base, or reach below
+    it.
+    """
     low, high = inclusion.bounds
     if high[2] <= 0:
         raise MeshError("the inclusion lies below the block, whose base is z = 0")
@@ -124,6 +129,14 @@ def _cut_out(block: Any, inclusion: Any, size: tuple[float, float, float]) -> An
         raise MeshError(f"the inclusion reaches z = {high[2]:.4g} m, the block's top is at {size[2]:.4g} m")
     if (np.maximum(np.abs(low[:2]), np.abs(high[:2])) >= np.array(size[:2]) / 2).any():
         raise MeshError("the inclusion reaches the block's sides: move it inwards, or take a larger block")
+    gaps = {"top": size[2] - high[2], "base": low[2] if low[2] > 0 else np.inf}
+    gaps["sides"] = (np.array(size[:2]) / 2 - np.maximum(np.abs(low[:2]), np.abs(high[:2]))).min()
+    plane = min(gaps, key=lambda name: gaps[name])
+    if gaps[plane] <= thinnest:
+        raise MeshError(
+            f"the inclusion comes within {gaps[plane]:.2g} m of the block's {plane}, which the mesh's"
+            f" tolerance does not resolve: ask for a tolerance below {gaps[plane] / 2:.2g} m"
+        )
     import trimesh
 
     try:

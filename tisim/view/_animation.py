@@ -102,7 +102,7 @@ def _picture(view: View, frame: int, colour: str | None, width: int, turn: float
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.axis("off")
     size = 11.0 * min(1.0, width / 640.0)
-    axes.set_title("\n".join(textwrap.wrap(view.title, max(20, width // 9))), fontsize=size)
+    axes.set_title("\n".join(textwrap.wrap(view.title, max(20, width // 9))), fontsize=size, parse_math=False)
     figure.supxlabel(view.labels[frame], fontsize=size)
     if chosen is not None:
         from matplotlib.cm import ScalarMappable

@@ -34,7 +34,7 @@ def material_lines(job: Job) -> list[str]:
     out = [f"** {job.name}: Pa, kg/m3", "*MATERIAL, NAME=SOFT"]
     if "fibres" in job.keeps:
         assert isinstance(fibres, HolzapfelGasserOgden)
-        axis = fibres.axis()
+        axis = (1.0 - 1e-9) * fibres.axis()  # the program refuses a rounded sum of squares above 1
         axis = axis if axis[2] >= 0.0 else -axis  # its third component is taken as positive
         constants = [
             form.terms[0][1],

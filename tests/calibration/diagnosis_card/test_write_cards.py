@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from _folders import coupon_entry, write_experiment
 from card_cases import MODULI, bench, diagnosis
 
+import calibration
 import tisim
 from calibration.diagnosis import Candidate, Diagnosis
 from calibration.diagnosis.card import write_cards
@@ -73,6 +75,25 @@ def test_uncertainty_and_correlation_are_the_fits(tmp_path: Path) -> None:
     expected = c[3] @ modulus / np.sqrt(c[3, 3]) / sd
     assert card.effects[0].correlations["shear_modulus"] == pytest.approx(expected, rel=1e-4)
     assert abs(expected) > 0.1
+
+
+def test_a_materials_card_has_its_own_misfit(tmp_path: Path) -> None:
+    """M1 differs from the law by 5 %, M0 by its noise: the error of M0 does not depend on its neighbour."""
+    random = np.random.default_rng(5)
+    stretch = np.linspace(1.0, 1.5, 40)
+    tables, trials = {}, []
+    for name, wave in (("M0", 0.0), ("M1", 0.05)):
+        stress = 30.0 * (stretch - stretch**-2) * (1.0 + wave * np.sin(12.0 * stretch))
+        stress = stress + 0.05 * random.standard_normal(40)
+        tables[f"{name}.csv"] = {"stretch": stretch, "nominal_stress_kPa": stress}
+        entry = coupon_entry(name, f"{name}.csv", material=name, stress_sd_kPa=0.05)
+        trials.append({key: value for key, value in entry.items() if key != "stretch_sd"})
+    experiment = calibration.read_experiment(write_experiment(tmp_path / "two", trials, tables=tables))
+    found = calibration.diagnose(experiment, law="neo-hookean", gain=False, workers=1).diagnosis
+    write_cards(tmp_path / "cards", found, experiment)
+    errors = [content(tmp_path / "cards" / f"{name}.yaml")["model_error"] for name in ("M0", "M1")]
+    assert errors[0] < 0.002
+    assert errors[1] > 0.01
 
 
 def test_each_effect_goes_where_it_belongs(tmp_path: Path) -> None:

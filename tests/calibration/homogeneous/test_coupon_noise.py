@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from _folders import coupon_entry, write_experiment
 
+import calibration
 from calibration.experiment.model import CouponTrial, Experiment, MaterialBelief
 from calibration.measurements.homogeneous._scatter import grows, slope
 from calibration.parameters import parametrisation
@@ -128,3 +130,42 @@ def test_error_bars_hold_the_scatter_between_specimens() -> None:
     assert np.median([f.shear_modulus_sd for f in alike]) == pytest.approx(
         one.shear_modulus_sd / 2.0, rel=0.1
     )
+
+
+def repeats(folder: Path, *, seed: int, count: int, gain: float, stated: bool) -> Path:
+    """Repeats of a pull on one neo-Hookean specimen, each with its own gain, and white noise of 0.2 %."""
+    random = np.random.default_rng(seed)
+    stretch = np.linspace(1.0, 1.5, 40)
+    trials, tables = [], {}
+    for k in range(count):
+        own = SHEAR * (1.0 + gain * random.standard_normal())
+        stress = own * (stretch - stretch**-2) + 0.002 * SHEAR * random.standard_normal(40)
+        tables[f"r{k:02d}.csv"] = {"stretch": stretch, "nominal_stress_kPa": 1e-3 * stress}
+        entry = coupon_entry(f"r{k:02d}", f"r{k:02d}.csv", specimen="A", stress_sd_kPa=2e-6 * SHEAR)
+        for key in ("stretch_sd", "stress_sd_kPa")[: 1 if stated else 2]:
+            del entry[key]
+        trials.append(entry)
+    return write_experiment(folder / f"repeats-{seed}-{stated}", trials, tables=tables)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_clean_repeats_have_no_cause(stated: bool, tmp_path: Path) -> None:
+    """Ordinary scatter of the load cell, whether the lab states the noise from point to point or not."""
+    verdicts = []
+    for seed in range(920, 926):
+        folder = repeats(tmp_path, seed=seed, count=8, gain=0.01, stated=stated)
+        found = calibration.diagnose(calibration.read_experiment(folder), gain=False, workers=1)
+        verdicts.append(found.diagnosis.finding.verdict)
+    assert verdicts.count("none") >= 5, verdicts
+
+
+def test_predicted_repeats_scatter_as_the_fitted_ones(tmp_path: Path) -> None:
+    """Intervals of trials that are predicted hold the scatter between the repeats that were fitted."""
+    shares = []
+    for seed in range(930, 936):
+        folder = repeats(tmp_path, seed=seed, count=12, gain=0.03, stated=True)
+        found = calibration.predict(
+            folder, calibrate="r0[0-7]", predict="r0[89],r1?", law="neo-hookean", workers=1
+        ).prediction
+        shares.append(found.coverage(found.records, found.models[0]))
+    assert np.mean(shares) > 0.8, shares
