@@ -21,6 +21,7 @@ REPEATS = 4  # least number of repeats of one test: mean and trend take two degr
 GRID = 24  # points along the records at which they are compared
 NOTABLE = 4.0  # least ratio of the mean square of a trend in the order of repeats to that by chance
 BEND = 4  # highest polynomial degree of a record's own deviation
+WIDEST = 3.0  # most by which the variance of a scatter from few repeats is increased
 CERTAIN = 3.0  # standard errors by which the scatter between repeats exceeds what noise makes of it
 
 
@@ -75,6 +76,17 @@ class Layers:
     specimen: float | None = None
     repeats: tuple[str, ...] = ()
     dof: float = 0.0
+
+    @property
+    def expected(self) -> tuple[float, ...]:
+        """`bends` of another test, whose scatter is known from few repeats: of Student's t distribution.
+
+        Its variance is dof / (dof - 2) times that of the estimate; WIDEST at most, where that is not finite.
+        """
+        if not self.bends:
+            return ()
+        wider = min(self.dof / (self.dof - 2.0), WIDEST) if self.dof > 2.0 else WIDEST
+        return tuple(sqrt(wider) * bend for bend in self.bends)
 
     def to_json(self) -> dict[str, float]:
         found = {"repeat": self.repeat, "order": self.order, "specimen": self.specimen}

@@ -296,7 +296,7 @@ class MeasurementModel(ForwardModel):
         if not layers.repeat:
             return
         columns = []
-        for k, bends in enumerate(deviations(self._curves({}), layers.bends)):
+        for k, bends in enumerate(deviations(self._curves({}), layers.expected)):
             for bend in bends:
                 columns.append(np.zeros(len(self.row_record)))
                 columns[-1][self.row_record == k] = bend

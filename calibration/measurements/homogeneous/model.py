@@ -105,9 +105,6 @@ class HomogeneousModel(MeasurementModel):
         self.trials = [t for t in experiment.trials if isinstance(t, CouponTrial)]
         if not self.trials:
             raise InputError("experiment.yaml: trials: expected a coupon")
-        for t in self.trials:
-            if not np.any(t.stress):
-                raise InputError(f"trial {t.id}: expected a stress, all values are 0")
         self.experiment = experiment
         self.effects = dict(effects or {})
         courses = baseline is not None and bool(baseline.law.parts)

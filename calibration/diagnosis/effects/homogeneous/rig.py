@@ -41,17 +41,18 @@ STRAIN_OFFSET = HomogeneousEffect(
 
 
 MOST_OF_RIG = 0.25
+MOST_COMPLIANT = 1e-5  # [1/Pa], if no record has a stress
 
 
 def _bounds_machine_compliance(records: Sequence[Record]) -> tuple[float, float]:
-    largest = min(float(np.abs(r.stress).max()) for r in records)
-    return 0.0, MOST_OF_RIG / largest
+    largest = [size for r in records if (size := float(np.abs(r.stress).max())) > 0.0]
+    return 0.0, MOST_OF_RIG / min(largest) if largest else MOST_COMPLIANT
 
 
 MACHINE_COMPLIANCE = HomogeneousEffect(
     effect=catalogue.MACHINE_COMPLIANCE,
     step=1e-9,
-    bounds=(0.0, 1e-5),
+    bounds=(0.0, MOST_COMPLIANT),
     prior_scale=2e-8,
     bounds_in=_bounds_machine_compliance,
     yields=1.0,
