@@ -8,9 +8,8 @@ inherited. `calibration.diagnosis.engine` searches these models for causes, `cal
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
@@ -20,9 +19,7 @@ from calibration.errors import OptionError
 from calibration.measurements._baseline import scatter_basis
 from calibration.measurements._effect import Candidate, HandedOn, Occurrence
 from calibration.measurements._folds import folds_of
-from calibration.measurements._forward_model import ForwardModel
-from calibration.measurements._layers import Curve, Layers, deviations, layers_of
-from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, Source, roughness
+from calibration.measurements._noisy_model import NoisyModel
 from calibration.measurements._state import State
 from calibration.parameters import Parameters
 
@@ -56,39 +53,12 @@ class Record(Protocol):
     def ranges(self) -> Mapping[str, tuple[float, float]]: ...
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Shown:
-    """A record for display, point by point.
-
-    Attributes
-    ----------
-    axis : label of x, with its unit.
-    x : abscissa in that unit, shape (p,).
-    quantity : name of the compared quantity.
-    unit : unit of the quantity in files, and the number of these units per SI unit.
-    measured : measured values [SI], shape (p,); 0 if distances between simulated and measured are compared.
-    of_rows : matrix from the record's rows to the points, shape (p, rows); None for the identity.
-    """
-
-    axis: str
-    x: Array
-    quantity: str
-    unit: tuple[str, float]
-    measured: Array
-    of_rows: Array | None = None
-
-    def points(self, rows: Array) -> Array:
-        """Map values of the record's rows, shape (rows,) or (rows, k), to the points."""
-        return rows if self.of_rows is None else np.asarray(self.of_rows @ rows)
-
-
-class MeasurementModel(ForwardModel):
-    """Measurements of one kind, for fit and diagnosis; attributes in addition to those of `ForwardModel`.
+class MeasurementModel(NoisyModel):
+    """Measurements of one kind, for fit and diagnosis; attributes in addition to those of `NoisyModel`.
 
     Attributes
     ----------
     kind : name of the kind of measurement.
-    unit : unit of `distance_rms` in files, and the number of these units per SI unit.
     max_causes : largest number of causes named together; more could replace a cause that the catalogue lacks.
     compares_specimens : True if different moduli of specimens of one material count as a lack of fit.
     experiments : experiments that a lab can do next, the cheapest first.
@@ -99,7 +69,6 @@ class MeasurementModel(ForwardModel):
     """
 
     kind: ClassVar[str]
-    unit: ClassVar[tuple[str, float]]
     max_causes: ClassVar[int] = 3
     compares_specimens: ClassVar[bool] = True
     experiments: ClassVar[Sequence[Any]] = ()
@@ -109,10 +78,6 @@ class MeasurementModel(ForwardModel):
     noise_scale: float = 1.0
 
     # -- what a kind brings --
-
-    @abstractmethod
-    def start(self) -> Array:
-        """Start coordinates of the baseline's fit, shape (n,); ValueError if there are none."""
 
     @abstractmethod
     def _discrepancies(self) -> Mapping[str, Array]:
@@ -185,180 +150,6 @@ class MeasurementModel(ForwardModel):
     def noise_freedom(self) -> float:
         """Degrees of freedom of the noise's sd: few if estimated from few points, infinite if stated."""
         return np.inf
-
-    def point_noise(self) -> list[PointNoise]:
-        """Noise of each record from point to point: scatter of the misfit at `start` about a smooth curve.
-
-        Empty if the rows are correlated. Records with fewer than FEWEST third differences, without scatter,
-        or without a solution at the start are left out. ValueError if there is no start.
-        """
-        if self.noise.covariance is not None:
-            return []
-        misfit = self._misfit([State(u=self.start())])[0]
-        found = []
-        for k, r in enumerate(self.records):
-            rows = (self.row_record == k) & self.noise.used & np.isfinite(misfit)
-            sd = self.noise.sd[rows]
-            factor, points = roughness(misfit[rows] / sd)
-            if points >= FEWEST and factor > 0.0:
-                assumed = float(np.median(sd))
-                found.append(
-                    PointNoise(
-                        record=str(r.name),
-                        stated=self.states_noise(k),
-                        assumed=assumed,
-                        shown=factor * assumed,
-                        points=points,
-                    )
-                )
-        return found
-
-    def states_noise(self, k: int) -> bool:
-        """True if the lab states the noise of record `k`."""
-        return not getattr(self.records[k], "estimated", False)
-
-    def repeated(self) -> tuple[str, ...]:
-        """Names of the tests from whose repeats this kind's own noise model has the scatter between tests.
-
-        () if there are none.
-        """
-        return ()
-
-    def repeat_of(self, k: int) -> Hashable | None:
-        """Key (mode, range, rate, ...) that record `k` shares with its repeats, beside material and specimen.
-
-        None if no record of this kind is a repeat of another.
-        """
-        del k
-        return None
-
-    def settle_noise(self, source: Source) -> NoiseKnown:
-        """Complete `noise` before the search, and return its summary; to be called once.
-
-        The scatter between repeats (`layers_of`) is estimated and added as nuisances, if the kind has no
-        repeats of its own, no nuisances and no correlated rows. With repeats, records whose noise is not
-        stated get the standard deviation that they show together (`_shown_together`). With
-        source "data", records whose scatter contradicts the stated noise get the one that each shows.
-        """
-        stated = all(self.states_noise(k) for k in range(len(self.records)))
-        repeats, layers = self.repeated(), Layers()
-        points = tuple(self.point_noise())
-        if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
-            shown = self._shown_together(points)
-            layers = layers_of(self._curves(shown))
-            repeats = layers.repeats
-            if repeats:
-                points = self._rescale(shown, points)
-            self.take_scatter(layers)
-        known = NoiseKnown(
-            known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
-        )
-        if source == "stated":
-            return known
-        factors = {p.record: p.factor for p in points if p.contradicts}
-        self._rescale(factors, points)
-        # a median of third differences tells a third of what as many independent points would
-        dof = float(np.median([p.points for p in points])) / 3.0 if factors else known.dof
-        return replace(known, source="data", dof=dof)
-
-    def _shown_together(self, points: Sequence[PointNoise]) -> dict[str, float]:
-        """Factors on the standard deviation of records whose noise is not stated, by name: one noise a test.
-
-        An assumed noise exceeds what scatters from point to point, for errors that all points of a record
-        share: with repeats, these are the scatter between them. One in proportion to the largest value of its
-        record would give records that read too high a smaller weight.
-        """
-        by_name = {p.record: p for p in points if not p.stated}
-        groups: dict[Hashable, list[PointNoise]] = {}
-        for k, r in enumerate(self.records):
-            test = self.repeat_of(k)
-            if test is not None and str(r.name) in by_name:
-                groups.setdefault((r.material, test), []).append(by_name[str(r.name)])
-        factors: dict[str, float] = {}
-        for group in groups.values():
-            shown = np.sqrt(np.average([p.shown**2 for p in group], weights=[p.points for p in group]))
-            sd = min(float(shown), float(np.median([p.assumed for p in group])))
-            factors |= {p.record: sd / p.assumed for p in group}
-        return factors
-
-    def _rescale(self, factors: Mapping[str, float], points: Sequence[PointNoise]) -> tuple[PointNoise, ...]:
-        """Multiply the standard deviation of records by a factor; the points with what is assumed then."""
-        by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
-        self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
-        return tuple(replace(p, assumed=p.assumed * factors.get(p.record, 1.0)) for p in points)
-
-    def take_scatter(self, layers: Layers, *, predicted: bool = False) -> None:
-        """Add the scatter between repeats to `noise`: as nuisances, or to the standard deviation.
-
-        The own deviation of a record that is fitted is estimated with the fit; a predicted record is off by
-        it.
-        """
-        if not layers.repeat:
-            return
-        columns = []
-        for k, bends in enumerate(deviations(self._curves({}), layers.expected)):
-            for bend in bends:
-                columns.append(np.zeros(len(self.row_record)))
-                columns[-1][self.row_record == k] = bend
-        if predicted:
-            sd = np.sqrt(self.noise.sd**2 + np.sum(np.square(columns), axis=0))
-            self.noise = replace(self.noise, sd=sd)
-        else:
-            self.noise = replace(self.noise, symmetric=True).with_nuisances(columns)
-
-    def _curves(self, shown: Mapping[str, float]) -> list[Curve]:
-        """Misfit of each record at `start`; empty if a record has no full scale or no driven quantity.
-
-        shown : factor on the standard deviation of records whose noise is not stated.
-        """
-        scale = self.full_scale()
-        along = [self.along(k) for k in range(len(self.records))]
-        if scale is None or any(a is None for a in along):
-            return []
-        misfit = self._misfit([State(u=self.start())])[0]
-        return [
-            Curve(
-                name=str(r.name),
-                material=r.material,
-                specimen=r.specimen,
-                test=self.repeat_of(k),
-                x=a[1],
-                branch=self.branch(k),
-                misfit=misfit[self.row_record == k],
-                sd=self.noise.sd[self.row_record == k] * shown.get(str(r.name), 1.0),
-                scale=float(scale[k]),
-            )
-            for k, (r, a) in enumerate(zip(self.records, along, strict=True))
-            if a is not None
-        ]
-
-    def full_scale(self) -> Array | None:
-        """Largest |measured value| of each record [SI], shape (records,).
-
-        None if that of any record is 0 (distances between simulated and measured are compared).
-        """
-        found = np.array([float(np.abs(self.shown(k).measured).max()) for k in range(len(self.records))])
-        return found if (found > 0.0).all() else None
-
-    def along(self, k: int) -> tuple[str, Array] | None:
-        """Driven quantity of record `k`: its name, and its values at the rows; None if it has none."""
-        del k
-        return None
-
-    def branch(self, k: int) -> NDArray[np.int64]:
-        """Number of the stroke of each row of record `k`; 0 throughout where rows are not in strokes."""
-        return np.zeros(int(np.count_nonzero(self.row_record == k)), dtype=np.int64)
-
-    def shown(self, k: int) -> Shown:
-        """Record `k` for display."""
-        rows = int(np.count_nonzero(self.row_record == k))
-        return Shown(
-            axis="row of the record",
-            x=np.arange(float(rows)),
-            quantity="simulated less measured",
-            unit=self.unit,
-            measured=np.zeros(rows),
-        )
 
     # -- lack of fit, folds, scores --
 

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from calibration.measurements._baseline import SCATTER
 from calibration.measurements._effect import Candidate
-from calibration.measurements._model import MeasurementModel, Shown
+from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noisy_model import Shown
 from calibration.measurements._state import State
 
 Array = NDArray[np.float64]

@@ -21,8 +21,9 @@ from calibration.experiment.model import Experiment, PokeTrial
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import Candidate, reaches
 from calibration.measurements._folds import fifths
-from calibration.measurements._model import MeasurementModel, Shown
+from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
+from calibration.measurements._noisy_model import Shown
 from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve

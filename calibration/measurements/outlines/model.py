@@ -19,8 +19,9 @@ from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Capture, Experiment, TracedOutline
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import Candidate
-from calibration.measurements._model import MeasurementModel, Shown
+from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
+from calibration.measurements._noisy_model import Shown
 from calibration.measurements._state import State
 from calibration.measurements.outlines._creep import CreepCurves, settled_by_moduli
 from calibration.measurements.outlines._discrepancies import discrepancies

@@ -274,7 +274,7 @@ def test_stated_noise_that_the_data_contradict_is_said() -> None:
 
 
 def test_the_noise_of_the_data_is_taken_where_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("calibration.measurements._model.FEWEST", 8)  # of 12 points per beam
+    monkeypatch.setattr("calibration.measurements._noisy_model.FEWEST", 8)  # of 12 points per beam
     small = 0.1 * noise(6)
     stated = diagnose(FakeModel(drawn=small), gain=False)
     assert stated.finding.verdict == "none"
