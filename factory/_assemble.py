@@ -214,7 +214,7 @@ def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
         "pokes_done": len(done),
         "shapes": [shape.id for shape in recipe.shapes],
         "softness": list(recipe.levels),
-        "parameter_names": _parameter_names(plan),
+        "parameter_names": list(_parameter_columns(plan)),
         "scales_with_modulus": scale_with_modulus([poke.scene for poke in plan.pokes]),
         "solver_tolerance": plan.pokes[0].scene.solver.tolerance,
         "identity": plan.identity,
@@ -237,18 +237,18 @@ def _described(plan: Plan) -> dict[str, Any]:
     return found
 
 
-def _parameter_names(plan: Plan) -> list[str]:
-    names = []
-    for key, value in plan.materials[0].parameters.items():
-        names += [f"{key}_{i + 1}" for i in range(len(value))] if isinstance(value, tuple) else [key]
-    return names
+def _parameter_columns(plan: Plan) -> dict[str, NDArray[np.float64]]:
+    """Values of each column of `parameter` by material level, in the order of the law's definition.
 
-
-def _parameters(plan: Plan, level: int) -> list[float]:
-    values: list[float] = []
-    for value in plan.materials[level].parameters.values():
-        values += value if isinstance(value, tuple) else [value]
-    return values
+    A series has as many columns as the longest of all levels; beyond a level's own terms they are 0.
+    """
+    columns: dict[str, NDArray[np.float64]] = {}
+    for key, (_, shape) in laws.get(plan.law).parameters.items():
+        rows = [np.atleast_1d(np.asarray(m.parameters[key], dtype=float)) for m in plan.materials]
+        for term in range(max(len(row) for row in rows)):
+            name = f"{key}_{term + 1}" if shape == "series" else key
+            columns[name] = np.array([row[term] if term < len(row) else 0.0 for row in rows])
+    return columns
 
 
 def _poke_arrays(
@@ -257,8 +257,9 @@ def _poke_arrays(
     """Arrays with one row per poke."""
     n = len(plan.pokes)
     pieces = (len(plan.recipe.protocol.course),)
+    parameters = np.column_stack(list(_parameter_columns(plan).values()))
     widths = {
-        "parameter": (len(_parameter_names(plan)),),
+        "parameter": parameters.shape[1:],
         "course_time": pieces,
         "course_depth": pieces,
     }
@@ -273,7 +274,7 @@ def _poke_arrays(
         arrays["poke_softness"][i] = poke.level
         arrays["poke_geometry"][i] = poke.geometry
         arrays["law"][i] = stored_laws(plan.law).index(plan.law)
-        arrays["parameter"][i] = _parameters(plan, poke.level)
+        arrays["parameter"][i] = parameters[poke.level]
         arrays["site_shared"][i] = poke.shared
         arrays["site_number"][i] = poke.site
         arrays["seed"][i] = poke.seed

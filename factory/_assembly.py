@@ -48,6 +48,10 @@ class NotCheckedError(Exception):
     """A poke cannot be checked; the text states why."""
 
 
+class NoInteriorError(Exception):
+    """No equilibrium was found inside the stored surface of a frame."""
+
+
 @dataclass(frozen=True)
 class FrameForces:
     """Nodal forces of one frame, relative to the rod's force.
@@ -93,6 +97,9 @@ class Assembled:
         Sentences, in the order of the pokes.
     not_checked : dict of int to str
         Reasons why pokes could not be checked, by index.
+    no_interior : dict of int to int
+        First frame for whose surface no interior equilibrium was found, by poke; its earlier frames are
+        checked. Either the surface is wrong or the search has failed.
     largest : FrameForces or None
         Largest values over all frames, with the frame's number 0; None if none was checked.
     """
@@ -101,6 +108,7 @@ class Assembled:
     frames: int
     faults: list[str]
     not_checked: dict[int, str]
+    no_interior: dict[int, int]
     largest: FrameForces | None
 
 
@@ -131,16 +139,19 @@ def check_assembly(
     tolerance = float(data.attributes["solver_tolerance"])
     found: dict[int, list[FrameForces]] = {}
     reasons: dict[int, str] = {}
+    lost: dict[int, int] = {}
     with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
         waiting = {
             pool.submit(_checked, data.path, int(index), tuple(plugins)): int(index) for index in chosen
         }
         for count, one in enumerate(as_completed(waiting), 1):
-            answer = one.result()
+            answer, whole = one.result()
             if isinstance(answer, str):
                 reasons[waiting[one]] = answer
             else:
                 found[waiting[one]] = answer
+                if not whole:
+                    lost[waiting[one]] = len(answer)
             if on_progress is not None:
                 on_progress(count, len(chosen))
     frames = [frame for poke in found.values() for frame in poke]
@@ -154,29 +165,39 @@ def check_assembly(
     if frames:
         names = ("inside", "free", "rod", "base")
         largest = FrameForces(0, *(max(getattr(frame, name) for frame in frames) for name in names))
-    return Assembled(len(found), len(frames), faults, dict(sorted(reasons.items())), largest)
+    return Assembled(
+        len(found), len(frames), faults, dict(sorted(reasons.items())), dict(sorted(lost.items())), largest
+    )
 
 
-def _checked(path: Path, index: int, plugins: tuple[str, ...]) -> list[FrameForces] | str:
-    """Check a poke in a worker process; return its frames, or the reason why it cannot be checked."""
+def _checked(path: Path, index: int, plugins: tuple[str, ...]) -> tuple[list[FrameForces] | str, bool]:
+    """Check a poke in a worker process; return its frames, or the reason why it cannot be checked.
+
+    The second value is False if the frames end at one without an interior equilibrium.
+    """
     from tisim.parallel.threads import one_thread
 
     import_plugins(plugins)
     with one_thread():
+        found: list[FrameForces] = []
         try:
-            return check_poke(open_dataset(path), index)
+            found.extend(check_poke(open_dataset(path), index))
         except NotCheckedError as reason:
-            return str(reason)
+            return str(reason), True
+        except NoInteriorError:
+            return found, False
+        return found, True
 
 
-def check_poke(data: Dataset, index: int) -> list[FrameForces]:
+def check_poke(data: Dataset, index: int) -> Iterator[FrameForces]:
     """Nodal forces of every frame of a poke.
 
     Raises
     ------
     NotCheckedError
-        If the material has more than its law, the mesh cannot be reproduced, or no interior equilibrium is
-        found for a stored surface.
+        If the material has more than its law, or the mesh cannot be reproduced.
+    NoInteriorError
+        If no interior equilibrium is found for a stored surface.
     """
     poke = data.poke(index)
     material = _material(data, index)
@@ -189,7 +210,6 @@ def check_poke(data: Dataset, index: int) -> list[FrameForces]:
     rod = _rod(data)
     tolerance = float(data.attributes["solver_tolerance"])
     load = np.linalg.norm(poke.rod_force, axis=1)
-    found = []
     inside = _Inside(mesh, material, surface, poke.surface - poke.surface_rest, INSIDE * tolerance * load)
     held = np.zeros(mesh.n_nodes, dtype=bool)
     held[mesh.node_sets["base"]] = True
@@ -203,16 +223,13 @@ def check_poke(data: Dataset, index: int) -> list[FrameForces]:
         def part(nodes: NDArray[np.bool_], forces: Array = forces, size: float = size) -> float:
             return float(np.linalg.norm(forces[nodes])) / size
 
-        found.append(
-            FrameForces(
-                frame=frame,
-                inside=part(~on_surface),
-                free=part(on_surface & ~held & ~touched),
-                rod=float(np.linalg.norm(forces[touched].sum(axis=0) + poke.rod_force[frame])) / size,
-                base=float(np.linalg.norm(forces[held].sum(axis=0) - poke.base_force[frame])) / size,
-            )
+        yield FrameForces(
+            frame=frame,
+            inside=part(~on_surface),
+            free=part(on_surface & ~held & ~touched),
+            rod=float(np.linalg.norm(forces[touched].sum(axis=0) + poke.rod_force[frame])) / size,
+            base=float(np.linalg.norm(forces[held].sum(axis=0) - poke.base_force[frame])) / size,
         )
-    return found
 
 
 def nodal_forces(mesh: Mesh, material: Material, x: Array) -> Array:
@@ -312,7 +329,7 @@ class _Inside:
                 at = found
             else:
                 return at
-        raise NotCheckedError(f"no equilibrium was found inside the surface of frame {frame}")
+        raise NoInteriorError
 
     def _step(self, x: Array, aim: Array, tolerance: float) -> Array | None:
         """Interior equilibrium for the surface displaced by `aim`, from x; None without convergence."""

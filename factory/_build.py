@@ -149,7 +149,7 @@ def build_dataset(
             if _is_complete(plan, target, staging, overwrite):
                 return Built(target, len(plan.pokes), 0)
             if partial:
-                return _written_so_far(plan, target, staging)
+                return _written_so_far(plan, target, staging, on_progress)
             means = _Means(
                 workers=workers, cluster=cluster, cluster_timeout=cluster_timeout, simulator=simulator
             )
@@ -180,10 +180,13 @@ def build_dataset(
         ) from error
 
 
-def _written_so_far(plan: Plan, target: Path, staging: Staging) -> Built:
+def _written_so_far(plan: Plan, target: Path, staging: Staging, on_progress: OnProgress | None) -> Built:
     """Write a store of the staged results; InputError if there are none."""
     damaged = set_damaged_aside(staging, plan.pokes)
-    missing = len(plan.pokes) - len(staging.finished())
+    done = len(staging.finished())
+    missing = len(plan.pokes) - done
+    if on_progress is not None and done:
+        on_progress(BuildProgress(done, 0, len(plan.pokes), staging))
     if missing == len(plan.pokes):
         staging.remove()
         raise InputError(f"{target}: --partial: no poke of it is finished yet: begin it without --partial")
@@ -236,7 +239,8 @@ def check_target(target: Path, *, overwrite: bool = False) -> None:
 def free_name(target: Path) -> Path:
     """First unused path beside the target: NAME-2.zarr, NAME-3.zarr ..."""
     number = 2
-    while (found := target.with_name(f"{target.stem}-{number}{target.suffix}")).exists():
+    suffix = ".zarr" if target.suffix == ".zarr" else ""
+    while (found := target.with_name(f"{target.name.removesuffix(suffix)}-{number}{suffix}")).exists():
         number += 1
     return found
 
@@ -266,27 +270,36 @@ def is_built(plan: Plan, target: Path, staging: Staging) -> bool:
     return bool(finished["pokes_done"] == finished["pokes"]) and not replaces
 
 
+def check_continues(plan: Plan, target: Path, staging: Staging) -> None:
+    """Refuse to continue what another plan began or built; changes nothing."""
+    finished, begun = root_attributes(target), staging.read_plan()
+    if begun is not None and begun != plan.identity:
+        raise _changed(f"{staging.folder}: was begun", begun, plan, target)
+    if finished is None or begun is not None or is_built(plan, target, staging):
+        return
+    if finished["fingerprint"] != plan.fingerprint:
+        raise _changed(f"{target}: was built", finished["identity"], plan, target)
+    raise InputError(
+        f"{target}: has failed pokes, and {staging.folder.name} with the others is gone: "
+        "give --overwrite to build it again"
+    )
+
+
 def _is_complete(plan: Plan, target: Path, staging: Staging, overwrite: bool) -> bool:
     """True if the target is complete; if not, prepare the building folder for this plan."""
     if overwrite:
         staging.begin(plan.identity, overwrites=target.exists())
         return False
-    finished, begun = root_attributes(target), staging.read_plan()
-    if begun is not None and begun != plan.identity:
-        raise _changed(f"{staging.folder}: was begun", begun, plan, target)
+    begun = staging.read_plan()
+    try:
+        check_continues(plan, target, staging)
+    except InputError:
+        if begun is None:
+            staging.remove()
+        raise
     if is_built(plan, target, staging):
         staging.remove()  # remains of a build killed during its clean-up, or our lock
         return True
-    if finished is not None and finished["fingerprint"] == plan.fingerprint:
-        if begun is None:
-            staging.remove()
-            raise InputError(
-                f"{target}: has failed pokes, and {staging.folder.name} with the others is gone: "
-                "give --overwrite to build it again"
-            )
-    elif finished is not None and begun is None:
-        staging.remove()
-        raise _changed(f"{target}: was built", finished["identity"], plan, target)
     if begun is None:
         staging.begin(plan.identity)
     staging.results.mkdir(exist_ok=True)

@@ -13,7 +13,7 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from factory._errors import InputError, one_line
-from factory._execution import ERROR_LENGTH, THREAD_VARIABLES, run_poke, sendable
+from factory._execution import ERROR_LENGTH, THREAD_VARIABLES, run_poke, sendable, worker_facts
 from factory._record import Outcome
 from factory.plan import PlannedPoke
 
@@ -64,6 +64,7 @@ def run_cluster(
                 n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
             )
         client = _connected(address, cluster, timeout)
+        _check_workers(client, address)
         finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
         run = os.urandom(4).hex()  # a scheduler may still remember the keys of an earlier build
         pending: dict[Any, tuple[int, Any]] = {}  # holds the futures: dask drops a result without one
@@ -105,6 +106,27 @@ def _connected(address: str, cluster: Any, timeout: float) -> Any:
             idle.check()
             silent.restart()
         time.sleep(min(0.3, silent.left()))
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """Refuse workers that would give other bytes than this process, or measure another one's time.
+
+    Workers that join later are not checked.
+    """
+    here = worker_facts()
+    for worker, found in client.run(worker_facts).items():
+        for name, wanted in here.items():
+            if found[name] != wanted:
+                raise InputError(
+                    f"--cluster {address}: worker {worker} has {name} {found[name]},"
+                    f" expected {wanted} as here"
+                )
+    for worker, about in client.scheduler_info(n_workers=-1)["workers"].items():
+        if about["nthreads"] != 1:
+            raise InputError(
+                f"--cluster {address}: worker {worker} runs {about['nthreads']} pokes at a time in one"
+                " process: expected 1 (dask worker --nthreads 1)"
+            )
 
 
 def _collected(

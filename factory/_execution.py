@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 
 from factory._errors import InputError
 from factory._record import Outcome, encode, record
-from factory.plan import PlannedPoke
+from factory.plan import PlannedPoke, versions
 from tisim.parallel.extensions import Extension, adopt, needed
 
 SIMULATOR = "tisim:simulate"
@@ -39,6 +40,18 @@ def sendable(pokes: Sequence[PlannedPoke]) -> tuple[Extension, ...]:
             "and give that with --plugin"
         )
     return found
+
+
+def worker_facts() -> dict[str, str]:
+    """Versions of what the bytes of a result depend on, in this process."""
+    from tisim.linear.direct import HAVE_PARDISO
+
+    return {
+        **versions(),
+        "scipy": importlib.metadata.version("scipy"),
+        "taichi": importlib.metadata.version("taichi"),
+        "solver": "PARDISO" if HAVE_PARDISO else "SuperLU",
+    }
 
 
 def load_simulator(name: str) -> Simulate:

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from PIL import Image
 
 from factory._sampling import grid_points
 from factory.plan import Plan
@@ -23,8 +24,20 @@ _INCLUSION: dict[str, Any] = {"facecolor": "#fdae6b", "edgecolor": "#e6550d", "a
 COLOURS = ("#08306b", "#2171b5", "#6baed6", "#9ecae1", "#c6dbef")
 
 
+_TITLE = "preview of a dataset of tisim"  # in the file, so that no other picture is replaced
+
+
+class NotOursError(Exception):
+    """A picture of another origin has the name of a preview."""
+
+
 def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
-    """Write the preview, whole or not at all: contact points, force against depth, the top at its deepest."""
+    """Write the preview, whole or not at all: contact points, force against depth, the top at its deepest.
+
+    NotOursError if the path is a picture of another origin, which stays.
+    """
+    if path.exists() and not _is_preview(path):
+        raise NotOursError(f"no preview picture: {path.name} is another picture, which stays")
     figure = Figure(figsize=(13, 4.2), layout="constrained", dpi=110)
     sites, curves, top = figure.subplots(1, 3)
     figure.suptitle(f"{plan.recipe.name}, {plan.model}: {len(traces)} of {len(plan.pokes)} pokes")
@@ -39,12 +52,20 @@ def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
     _top(plan, traces, top, figure)
     temporary = path.with_name(f".{path.name}.tmp")
     try:
-        figure.savefig(temporary, format="png")
+        figure.savefig(temporary, format="png", metadata={"Title": _TITLE})
         temporary.replace(path)
     except OSError:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+def _is_preview(path: Path) -> bool:
+    try:
+        with Image.open(path) as picture:
+            return picture.info.get("Title") == _TITLE
+    except (OSError, ValueError):  # what is not a picture was not drawn here
+        return False
 
 
 def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:

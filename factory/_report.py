@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from factory._build import BuildProgress, Built, is_built
+from factory._build import BuildProgress, Built, check_continues, is_built
 from factory._cli import duration, size_text
 from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
@@ -78,13 +78,16 @@ class Estimate:
 def estimate(plan: Plan, target: Path, workers: int, *, overwrite: bool = False) -> Estimate:
     """Estimate time and size from the ledger of the run so far, or else roughly from measured defaults.
 
-    DamagedError if the target is a damaged store that is not overwritten.
+    DamagedError if the target is a damaged store that is not overwritten; InputError if what is there is of
+    another plan.
     """
     staging = Staging(target)
     ledger = read_ledger(staging.ledger_file)
     walls = [float(entry["wall_seconds"]) for entry in ledger.values() if not entry.get("error")]
     asked = plan.recipe.protocol.depth_mm / 10.0
     each = fmean(walls) if walls else SECONDS_TO_10_MM * asked**GROWTH
+    if not overwrite:
+        check_continues(plan, target, staging)
     if overwrite:
         finished = set()
     elif is_built(plan, target, staging):
@@ -141,8 +144,8 @@ class Trace:
 
 
 def preview_path(target: Path) -> Path:
-    """Path of the preview of NAME.zarr: NAME.png beside it."""
-    return target.with_suffix(".png")
+    """Path of the preview beside a store: NAME.png for NAME.zarr, else with .png after the whole name."""
+    return target.with_name(f"{target.name.removesuffix('.zarr')}.png")
 
 
 def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Table:
@@ -317,9 +320,11 @@ class Screen:
             )
 
     def _draw(self) -> None:
-        from factory._figures import draw_preview
+        from factory._figures import NotOursError, draw_preview
 
         try:
             draw_preview(self._plan, self._traces, preview_path(self._target))
+        except NotOursError as error:
+            log.warning("%s.", error)
         except OSError as error:  # a build must not fail for its preview
             log.warning("%s.", describe_os_error(error, "no preview picture:"))

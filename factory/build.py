@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -131,7 +132,7 @@ def main(
             from tisim.parallel.pool import cores
 
             console = make_console()
-            wanted = None if levels is None else [name.strip() for name in levels.split(",")]
+            wanted = None if levels is None else split_names(levels)
             plan = make_plan(load_recipe(recipe), model, materials, levels=wanted)
             target = (out or default_target(plan.recipe.name, model, materials)).absolute()
             count = workers or cores()
@@ -162,8 +163,13 @@ def main(
     except KeyboardInterrupt:
         _report_stopped(target)
     if built.errors:
-        _report_failed(built, console)
+        _report_failed(built, console, partial=partial)
         raise typer.Exit(1)
+
+
+def split_names(text: str) -> list[str]:
+    """Names with commas between; one that has a comma itself stands in double quotes."""
+    return [name.strip() for name in next(csv.reader([text], skipinitialspace=True), [])]
 
 
 def default_target(recipe: str, model: str, materials: Path | None) -> Path:
@@ -190,11 +196,11 @@ def _report_stopped(target: Path | None) -> NoReturn:
     raise typer.Exit(130)
 
 
-def _report_failed(built: Built, console: Console) -> None:
+def _report_failed(built: Built, console: Console, *, partial: bool) -> None:
     index, text = next(iter(built.errors.items()))
     console.print(
         f"{len(built.errors)} of {built.total} pokes failed (first: poke {index}: {text}); "
-        "the same command tries them again.",
+        f"the same command{' without --partial' if partial else ''} tries them again.",
         style="yellow",
     )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -175,16 +175,15 @@ def card_path(name: str, folder: Path | None = None) -> Path:
 
 
 def card_names(folder: Path) -> list[str]:
-    """Names of the cards in a folder, sorted; other YAML files (a rig's) are skipped."""
-    names = []
-    for path in sorted(folder.glob("*.yaml")):
-        try:
-            content: dict[Any, Any] = read_mapping(path)
-        except InputError:
-            continue
-        if "material" in content and "laws" in content:
-            names.append(path.stem)
-    return names
+    """Names of the cards in a folder, sorted; YAML files without keys of a card (a rig's) are skipped.
+
+    InputError if a file cannot be read: it may be a card.
+    """
+    return [
+        path.stem
+        for path in sorted(folder.glob("*.yaml"))
+        if not {"material", "laws"}.isdisjoint(read_mapping(path))
+    ]
 
 
 def check_law(model: str) -> str:

@@ -30,7 +30,9 @@ from factory.materials import (
 )
 from factory.recipe import Recipe
 from tisim import Block, Inclusion, Material, Poke, Rod
+from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
+from tisim.parallel.extensions import digest_of_code, is_own
 from tisim.problems.indentation.kind import CONTACT, ELEMENT, leaves
 
 log = logging.getLogger(__name__)
@@ -210,6 +212,7 @@ def make_plan(
         "contact": CONTACT,
         # absent if each poke has its own solve, so that such stores stay as they were
         **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
+        **_added_code(laws, inclusions),
     }
     return Plan(
         recipe=recipe,
@@ -280,6 +283,20 @@ def _taken(card: Card) -> dict[str, Any]:
     """Effects of a card that the dataset applies, under the key "effects"; empty if there are none."""
     taken = [e.model_dump(mode="json") for e in card.effects if not e.left_out(card.material)]
     return {"effects": taken} if taken else {}
+
+
+def _added_code(materials: Sequence[Material], inclusions: Sequence[Inclusion]) -> dict[str, Any]:
+    """sha256 of the code of laws and inclusion shapes from outside tisim, under "extensions".
+
+    Empty if there are none: versions then identify the code.
+    """
+    found = {f"law {m.law}": law for m in materials if (law := added(m.law)) is not None}
+    shapes = {f"inclusion {body.kind}": type(body) for body in inclusions}
+    code = {
+        **{name: digest_of_code(*vars(law).values()) for name, law in found.items()},
+        **{name: digest_of_code(kind) for name, kind in shapes.items() if not is_own(kind)},
+    }
+    return {"extensions": dict(sorted(code.items()))} if code else {}
 
 
 def versions() -> dict[str, str]:

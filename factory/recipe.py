@@ -20,8 +20,11 @@ from pydantic import (
 from factory._bundled import recipe_names, shipped_folder
 from factory._course import Piece, check_pieces
 from factory._errors import InputError
-from factory._input import Strict, read_yaml
+from factory._input import Strict, read_yaml, validation_sentence
 from factory._shapes import Name, Natural, Positive, Room, Shape, of_its_kind, with_drawn_shapes
+
+# As experiments name materials, since `calibration.fit` names a card after its material.
+Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
 
@@ -133,7 +136,7 @@ class Recipe(Strict):
     rod: RodRecipe
     friction: Annotated[float, Field(ge=0, le=10)]
     protocol: Protocol
-    levels: Annotated[tuple[Name, ...], Field(min_length=1, alias="softness")]
+    levels: Annotated[tuple[Level, ...], Field(min_length=1, alias="softness")]
     border_mm: Natural
     cover_mm: Natural
     refinement: Annotated[float, Field(ge=0.5, le=6)] = 1.0
@@ -172,9 +175,9 @@ class Recipe(Strict):
         """Copy of the recipe at other material levels; InputError if these are not valid, distinct names."""
         try:
             return Recipe.model_validate({**self.model_dump(by_alias=True), "softness": tuple(levels)})
-        except ValidationError:
+        except ValidationError as error:
             raise InputError(
-                f"--levels {','.join(levels)}: expected different names of cards, with commas between"
+                f"material levels {', '.join(map(repr, levels))}: {validation_sentence(error)}"
             ) from None
 
 

@@ -97,7 +97,10 @@ def main(
 def _assembled(
     dataset: Path, pokes: int | None, workers: int | None, plugins: list[str], show: int, console: Console
 ) -> bool:
-    """Check by assembly with progress on stderr and print the result; True if checked without fault."""
+    """Check by assembly with progress on stderr and print the result; True if checked without fault.
+
+    A frame without an interior equilibrium counts as one.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -129,6 +132,15 @@ def _assembled(
         console.print(f"equilibrium by assembly: poke {index} is not checked: {reason}")
     if len(found.not_checked) > show:
         console.print(f"equilibrium by assembly: {len(found.not_checked) - show} more pokes are not checked")
+    for index, frame in itertools.islice(found.no_interior.items(), show):
+        console.print(
+            f"equilibrium by assembly: poke {index}: no equilibrium was found inside the surface of frame"
+            f" {frame}; it and later frames are not checked"
+        )
+    if len(found.no_interior) > show:
+        console.print(
+            f"equilibrium by assembly: of {len(found.no_interior) - show} more pokes frames are not checked"
+        )
     worst = found.largest
     if worst is not None:
         console.print(
@@ -137,7 +149,7 @@ def _assembled(
             f"inside {worst.inside:.1g}, free surface {worst.free:.1g}, sum at the rod {worst.rod:.1g}, "
             f"at the base {worst.base:.1g}"
         )
-    return not found.faults and worst is not None
+    return not found.faults and not found.no_interior and worst is not None
 
 
 app = make_app(main, EXAMPLES)

@@ -155,7 +155,8 @@ def evaluate(
         bool,
         typer.Option(
             "--transfer",
-            help="Evaluate on a dataset that the run was not trained on, on its unseen shapes.",
+            help="Evaluate on a dataset that the run was not trained on, on what is new to the run: shapes, "
+            "or contact points if it was split by site.",
         ),
     ] = False,
     baselines: Annotated[bool, typer.Option(help="Evaluate the baselines too.")] = True,

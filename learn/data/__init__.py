@@ -1,6 +1,6 @@
 """Reading the dataset: the store, its folds, frames in memory or streamed, statistics."""
 
-from learn.data.folds import FOLDS, Split, split_of, split_of_run, split_pokes
+from learn.data.folds import FOLDS, Split, contact_points, split_of, split_of_run, split_pokes
 from learn.data.loaders import Batch, MemoryDataset, StreamDataset, make_batch
 from learn.data.statistics import Statistics, statistics
 from learn.data.store import Store, open_store
@@ -13,6 +13,7 @@ __all__ = [
     "Statistics",
     "Store",
     "StreamDataset",
+    "contact_points",
     "make_batch",
     "open_store",
     "split_of",

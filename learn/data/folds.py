@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -117,6 +118,19 @@ def split_of(store: Store, recipe: SplitRecipe) -> Split:
     )
 
 
+def contact_points(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
+    """A key of the shape, first contact and direction of each poke, the same in any dataset; shape (k,).
+
+    Datasets of one recipe under several laws have the same contact points.
+    """
+    place = np.column_stack([store.path_start, store.direction])[pokes]
+    texts = (
+        f"{store.shapes[store.shape[poke]]} {' '.join(f'{v + 0.0:.9f}' for v in row)}"
+        for poke, row in zip(pokes, place, strict=True)
+    )
+    return np.array([hashlib.sha256(t.encode()).hexdigest()[:20] for t in texts], dtype="U20")
+
+
 class SplitRun(Protocol):
     """What a run knows of its split."""
 
@@ -130,6 +144,9 @@ class SplitRun(Protocol):
     def groups(self) -> dict[str, list[str]]: ...
 
     @property
+    def seen(self) -> frozenset[str]: ...
+
+    @property
     def folder(self) -> object: ...
 
 
@@ -140,12 +157,18 @@ def split_of_run(store: Store, run: SplitRun) -> Split:
     earlier rule. Shapes that the run has seen would count as unseen.
     """
     split = split_of(store, run.recipe)
-    if store.uuid == run.uuid and split.groups != run.groups:
+    if store.uuid == run.uuid and (split.groups != run.groups or _overlaps(store, split, run)):
         raise InputError(
             f"{run.folder}: was trained on other {run.recipe.split}s of {store.location} than its recipe now"
             " takes (the store was not complete, or the rule has changed): train it again"
         )
     return split
+
+
+def _overlaps(store: Store, split: Split, run: SplitRun) -> bool:
+    """True if a poke of the test part is at a contact point that the run has seen."""
+    test = np.unique(store.frame_poke[split.test])
+    return bool(np.isin(contact_points(store, test), list(run.seen)).any())
 
 
 def _groups(store: Store, by: SplitBy, seed: int) -> tuple[NDArray[np.int64], list[str]]:

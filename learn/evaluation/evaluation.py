@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store, split_of_run
+from learn.data import MemoryDataset, Split, Store, contact_points, split_of_run
 from learn.data.clouds import SurfaceField, scattered
 from learn.errors import InputError
 from learn.evaluation.intervals import (
@@ -49,22 +49,30 @@ log = logging.getLogger(__name__)
 
 
 def parts_of(store: Store, run: Run) -> Split:
-    """Parts of the run's own dataset; for another dataset, all frames of shapes that are new to the run.
+    """Parts of the run's own dataset; for another dataset, the frames of all that is new to the run.
 
-    Shapes are identified by name; those of the training and validation parts are not new. A run that was
-    split by site is tested on all frames of another dataset. InputError if no shape is new.
+    That is shapes, by name, or, for a run that was split by site, contact points: those of its training and
+    validation parts are not new. InputError if none is.
     """
     if store.uuid == run.uuid:
         return split_of_run(store, run)
     used = store.done & (store.frame_count > 0)
     names = np.array(store.shapes)[store.shape]
-    seen = run.groups["train"] + run.groups["validation"] if run.recipe.split == "shape" else []
-    test = used & ~np.isin(names, seen)
+    if run.recipe.split == "shape":
+        test = used & ~np.isin(names, run.groups["train"] + run.groups["validation"])
+    elif run.seen:
+        test = used & ~np.isin(contact_points(store, np.arange(store.pokes)), list(run.seen))
+    else:
+        raise InputError(
+            f"{run.folder}: it was split by site, and does not say which contact points it was trained on"
+            f" (version of before 2026-11-27), so that none of {store.location} is known to be new: train it"
+            " again"
+        )
     if not test.any():
         known = ", ".join(sorted(set(names[used].tolist())))
         raise InputError(
-            f"{store.location}: {run.folder} was trained on all its shapes ({known}), expected one that it "
-            "has not seen"
+            f"{store.location}: {run.folder} was trained on all its {run.recipe.split}s (shapes {known}),"
+            " expected one that it has not seen"
         )
     none = np.zeros(0, dtype=np.int64)
     rows = np.flatnonzero(test[store.frame_poke] & store.presses)

@@ -17,7 +17,7 @@ from torch import Tensor, nn
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
 from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns
-from learn.data.folds import split_of
+from learn.data.folds import contact_points, split_of
 from learn.errors import InputError
 from learn.models import MODELS, Scene, make_model, pokes_of, scene_of
 from learn.progress import OnProgress, Progress, ignore
@@ -78,8 +78,10 @@ class Trainer:
         group = process_group or ProcessGroup(0, 1, torch.device("cpu"))
         self.store, self.recipe, self.folder, self.group = store, recipe, folder, group
         self.on_progress = on_progress
-        kept = self._checkpoint(resume)
         self.split: Split = split_of(store, recipe)
+        rows = np.concatenate([self.split.train, self.split.validation])
+        self.seen = sorted(set(contact_points(store, np.unique(store.frame_poke[rows])).tolist()))
+        kept = self._checkpoint(resume)
         self.train_data = self._dataset()
         self.validation = MemoryDataset(store, self.split.validation) if group.is_main else None
         self.surfaces = (
@@ -334,6 +336,7 @@ class Trainer:
             "recipe": self.recipe.model_dump(mode="json"),
             "statistics": self.statistics.as_dict(),
             "groups": self.split.groups,
+            "seen": self.seen,
             "epoch": self.epoch,
             "domain": self.domain.model_dump(mode="json"),
         }
@@ -362,6 +365,14 @@ class Trainer:
         content = load_checkpoint(path)
         check_dataset(content, path, self.store)
         before, now = recipe_of(content, path).model_dump(), self.recipe.model_dump()
+        seen = content.get("seen", self.seen)
+        frames = content["statistics"]["frames"], len(self.split.train)
+        if content["groups"] != self.split.groups or seen != self.seen or frames[0] != frames[1]:
+            raise InputError(
+                f"{path}: was trained on {frames[0]} frames of {self.store.location}, which now has"
+                f" {frames[1]} to train on, or others (the store was not complete, or the rule has changed):"
+                " train it again with another --out"
+            )
         different = [key for key in now if before[key] != now[key]]
         if different:
             key = different[0]

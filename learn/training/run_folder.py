@@ -41,6 +41,8 @@ class Run:
     recipe, statistics : recipe and statistics that it was trained with.
     uuid, law, location : identifier, law and location of the training dataset.
     groups : shapes or sites of the parts "train", "validation" and "test".
+    seen : keys of the contact points of the first two (`learn.data.contact_points`); empty for runs trained
+        before they were recorded.
     epoch : the epoch that was kept, counted from 1.
     model : the model in evaluation mode, on the CPU.
     domain : domain of validity; None for runs trained before it was recorded (see
@@ -55,6 +57,7 @@ class Run:
     law: str
     location: str
     groups: dict[str, list[str]]
+    seen: frozenset[str]
     epoch: int
     model: Model
     domain: Domain | None = None
@@ -89,6 +92,7 @@ class _Content(BaseModel):
     recipe: dict[str, Any]
     statistics: _Statistics
     groups: dict[str, list[str]]
+    seen: list[str] = []
     epoch: Annotated[int, Field(strict=True, ge=0)]
     model: dict[str, torch.Tensor]
     domain: dict[str, Any] | None = None
@@ -198,6 +202,7 @@ def load_run(folder: Path | str) -> Run:
         law=content["law"],
         location=content["location"],
         groups=content["groups"],
+        seen=frozenset(content.get("seen", ())),
         epoch=content["epoch"],
         model=model,
         domain=None if domain is None else Domain.from_dict(domain, str(path)),

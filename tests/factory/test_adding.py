@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import linecache
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +17,7 @@ from factory._errors import InputError
 from factory.build import app as build_app
 from factory.verify import app as verify_app
 from tests.factory.conftest import ROOT, environment, run_app
+from tisim.parallel.extensions import digest_of_code
 
 RECIPE = """
 name: own
@@ -87,6 +90,23 @@ def test_it_is_read_back_and_verified_with_the_plugin(store: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     done = command("inspect", store, "--poke", "0", "--plugin", "tests.factory.plugin")
     assert "spheroid, 8, 5 mm" in done.stdout
+
+
+def test_the_code_of_shape_and_law_is_part_of_the_identity(store: Path, tmp_path: Path) -> None:
+    """Another body of a function is another dataset, wherever the module's file stands."""
+    code = factory.open_dataset(store).attributes["identity"]["extensions"]
+    assert sorted(code) == ["inclusion spheroid", "law my-law"]
+    digests = []
+    for folder, factor in (("a", 0.5), ("b", 0.5), ("b", 0.25)):
+        path = tmp_path / folder / "copied_law.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(f"def energy(i1):\n    return {factor} * half(i1)\n\n\ndef half(x):\n    return x\n")
+        linecache.checkcache()
+        digests.append(digest_of_code(runpy.run_path(str(path))["energy"]))
+    assert digests[0] == digests[1] != digests[2]
+    path.write_text(path.read_text().replace("return x", "return 2 * x"))  # a function that it calls
+    linecache.checkcache()
+    assert digest_of_code(runpy.run_path(str(path))["energy"]) not in digests
 
 
 def test_without_the_plugin_the_shape_is_named(store: Path) -> None:

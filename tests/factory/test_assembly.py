@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -68,7 +69,7 @@ def test_nodal_forces_are_the_solvers(law: str) -> None:
 
 
 def test_a_simulated_poke_is_an_equilibrium(simulated: Path) -> None:
-    found = check_poke(open_dataset(simulated), 0)
+    found = list(check_poke(open_dataset(simulated), 0))
     assert len(found) == 2
     tolerance = 5e-4  # tolerance of the solver
     assert [frame.faults(tolerance) for frame in found] == [[], []]
@@ -100,8 +101,29 @@ def test_what_is_no_equilibrium_is_a_fault(
 ) -> None:
     whole = Dataset.poke
     monkeypatch.setattr(Dataset, "poke", lambda data, index: change(whole(data, index)))
-    found = check_poke(open_dataset(simulated), 0)
+    found = list(check_poke(open_dataset(simulated), 0))
     assert [f.frame for f in found if any(fault in text for text in f.faults(5e-4))] == frames
+
+
+def test_a_surface_that_holds_no_equilibrium_is_counted(
+    simulated: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Frames before it are checked; it may be wrong, so that the command does not end with 0."""
+    whole = Dataset.poke
+
+    def folded(data: Dataset, index: int) -> PokeData:
+        poke = whole(data, index)
+        surface = poke.surface.copy()
+        surface[1, np.argmax(poke.surface_rest @ [1.0, 1.0, 10.0])] -= [0.0, 0.0, 0.02]
+        return dataclasses.replace(poke, surface=surface)
+
+    monkeypatch.setattr(Dataset, "poke", folded)
+    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    found = check_assembly(open_dataset(simulated), pokes=1, workers=1)
+    assert (found.pokes, found.frames, found.faults, found.no_interior) == (1, 1, [], {0: 1})
+    done = run_app(app, simulated, "--assembly", "--pokes", 1)
+    assert done.exit_code == 1
+    assert "poke 0: no equilibrium was found inside the surface of frame 1" in done.output
 
 
 def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
@@ -112,11 +134,11 @@ def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
     with monkeypatch.context() as patch:
         patch.setattr(_assembly, "poke_mesh", lambda **k: whole(**{**k, "refinement": 0.7}))
         with pytest.raises(NotCheckedError, match="not the one that this version of tisim makes"):
-            check_poke(data, 0)
+            next(check_poke(data, 0))
     stated = data.attributes["identity"]["materials"]["S0"]
     monkeypatch.setitem(stated, "viscosity", {"kind": "prony"})
     with pytest.raises(NotCheckedError, match="has viscosity beside its law"):
-        check_poke(data, 0)
+        next(check_poke(data, 0))
 
 
 def test_the_command_counts_what_it_checked(simulated: Path) -> None:

@@ -7,14 +7,18 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 
 from factory._errors import InputError
+from factory.build import split_names
 from factory.materials import LAWS, load_card
 from factory.plan import make_plan
-from factory.recipe import load_recipe
-from tests.factory.conftest import ROOT
+from factory.reader import open_dataset
+from factory.recipe import Recipe, load_recipe
+from learn.data import open_store
+from tests.factory.conftest import ROOT, Builder
 
 
 def _moduli(law: str, p: dict[str, Any]) -> tuple[float, float]:
@@ -112,12 +116,78 @@ def test_some_cards_missing_is_an_error_with_a_way_on(tmp_path: Path) -> None:
         InputError, match=r"S0\.5\.yaml: no material card.*has Eco, S0: give --levels Eco,S0 "
     ):
         make_plan(load_recipe("quick"), "ogden", folder)
-    with pytest.raises(InputError, match=r"--levels Eco,Eco: expected different names"):
+    with pytest.raises(
+        InputError, match=r"material levels 'Eco', 'Eco': .*softness: expected different names"
+    ):
         make_plan(load_recipe("quick"), "ogden", folder, levels=["Eco", "Eco"])
-    with pytest.raises(InputError, match=r"--levels \.\./Eco: expected different names"):
+    with pytest.raises(InputError, match=r"material levels '\.\./Eco': key softness\.0: string should match"):
         make_plan(load_recipe("quick"), "ogden", folder, levels=["../Eco"])
-    with pytest.raises(InputError, match=r"--levels : expected different names"):
+    with pytest.raises(InputError, match=r"material levels '': key softness\.0: string should match"):
         make_plan(load_recipe("quick"), "ogden", folder, levels=[""])
+
+
+def test_names_that_experiments_may_have_are_levels(tmp_path: Path) -> None:
+    """`calibration.fit` names a card after its material."""
+    folder = _own_cards(tmp_path / "cards", "Ecoflex 00-30", "gel (5%), old")
+    assert split_names('Ecoflex 00-30, "gel (5%), old"') == ["Ecoflex 00-30", "gel (5%), old"]
+    plan = make_plan(load_recipe("quick"), "ogden", folder)
+    assert plan.recipe.levels == ("Ecoflex 00-30", "gel (5%), old")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("mixture:", "mixture: : x", "not valid YAML"),
+        ("laws:", "law_s:", "key laws: this key is missing"),
+    ],
+)
+def test_a_card_that_cannot_be_read_is_not_passed_over(
+    old: str, new: str, words: str, tmp_path: Path
+) -> None:
+    folder = _own_cards(tmp_path / "cards", "Eco", "Dragon")
+    text = (folder / "Dragon.yaml").read_text()
+    assert old in text
+    (folder / "Dragon.yaml").write_text(text.replace(old, new))
+    with pytest.raises(InputError, match=rf"Dragon\.yaml: .*{words}"):
+        make_plan(load_recipe("quick"), "ogden", folder)
+
+
+def _with_laws(folder: Path, name: str, laws: dict[str, Any]) -> None:
+    content = yaml.safe_load((ROOT / "datasets" / "materials" / "S0.yaml").read_text())
+    folder.mkdir(exist_ok=True)
+    base = {"neo-hookean": content["laws"]["neo-hookean"]}
+    (folder / f"{name}.yaml").write_text(
+        yaml.safe_dump({**content, "material": name, "laws": {**base, **laws}}, sort_keys=False)
+    )
+
+
+def test_a_column_of_parameters_has_one_meaning(tiny: Recipe, tmp_path: Path, standin_build: Builder) -> None:
+    """Whatever the order of the keys in the cards."""
+    _with_laws(tmp_path / "cards", "a", {"yeoh": {"mu": 1e4, "stiffening": 0.05, "bulk": 2e5}})
+    _with_laws(tmp_path / "cards", "b", {"yeoh": {"bulk": 6e5, "mu": 3e4, "stiffening": 0.07}})
+    plan = make_plan(tiny, "yeoh", tmp_path / "cards", levels=["a", "b"])
+    standin_build(plan, tmp_path / "s.zarr")
+    data = open_dataset(tmp_path / "s.zarr")
+    assert data.attributes["parameter_names"] == ["mu", "stiffening", "bulk"]
+    expected = np.array([[1e4, 0.05, 2e5], [3e4, 0.07, 6e5]])[data.table["poke_softness"]]
+    np.testing.assert_array_equal(data.table["parameter"], expected)
+
+
+@pytest.mark.parametrize("order", [["one", "two"], ["two", "one"]])
+def test_cards_may_have_different_numbers_of_terms(
+    tiny: Recipe, tmp_path: Path, standin_build: Builder, order: list[str]
+) -> None:
+    _with_laws(tmp_path / "cards", "one", {})
+    two = {"mu": [5e3, -2e3], "alpha": [3.0, -2.5], "bulk": 2e5}
+    _with_laws(tmp_path / "cards", "two", {"ogden": two})
+    plan = make_plan(tiny, "ogden", tmp_path / "cards", levels=order)
+    standin_build(plan, tmp_path / "s.zarr")
+    data = open_dataset(tmp_path / "s.zarr")
+    assert data.attributes["parameter_names"] == ["mu_1", "mu_2", "alpha_1", "alpha_2", "bulk"]
+    mu = load_card("one", tmp_path / "cards").for_law("neo-hookean").parameters["mu"]
+    modulus = {"one": mu, "two": 0.5 * (5e3 * 3.0 + 2e3 * 2.5)}
+    expected = [modulus[order[level]] for level in data.table["poke_softness"]]
+    np.testing.assert_allclose(open_store(tmp_path / "s.zarr").modulus, expected)
 
 
 def test_a_missing_card(tmp_path: Path) -> None:

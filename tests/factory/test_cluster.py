@@ -12,6 +12,7 @@ import time
 from collections.abc import Generator
 from pathlib import Path
 
+import distributed
 import pytest
 
 from factory import _cluster
@@ -135,6 +136,32 @@ def test_a_scheduler_without_workers_is_waited_for(
     with pytest.raises(InputError, match=r"the scheduler has no workers for 3 s \(--cluster-timeout\)"):
         _build(plan, tmp_path / "a.zarr", processes.address, 3)
     assert "the scheduler has no workers: waiting up to" in caplog.text
+
+
+def test_workers_that_run_two_pokes_in_one_process_are_refused(plan: Plan, tmp_path: Path) -> None:
+    """Their times would be counted twice."""
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+        ) as cluster,
+        pytest.raises(InputError, match=r"worker .* runs 2 pokes at a time in one process: expected 1"),
+    ):
+        _build(plan, tmp_path / "a.zarr", cluster.scheduler_address, 60)
+
+
+def test_workers_of_another_version_are_refused(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    facts = _cluster.worker_facts()
+    here = iter([{**facts, "tisim": "0.0"}])
+    monkeypatch.setattr(_cluster, "worker_facts", lambda: next(here, facts))
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        pytest.raises(InputError, match=r"worker .* has tisim .*, expected 0\.0 as here"),
+    ):
+        _build(plan, tmp_path / "a.zarr", cluster.scheduler_address, 60)
 
 
 def test_a_scheduler_that_dies_in_the_middle(

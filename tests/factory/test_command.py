@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 import factory
@@ -16,10 +18,12 @@ import factory.build
 import tisim
 from factory import _build
 from factory.__main__ import app as factory_app
-from factory._build import build_dataset
+from factory._build import Built, build_dataset
+from factory._cli import make_console
+from factory._report import Screen, estimate, preview_path
 from factory.build import default_target
 from factory.plan import Plan
-from tests.factory.conftest import ROOT, TINY, digest, environment
+from tests.factory.conftest import ROOT, TINY, digest, environment, run_app
 
 run = CliRunner().invoke
 
@@ -192,6 +196,38 @@ def test_dry_run_of_a_complete_dataset_has_nothing_to_do(store: Path, tiny_file:
         assert code == 0
         (line,) = (line for line in output.splitlines() if "to do" in line)
         assert line.split("│")[2].split()[0].rstrip(",") == left
+
+
+def test_dry_run_refuses_what_the_build_would(stopped: Path, tiny_file: Path) -> None:
+    tiny_file.write_text(tiny_file.read_text().replace("seed: 3", "seed: 4"))
+    arguments = ("--model", "ogden", "--recipe", tiny_file, "--out", stopped)
+    before = sorted(stopped.parent.rglob("*"))
+    for flags in ((), ("--dry-run",)):
+        done = run_app(factory.build.app, *arguments, *flags)
+        assert done.exit_code == 2
+        assert "was begun with another plan (changed: recipe.seed" in done.output
+    assert sorted(stopped.parent.rglob("*")) == before
+    assert run_app(factory.build.app, *arguments, "--dry-run", "--overwrite").exit_code == 0
+
+
+def test_the_preview_replaces_no_other_picture(
+    tmp_path: Path, plan: Plan, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert preview_path(tmp_path / "gel-0.5").name == "gel-0.5.png"
+    assert preview_path(tmp_path / "gel-0.5.zarr").name == "gel-0.5.png"
+    own = tmp_path / "a.png"
+    Image.new("L", (2, 2)).save(own)
+    kept = own.read_bytes()
+    screen = Screen(plan, tmp_path / "a.zarr", make_console(), estimate(plan, tmp_path / "a.zarr", 1))
+    screen.finish(Built(tmp_path / "a.zarr", 4, 0))
+    screen._draw()
+    assert own.read_bytes() == kept
+    assert "a.png is another picture, which stays" in caplog.text
+    own.unlink()
+    for _ in range(2):  # the second time it replaces its own
+        screen._draw()
+        assert own.stat().st_size > 5_000
+        os.utime(own, (0, 0))
 
 
 def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,6 +47,19 @@ def test_a_partial_store_has_what_there_is_and_the_build_goes_on(
     assert not building_folder(stopped).exists()
 
 
+def test_its_preview_shows_what_there_is(
+    plan: Plan, tiny_file: Path, stopped: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[int] = []
+    monkeypatch.setattr(
+        "factory._figures.draw_preview", lambda _plan, traces, _path: drawn.append(len(traces))
+    )
+    done = run_app(app, "--model", "ogden", "--recipe", tiny_file, "--out", stopped, "--partial")
+    assert done.exit_code == 0, done.output
+    assert drawn == [3]
+    assert f"{len(plan.pokes)} pokes" in done.output
+
+
 def test_a_partial_store_without_a_poke_is_refused(plan: Plan, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--partial: no poke of it is finished yet"):
         build_dataset(plan, tmp_path / "none.zarr", partial=True)

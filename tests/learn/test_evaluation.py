@@ -17,7 +17,7 @@ import learn.evaluate
 import learn.export
 import learn.predict
 import learn.train
-from learn.data import MemoryDataset, open_store, split_pokes
+from learn.data import MemoryDataset, contact_points, open_store, split_of, split_pokes
 from learn.data.clouds import scattered
 from learn.errors import InputError
 from learn.evaluation import evaluate, parts_of, summarise
@@ -318,6 +318,33 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     everything = replace(loaded, groups={**loaded.groups, "train": ["shape-0", "shape-1", "shape-2"]})
     with pytest.raises(InputError, match="trained on all its shapes"):
         parts_of(open_store(few), everything)
+
+
+def test_a_run_split_by_site_is_tested_elsewhere_on_contact_points_that_it_has_not_seen(
+    run: Path, tmp_path: Path
+) -> None:
+    """Two laws of one recipe have the same contact points."""
+    store = open_store(write_store(tmp_path / "a.zarr", sites=2))
+    recipe = load_run(run).recipe.model_copy(update={"split": "site"})
+    split = split_of(store, recipe)
+    trained = np.unique(store.frame_poke[np.concatenate([split.train, split.validation])])
+    by_site = replace(
+        load_run(run),
+        recipe=recipe,
+        groups=split.groups,
+        seen=frozenset(contact_points(store, trained).tolist()),
+    )
+    by_site = replace(by_site, uuid="of another law")
+    tested = np.unique(store.frame_poke[parts_of(store, by_site).test])
+    np.testing.assert_array_equal(tested, np.unique(store.frame_poke[split.test]))
+    everything = contact_points(store, np.arange(store.pokes)).tolist()
+    with pytest.raises(InputError, match="trained on all its sites"):
+        parts_of(store, replace(by_site, seen=frozenset(everything)))
+    with pytest.raises(InputError, match="does not say which contact points it was trained on"):
+        parts_of(store, replace(by_site, seen=frozenset()))
+    # of its own dataset, when that has changed under the same groups
+    with pytest.raises(InputError, match="train it again"):
+        parts_of(store, replace(by_site, uuid=store.uuid, seen=frozenset(everything)))
 
 
 @pytest.mark.slow

@@ -147,6 +147,21 @@ def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
     assert all(bool(torch.isfinite(v).all()) for v in kept["model"].values())
 
 
+@pytest.mark.parametrize("split", ["shape", "site"])
+def test_a_run_on_a_part_of_a_store_does_not_go_on_with_the_whole(
+    folder: Path, tmp_path: Path, split: str
+) -> None:
+    """The parts would be others: what was trained on might be tested."""
+    recipe = TINY.model_copy(update={"epochs": 1, "split": split})
+    _train(folder, recipe, tmp_path / "run")
+    before = (tmp_path / "run" / "last.pt").read_bytes()
+    grown = write_store(tmp_path / "grown.zarr", sites=3, frames=2)
+    assert open_store(grown).uuid == open_store(folder).uuid
+    with pytest.raises(InputError, match=r"was trained on .* frames of .* train it again with another --out"):
+        _train(grown, recipe.model_copy(update={"epochs": 2}), tmp_path / "run", resume=True)
+    assert (tmp_path / "run" / "last.pt").read_bytes() == before
+
+
 def test_a_runaway_loss_ends_the_run(folder: Path, tmp_path: Path) -> None:
     recipe = TINY.model_copy(update={"learning_rate": 30.0, "clip": 0.0, "warmup": 0.5, "epochs": 10})
     with pytest.raises(DivergedError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import io
 import logging
 import pickle
@@ -71,6 +72,29 @@ def needed(scenes: Sequence[Any]) -> tuple[Extension, ...] | None:
             "%s: cannot be sent to other processes (%s); solved in this one", ", ".join(found), error
         )
         return None
+
+
+def is_own(thing: Any) -> bool:
+    """True for a class or function that comes with tisim."""
+    return str(thing.__module__).partition(".")[0] == "tisim"
+
+
+def digest_of_code(*things: Any) -> str:
+    """sha256 of the code of classes and functions (others are skipped), wherever their files stand.
+
+    The whole source of each one's module counts, since it may call others there; of one without a source
+    file, the pickled code.
+    """
+    sources = set()
+    for thing in things:
+        code = inspect.unwrap(thing) if callable(thing) else None
+        if not (inspect.isclass(code) or inspect.isfunction(code)) or is_own(code):
+            continue
+        try:
+            sources.add("".join(inspect.findsource(code)[0]).encode())
+        except (OSError, TypeError):
+            sources.add(_pickled(code))
+    return hashlib.sha256(b"\0".join(sorted(sources))).hexdigest()
 
 
 def adopt(extensions: Sequence[Extension]) -> None:
