@@ -12,10 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
-from tisim._checks import FieldError, check_number
+from tisim._checks import FieldError, check_number, check_type, check_whole
 
 FRAMES_A_PIECE = 10
 STEPS_A_RAMP = 10
@@ -85,6 +86,7 @@ class Course:
         """This course, then a ramp to a value, at a speed [value/s] (of either sign) or in a duration [s]."""
         if (speed is None) == (duration is None):
             raise ValueError("course.ramp: expected either a speed or a duration")
+        check_type("course.ramp.to", to, (Real,))
         if duration is None:
             check_number("course.ramp.speed", speed, "a speed other than 0", lambda v: v != 0.0)
             duration = abs((to - self._last) / float(speed))  # type: ignore[arg-type]
@@ -100,12 +102,14 @@ class Course:
 
     def cycles(self, *, to: float, back: float, speed: float, count: int) -> Course:
         """This course, then `count` times a ramp to `to` and a ramp to `back`, at a speed [value/s]."""
+        check_whole("course.cycles.count", count)
         course = self
         for _ in range(count):
             course = course.ramp(to=to, speed=speed).ramp(to=back, speed=speed)
         return course
 
     def _then(self, duration: float, to: float) -> Course:
+        check_type("course.duration", duration, (Real,))
         end = self.duration + duration
         return replace(self, times=(*self.times, end), values=(*self.values, to))
 
@@ -149,13 +153,19 @@ class Course:
         if self.frames is None:
             return
         first = 0.0 if self.times[0] == 0.0 else np.nextafter(0.0, 1.0)
+        last = self.duration * (1.0 + SAME)  # a ramp's duration is rounded
         within = f"times within the course, {'from' if first == 0.0 else 'after'} 0 to {self.duration:g} s"
         if not isinstance(self.frames, Sequence) or not self.frames:
             raise FieldError(f"{field}.frames", "at least one time, or None", self.frames)
         for time in self.frames:
-            check_number(f"{field}.frames", time, within, lambda v: first <= v <= self.duration)
+            check_number(f"{field}.frames", time, within, lambda v: first <= v <= last)
         if any(b <= a for a, b in zip(self.frames, self.frames[1:], strict=False)):
             raise FieldError(f"{field}.frames", "times that rise", self.frames)
+
+    def end_at(self, time: float) -> float | None:
+        """End of a piece that is equal to `time` [s] but for rounding; None if there is none."""
+        same = SAME * max(self.duration, 1e-300)
+        return next((end for end in self.times if abs(end - time) <= same), None)
 
     def stops(self, shortest: float | None) -> list[Stop]:
         """The ends of all time steps.

@@ -371,7 +371,9 @@ class Press:
     platens : "bonded" or "free"
         Bonded: the end faces stick to the platens all over (glued, or rough). Free: they slide without
         friction, and the body remains a cylinder down to a stretch of about 0.44, where its surface becomes
-        unstable. Coulomb friction, which lies between the two, is not available.
+        unstable. In a test that never exceeds the rest height they push and do not pull: a viscous body that
+        recovers more slowly than they open loses contact, with force 0. Bonded platens pull. Coulomb
+        friction, which lies between the two, is not available.
     stretches : tuple of float
         Height over rest height, all falling from 1 or all rising from 1, solved in sequence.
     course : Course, optional

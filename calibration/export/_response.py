@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.export._forms import Form
+from calibration.parameters import long_time_parts
 from tisim import Material, laws
-from tisim.parts import HolzapfelGasserOgden, MaterialPoints, OgdenRoxburgh, Prony
+from tisim.parts import MaterialPoints
 
 Array = NDArray[np.float64]
 Stress = Callable[[Array], Array]  # principal stretches (n, 3) to principal nominal stresses (n, 3) [Pa]
@@ -44,25 +45,12 @@ class Difference:
 
 def long_time(material: Material) -> Material:
     """The same material, stated by its long-time moduli: of the law, the fibres and the softening energy."""
-    if material.viscosity is None:
-        return material
-    spectrum = material.viscosity.spectrum()
-    left = spectrum.equilibrium
+    fields = ("viscosity", "fibres", "softening")
+    stated = {name: part for name in fields if (part := getattr(material, name)) is not None}
+    found, left = long_time_parts(stated)
     if left == 1.0:
         return material
-    fractions, times = ((tuple(float(v) for v in x)) for x in (spectrum.strengths / left, spectrum.times))
-    fibres, softening = material.fibres, material.softening
-    if isinstance(fibres, HolzapfelGasserOgden):
-        fibres = replace(fibres, k1=left * fibres.k1)
-    if isinstance(softening, OgdenRoxburgh):
-        softening = replace(softening, m=left * softening.m)
-    return replace(
-        material,
-        parameters=scaled(material, left),
-        viscosity=Prony(fractions=fractions, times=times, modulus="long-time"),
-        fibres=fibres,
-        softening=softening,
-    )
+    return replace(material, parameters=scaled(material, left), **found)  # type: ignore[arg-type]
 
 
 def elastic(material: Material) -> Material:

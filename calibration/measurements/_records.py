@@ -81,6 +81,38 @@ def holds(time: Array, driven: Array, tolerance: float) -> list[slice]:
     return found
 
 
+BEGINNING = 4  # number of rows from which the speed of a first ramp is estimated, at least
+NO_RAMP = 0.01  # fraction of the largest driven value below which a motion is none
+
+
+def ramp_start(time: Array, driven: Array, stop: int) -> float | None:
+    """Time at which the first ramp of a record left rest, extrapolated from its first rows.
+
+    Parameters
+    ----------
+    time, driven : ndarray of float, shape (k,)
+        Time [s], and the driven quantity less its value at rest.
+    stop : int
+        Row after the last one of the ramp.
+
+    Returns
+    -------
+    float or None
+        None if the record begins at rest or by a jump: the first rows are a hold or creep, not the end of a
+        ramp of which more than half is missing.
+    """
+    last = min(stop, driven.size - 1)
+    gone, travel = driven[0], driven[last] - driven[0]
+    away = np.abs(driven[: last + 1] - gone) > NO_RAMP * float(np.abs(driven).max())
+    if gone * travel <= 0.0 or abs(gone) > abs(travel) or not away.any():
+        return None
+    row = max(int(np.argmax(away)), min(BEGINNING, last))
+    made = driven[row] - gone
+    if gone * made <= 0.0 or time[row] <= time[0]:
+        return None
+    return float(time[0] - (time[row] - time[0]) * gone / made)
+
+
 def bins(points: slice, most: int) -> tuple[NDArray[np.intp], Array]:
     """First index of each of at most `most` bins, relative to the slice's start, and their sizes."""
     size = points.stop - points.start

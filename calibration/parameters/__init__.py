@@ -31,7 +31,7 @@ from calibration.parameters._parts import (
     part_kinds,
     register_part,
 )
-from calibration.parameters._stated import FIELDS, OPTIONS, held_part, part_entry, part_of
+from calibration.parameters._stated import FIELDS, OPTIONS, held_part, long_time_parts, part_entry, part_of
 from tisim import laws
 
 _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
@@ -86,6 +86,7 @@ __all__ = [
     "ProtocolWindow",
     "bulk_ratio",
     "held_part",
+    "long_time_parts",
     "parametrisation",
     "part_alternatives",
     "part_coordinates",

@@ -26,6 +26,7 @@ from calibration.parameters import (
     PartCoordinates,
     ProtocolWindow,
     held_part,
+    long_time_parts,
     part_alternatives,
     part_coordinates,
     part_entry,
@@ -63,13 +64,17 @@ class CardParts:
         return {field: part_entry(part) for field, part in self.parts.items()}
 
     def held(self, specs: Sequence[str]) -> dict[str, Part]:
-        """Those of which the fit searches none itself."""
+        """Those of which the fit searches none itself, beside the long-time moduli that a fit has."""
         searched = {option_of(s) for s in specs}
-        return {field: part for field, part in self.parts.items() if OPTIONS[field] not in searched}
+        return {field: part for field, part in self._long_time.items() if OPTIONS[field] not in searched}
+
+    @property
+    def _long_time(self) -> dict[str, Part]:
+        return long_time_parts(self.parts)[0]
 
     def begun(self, part: PartCoordinates) -> PartCoordinates:
         """The coordinates searched from the card's part on; as they are where it is of another form."""
-        own = self.parts.get(part.field)
+        own = self._long_time.get(part.field)
         if own is None:
             return part
         try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -103,6 +105,33 @@ def test_frames_are_where_they_are_asked_for() -> None:
 def test_a_course_that_cannot_be_is_refused_in_one_sentence(course: Course, sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         course.check()
+
+
+def test_a_frame_at_the_end_of_a_ramp_is_within_the_course() -> None:
+    """A duration from a speed is rounded."""
+    for speed in (0.2, 0.3, 0.07):
+        for to in np.arange(1.1, 2.0, 0.1).tolist():
+            course = Course(start=1.0).ramp(to=to, speed=speed)
+            exact = round((to - 1.0) / speed, 14)
+            whole = replace(course, frames=(exact,))
+            whole.check()
+            assert [stop.frame for stop in whole.stops(None)][-1]
+            assert course.end_at(exact) == course.duration
+            assert course.end_at(0.999 * exact) is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        (lambda c: c.cycles(to=1.3, back=1.0, speed=0.1, count=-2), "course.cycles.count: expected a whole"),
+        (lambda c: c.cycles(to=1.3, back=1.0, speed=0.1, count=1.5), "course.cycles.count: expected a whole"),
+        (lambda c: c.hold("60"), "course.duration: expected Real, got 'str'"),
+        (lambda c: c.ramp(to="1.3", speed=0.1), "course.ramp.to: expected Real, got 'str'"),
+    ],
+)
+def test_a_piece_of_the_wrong_kind_is_refused(wrong: Callable[[Course], Course], sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        wrong(Course(start=1.0))
 
 
 def test_arrays_are_taken_for_tuples() -> None:

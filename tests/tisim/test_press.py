@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -206,6 +207,54 @@ def test_a_law_that_collapses_ends_with_a_status() -> None:
     assert found.load.tolist() == [0.95]
     assert "no equilibrium beyond stretch 0." in found.message
     assert found.cost.step_cuts > 0
+
+
+VISCOUS = tisim.Material(
+    law="neo-hookean",
+    parameters={"mu": 20e3, "lam": 1e6},
+    viscosity=tisim.Prony(fractions=(1.0,), times=(5.0,)),
+)
+LET_GO = tisim.Course(start=1.0).ramp(to=0.8, duration=1.0).hold(20.0).ramp(to=1.0, duration=1.0).hold(10.0)
+
+
+def _pressed(course: tisim.Course, **options: Any) -> tisim.Result:
+    scene = tisim.Press(material=VISCOUS, radius=0.01, height=0.01, refinement=0.5, course=course, **options)
+    (result,) = tisim.simulate([scene])
+    assert result.status is tisim.Status.CONVERGED, result.message
+    return result
+
+
+def test_free_platens_push_and_do_not_pull() -> None:
+    """A viscous cylinder that is let go loses contact, recovers by itself, and is met again."""
+    frames = (1.0, 21.0, *np.linspace(21.05, 32.0, 60), 33.0)
+    result = _pressed(replace(LET_GO.ramp(to=0.85, duration=1.0), frames=frames), platens="free")
+    assert result.nominal_stress is not None
+    stress, top = result.nominal_stress, result.mesh.node_sets["top"]
+    height = 200.0 * result.positions[:, top, 2].mean(axis=1)
+    assert np.ptp(result.positions[:, top, 2], axis=1).max() < 1e-8
+    open_ = height < result.load - 1e-6
+    assert 50 < open_.sum() < 60
+    assert np.abs(stress[open_]).max() < 1e-4 * abs(stress[0])
+    assert (stress[~open_] < 0.0).all()
+    assert stress[-1] < 0.3 * stress[0]
+    assert (np.diff(height[open_]) > 0.0).all()
+    assert 0.87 < height[open_][0] < 0.91 < 0.95 < height[open_][-1] < 1.0
+    assert result.penetration.max() < 1e-9
+    # a homogeneous test along the heights that were found has no stress either
+    at = [0.0, *frames[:-1]]
+    driven = tisim.Course(start=1.0, times=tuple(at[1:]), values=tuple(height[:-1]), frames=tuple(at[1:]))
+    (same,) = tisim.simulate([tisim.Coupon(material=VISCOUS, course=driven)])
+    assert same.nominal_stress is not None
+    assert np.abs(same.nominal_stress[open_[:-1]]).max() < 0.02 * abs(stress[0])
+
+
+def test_bonded_platens_pull_and_so_do_free_ones_of_a_test_in_tension() -> None:
+    assert _pressed(LET_GO, side="stop").nominal_stress[-1] > 1e3  # type: ignore[index]
+    pulled = replace(LET_GO, values=tuple(2.0 - v for v in LET_GO.values), frames=(1.0, 22.0))
+    stress = _pressed(pulled, platens="free").nominal_stress
+    assert stress is not None
+    assert stress[0] > 1e4
+    assert stress[1] < -1e3
 
 
 def test_bonded_and_pulled() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import CouponMode, CouponTrial
-from calibration.measurements._records import Stroke, bins, holds
+from calibration.measurements._records import Stroke, bins, holds, ramp_start, strokes
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -25,7 +25,6 @@ STEP = 0.01  # largest change of stretch per step: the stress is taken as linear
 STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
 NOISE = 6.0  # tolerance of a hold, in standard deviations of the stretch
 NEAR = 25  # half width [rows] of the moving average of the stretch in a hold
-BEGINNING = 4  # number of rows from which the speed of the first ramp is estimated
 DIFFERENT = 1.1  # ratio of peak strains (I1 - 3) from which two peaks count as different
 
 
@@ -84,7 +83,7 @@ def course_of(trial: CouponTrial, first: Rows, count: Array, before: float, hold
     """
     time = np.zeros(trial.stretch.size) if trial.time is None else trial.time - trial.time[0]
     stretch = _quiet(trial.stretch, holds)
-    lead = _lead(time, stretch)
+    lead = _lead(time, stretch, holds)
     corners = np.concatenate([[1.0] * len(lead), stretch])
     pieces = np.maximum(1, np.ceil(np.abs(np.diff(corners)) / STEP)).astype(int)
     knots = np.concatenate([[0], np.cumsum(pieces)])
@@ -116,16 +115,14 @@ def _quiet(stretch: Array, holds: Sequence[slice]) -> Array:
     return found
 
 
-def _lead(time: Array, stretch: Array) -> Array:
+def _lead(time: Array, stretch: Array, holds: Sequence[slice]) -> Array:
     """Extrapolated start of the first ramp [s], shape (1,); empty if the record begins at rest or by a jump.
 
     The first row can lie on the ramp, since rows may be means of several samples.
     """
-    last = min(BEGINNING, stretch.size - 1)
-    gone, made = stretch[0] - 1.0, stretch[last] - stretch[0]
-    if gone * made <= 0.0 or time[last] <= time[0] or gone / made > 1.0:
-        return np.zeros(0)
-    return np.array([time[0] - (time[last] - time[0]) * gone / made])
+    first = strokes(stretch, STILL * float(np.abs(stretch - 1.0).max()))[0]
+    found = ramp_start(time, stretch - 1.0, min([first.points.stop, *(h.start for h in holds)]))
+    return np.zeros(0) if found is None else np.array([found])
 
 
 def holds_of(trial: CouponTrial) -> list[slice]:
@@ -143,9 +140,9 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
     """
     ramps, waits, lengths, peaks = [], [], [], []
     intervals: list[float] = []  # between rows: what a record of a hold alone shows first
-    for trial, strokes in zip(trials, branches, strict=True):
+    for trial, runs in zip(trials, branches, strict=True):
         excess = first_excess(trial.mode, trial.stretch)
-        for a, b in pairwise(strokes):
+        for a, b in pairwise(runs):
             if excess[b.points.start] > max(excess[a.points.start], excess[b.points.stop - 1]):
                 peaks.append(float(excess[b.points.start]))
         if trial.time is None:
@@ -154,7 +151,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
         intervals += np.diff(trial.time).tolist()
         rests = holds_of(trial)
         waits += [float(trial.time[h.stop - 1] - trial.time[h.start]) for h in rests]
-        corners = {0, trial.stretch.size - 1, *(s.points.start for s in strokes[1:])}
+        corners = {0, trial.stretch.size - 1, *(s.points.start for s in runs[1:])}
         corners |= {i for h in rests for i in (h.start, h.stop - 1)}
         still = {(h.start, h.stop - 1) for h in rests}
         inside = sorted(c for c in corners if not any(h.start < c < h.stop - 1 for h in rests))

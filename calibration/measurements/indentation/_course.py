@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import PokeTrial
-from calibration.measurements._records import bins, holds
-from calibration.measurements.indentation._phases import Phase, phases_of
+from calibration.measurements._records import bins, holds, ramp_start
+from calibration.measurements.indentation._phases import STAGE, Phase, phases_of
+from calibration.measurements.indentation._scene import approach
 from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
@@ -19,7 +20,6 @@ Rows = NDArray[np.intp]
 
 STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
 NOISE = 6.0  # tolerance of a hold, in standard deviations of the depth
-BEGINNING = 4  # number of rows from which the speed of the first loading is estimated
 DIFFERENT = 1.1  # ratio of peak depths from which two peaks count as different
 
 
@@ -72,11 +72,8 @@ def _lead(time: Array, depth: Array, first: Phase) -> Array:
     """Time of first touch [s], shape (1,), if the record begins below the surface; else empty."""
     if depth[0] <= 0.0:
         return np.zeros(0)
-    last = min(BEGINNING, first.points.stop, depth.size - 1)
-    made = depth[last] - depth[0]
-    if made <= 0.0:
-        return time[:1]  # applied as a jump
-    return np.array([time[0] - (time[last] - time[0]) * depth[0] / made])
+    found = ramp_start(time, depth, first.points.stop)
+    return time[:1] if found is None else np.array([found])  # else applied as a jump
 
 
 def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
@@ -85,7 +82,8 @@ def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
     After a ramp of a few rows a hold is most of a stroke; without time dependence it is part of the stroke.
     """
     depth = trial.record.depth
-    rests = holds(trial.record.time, depth, max(STILL * float(np.ptp(depth)), NOISE * trial.depth_sd))
+    stage = STAGE * float(np.abs(depth).max())
+    rests = holds(trial.record.time, depth, max(STILL * float(np.ptp(depth)), NOISE * trial.depth_sd, stage))
     found = []
     for p in phases:
         inside = [h for h in rests if h.start < p.points.stop and h.stop > p.points.start]
@@ -111,18 +109,21 @@ def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
 
 
 def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
-    """Range of times of ramps and holds, and number of different peak depths, of indentations."""
+    """Range of times of ramps and holds in contact, and number of different peak depths, of indentations."""
     ramps, waits, lengths, peaks = [], [], [], []
     intervals: list[float] = []  # between rows: what a record of a hold alone shows first
     for trial in trials:
         time, phases = trial.record.time, with_holds(trial, phases_of(trial))
-        lengths.append(float(time[-1] - time[0]))
+        depth = trial.record.depth - approach(trial)
+        least = max(STILL * float(depth.max()), NOISE * trial.depth_sd)
+        lengths.append(_time_in_contact(time, depth, slice(0, time.size)))
         intervals += np.diff(time).tolist()
         for p in phases:
-            took = float(time[min(p.points.stop, time.size - 1)] - time[p.points.start])
-            if p.direction != 0.0:
+            took = _time_in_contact(time, depth, p.points)
+            end = min(p.points.stop, time.size - 1)
+            if abs(depth[end] - depth[p.points.start]) > least and p.direction != 0.0:
                 ramps.append(took)
-            elif p.points.start > 0:
+            elif depth[p.points].mean() > least:
                 waits.append(took)
         for a, b in pairwise([p for p in phases if p.direction != 0.0]):
             if a.direction > 0.0 > b.direction:
@@ -132,3 +133,11 @@ def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
     last = max(waits or lengths, default=0.0)
     first = min([r for r in ramps if r > 0.0] or [i for i in intervals if i > 0.0], default=last)
     return ProtocolWindow(first=min(first, last), last=last, peaks=different)
+
+
+def _time_in_contact(time: Array, depth: Array, points: slice) -> float:
+    """Time of a phase below the surface, from the last row above it [s]."""
+    touching = points.start + np.flatnonzero(depth[points.start : points.stop + 1] > 0.0)
+    if not touching.size:
+        return 0.0
+    return float(time[touching[-1]] - time[max(touching[0] - 1, points.start)])

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 TURN = 0.02  # least reversal at a turning point, as a fraction of the record's range of depth
 NOISE = 6.5  # the same, in standard deviations of the depth
+STAGE = 2e-3  # fraction of the largest depth below which a motion is the stage's own, stated or not
 # samples by which a boundary may be moved, and samples on either side that are used for this
 MOVED, WINDOW = 6, 14
 ENDS, NEAR, CALM = 7, 0.5, 5  # samples at a stroke's ends, distance (in tolerances) to an end, median window
@@ -57,7 +58,8 @@ class Phase:
 def phases_of(trial: PokeTrial) -> list[Phase]:
     """Phases of a trial in the order of the record."""
     depth, time = trial.record.depth, trial.record.time
-    tolerance = max(TURN * float(np.ptp(depth)), NOISE * trial.depth_sd)
+    stage = STAGE * float(np.abs(depth).max())
+    tolerance = max(TURN * float(np.ptp(depth)), NOISE * trial.depth_sd, stage)
     found: list[Phase] = []
     cycle = 0
     for s in strokes(depth, tolerance):

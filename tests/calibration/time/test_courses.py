@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from calibration.experiment.model import CouponTrial
+from calibration.experiment.model import CouponTrial, PokeRecord, PokeTrial
+from calibration.measurements._records import ramp_start
 from calibration.measurements.homogeneous import protocol_window
 from calibration.measurements.homogeneous._course import holds_of
+from calibration.measurements.homogeneous._record import records_of as homogeneous_records
+from calibration.measurements.indentation._course import window_of
+from calibration.measurements.indentation._record import records_of
+from tisim import Block
 
 
 def drive(times: list[float], stretches: list[float], *, rows: int = 400, noise: float = 0.0) -> CouponTrial:
@@ -83,3 +88,80 @@ def test_without_holds_the_window_ends_with_the_test() -> None:
 
 def test_loading_alone_has_no_peak() -> None:
     assert protocol_window([drive([0, 5, 50], [1.0, 1.5, 1.5])]).peaks == 0
+
+
+def poke(time: np.ndarray, depth_mm: np.ndarray, *, above_mm: float = 0.0) -> PokeTrial:
+    """An indentation whose noise of depth is not stated."""
+    return PokeTrial(
+        id="t",
+        material="M",
+        specimen=None,
+        block=Block(size=(0.1, 0.1, 0.03)),
+        inclusion_mesh=None,
+        rod_radius=2.5e-3,
+        rod_tip="hemisphere",
+        start=(0.0, 0.0, 0.03 + 1e-3 * above_mm),
+        direction=(0.0, 0.0, -1.0),
+        record=PokeRecord(
+            time=time, depth=1e-3 * depth_mm, force=0.1 + 0.1 * np.exp(-time / 10.0), force_vector=None
+        ),
+        force_sd=1e-3,
+        depth_sd=0.0,
+        surfaces=(),
+    )
+
+
+SECONDS = np.arange(0.0, 100.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    "depth_mm",
+    [
+        2.0 + 0.0 * SECONDS,
+        2.0 + 1e-5 * SECONDS,  # the stage creeps by 1 um
+        2.0 - 2e-3 * np.exp(-SECONDS),  # or settles
+        *(2.0 + 5e-4 * np.random.default_rng(k).standard_normal(SECONDS.size) for k in range(3)),
+    ],
+)
+def test_an_indentation_that_begins_in_the_hold_has_been_applied_at_once(depth_mm: np.ndarray) -> None:
+    trial = poke(SECONDS, depth_mm)
+    (record,) = records_of([trial], courses=True)
+    assert record.course is not None
+    assert record.course.time[0] == 0.0
+    window = window_of([trial])
+    assert window.first == pytest.approx(0.1)
+    assert window.last == pytest.approx(99.9)
+
+
+def test_time_in_the_air_is_neither_ramp_nor_hold() -> None:
+    """2 mm at 1 mm/s, 60 s of hold, back: begun 18 mm above the surface, and left above it for 600 s."""
+    corners = np.array([0.0, 2.0, 62.0, 64.0])
+    time = np.arange(0.0, 64.05, 0.1)
+    near = window_of([poke(time, np.interp(time, corners, [0.0, 2.0, 2.0, 0.0]))])
+    long = np.arange(0.0, 700.0, 0.1)
+    depth = np.interp(long, [0.0, *(18.0 + corners[1:]), 100.0], [0.0, 20.0, 20.0, 18.0, 0.0])
+    far = window_of([poke(long, depth, above_mm=18.0)])
+    assert near.first == pytest.approx(2.0, abs=0.3)
+    assert near.last == pytest.approx(60.0, abs=1.0)
+    assert (far.first, far.last) == pytest.approx((near.first, near.last), abs=0.6)
+
+
+@pytest.mark.parametrize("rate", [5.0, 500.0])
+def test_a_ramp_is_followed_back_to_rest_however_often_it_was_sampled(rate: float) -> None:
+    time = np.arange(3.0, 10.0, 1.0 / rate)
+    assert ramp_start(time, 0.02 * time, time.size) == pytest.approx(0.0, abs=1e-6)
+    assert ramp_start(time, -0.02 * time, time.size) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_creep_is_not_the_end_of_a_ramp() -> None:
+    time = np.linspace(0.0, 1000.0, 500)
+    assert ramp_start(time, 0.2 + 2e-5 * time, time.size) is None
+    assert ramp_start(time, 0.2 - 2e-5 * time, time.size) is None
+    assert ramp_start(time, np.zeros(500), 500) is None
+
+
+def test_a_creep_test_begins_by_a_jump() -> None:
+    made = drive([0.0, 1000.0], [1.2, 1.22])
+    (record,) = homogeneous_records([made], courses=True)
+    assert record.course is not None
+    assert record.course.time[0] == 0.0

@@ -14,12 +14,13 @@ from timed_coupons import CYCLES, RELAXATION, SOLID, trial, write
 import calibration
 from calibration.errors import InputError
 from calibration.experiment import read
-from calibration.parameters import ProtocolWindow, parametrisation, part_coordinates
+from calibration.export._response import long_time
+from calibration.parameters import ProtocolWindow, held_part, parametrisation, part_coordinates
 from calibration.study import parts
 from calibration.study.calibration import Calibration
 from calibration.study.parts import CardParts
 from factory.materials import load_card
-from tisim import HolzapfelGasserOgden, OgdenRoxburgh, Prony
+from tisim import HolzapfelGasserOgden, Material, OgdenRoxburgh, Prony
 
 PRONY = {"kind": "prony", "fractions": [0.3, 0.2], "times": [2.0, 60.0]}
 MULLINS = {"kind": "ogden-roxburgh", "r": 1.8, "m": 1500.0, "beta": 0.15}
@@ -110,6 +111,26 @@ def test_what_a_fit_from_a_card_searches(
     assert made.softening == WORN
     assert made.viscosity is not None
     assert made.viscosity.spectrum().times == pytest.approx([2.0, 60.0])
+
+
+def test_an_instantaneous_series_is_held_beside_the_long_time_modulus() -> None:
+    """A fit reports long-time moduli; stiffness of fibres and softening energy refer to the same."""
+    at_once = Prony(fractions=(0.4, 0.2), times=(1.0, 30.0), modulus="instantaneous")
+    fibres = HolzapfelGasserOgden(k1=1e3, k2=2.0, direction=(1.0, 0.0, 0.0))
+    held = CardParts("c", {"viscosity": at_once, "softening": WORN, "fibres": fibres}).held(())
+    law = parametrisation("neo-hookean").with_parts(
+        [held_part(name, part, ProtocolWindow(first=1.0, last=100.0, peaks=0)) for name, part in held.items()]
+    )
+    u = law.start(shear=8e3)
+    found = law.material(u)
+    assert law.moduli(u).shear_modulus == pytest.approx(8e3)
+    assert found.viscosity is not None
+    assert found.viscosity.spectrum().equilibrium == 1.0
+    assert found.viscosity.spectrum().instantaneous == pytest.approx(2.5)
+    beside = {"viscosity": at_once, "softening": WORN, "fibres": fibres}
+    stated = Material(law="neo-hookean", parameters={"mu": 20e3, "lam": 1e6}, **beside)  # type: ignore[arg-type]
+    assert found.fibres == long_time(stated).fibres
+    assert found.softening == long_time(stated).softening
 
 
 def test_parts_are_taken_apart_and_put_together() -> None:

@@ -1,7 +1,8 @@
 """Uniaxial compression of a cylinder between two platens, for a sequence of stretches, on one eighth of it.
 
 The end faces of a bonded cylinder move with the platens. Nodes of its side that would pass through a platen
-stick to it from then on.
+stick to it from then on. Free platens that compress do not pull: a viscous cylinder that recovers more slowly
+than they open loses contact.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ MOST_LANDINGS = 12  # rounds of nodes that come into contact within one step
 MOST_ITERATIONS = 15  # with free pressures Newton's method converges quickly or not at all
 # Overlap of side and platen that counts as rounding, relative to the height.
 TOUCH = 1e-9
+# Pull of a free platen that counts as rounding, in units of the shear modulus times the end's area.
+PULL = 1e-5
 # Step of the logarithm of the stretch. Half of it changes the force by at most 0.03 %, down to a third of the
 # height.
 LARGEST_STEP = 0.03
@@ -50,7 +53,7 @@ class State:
     ----------
     stretch : height over rest height.
     x : positions [m], shape (n, 3).
-    carried : True for nodes on the platen, shape (n,).
+    carried : True for nodes on the platen, shape (n,); none while it is open.
     residual : residual relative to the load.
     time : time [s].
     """
@@ -90,12 +93,17 @@ class PressSystem(BeamSystem):
         self._at_rest = 1e-6 * self.body.moduli.shear_modulus * scene.radius**2
         self._faces = shared.held
         self._side = discretisation.mesh.node_sets["side"]
+        self._top = discretisation.mesh.node_sets["top"]
+        self._pushes = not self.bonded and all(stop.value <= 1.0 for stop in stops_of(scene))
         self._iterations = min(MOST_ITERATIONS, scene.solver.max_iterations)
 
     def rest(self) -> State:
+        return State(1.0, self.body.discretisation.mesh.nodes.copy(), self._ends(held=True))
+
+    def _ends(self, *, held: bool) -> NDArray[np.bool_]:
         carried = np.zeros(self.body.discretisation.mesh.n_nodes, dtype=bool)
-        carried[self.body.discretisation.mesh.node_sets["top"]] = True
-        return State(1.0, self.body.discretisation.mesh.nodes.copy(), carried)
+        carried[self._top] = held
+        return carried
 
     def linearise(self, x: Array) -> tuple[Array, float]:
         residual, rounding = super().linearise(x)
@@ -111,6 +119,11 @@ class PressSystem(BeamSystem):
     def overlap(self, x: Array, stretch: float) -> float:
         """Largest distance of the side beyond the platen [m], at least 0."""
         return max(0.0, float((x[self._side, 2]).max()) - self.plane(stretch))
+
+    def force(self, state: State) -> float:
+        """Force of the platen on the body along z [N], negative in compression."""
+        internal, _ = self.body.internal_forces(state.x)
+        return 4.0 * float(internal[state.carried, 2].sum())  # the mesh has a quarter of the end face
 
     def equilibrium(
         self, state: State, before: State | None, stretch: float, time: float
@@ -129,17 +142,49 @@ class PressSystem(BeamSystem):
         SideLandedError
             If the side comes into contact in a scene with side "stop".
         """
-        status = Status.NOT_CONVERGED
         self.body.begin(time - state.time)
-        for guess in self._guesses(state, before, stretch):
-            carried = state.carried
+        closed = bool(state.carried.any())
+        for touches in (closed, not closed) if self._pushes else (True,):
+            if touches:
+                found, status = self._pressed(state, before, stretch, time)
+            else:
+                found, status = self._open(state, stretch, time)
+            if found is not None and self._is_contact(found):
+                self.body.accept(found.x)
+                return found, Status.CONVERGED
+        return None, Status.NOT_CONVERGED if status is Status.CONVERGED else status
+
+    def _is_contact(self, state: State) -> bool:
+        """True unless a free platen that compresses pulls at the body, or the body passes through it."""
+        if not self._pushes:
+            return True
+        if state.carried.any():
+            area = np.pi * self.scene.radius**2
+            return self.force(state) <= PULL * self.body.moduli.shear_modulus * area
+        return float(state.x[self._top, 2].max()) <= self.plane(state.stretch) + TOUCH * self.scene.height
+
+    def _open(self, state: State, stretch: float, time: float) -> tuple[State | None, Status]:
+        """Equilibrium of the body by itself."""
+        free = self._ends(held=False)
+        outcome = self._solve(state.x.copy(), free, self.body.pressures(state.x))
+        if outcome.status is not Status.CONVERGED:
+            return None, outcome.status
+        return State(stretch, outcome.x, free, outcome.residual, time), Status.CONVERGED
+
+    def _pressed(
+        self, state: State, before: State | None, stretch: float, time: float
+    ) -> tuple[State | None, Status]:
+        """Equilibrium of the body on the platen."""
+        status = Status.NOT_CONVERGED
+        start = state if state.carried.any() else replace(state, carried=self._ends(held=True))
+        for guess in self._guesses(start, before, stretch):
+            carried = start.carried
             outcome = self._solve(guess, carried, self.body.pressures(state.x))
             for _ in range(MOST_LANDINGS):
                 if outcome.status is not Status.CONVERGED:
                     break
                 landed = self._landed(outcome.x, carried, stretch)
                 if not len(landed):
-                    self.body.accept(outcome.x)
                     return State(stretch, outcome.x, carried, outcome.residual, time), Status.CONVERGED
                 if self.scene.side == "stop":
                     raise SideLandedError
@@ -152,13 +197,14 @@ class PressSystem(BeamSystem):
 
     def _guesses(self, state: State, before: State | None, stretch: float) -> list[Array]:
         """Start values: the last two states extrapolated, then the last one scaled; held nodes in place."""
-        ratio = stretch / state.stretch
+        ratio = self.plane(stretch) / float(state.x[self._top, 2].max())
         scaled = state.x.copy()
         scaled[:, 2] *= ratio
         if not self.bonded:
             scaled[:, :2] *= ratio**-0.5
         guesses = [scaled]
-        if before is not None and stretch != state.stretch != before.stretch:
+        closed = before is not None and before.carried.any()
+        if before is not None and closed and stretch != state.stretch != before.stretch:
             part = (stretch - state.stretch) / (state.stretch - before.stretch)
             guesses.insert(0, state.x + part * (state.x - before.x))
         for guess in guesses:
@@ -173,6 +219,8 @@ class PressSystem(BeamSystem):
         held[:] = self._faces
         if self.bonded:
             held[carried] = True
+        elif not carried.any():
+            held[self._top, 2] = False
         if self.potential(x)[1] <= 0.0:
             return Outcome(x, Status.INVERTED, np.inf, 0)
         self.free_pressures(pressure)
@@ -287,11 +335,9 @@ class _Frame:
 
 
 def _frame(system: PressSystem, state: State) -> _Frame:
-    force, min_jacobian = system.body.internal_forces(state.x)
-    # the mesh has a quarter of the end face
-    pushed = 4.0 * float(force[state.carried, 2].sum())
+    _, min_jacobian = system.body.internal_forces(state.x)
     overlap, lost = system.overlap(state.x, state.stretch), system.body.dissipated()
-    return _Frame(state, pushed, overlap, min_jacobian, lost)
+    return _Frame(state, system.force(state), overlap, min_jacobian, lost)
 
 
 def _result(
