@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -291,10 +292,9 @@ class Reconstruction:
             own = ("-", "-", "-")
             if "mm_per_pixel" in f:
                 own = (f"{f['mm_per_pixel']:.4f}", f"{f['tilt_deg']:.1f}", f"{f['diameter_mm']:.3f}")
-            r = f["registration_sd"]
-            found.append(
-                (name, *own, f"{f['outline_sd_mm']:.4f}", f"{r['shift_mm']:.3f}", f"{r['scale']:.4f}")
-            )
+            parts = [f[k] for k in ("registration_sd", "registration_shared_sd") if k in f]
+            shift, scale = (hypot(*(part[k] for part in parts)) for k in ("shift_mm", "scale"))
+            found.append((name, *own, f"{f['outline_sd_mm']:.4f}", f"{shift:.3f}", f"{scale:.4f}"))
         return found
 
     def __repr__(self) -> str:

@@ -112,6 +112,7 @@ class CaptureEntry(Strict):
     outline_sd_mm: Noise | None = None
     outline_correlation_mm: Doubt | None = None
     registration_sd: RegistrationEntry | None = None
+    registration_shared_sd: RegistrationEntry | None = None
     photo: PhotoFile | None = None
     photo_checkerboard: CheckerboardEntry | None = None
 
@@ -123,7 +124,7 @@ class CaptureEntry(Strict):
         for key in (*error_keys, "registration_sd"):
             if self.outline is not None and getattr(self, key) is None:
                 raise say(key, "missing, expected it beside an outline (what does the lab say of it?)")
-        for key in error_keys:
+        for key in (*error_keys, "registration_shared_sd"):
             if self.outline is None and getattr(self, key) is not None:
                 raise say(key, "expected an outline beside it")
         if self.photo is not None and self.photo_checkerboard is None:
@@ -163,7 +164,7 @@ class BeamEntry(Strict):
         if self.tip_force_height_mm:
             if not any(self.tip_force_N):
                 raise say("tip_force_N", "missing, expected it beside tip_force_height_mm")
-            if self.markers is None:
+            if self.markers is None or self.captures is not None:
                 raise say(
                     "tip_force_height_mm", "expected with markers only: outlines are of a force all over"
                 )
@@ -216,6 +217,7 @@ def read_beam(entry: BeamEntry, files: Files, where: str) -> BeamTrial:
 
 def _capture(capture: CaptureEntry, beam: BeamEntry, files: Files, where: str) -> Capture:
     registration = None if capture.registration_sd is None else capture.registration_sd.si()
+    shared = capture.registration_shared_sd
     outline = checkerboard = None
     if capture.outline is not None:
         upper, lower = read_sides(
@@ -233,6 +235,7 @@ def _capture(capture: CaptureEntry, beam: BeamEntry, files: Files, where: str) -
             sd=capture.outline_sd_mm * _MM,
             correlation=capture.outline_correlation_mm * _MM,
             registration=registration,
+            shared=Registration() if shared is None else shared.si(),
         )
     if capture.photo is not None:
         files.read(capture.photo, f"{where}.photo")

@@ -12,6 +12,9 @@ from calibration.experiment._files import Table, parse_table
 from calibration.experiment.model import Array
 
 _FAR = 3.0  # free lengths: a point beyond is a slip of the unit or a stray click
+_OFF = 0.5  # of the section's height: what a side may begin from its place, or the corners be nearer
+_CORNERS = 0.99  # of the section's height: distance of the sides' ends from which both are corners
+_ACROSS = 0.5  # least part of a step on the end face by which the ends of the sides come closer
 _SHORT = 0.1  # of the free length: a shorter side says nothing of the beam's shape
 
 Indices = NDArray[np.intp]
@@ -51,11 +54,46 @@ def read_sides(
             )
     _check_crossing(table, points, rows["upper"], rows["lower"])
     upper, lower = points[rows["upper"]], points[rows["lower"]]
+    _check_start(table_path, upper, lower, height_mm)
     if _area(np.vstack([lower, upper[::-1]])) <= 0:
         raise InputError(
             f"{table_path}: column side: expected upper above lower, they are the other way round"
         )
-    return upper, lower
+    return _without_end_face(table_path, upper, lower, height_mm)
+
+
+def _check_start(path: Path, upper: Array, lower: Array, height_mm: float) -> None:
+    """Refuse sides that do not begin about the clamp's axis."""
+    axis = 0.5 * float(upper[0, 1] + lower[0, 1])
+    if abs(axis) > _OFF * height_mm:
+        raise InputError(
+            f"{path}: column z_mm: expected sides that leave the clamp half a section height above and below"
+            f" z = 0, their middle is at z = {axis:.3g} mm there: another origin, or a picture upside down"
+        )
+
+
+def _without_end_face(path: Path, upper: Array, lower: Array, height_mm: float) -> tuple[Array, Array]:
+    """Sides up to the corners: last points whose step leads towards the other side lie on the end face."""
+    sides = [upper, lower]
+    while min(map(len, sides)) > 3:
+        apart = np.hypot(*(sides[0][-1] - sides[1][-1]))
+        if apart > _CORNERS * height_mm:
+            return sides[0], sides[1]
+        gains = [
+            (float(np.hypot(*(a[-2] - b[-1])) - apart) / float(np.hypot(*(a[-1] - a[-2]))), k)
+            for k, (a, b) in enumerate((sides, sides[::-1]))
+        ]
+        gain, k = max(gains)
+        if gain < _ACROSS:
+            break
+        sides[k] = sides[k][:-1]
+    apart = float(np.hypot(*(sides[0][-1] - sides[1][-1])))
+    if apart < _OFF * height_mm:
+        raise InputError(
+            f"{path}: column side: expected sides that end at the corners of the end face, a section height"
+            f" of {height_mm:g} mm apart, got {apart:.3g} mm"
+        )
+    return sides[0], sides[1]
 
 
 def _from_clamp(

@@ -5,6 +5,7 @@ Files hold millimetres; everything here is in m, N, Pa, kg, s and radians.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from html import escape
@@ -44,7 +45,7 @@ class MaterialBelief:
 
 @dataclass(frozen=True, kw_only=True)
 class Registration:
-    """Standard deviations of a photograph's position, one draw a photograph.
+    """Standard deviations of a photograph's position.
 
     Attributes
     ----------
@@ -58,6 +59,14 @@ class Registration:
     shift: float = 0.0
     roll: float = 0.0
     scale: float = 0.0
+
+    def plus(self, other: Registration) -> Registration:
+        """Standard deviations of the sum with an independent error."""
+        return Registration(
+            shift=math.hypot(self.shift, other.shift),
+            roll=math.hypot(self.roll, other.roll),
+            scale=math.hypot(self.scale, other.scale),
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,6 +82,9 @@ class TracedOutline:
     correlation : float
         Length over which that error holds along the contour [m].
     registration : Registration
+        One draw a photograph.
+    shared : Registration
+        One draw for all photographs of an experiment: errors of the board, its mounting and the camera.
     """
 
     upper: Array
@@ -80,6 +92,7 @@ class TracedOutline:
     sd: float
     correlation: float
     registration: Registration = field(default_factory=Registration)
+    shared: Registration = field(default_factory=Registration)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,7 @@
 """Distances between surfaces: mean and 95th percentile, over points spread by area; the same of vertices.
 
 `vertex_distance` and `vertex_hd95` take nodes for a surface. They are here to reproduce published figures
-(docs/metrics.md), not to judge a fit: with the nodes of a volume mesh they are far from zero for two
+(studies/metrics), not to judge a fit: with the nodes of a volume mesh they are far from zero for two
 identical bodies.
 """
 

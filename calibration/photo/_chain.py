@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -109,11 +109,8 @@ def run(
     figures |= {
         "outline_sd_mm": outline.sd * 1e3,
         "outline_correlation_mm": outline.correlation * 1e3,
-        "registration_sd": {
-            "shift_mm": outline.registration.shift * 1e3,
-            "roll_deg": float(np.degrees(outline.registration.roll)),
-            "scale": outline.registration.scale,
-        },
+        "registration_sd": _as_in_files(outline.registration),
+        "registration_shared_sd": _as_in_files(outline.shared),
         "length_mm": line.length * 1e3,
         "centreline_sd_mm": None if line.sd is None else float(np.sqrt(np.mean(line.sd**2))) * 1e3,
         "volume_mm3": float(body.volume) * 1e9,
@@ -143,16 +140,12 @@ def _with_registration(outline: TracedOutline, stated: Registration | None) -> T
     """The outline with the lab's stated registration error added to the photograph's own."""
     if stated is None:
         return outline
-    own = outline.registration
-    both = Registration(
-        shift=float(np.hypot(own.shift, stated.shift)),
-        roll=float(np.hypot(own.roll, stated.roll)),
-        scale=float(np.hypot(own.scale, stated.scale)),
-    )
-    return TracedOutline(
-        upper=outline.upper,
-        lower=outline.lower,
-        sd=outline.sd,
-        correlation=outline.correlation,
-        registration=both,
-    )
+    return replace(outline, registration=outline.registration.plus(stated))
+
+
+def _as_in_files(error: Registration) -> dict[str, float]:
+    return {
+        "shift_mm": error.shift * 1e3,
+        "roll_deg": float(np.degrees(error.roll)),
+        "scale": error.scale,
+    }

@@ -123,7 +123,9 @@ def _entry(capture: dict[str, Any], figures: dict[str, Any] | None, name: str) -
     entry["outline"] = f"outlines/{name}.csv"
     entry["outline_sd_mm"] = round(figures["outline_sd_mm"], 5)
     entry["outline_correlation_mm"] = round(figures["outline_correlation_mm"], 3)
-    entry["registration_sd"] = {key: round(value, 6) for key, value in figures["registration_sd"].items()}
+    for key in ("registration_sd", "registration_shared_sd"):
+        if key in figures:  # outlines kept from a version before 2026-11-27 have only the first
+            entry[key] = {name: round(value, 6) for name, value in figures[key].items()}
     return entry
 
 

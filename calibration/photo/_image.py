@@ -43,9 +43,14 @@ def read_photograph(path: Path) -> Grey:
     if not path.is_file():
         raise InputError(f"{path}: no such photograph")
     data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    image = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if len(data) else None
+    depth = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH
+    image = cv2.imdecode(data, depth) if len(data) else None
     if image is None:
         raise InputError(f"{path}: expected a PNG, JPEG or TIFF photograph, it cannot be decoded")
+    if image.dtype == np.uint16:  # of which a camera may use 10 or 12 bits
+        image = np.right_shift(image.astype(np.uint16), max(int(image.max()).bit_length() - 8, 0))
+    elif image.dtype != np.uint8:
+        raise InputError(f"{path}: expected grey values of 8 or 16 bits, they are {image.dtype}")
     if min(image.shape) < _SMALLEST:
         raise InputError(
             f"{path}: expected at least {_SMALLEST} pixels a side, it is {image.shape[1]} x {image.shape[0]}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,14 +222,17 @@ def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, setting
     body = _body(image, found, view, specimen, settings, scale.distance)  # its clamp has moved with the scale
     both = to_plane(view, contour, section, plane=plane)
     origin, shift_sd, face = _origin(image, found, body, view, both, specimen, settings, scale)
-    registration = Registration(
-        shift=shift_sd,
-        roll=float(np.hypot(np.radians(settings.board_roll_sd_deg), _ROLL_SD)),
+    # the board, where it is mounted, and the lens are the same in all photographs
+    registration = Registration(shift=0.0 if face is None else shift_sd, roll=float(_ROLL_SD))
+    shared = Registration(
+        shift=shift_sd if face is None else 0.0,
+        roll=float(np.radians(settings.board_roll_sd_deg)),
         scale=float(np.hypot(scale.sd, settings.square_sd)),
     )
     return Trace(
-        outline=sample(
-            both, contour, origin, registration, camera_error=camera.noise * contour.metres_per_pixel
+        outline=replace(
+            sample(both, contour, origin, registration, camera_error=camera.noise * contour.metres_per_pixel),
+            shared=shared,
         ),
         metres_per_pixel=contour.metres_per_pixel,
         tilt=view.tilt,
@@ -314,7 +317,16 @@ def _origin(
 ) -> tuple[Array, float, Face | None]:
     """x, z of the specimen's frame in the board's [m], their sd [m], the clamp's face where it was used."""
     if settings.board_corner_mm is not None:
-        return -1e-3 * np.array(settings.board_corner_mm), settings.board_corner_sd_mm * 1e-3, None
+        corner = -1e-3 * np.array(settings.board_corner_mm)
+        height = 2 * half_height(specimen.section)
+        off = axis_height(both, float(corner[0]), height)[0] - float(corner[1])
+        if abs(off) > 0.5 * height:
+            raise PhotoProblem(
+                f"the specimen leaves the clamp at z = {off * 1e3:.3g} mm of its frame, expected 0:"
+                " board_corner_mm has another sign or is of another corner, or the picture is upside down",
+                show_body(image, found, body.label),
+            )
+        return corner, settings.board_corner_sd_mm * 1e-3, None
     assert body.near is not None
     plane = -scale.distance
     back = plane + settings.clamp_back_mm * 1e-3 if settings.clamp_back_mm is not None else 0.0

@@ -92,11 +92,26 @@ def _find_boards(
             board = find_board(read_photograph(folder / name), next(iter(boards)))
         except PhotoProblem as error:
             raise InputError(f"{folder / name}: {error}") from None
+        if work.boards and board.size not in views:
+            sizes = " or ".join(f"{w} x {h}" for w, h in views)
+            raise InputError(
+                f"{folder / name}: expected a photograph of {sizes} pixels, as those of the specimens are, it"
+                f" is {board.size[0]} x {board.size[1]}: it says nothing of their lens"
+            )
         views.setdefault(board.size, []).append(board)
         done += 1
         on_progress(Progress(message=f"{name}: board", done=done, total=total))
-    cameras = {size: calibrate(found) for size, found in views.items()}
-    work.cameras = {name: cameras[board.size] for name, board in work.boards.items()}
+    for size, found in views.items():
+        same = [job for job in wanted if job.name in work.boards and work.boards[job.name].size == size]
+        try:
+            camera = calibrate(found)
+        except InputError as error:  # the others may still be traced
+            for job in same:
+                del work.boards[job.name]
+                work.problems[job.name] = _sentence(job, error)
+                work.figures[job.name] = {"picture": None}
+        else:
+            work.cameras |= {job.name: camera for job in same}
 
 
 def _run_all(
@@ -148,7 +163,12 @@ def _finish(jobs: list[Job], folder: Path, target: Path, work: _Work, *, skip_ba
             old.unlink()
     by_place = {(job.trial.id, job.number): job.name for job in jobs}
     figures = {place: work.figures[name] for place, name in by_place.items() if name in work.figures}
-    write_copy(folder, target, figures, by_place)
+    try:
+        write_copy(folder, target, figures, by_place)
+    except InputError as error:
+        if not work.problems:
+            raise
+        raise UnusablePhotographs(str(error), work.problems) from None
     report = {"experiment": folder.name, "captures": work.figures, "left_out": work.problems}
     write_whole(target / "reconstruct.json", json.dumps(report, indent=1).encode())
     # what was written is an experiment

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import degrees
 
 from calibration.experiment.model import BeamTrial, Experiment
-from calibration.measurements.outlines._nuisances import CORNER_SD
+from calibration.measurements.outlines._admitted import admitted
+from calibration.measurements.outlines._nuisances import CORNER_SD, SHARED
 from calibration.study.assessment import largest_by_chance
 from calibration.study.calibration import Calibration
 from calibration.study.cards import best, usable
-from tisim import Circle
 
 # Burnham and Anderson, Model Selection and Multimodel Inference (2002), 2.6: a difference below 2 leaves a
 # model substantial support, one above 10 essentially none.
@@ -107,23 +107,20 @@ def far_nuisances(result: Calibration, experiment: Experiment) -> list[Moved]:
 
 def _sizes(material: str, experiment: Experiment) -> dict[str, tuple[float, str]]:
     """One sd of each nuisance that `calibration.measurements.outlines` names, in units for people."""
-    belief = experiment.materials[material]
-    sizes = {f"density of {material}": (belief.density_sd, "kg/m³")}
-    for trial in experiment.trials:
-        if not isinstance(trial, BeamTrial) or trial.material != material:
-            continue
-        sizes[f"free length of {trial.id}"] = (trial.free_length_sd * 1e3, "mm")
+    beams = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.material == material]
+    sizes = {
+        n.name: (n.sd, "kg/m³") if n.quantity == "density" else (n.sd * 1e3, "mm")
+        for n in admitted(beams, experiment.materials[material])
+    }
+    for trial in beams:
         for k in range(1, 9):
             sizes[f"clamp corner {k} of {trial.id}"] = (CORNER_SD * 1e3, "mm")
-        labels = ("radius",) if isinstance(trial.section, Circle) else ("width", "height")
-        for label, sd in zip(labels, trial.section_sd, strict=False):
-            sizes.setdefault(f"{label} of {trial.specimen or trial.id}", (sd * 1e3, "mm"))
         for capture in trial.captures:
             if capture.outline is None:
                 continue
             where = f"of {trial.id} at {capture.time:g} s"
-            registration = capture.outline.registration
-            sizes[f"shift x {where}"] = sizes[f"shift z {where}"] = (registration.shift * 1e3, "mm")
-            sizes[f"roll {where}"] = (degrees(registration.roll), "deg")
-            sizes[f"scale {where}"] = (registration.scale * 100.0, "%")
+            for own, error in ((where, capture.outline.registration), (SHARED, capture.outline.shared)):
+                sizes[f"shift x {own}"] = sizes[f"shift z {own}"] = (error.shift * 1e3, "mm")
+                sizes[f"roll {own}"] = (degrees(error.roll), "deg")
+                sizes[f"scale {own}"] = (error.scale * 100.0, "%")
     return sizes

@@ -144,6 +144,11 @@ def measurements(
     parts = [
         f"{i}: the motion of its markers, only where they come to rest ({why})" for i, why in still.items()
     ]
+    parts += [
+        f"{t.id}: the height of its tip force: a body at rest is pulled all over its end"
+        for t in marked
+        if t.id in still and t.tip_force_height
+    ]
     parts += left_out
     parts += [] if pokes is None else pokes.model.left_out
     return Measurements(

@@ -98,7 +98,7 @@ class Measures:
         Ratios.
     node_distance, node_hd95 : float
         As `metrics.vertex_distance` has it, all nodes of the simulated volume mesh against the vertices of
-        the swept body [m]: what the paper's figures look like (docs/metrics.md).
+        the swept body [m]: what the paper's figures look like (studies/metrics).
     beam_seconds : float
         Core time of one simulated beam.
     further : mapping

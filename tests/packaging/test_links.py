@@ -17,6 +17,7 @@ PAGES = sorted(
 )
 _LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
 _FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+_PAGE = re.compile(r"\b(?:docs|studies)/(?!_build)[A-Za-z0-9_/.-]*[A-Za-z0-9_]")
 _MODULE = re.compile(r"\bpython -m ((?:factory|calibration|learn|benchmarks|studies)[\w.]*)")
 
 
@@ -45,6 +46,18 @@ def test_commands_name_modules_that_exist(page: str) -> None:
         module = ROOT.joinpath(*name.rstrip(".").split("."))
         runs = (module.with_suffix(".py"), module / "__main__.py")
         assert any(p.exists() for p in runs), f"{page}: python -m {name}"
+
+
+def test_pages_that_code_refers_to_exist() -> None:
+    missing = []
+    for path in sorted(ROOT.glob("*/**/*.py")):
+        if {"build", "_build", ".venv"} & set(path.relative_to(ROOT).parts):
+            continue
+        for name in _PAGE.findall(path.read_text(encoding="utf-8")):
+            page = ROOT / name
+            if not any(page.with_name(page.name + end).exists() for end in ("", ".py", ".md")):
+                missing.append(f"{path.relative_to(ROOT)}: {name}")
+    assert not missing
 
 
 @pytest.mark.parametrize("folder", ["tutorials", "how-to", "explanation", "reference"])

@@ -1,4 +1,4 @@
-"""View of a poke of a dataset's store: any Zarr 3 store of the format in docs/dataset-format.md."""
+"""View of a poke of a dataset's store: any Zarr 3 store of the format in docs/reference/dataset-format.md."""
 
 from __future__ import annotations
 

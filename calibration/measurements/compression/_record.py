@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 COMPRESSED = 0.97  # stretch below which a test counts as compression
 # Largest strain of the comparison: up to it the mesh error of a bonded cylinder is below 1 %, and a law with
-# a negative share of the second invariant has an equilibrium (`docs/compression.md`).
+# a negative share of the second invariant has an equilibrium (studies/compression).
 LAST = 0.5
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from calibration.experiment.model import BeamTrial, MaterialBelief
-from tisim import Beam, Circle
+from tisim import Beam, Circle, Rectangle
 
+Section = Circle | Rectangle
 Quantity = Literal["radius", "width", "height", "length", "density"]
 
 STEP = 0.005  # finite-difference step, relative to the quantity
@@ -46,20 +48,22 @@ def admitted(trials: Sequence[BeamTrial], belief: MaterialBelief) -> list[Admitt
     """Uncertain quantities (sd above 0) of one material's trials.
 
     One for each dimension of a specimen's section, each trial's free length, and the material's density.
+    Trials of one specimen share a dimension if they state the same section: a batch may be cast into several.
     """
     found: list[Admitted] = []
-    specimens: dict[str, list[int]] = {}
+    specimens: dict[tuple[str, Section, tuple[float, ...]], list[int]] = {}
     for i, t in enumerate(trials):
-        specimens.setdefault(t.specimen or t.id, []).append(i)
-    for name, members in specimens.items():
-        section, sds = trials[members[0]].section, trials[members[0]].section_sd
+        specimens.setdefault((t.specimen or t.material, t.section, t.section_sd), []).append(i)
+    several = Counter(name for name, _, _ in specimens)
+    for (name, section, sds), members in specimens.items():
+        of = name if several[name] == 1 else f"{name}, {', '.join(trials[i].id for i in members)}"
         sizes: tuple[Quantity, ...] = ("radius",) if isinstance(section, Circle) else ("width", "height")
         for quantity, sd in zip(sizes, sds, strict=False):
             if sd > 0.0:
                 step = STEP * getattr(section, quantity)
                 found.append(
                     Admitted(
-                        name=f"{quantity} of {name}",
+                        name=f"{quantity} of {of}",
                         quantity=quantity,
                         trials=tuple(members),
                         sd=sd,

@@ -105,13 +105,13 @@ def sentence(outlines: Sequence[TracedOutline], uncorrected: str) -> str:
         return low if low == high else f"{low} to {high}"
 
     sd, correlation = (span([1e3 * getattr(o, name) for o in outlines]) for name in ("sd", "correlation"))
-    registration = [o.registration for o in outlines]
+    registration = [o.registration.plus(o.shared) for o in outlines]
     shift = span([1e3 * r.shift for r in registration])
     roll = span([float(np.degrees(r.roll)) for r in registration])
     scale = span([100.0 * r.scale for r in registration])
     text = (
         f"{len(outlines)} photographs; the contour's error {sd} mm, correlated over {correlation} mm; the"
-        f" position of each photograph: {shift} mm, {roll}°, {scale} % of scale; section, free length and"
+        f" position of a photograph: {shift} mm, {roll}°, {scale} % of scale; section, free length and"
         " density as the lab states them with a standard deviation."
     )
     if uncorrected:

@@ -25,22 +25,25 @@ Named = list[tuple[str, Array]]
 
 # sd [m] next to the singular corner of a clamp, where meshes that agree elsewhere to 0.02 mm differ by this
 CORNER_SD = 8e-5
+SHARED = "of all photographs"  # end of the names of errors that they share
 
 
 def registrations(
     photographs: Sequence[TracedPhotograph], results: Sequence[Result], scenes: Scenes, state: State
 ) -> Named:
-    """Change of the coefficients by one sd of each photograph's shift, roll and scale [m]."""
-    columns = []
+    """Change of the coefficients by one sd of each photograph's shift, roll and scale, own and shared [m]."""
+    names = ("shift x", "shift z", "roll", "scale")
+    columns, shared = [], np.zeros((len(names), photographs[-1].rows.stop))
     for p, r in zip(photographs, results, strict=True):
         both = feet_of(p, r, scenes.images(p.beam, state, time=p.time))
         block = np.vstack([registration_columns(f, p.outline.registration) for f in both])
-        names = ("shift x", "shift z", "roll", "scale")
         for what, column in zip(names, (p.basis.T @ block).T, strict=True):
             whole = np.zeros(photographs[-1].rows.stop)
             whole[p.rows] = column
             columns.append((f"{what} of {p.name}", whole))
-    return columns
+        same = np.vstack([registration_columns(f, p.outline.shared) for f in both])
+        shared[:, p.rows] = (p.basis.T @ same).T
+    return [*columns, *((f"{what} {SHARED}", column) for what, column in zip(names, shared, strict=True))]
 
 
 def beliefs(solutions: SolutionCache, base: Array, results: Sequence[Result], state: State) -> Named:

@@ -179,7 +179,8 @@ class MarkerObjective:
                 f"trials.{trial.id}.markers: expected samples later than {self._first + window:g} s, which"
                 " the settled value is taken from"
             )
-        self.bounds = self._release_bounds()
+        # what has come to rest may have been measured there alone
+        self.bounds = self._release_bounds() if "motion" in stages else (self._first, self._first)
 
     @property
     def points(self) -> int:

@@ -10,6 +10,9 @@ from scipy.optimize import least_squares
 
 Array = NDArray[np.float64]
 
+FINE = 6.0  # tried frequencies per 1 / duration
+SURE = 10.0  # least F ratio of the oscillation over centre and creep alone
+
 
 @dataclass(frozen=True, kw_only=True)
 class RingDown:
@@ -43,7 +46,8 @@ def ringdown(time: ArrayLike, signal: ArrayLike, *, first: float = 0.15, last: f
     Raises
     ------
     ValueError
-        If fewer than ten samples are in the range, or the signal does not oscillate.
+        If fewer than ten samples are in the range, or the signal does not oscillate at a frequency that the
+        median interval between samples resolves.
     """
     t, y = np.asarray(time, dtype=float), np.asarray(signal, dtype=float)
     inside = (t >= first) & (t <= last)
@@ -61,15 +65,31 @@ def ringdown(time: ArrayLike, signal: ArrayLike, *, first: float = 0.15, last: f
         B = basis(float(p[0]), float(p[1]))
         return np.asarray(y - B @ np.linalg.lstsq(B, y, rcond=None)[0])
 
-    # scan over frequencies, fine enough for the search to start at the right peak
-    tries = np.linspace(2.0 * np.pi / (t[-1] - t[0]), np.pi / float(np.diff(t).max()), 400)
-    costs = [float(np.square(left(np.array([1.0 / (t[-1] - t[0]), w]))).sum()) for w in tries]
-    start = np.array([2.0 / (t[-1] - t[0]), tries[int(np.argmin(costs))]])
-    found = least_squares(left, start, x_scale=np.abs(start), xtol=1e-12, ftol=1e-12)
+    # scan over frequencies, fine enough for the search to start at the right peak; a film may go over into
+    # single photographs, so that the longest interval says nothing
+    long, low, high = (
+        float(t[-1] - t[0]),
+        2.0 * np.pi / float(t[-1] - t[0]),
+        np.pi / float(np.median(np.diff(t))),
+    )
+    tries = np.linspace(low, high, max(400, int(FINE * long * (high - low) / (2.0 * np.pi))))
+    starts = (1.0 / long, 10.0 / long)  # a fast decay hides its frequency from a slow one's scan
+    _, c, w = min(
+        (float(np.square(left(np.array([c, w]))).sum()), c, float(w)) for c in starts for w in tries
+    )
+    start = np.array([max(c, 2.0 / long), w])
+    bounds = ([0.0, 0.5 * low], [np.inf, high])
+    found = least_squares(left, start, x_scale=np.abs(start), xtol=1e-12, ftol=1e-12, bounds=bounds)
     c, w = (float(v) for v in found.x)
     amount = np.linalg.lstsq(basis(c, w), y, rcond=None)[0]
-    if not np.hypot(amount[2], amount[3]) > 0.0:
-        raise ValueError("ring-down: expected a signal that swings")
+    smooth = np.column_stack([np.ones_like(t), np.log10(t)])
+    without = float(np.square(y - smooth @ np.linalg.lstsq(smooth, y, rcond=None)[0]).sum())
+    rest = float(np.square(found.fun).sum())
+    at_an_end = min(w / (0.5 * low), high / w) < 1.01
+    if at_an_end or (without - rest) * (len(t) - 6) <= SURE * 4.0 * rest:
+        raise ValueError(
+            f"ring-down: expected a signal that swings at {low / np.pi / 2:.2g} to {high / np.pi / 2:.3g} Hz"
+        )
     return RingDown(
         frequency=w / (2.0 * np.pi),
         damping_ratio=c / float(np.hypot(c, w)),

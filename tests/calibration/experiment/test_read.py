@@ -165,7 +165,7 @@ def test_sides_traced_towards_the_clamp_are_turned_round(turned: str, tmp_path: 
 
 
 def test_a_contour_closed_at_its_end_and_a_beam_that_hangs_straight_down(tmp_path: Path) -> None:
-    """The sides may share their last point, and the contour may bend beyond the vertical."""
+    """The sides may go round the end face, which is left out, and bend beyond the vertical."""
     s = np.linspace(0.02, 1.0, 40)
     angle = 1.8 * np.minimum(2 * s, 1.0)
     way = np.cumsum(np.column_stack([np.cos(angle), -np.sin(angle)]) * 2.5, axis=0)
@@ -173,7 +173,42 @@ def test_a_contour_closed_at_its_end_and_a_beam_that_hangs_straight_down(tmp_pat
     end = way[-1] + (way[-1] - way[-2])
     upper, lower = (np.vstack([way + sign * 10 * normal, end]) for sign in (1, -1))
     trial = beam_entry("bar", captures=[capture_entry(1.0, "a.csv")])
-    read(write_experiment(tmp_path, [trial], tables={"a.csv": outline_columns(upper, lower)}))
+    found = read(write_experiment(tmp_path, [trial], tables={"a.csv": outline_columns(upper, lower)}))
+    (beam,) = found.trials
+    assert isinstance(beam, BeamTrial)
+    assert beam.captures[0].outline is not None
+    assert len(beam.captures[0].outline.upper) == len(beam.captures[0].outline.lower) == len(upper) - 1
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
+def test_points_of_the_end_face_belong_to_no_side(tmp_path: Path, share: float) -> None:
+    """The upper side goes round a part of it, the lower one round the rest."""
+    x = np.linspace(1.0, 100.0, 60)
+    upper, lower = (np.column_stack([x, sign * 10.0 - 0.002 * x**2]) for sign in (1, -1))
+    face = [upper[-1] + part * (lower[-1] - upper[-1]) for part in np.linspace(0.0, 1.0, 12)[1:-1]]
+    some = round(share * len(face))
+    sides = np.vstack([upper, *face[:some]]), np.vstack([lower, *face[some:][::-1]])
+    trial = beam_entry("bar", captures=[capture_entry(1.0, "a.csv")])
+    found = read(write_experiment(tmp_path, [trial], tables={"a.csv": outline_columns(*sides)}))
+    (beam,) = found.trials
+    assert isinstance(beam, BeamTrial)
+    outline = beam.captures[0].outline
+    assert outline is not None
+    for side, whole in ((outline.upper, upper), (outline.lower, lower)):
+        assert len(whole) - 2 <= len(side) <= len(whole)
+        np.testing.assert_allclose(1e3 * side, whole[: len(side)], atol=1e-3)
+
+
+@pytest.mark.parametrize("moved", [52.0, -52.0])
+def test_an_outline_of_another_origin_is_refused(tmp_path: Path, moved: float) -> None:
+    x = np.linspace(1.0, 100.0, 60)
+    sides = [np.column_stack([x, sign * 10.0 + moved - 0.002 * x**2]) for sign in (1, -1)]
+    trial = beam_entry("bar", captures=[capture_entry(1.0, "a.csv")])
+    folder = write_experiment(tmp_path, [trial], tables={"a.csv": outline_columns(*sides)})
+    with pytest.raises(
+        InputError, match=rf"a\.csv: column z_mm: .* z = 0, their middle is at z = {moved:g} mm"
+    ):
+        read(folder)
 
 
 def test_numbers_with_an_exponent_and_tables_from_a_spreadsheet(tmp_path: Path) -> None:

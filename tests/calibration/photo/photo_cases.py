@@ -64,7 +64,7 @@ def chi_squares(outline: TracedOutline, error: np.ndarray, degree: int) -> tuple
         tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
         normals.append(np.column_stack([-tangent[:, 1], tangent[:, 0]]))
         points.append(line)
-    n, q, stated = np.concatenate(normals), np.concatenate(points), outline.registration
+    n, q, stated = np.concatenate(normals), np.concatenate(points), outline.registration.plus(outline.shared)
     columns = np.column_stack(
         [
             stated.shift * n,

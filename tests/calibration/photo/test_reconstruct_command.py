@@ -14,8 +14,10 @@ import yaml
 from typer.testing import CliRunner, Result
 
 from benchmarks.blind.camera import Lens, Setting, Tube, View, photograph
+from calibration.errors import InputError
 from calibration.experiment import BeamTrial, read
 from calibration.photo import reconstruction
+from calibration.photo._image import read_photograph
 from calibration.reconstruct import app
 
 AXIS = cases.hanging()
@@ -107,6 +109,8 @@ def test_what_it_writes_is_an_experiment(done: Path) -> None:
     slow, given = (o.sd * np.sqrt(o.correlation / 0.010) for o in (first, traced))
     assert slow < 0.03e-3 < given
     assert (traced.sd, traced.correlation) == pytest.approx((0.1e-3, 5e-3))
+    assert first.shared.scale == pytest.approx(second.shared.scale, rel=0.5)
+    assert first.shared.scale > 0.0 == traced.shared.scale
     assert second.registration.shift > 0.3e-3 > first.registration.shift
     assert second.registration.roll > np.radians(0.4) > first.registration.roll
 
@@ -160,6 +164,62 @@ def test_bad_photograph(lab: Path, tmp_path: Path) -> None:
     assert result.output.count("kept") == 2
     (trial,) = read(out).trials
     assert [capture.time for capture in trial.captures] == [100.0, 1000.0]
+
+
+def test_no_photograph_that_can_be_used(lab: Path, tmp_path: Path) -> None:
+    """Each has its own sentence, with --skip-bad too."""
+    folder = tmp_path / "lab"
+    shutil.copytree(lab, folder)
+    raw = yaml.safe_load((folder / "experiment.yaml").read_text())
+    del raw["trials"][0]["captures"][2]
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(raw))
+    for name in ("first", "second"):
+        cv2.imwrite(str(folder / "photos" / f"{name}.png"), np.full((600, 800), 180, np.uint8))
+    result = command(folder, "--out", tmp_path / "out", "--skip-bad")
+    assert result.exit_code == 2
+    assert "no photograph can be used" in result.output
+    for name in ("hang-1 (first.png)", "hang-2 (second.png)"):
+        assert f"{name}: no board of 9 x 6 squares was found" in result.output
+
+
+def test_a_board_that_no_lens_fits_leaves_the_outlines(
+    lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def bent(_boards: object) -> None:
+        raise InputError("camera: the board's corners miss a flat board by 9 pixels; is it bent?")
+
+    monkeypatch.setattr(reconstruction, "calibrate", bent)
+    result = command(lab, "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "hang-1 (first.png): camera: the board's corners miss" in result.output
+    assert "2 of 3 captures cannot be used" in result.output
+    assert command(lab, "--out", tmp_path / "out", "--skip-bad").exit_code == 0
+
+
+def test_a_board_photographed_at_another_size_is_refused(lab: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "lab"
+    shutil.copytree(lab, folder)
+    lens = Lens(size=(1000, 750), focal=2325.0, centre=(500.0, 372.0), k1=-0.2)
+    setting = Setting(tubes=(Tube(axis=AXIS, radius=10.0),), blur=0.8)
+    cv2.imwrite(str(folder / "board.png"), photograph(setting, lens, View()))
+    (folder / "photographs.yaml").write_text("calibration_photos: [board.png]")
+    result = command(folder, "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "board.png: expected a photograph of 800 x 600 pixels" in result.output
+    assert "it is 1000 x 750" in result.output
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+def test_grey_values_of_more_bits(tmp_path: Path, bits: int) -> None:
+    """Cameras write 10 or 12 bits into 16."""
+    grey = np.random.default_rng(1).integers(0, 256, (420, 500)).astype(np.uint8)
+    grey[0, 0] = 255
+    path = tmp_path / "a.tif"
+    cv2.imwrite(str(path), grey.astype(np.uint16) << (bits - 8))
+    np.testing.assert_array_equal(read_photograph(path), grey)
+    cv2.imwrite(str(tmp_path / "b.tif"), grey.astype(np.float32))
+    with pytest.raises(InputError, match="expected grey values of 8 or 16 bits"):
+        read_photograph(tmp_path / "b.tif")
 
 
 def test_stopped_in_between(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

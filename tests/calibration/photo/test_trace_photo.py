@@ -13,6 +13,7 @@ from benchmarks.blind.camera import Clamp, Lens, Setting, Tube, View, photograph
 from calibration.experiment import Checkerboard
 from calibration.metrics import dice
 from calibration.photo import Board, Camera, PhotoSettings, Specimen, Trace, calibrate, find_board, trace
+from calibration.photo._image import PhotoProblem
 from calibration.shape import centreline, sweep
 
 BOARD = Checkerboard(squares=(9, 6), square=0.008)
@@ -110,7 +111,7 @@ def test_outline_in_the_boards_frame(name: str, images: dict, camera: Camera) ->
     assert rms(e.all) < 0.04
     assert e.end < 0.08
     assert e.dice > 0.995
-    assert abs(e.scale) < 3 * found.outline.registration.scale
+    assert abs(e.scale) < 3 * found.outline.shared.scale
     # for smooth modes; for single points the statement is conservative, see test_stated_error
     assert rms(e.shape) < found.outline.sd * 1e3
     assert cases.BAND[0] < chi2(found, cases.hanging()) < cases.BAND[1]
@@ -127,6 +128,27 @@ def test_frame_from_the_clamp(name: str, images: dict, camera: Camera) -> None:
     assert np.abs(e.shift).max() < 4e3 * found.outline.registration.shift
 
 
+@pytest.mark.parametrize("corner", [(12.0, -26.0), (12.0, 76.0)])
+def test_a_corner_of_another_sign_or_place_is_said(images: dict, camera: Camera, corner: tuple) -> None:
+    """The beam would leave the clamp far from the frame's origin."""
+    image = images["square on"]
+    settings = PhotoSettings(board_corner_mm=corner)
+    with pytest.raises(PhotoProblem, match=r"leaves the clamp at z = -?5\d.* mm of its frame, expected 0"):
+        trace(image, find_board(image, BOARD), camera, specimen(), settings)
+
+
+def test_what_photographs_share_is_stated_apart(images: dict, camera: Camera) -> None:
+    image = images["square on"]
+    settings = PhotoSettings(board_corner_mm=(12.0, 26.0), board_corner_sd_mm=0.2, board_roll_sd_deg=0.3)
+    found = trace(image, find_board(image, BOARD), camera, specimen(), settings).outline
+    assert (found.registration.shift, found.shared.shift) == (0.0, pytest.approx(2e-4))
+    assert found.shared.roll == pytest.approx(np.radians(0.3))
+    assert 0.0 < found.registration.roll < np.radians(0.05)
+    assert found.registration.scale == 0.0 < found.shared.scale
+    clamp = trace(image, find_board(image, BOARD), camera, specimen(), PhotoSettings()).outline
+    assert clamp.shared.shift == 0.0 < clamp.registration.shift
+
+
 def test_known_diameter_stands_in_for_the_focal_length(images: dict) -> None:
     """One perpendicular view does not determine the focal length, and so not the specimen's distance."""
     image = images["square on"]
@@ -138,8 +160,8 @@ def test_known_diameter_stands_in_for_the_focal_length(images: dict) -> None:
     sure, unsure = errors(known, cases.hanging()), errors(vague, cases.hanging())
     assert rms(sure.all) < 0.1
     assert rms(sure.all) < 0.5 * rms(unsure.all)
-    assert abs(sure.scale) < 3 * known.outline.registration.scale
-    assert known.outline.registration.scale < 0.004 < vague.outline.registration.scale
+    assert abs(sure.scale) < 3 * known.outline.shared.scale
+    assert known.outline.shared.scale < 0.004 < vague.outline.shared.scale
 
 
 def test_at_the_papers_resolution() -> None:
@@ -200,7 +222,7 @@ def test_tilts_and_distortion(
         print(
             f"\n| {tilt:.0f} | {direction:.0f} | {k1:.1f} | {rms(e.all):.4f} | {np.abs(e.all).max():.3f} | "
             f"{rms(e.shape):.4f} | {found.outline.sd * 1e3:.4f} | {chi2(found, axis):.3f} | {e.scale:+.5f} | "
-            f"{found.outline.registration.scale:.5f} | {e.dice:.4f} |"
+            f"{found.outline.shared.scale:.5f} | {e.dice:.4f} |"
         )
     assert rms(e.all) < 0.1
     assert e.dice > 0.99

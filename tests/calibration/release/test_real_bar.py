@@ -1,4 +1,4 @@
-"""The measured Dragon Skin beam, if it is available: see docs/bar.md."""
+"""The measured Dragon Skin beam, if it is available: see studies/release."""
 
 from __future__ import annotations
 

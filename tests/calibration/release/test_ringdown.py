@@ -32,6 +32,30 @@ def test_noise_is_told_from_the_swing():
     assert found.frequency == pytest.approx(7.7, rel=2e-3)
 
 
+@pytest.mark.parametrize("slow", [0.1, 0.25, 1.0])
+@pytest.mark.parametrize("frequency", [3.0, 6.0, 10.0])
+def test_a_film_that_goes_over_into_single_photographs(frequency, slow):
+    """The longest interval does not limit the frequency."""
+    t = np.concatenate([np.arange(0.0, 1.2, 1.0 / 240.0), np.arange(1.2 + slow, 3.0, slow)])
+    w = 2.0 * np.pi * frequency
+    c = 0.03 * w / np.sqrt(1.0 - 0.03**2)
+    z = -30.0 * (1.0 - np.exp(-c * t) * np.cos(w * t)) + np.random.default_rng(2).normal(0.0, 0.05, len(t))
+    found = ringdown(t, z, first=0.02, last=3.0)
+    assert found.frequency == pytest.approx(frequency, rel=5e-3)
+    assert found.damping_ratio == pytest.approx(0.03, rel=0.1)
+
+
+@pytest.mark.parametrize("fast", [0.0, 90.0])
+def test_a_signal_without_a_resolved_vibration_is_refused(fast):
+    """Creep alone, or an oscillation that the sampling does not resolve."""
+    t = np.arange(0.0, 2.0, 0.01)
+    z = -6.0 - 0.4 * np.log10(np.maximum(t, 1e-3)) + np.random.default_rng(3).normal(0.0, 0.05, len(t))
+    if fast:
+        z = z + np.random.default_rng(4).normal(0.0, 3.0, len(t))
+    with pytest.raises(ValueError, match="expected a signal that swings at"):
+        ringdown(t, z, last=1.8)
+
+
 def test_refusals():
     t, z = made()
     with pytest.raises(ValueError, match=r"ten samples between 0.15 and 0.2 s, got"):

@@ -108,7 +108,7 @@ def test_nuisances_beyond_two_sd(tmp_path: Path) -> None:
     moved = {
         "shift x of hanging at 60 s": 2.5,
         "roll of hanging at 60 s": -4.0,
-        "radius of hanging": 3.0,
+        "radius of S1": 3.0,
         "free length of hanging": 1.9,
         "density of S1": -2.2,
         "mesh of hanging": 2.1,
@@ -117,7 +117,7 @@ def test_nuisances_beyond_two_sd(tmp_path: Path) -> None:
     # sds of the experiment: shift 0.1 mm, roll 0.15 degrees, radius 0.05 mm, density 5 kg/m3
     assert [(m.name, m.amount) for m in found] == [
         ("roll of hanging at 60 s", "-0.6 deg"),
-        ("radius of hanging", "+0.15 mm"),
+        ("radius of S1", "+0.15 mm"),
         ("shift x of hanging at 60 s", "+0.25 mm"),
         ("density of S1", "-11 kg/m³"),
         ("mesh of hanging", ""),

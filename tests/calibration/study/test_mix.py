@@ -88,7 +88,7 @@ def test_the_bar_at_rest() -> None:
     folder = measured() / "real" / "clamped-beam-dragonskin10" / "experiment"
     found = calibrate(measurements(read(folder), "dragonskin10", NEO))
     assert found.status == "converged"
-    # published static fits: E of 267 to 298 kPa; here, one trial each: 250 to 279 (docs/bar.md)
+    # published static fits: E of 267 to 298 kPa; here, one trial each: 250 to 279 (studies/release)
     assert 250e3 < 3.0 * found.shear_modulus < 298e3
 
 

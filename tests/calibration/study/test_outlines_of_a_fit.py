@@ -17,6 +17,7 @@ from calibration.experiment import Experiment, read
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines import COARSE
+from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._solutions import SolutionCache
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.simulators import OURS
@@ -93,6 +94,53 @@ def test_a_nuisance_is_positive_where_its_quantity_is_larger_than_stated(
     found = {n: b - as_stated[n] for n, b in after.nuisances(U).items()}
     assert 0.2 < found[name] < 1.2
     assert max(found, key=lambda n: abs(found[n])) == name
+
+
+def test_an_error_that_photographs_share_moves_them_together(experiment: Experiment) -> None:
+    """It is one nuisance, so that more photographs do not reduce it."""
+
+    def stated(own: bool) -> Experiment:
+        def of(trial: BeamTrial) -> BeamTrial:
+            captures = []
+            for c in trial.captures:
+                assert c.outline is not None
+                error = c.outline.registration
+                nothing = replace(error, shift=0.0, roll=0.0, scale=0.0)
+                parts = {"registration": error, "shared": nothing} if own else {
+                    "registration": nothing, "shared": error
+                }  # fmt: skip
+                captures.append(replace(c, outline=replace(c.outline, **parts)))
+            return replace(trial, captures=tuple(captures), free_length_sd=0.0)
+
+        beams = tuple(of(t) for t in experiment.trials if isinstance(t, BeamTrial))
+        return replace(experiment, trials=beams)
+
+    own, shared = outlines(stated(True), simulator=BARE), outlines(stated(False), simulator=BARE)
+    assert own.linearise(U)
+    assert shared.linearise(U)
+    a, b = own.model.noise, shared.model.noise
+    for what in ("shift x", "shift z", "roll", "scale"):
+        mine = [k for k, name in enumerate(a.names) if name.startswith(f"{what} of ")]
+        assert len(mine) == 4
+        (one,) = (k for k, name in enumerate(b.names) if name.startswith(f"{what} of "))
+        assert b.names[one] == f"{what} of all photographs"
+        np.testing.assert_allclose(b.columns[:, one], a.columns[:, mine].sum(axis=1), atol=1e-12)
+
+
+def test_trials_of_one_specimen_share_a_dimension_if_their_section_is_one(experiment: Experiment) -> None:
+    short, long = (t for t in experiment.trials if isinstance(t, BeamTrial))
+    belief = experiment.materials["S0"]
+    found = [n for n in admitted([short, long], belief) if n.quantity == "radius"]
+    assert [(n.name, n.trials) for n in found] == [("radius of S0", (0, 1))]
+    strip = replace(long, section=tisim.Rectangle(width=0.02, height=0.018), section_sd=(5e-5, 6e-5))
+    batch = [replace(t, specimen="batch 1") for t in (short, strip)]
+    found = [n for n in admitted(batch, belief) if n.quantity in ("radius", "width", "height")]
+    assert [(n.quantity, n.trials, n.sd) for n in found] == [
+        ("radius", (0,), short.section_sd[0]),
+        ("width", (1,), 5e-5),
+        ("height", (1,), 6e-5),
+    ]
+    assert len({n.name for n in found}) == 3
 
 
 def test_a_density_that_is_larger_than_stated_is_positive(experiment: Experiment) -> None:
