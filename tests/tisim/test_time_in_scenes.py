@@ -123,11 +123,15 @@ def test_a_cylinder_follows_a_course(platens: str) -> None:
     found = tisim.simulate(scene)
     assert found.ok
     assert (np.diff(found.dissipated, prepend=0.0) > 0.0).all()
-    if platens == "free":  # homogeneous, as a coupon
+    if platens == "free":  # homogeneous, as a coupon, up to where the coupon would be pulled
         coupon = tisim.simulate(tisim.Coupon(material=scene.material, course=course))
-        assert found.nominal_stress == pytest.approx(coupon.nominal_stress, rel=1e-5)
+        pressed = coupon.nominal_stress < 0.0
+        assert np.flatnonzero(~pressed).tolist() == [len(pressed) - 1]
+        assert found.nominal_stress[pressed] == pytest.approx(coupon.nominal_stress[pressed], rel=1e-5)
+        assert found.nominal_stress[-1] == pytest.approx(0.0, abs=1e-3)
         volume = np.pi * 0.01**2 * 0.012
-        assert found.dissipated == pytest.approx(coupon.dissipated / 0.01**3 * volume, rel=2e-2)
+        lost = coupon.dissipated / 0.01**3 * volume
+        assert found.dissipated[pressed] == pytest.approx(lost[pressed], rel=2e-2)
 
 
 @pytest.mark.parametrize("law", ["neo-hookean", "ogden"])

@@ -136,8 +136,9 @@ def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
 
 
 def _time_in_contact(time: Array, depth: Array, points: slice) -> float:
-    """Time of a phase below the surface, from the last row above it [s]."""
+    """Time of a phase below the surface, from the row before to the row after it [s]."""
     touching = points.start + np.flatnonzero(depth[points.start : points.stop + 1] > 0.0)
     if not touching.size:
         return 0.0
-    return float(time[touching[-1]] - time[max(touching[0] - 1, points.start)])
+    after = min(int(touching[-1]) + 1, points.stop, time.size - 1)
+    return float(time[after] - time[max(touching[0] - 1, points.start)])
