@@ -109,7 +109,7 @@ def plan_fit(
         leave_one_out=held_out,
     )
     count = processes(workers)
-    _check_folder(folder, overwrite)
+    _check_folder(folder)
     tasks = tasks_for(
         data,
         law_names=names,
@@ -124,6 +124,8 @@ def plan_fit(
         free_bulk_ratio=free_bulk_ratio,
         cards=cards,
     )
+    if overwrite:
+        _remove_earlier(tasks, folder)
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
 
@@ -212,14 +214,18 @@ def _starts(path: str | Path | None, materials: list[str], objective: str) -> di
     return found
 
 
-def _check_folder(folder: Path, overwrite: bool) -> None:
-    """Refuse a folder that holds something else; with overwrite, remove our own fits only."""
+def _check_folder(folder: Path) -> None:
+    """Refuse a folder that holds something else."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: expected a folder to write to")
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise InputError(f"{folder}: expected a folder that can be written to")
-    if overwrite and (folder / "fits").is_dir():
-        from calibration.study import remove_fits
 
-        remove_fits(folder / "fits")
+
+def _remove_earlier(tasks: Sequence[Task], folder: Path) -> None:
+    """Remove the results of these fits, and of no others."""
+    from calibration.study import remove_fits
+
+    if (folder / "fits").is_dir():
+        remove_fits(folder / "fits", {own.name for task in tasks for own in (task, *task.alternatives)})

@@ -110,6 +110,18 @@ class Result:
         """True if the whole load, depth or duration was reached."""
         return self.status is Status.CONVERGED
 
+    @property
+    def rest_positions(self) -> NDArray[np.float64]:
+        """Stress-free node positions [m], shape (n, 3).
+
+        They are the mesh's nodes, except for a beam with imperfections: its mesh is that of the ideal prism.
+        """
+        if self.scene is None:
+            return self.mesh.nodes
+        from tisim.problems._registry import kind_of
+
+        return kind_of(self.scene).rest(self)
+
     def __repr__(self) -> str:
         rows = ", ".join(f"{name} {value}" for name, value in self._summary())
         return f"<Result of a {type(self.scene).__name__}: {rows}>"
@@ -130,7 +142,7 @@ class Result:
         rows.append(("mesh", f"{self.mesh.n_nodes} nodes, {self.mesh.n_elements} {self.mesh.kind}"))
         rows.append(("frames", f"{frames}, load to {self.load[-1]:.4g}" if frames else "none"))
         if frames:
-            moved = np.linalg.norm(self.positions[-1] - self.mesh.nodes, axis=1).max()
+            moved = np.linalg.norm(self.positions[-1] - self.rest_positions, axis=1).max()
             if self.time is not None:
                 rows.append(("time", f"to {self.time[-1]:.4g} s"))
             rows.append(("largest displacement", f"{moved * 1e3:.4g} mm"))

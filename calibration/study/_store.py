@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -40,14 +40,14 @@ def locked(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def remove_fits(folder: Path) -> None:
-    """Remove all fits of a folder, whole or damaged, and nothing else.
+def remove_fits(folder: Path, names: Collection[str]) -> None:
+    """Remove the fits of these names in a folder, whole or damaged, and nothing else.
 
     InputError where another process is at work there.
     """
     with locked(folder):
         for path in folder.iterdir():
-            if path.is_file() and _is_fit(path):
+            if path.is_file() and path.name.partition(".json")[0] in names and _is_fit(path):
                 path.unlink()
 
 

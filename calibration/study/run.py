@@ -21,7 +21,7 @@ from calibration.errors import InputError
 from calibration.experiment import Experiment
 from calibration.inference import Generation, HistoryError
 from calibration.measurements.outlines.setup import Setup
-from calibration.parameters import parametrisation
+from calibration.parameters import parametrisation, part_kind
 from calibration.progress import FitProgress, OnProgress
 from calibration.study import parts
 from calibration.study._store import FitStore, locked
@@ -30,6 +30,7 @@ from calibration.study.calibration import Calibration
 from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
 from calibration.study.parts import CardParts
 from tisim import laws
+from tisim.parallel.extensions import digest_of_code, is_own
 
 log = logging.getLogger(__name__)
 
@@ -123,6 +124,10 @@ class Task:
         }
         if self.parts:
             header["parts"] = list(self.parts)
+        added = laws.added(self.law)
+        own = [*(() if added is None else vars(added).values()), *(part_kind(s).make for s in self.parts)]
+        if any(callable(thing) and not is_own(thing) for thing in own):
+            header["code"] = digest_of_code(*own)
         if self.card is not None:
             header["start"] = self.card.path
             header["card"] = self.card.content

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,13 +14,13 @@ from learn.errors import InputError
 from learn.evaluation.intervals import N_FEATURES, Intervals
 from learn.metrics import RING_EDGES_MM
 from learn.training import Run
-from learn.training.run_folder import write_whole
+from learn.training.run_folder import BEST, write_whole
 
 
 def save_intervals(run: Run, intervals: Intervals) -> Path:
     """Write intervals to the folder of the run, or of the first run of an ensemble."""
     path = _path(run)
-    content = {"members": _members(run), **intervals.as_dict()}
+    content = {"members": _members(run), "weights": _weights(run), **intervals.as_dict()}
     write_whole(path, (json.dumps(content) + "\n").encode())
     return path
 
@@ -54,10 +55,15 @@ def load_intervals(run: Run) -> Intervals | None:
         ) from None
     except (ValueError, RecursionError):
         raise InputError(f"{path}: not readable; learn.evaluate writes it again") from None
-    members = content.pop("members")
-    if members != _members(run):
+    members, weights = content.pop("members"), content.pop("weights")
+    if weights is None and members != _members(run):
         raise InputError(
             f"{path}: belongs to {', '.join(members)}; learn.evaluate --ensemble writes it again"
+        )
+    if weights is not None and weights != _weights(run):
+        raise InputError(
+            f"{path}: belongs to other weights (trained further, or other members: "
+            f"{', '.join(members) or run.folder.name}); learn.evaluate writes it again"
         )
     return Intervals(**content)
 
@@ -69,6 +75,7 @@ _Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 class _File(BaseModel):
     model_config = ConfigDict(extra="forbid")
     members: list[str]
+    weights: list[str] | None = None  # not in files from before 2026-11-27
     level: _Positive
     promised: _Positive
     pokes: Annotated[int, Field(strict=True, ge=1)]
@@ -97,3 +104,9 @@ def _path(run: Run) -> Path:
 
 def _members(run: Run) -> list[str]:
     return [folder.resolve().name for folder in run.members]
+
+
+def _weights(run: Run) -> list[str]:
+    """sha256 of the weights of the run, or of each member of an ensemble, in any order of these."""
+    folders = run.members or (run.folder,)
+    return sorted(hashlib.sha256((folder / BEST).read_bytes()).hexdigest() for folder in folders)

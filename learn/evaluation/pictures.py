@@ -120,7 +120,7 @@ def draw_prediction(
     cut, flat = figure.subplots(1, 2, width_ratios=[1.6, 1])
     figure.suptitle(title)
     offset = points[:, :2] - start[:2]
-    strip = np.flatnonzero(np.abs(offset @ np.array([-heading[1], heading[0]])) < 1.7e-3)
+    strip = np.flatnonzero(np.abs(offset @ np.array([-heading[1], heading[0]])) < _strip(points))
     strip = strip[np.argsort(offset[strip] @ heading)]
     rigid = scene.rigid[scene.rigid_index[pokes.geometry[0]]].numpy()
     along, levels = offset[strip] @ heading, scene.level_depth.numpy()
@@ -176,7 +176,7 @@ def _cut(axis: Axes, points: Floats, truth: Floats, predicted: Floats, start: Fl
         heading = np.array([1.0, 0.0])
     offset = points[:, :2] - start[:2]
     beside = offset @ np.array([-heading[1], heading[0]])
-    strip = np.flatnonzero(np.abs(beside) < 1.7e-3)
+    strip = np.flatnonzero(np.abs(beside) < _strip(points))
     strip = strip[np.argsort(offset[strip] @ heading)]
     for name, u, style in (("simulated", truth, "k-"), ("predicted", predicted, "C1x")):
         place = points[strip] + u[strip]
@@ -184,6 +184,13 @@ def _cut(axis: Axes, points: Floats, truth: Floats, predicted: Floats, start: Fl
         axis.plot(along * 1e3, (place[:, 2] - start[2]) * 1e3, style, label=name, markersize=5)
     axis.set(title="cut along the push", xlabel="mm", ylabel="mm", xlim=(-30, 30))
     axis.legend(fontsize=8)
+
+
+def _strip(points: Floats) -> float:
+    """Half of the width of a strip that holds a row of points at any heading [m]."""
+    from scipy.spatial import cKDTree
+
+    return 0.55 * float(cKDTree(points[:, :2]).query(points[:, :2], k=2)[0][:, 1].max())
 
 
 def _map(
@@ -198,9 +205,11 @@ def _map(
 ) -> None:
     # the square root makes the far field visible beside the contact
     norm = PowerNorm(0.5, vmin=0, vmax=top if top is not None else max(float(values.max()), 1e-9))
-    picture = axis.imshow(
-        values, origin="lower", extent=(reach[0], reach[1], reach[2], reach[3]), cmap=colours, norm=norm
-    )
+    # from the first to the last point, and half a cell beyond: a pixel's centre is its point
+    x0, x1, y0, y1 = reach
+    dx, dy = 0.5 * (x1 - x0) / (values.shape[1] - 1), 0.5 * (y1 - y0) / (values.shape[0] - 1)
+    extent = (x0 - dx, x1 + dx, y0 - dy, y1 + dy)
+    picture = axis.imshow(values, origin="lower", extent=extent, cmap=colours, norm=norm)
     axis.plot(start[0] * 1e3, start[1] * 1e3, "+", color="white")
     axis.set(title=f"{title} [mm]", xlabel="x [mm]")
     figure.colorbar(picture, ax=axis, shrink=0.85)

@@ -35,6 +35,9 @@ Exit codes: 0 written, 2 bad input, or a page of more than 10 MB gzipped.
 """
 
 
+POKES = 4  # by default
+
+
 @all_commands.command(epilog=EXAMPLES)
 def page(
     run: Annotated[
@@ -53,8 +56,14 @@ def page(
         ),
     ] = None,
     pokes: Annotated[
-        int, typer.Option(min=0, max=100, help="Number of simulated test pokes to compare with.")
-    ] = 4,
+        int | None,
+        typer.Option(
+            min=0,
+            max=100,
+            help=f"Number of simulated test pokes to compare with. Default: {POKES}.",
+            show_default=False,
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("poke.html"),
     parts: Annotated[
         Path | None,
@@ -74,11 +83,13 @@ def page(
 
         load_plugins(plugin or [])
         if run.suffix == ".zip":
-            if parts is not None or shape or dataset is not None:
-                raise InputError(f"{run}: expected no --parts, --shape or --dataset: its content is settled")
+            if parts is not None or shape or dataset is not None or pokes is not None:
+                raise InputError(
+                    f"{run}: expected no --parts, --shape, --pokes or --dataset: its content is settled"
+                )
             own = Parts.load(run)
         else:
-            own = parts_of(load(run, dataset=dataset), shapes=shape, pokes=pokes)
+            own = parts_of(load(run, dataset=dataset), shapes=shape, pokes=POKES if pokes is None else pokes)
         if parts is not None:
             own.save(parts)
             console.print(f"{parts}: {parts.stat().st_size / 1e6:.1f} MB")

@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
+from learn.errors import InputError
 from learn.evaluation.intervals import (
     Predicted,
     across_folds,
@@ -145,8 +146,32 @@ def test_what_is_not_three_folds_of_one_kind_has_none(answers: list[Predicted]) 
     assert across_folds(answers) == []
 
 
+def _run(folder: Path, *members: Path) -> Run:
+    """A run as far as its intervals need it."""
+    for place in members or (folder,):
+        place.mkdir(exist_ok=True, parents=True)
+        if not (place / "best.pt").exists():
+            (place / "best.pt").write_bytes(str(place).encode())
+    return cast(Run, SimpleNamespace(folder=folder, members=members))
+
+
+def test_intervals_belong_to_the_weights_that_they_were_made_for(tmp_path: Path) -> None:
+    own = fit_intervals(_answers(0, 1.0).predictions)
+    run = _run(tmp_path / "run")
+    save_intervals(run, own)
+    assert load_intervals(run) == own
+    (run.folder / "best.pt").write_bytes(b"trained further")
+    with pytest.raises(InputError, match="belongs to other weights"):
+        load_intervals(run)
+    a, b, c = (tmp_path / name / "s0" for name in "abc")
+    save_intervals(_run(a, a, b), own)
+    assert load_intervals(_run(a, b, a)) == own  # in any order
+    with pytest.raises(InputError, match="other members"):
+        load_intervals(_run(a, a, c))  # of the same name
+
+
 def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> None:
-    run = cast(Run, SimpleNamespace(folder=tmp_path, members=()))
+    run = _run(tmp_path)
     own = fit_intervals(_answers(0, 1.0).predictions)
     assert replaced_text(run, own) is None
     save_intervals(run, replace(own, pokes=420))
@@ -159,11 +184,12 @@ def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> N
 
 def test_intervals_of_before_the_cover_are_read(tmp_path: Path) -> None:
     """Files of 2026-11-25 have one coefficient, of the inclusion's size, under another key."""
-    run = SimpleNamespace(folder=tmp_path, members=())
+    run = _run(tmp_path)
     own = replace(fit_intervals(_answers(0, 1.0).predictions), interior=(0.1, 0.2), force_interior=(0.3, 0.4))
-    path = save_intervals(run, own)  # type: ignore[arg-type]
+    path = save_intervals(run, own)
     content = json.loads(path.read_text())
     old = {"inclusion": content.pop("interior")[0], "force_inclusion": content.pop("force_interior")[0]}
+    del content["weights"]
     path.write_text(json.dumps({**content, **old}))
-    found = load_intervals(run)  # type: ignore[arg-type]
+    found = load_intervals(run)
     assert found == replace(own, interior=(0.1, 0.0), force_interior=(0.3, 0.0))

@@ -6,7 +6,9 @@ import base64
 import runpy
 
 import matplotlib
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from learn.evaluation import pictures
 
@@ -18,3 +20,22 @@ def test_a_notebooks_backend_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     assert base64.b64decode(module["encoded"](figure)).startswith(b"\x89PNG")
     assert matplotlib.rcParams["backend"] == "svg"
     assert not hasattr(figure, "number")  # pyplot numbers the figures that it shows
+
+
+def test_a_pixel_of_a_map_lies_on_its_point() -> None:
+    figure = Figure()
+    axis = figure.subplots()
+    points = [-48.0, 48.0, -72.0, 72.0]
+    pictures._map(figure, axis, np.ones((4, 5)), points, "u", np.zeros(3), "viridis", None)
+    x0, x1, y0, y1 = axis.images[0].get_extent()
+    np.testing.assert_allclose(x0 + (np.arange(5) + 0.5) * (x1 - x0) / 5, np.linspace(-48, 48, 5))
+    np.testing.assert_allclose(y0 + (np.arange(4) + 0.5) * (y1 - y0) / 4, np.linspace(-72, 72, 4))
+
+
+@pytest.mark.parametrize("size", [0.1, 0.24])
+def test_a_cut_has_points_on_a_block_of_any_size(size: float) -> None:
+    side = ((np.arange(32) + 0.5) / 32 - 0.5) * size
+    points = np.stack([*np.meshgrid(side, 0.5 * side), np.zeros((32, 32))], axis=-1).reshape(-1, 3)
+    for angle in np.linspace(0.0, 3.0, 7):
+        across = points[:, :2] @ [-np.sin(angle), np.cos(angle)]
+        assert (np.abs(across) < pictures._strip(points)).sum() >= 16

@@ -7,9 +7,11 @@ import json
 import re
 import shutil
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 from PIL import Image
@@ -109,6 +111,45 @@ def test_files_show_what_the_result_does(shown: View, files: Path) -> None:
     assert both.labels == shown.labels
     beam = view_of_file(files / "beam.vtu")
     assert beam.labels[0].startswith("load 1 · force of the supports ")
+
+
+def test_an_imperfect_beam_is_displaced_from_its_own_rest_shape(tmp_path: Path) -> None:
+    """The mesh of a curved and tapered beam is that of the ideal prism; nothing loads this one."""
+    bent = replace(
+        BEAM, gravity=(0.0, 0.0, -1e-6), imperfections=tisim.Imperfections(curvature=2.0, taper=2.0)
+    )
+    result = tisim.simulate(bent)
+    rest = tisim.rest_positions(bent, result.mesh)
+    np.testing.assert_array_equal(result.rest_positions, rest)
+    assert np.abs(rest - result.mesh.nodes).max() > 1e-4
+    tisim.write(result, tmp_path / "bent.vtu")
+    found = meshio.read(tmp_path / "bent.vtu")
+    assert np.abs(found.point_data["displacement"]).max() < 1e-8
+    np.testing.assert_allclose(found.cell_data["volume_ratio"][0], 1.0, atol=1e-5)
+    assert tisim.show(result).surfaces[0].fields[0].values.max() < 1e-5
+    assert "largest displacement 0.00" not in repr(tisim.simulate(replace(BEAM, gravity=(0.0, 0.0, -9.81))))
+    moved = re.search(r"largest displacement (\S+) mm", repr(result))
+    assert moved is not None
+    assert float(moved[1]) < 1e-4
+
+
+@pytest.mark.parametrize("at_rest", [True, False])
+def test_a_series_of_another_program_moves(tmp_path: Path, at_rest: bool) -> None:
+    """Its points are at rest, with a displacement beside them, or have moved."""
+    corners = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+    cells = [("hexahedron", np.arange(8)[None])]
+    paths = []
+    for k, part in enumerate((0.1, 0.2, 0.4)):
+        u = part * corners[:, 2:] * [0.0, 0.0, 1.0]
+        points = corners if at_rest else corners + u
+        vector = {"load": [np.ones((1, 3))]}  # a name of tisim's with another shape
+        paths.append(tmp_path / f"s{k}.vtu")
+        meshio.Mesh(points, cells, point_data={"displacement": u}, cell_data=vector).write(paths[-1])
+    view = view_of_file(*paths)
+    body, rest = view.surfaces
+    np.testing.assert_allclose(body.fields[0].values.max(axis=1), [100.0, 200.0, 400.0], rtol=1e-6)
+    np.testing.assert_allclose(body.positions[:, :, 2].max(axis=1), [1.1, 1.2, 1.4], rtol=1e-6)
+    assert rest.positions[0][:, 2].max() == pytest.approx(1.0)
 
 
 def test_units_have_prefixes_that_suit(shown: View) -> None:

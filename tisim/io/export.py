@@ -130,8 +130,9 @@ def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> 
 
     half = result.mesh
     mesh, x = unfold(half, result.positions[frame])
-    moved = Mesh(kind=mesh.kind, nodes=x, elements=mesh.elements)
-    point_data: dict[str, NDArray] = {"displacement": x - mesh.nodes, "rest_position": mesh.nodes}
+    rest = unfold(half, result.rest_positions)[1]
+    before, after = (Mesh(kind=mesh.kind, nodes=nodes, elements=mesh.elements) for nodes in (rest, x))
+    point_data: dict[str, NDArray] = {"displacement": x - rest, "rest_position": rest}
     for name, nodes in mesh.node_sets.items():
         mask = np.zeros(mesh.n_nodes, dtype=np.int8)
         mask[nodes] = 1
@@ -146,7 +147,7 @@ def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> 
         constant["rod_force"], constant["rod_tip"] = result.rod_force[frame], result.rod_tip[frame]
         constant["rod_axis"] = axis_at(result.scene, time)
         constant["rod_shape"] = np.array([rod.radius, rod.length, rod.edge])
-    cell_data = {"volume_ratio": volumes(moved) / volumes(mesh)}
+    cell_data = {"volume_ratio": volumes(after) / volumes(before)}
     cell_data |= {
         name: np.tile(value, (m, 1)) if value.ndim else np.full(m, value) for name, value in constant.items()
     }

@@ -94,13 +94,14 @@ def picture(
     checked_path(path)
     frame = frame_index(result, frame)
     mesh, x = unfold(result.mesh, result.positions[frame])
+    rest = unfold(result.mesh, result.rest_positions)[1]
     scene = result.scene
     poke = scene if result.rod_tip is not None else None
     cut = poke is not None if cut is None else cut
     sideways = across(None if poke is None else poke.direction)
     camera = camera_of(sideways, poke)
     facets = _visible_facets(mesh, sideways, poke, cut=cut)
-    moved = 1e3 * np.linalg.norm(x - mesh.nodes, axis=1)
+    moved = 1e3 * np.linalg.norm(x - rest, axis=1)
     scale = Normalize(0.0, max(float(moved.max()), 1e-9))
 
     polygons = x[facets]
@@ -113,7 +114,7 @@ def picture(
     figure = Figure(figsize=(8.0, 5.2), layout="constrained")
     axes = figure.add_subplot()
     if not cut:
-        ghost = mesh.nodes[facets]
+        ghost = rest[facets]
         front = _normals(ghost) @ camera.towards > 0
         flat = camera.flat(1e3 * ghost[front])
         axes.add_collection(PolyCollection(list(flat), facecolors="#e9ebee", edgecolors="#e9ebee", zorder=0))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tisim.result import Result
 
@@ -42,6 +43,10 @@ def _ten_seconds(_: Any) -> float:
 
 def _type_name(result: Result, frame: int) -> str:
     return f"{type(result.scene).__name__}, frame at {result.load[frame]:.4g}"
+
+
+def _nodes(result: Result) -> NDArray[np.float64]:
+    return result.mesh.nodes
 
 
 def _of_mesh(result: Result, _: int) -> Discretisation:
@@ -83,6 +88,8 @@ class SceneKind:
     discretise : callable (result, frame) -> Discretisation
         Discretisation of the body, used to evaluate the stress of a frame; its supports do not matter. By
         default that of the result's mesh.
+    rest : callable (result) -> ndarray of float, shape (n, 3)
+        Stress-free node positions [m]. By default those of the result's mesh.
     """
 
     scene: type
@@ -95,6 +102,7 @@ class SceneKind:
     seconds: Callable[[Any], float] = _ten_seconds
     describe: Callable[[Result, int], str] = _type_name
     discretise: Callable[[Result, int], Discretisation] = _of_mesh
+    rest: Callable[[Result], NDArray[np.float64]] = _nodes
 
     @property
     def name(self) -> str:

@@ -68,8 +68,7 @@ def _view_of_vtu(name: str, paths: list[Path]) -> View:
             raise ValueError(
                 f"{path}: expected the elements of {paths[0]}, of which it is to be a later frame"
             )
-    positions = np.array([np.asarray(m.points, dtype=float) for m in read])
-    rest = _rest(read[0], positions[0])
+    rest, positions = _rest_and_moved(read)
     mesh = Mesh(kind=kind, nodes=rest, elements=elements)
     constant = [_constants(m) for m in read]
     tips = np.array([c["rod_tip"] for c in constant if "rod_tip" in c])
@@ -100,6 +99,12 @@ def _view_of_vtu(name: str, paths: list[Path]) -> View:
     )
 
 
+_CONSTANT: dict[str, tuple[int, ...]] = {
+    **dict.fromkeys(("load", "time"), ()),
+    **dict.fromkeys(("support_force", "rod_force", "rod_tip", "rod_axis", "rod_shape"), (3,)),
+}
+
+
 def _read(path: Path) -> Any:
     try:
         return meshio_file(path)
@@ -117,18 +122,32 @@ def _solids(path: Path, m: Any) -> tuple[Any, Ints]:
     return kinds.pop(), np.concatenate([np.asarray(data, dtype=np.int32) for _, data in blocks])
 
 
-def _rest(m: Any, points: Array) -> Array:
-    """Rest positions: those of the file, or points minus displacement, or else the points themselves."""
-    if "rest_position" in m.point_data:
-        return np.asarray(m.point_data["rest_position"], dtype=float)
-    moved = np.asarray(m.point_data.get("displacement", 0.0), dtype=float)
-    return points - moved if moved.shape == points.shape else points
+def _rest_and_moved(read: list[Any]) -> tuple[Array, Array]:
+    """Rest positions (n, 3) and positions (frames, n, 3).
+
+    tisim writes moved points and `rest_position`. Other programs write points at rest with `displacement`, or
+    moved points, which then differ between frames.
+    """
+    points = np.array([np.asarray(m.points, dtype=float) for m in read])
+    first = read[0].point_data
+    if "rest_position" in first:
+        return np.asarray(first["rest_position"], dtype=float), points
+    moved = [np.asarray(m.point_data.get("displacement", 0.0), dtype=float) for m in read]
+    if any(u.shape != points[0].shape for u in moved):
+        return points[0], points
+    if all(np.array_equal(x, points[0]) for x in points):
+        return points[0], points + np.array(moved)
+    return points[0] - moved[0], points
 
 
 def _constants(m: Any) -> dict[str, Array]:
-    """Data of the frame, which tisim writes as constant cell data."""
-    names = ("load", "time", "support_force", "rod_force", "rod_tip", "rod_axis", "rod_shape")
-    return {name: np.asarray(m.cell_data[name][0][0], dtype=float) for name in names if name in m.cell_data}
+    """Data of the frame, which tisim writes as constant cell data; those of that form of other programs."""
+    found = {}
+    for name, shape in _CONSTANT.items():
+        values = m.cell_data.get(name)
+        if values and len(values[0]) and np.shape(values[0][0]) == shape:
+            found[name] = np.asarray(values[0][0], dtype=float)
+    return found
 
 
 def _fields(read: list[Any], rest: Array, positions: Array) -> tuple[Field, ...]:

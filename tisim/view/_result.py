@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tisim.bodies import Rod
@@ -35,6 +37,7 @@ def view_of_result(result: Result, *, title: str | None = None) -> View:
         raise ValueError(f"the result has no frame{why}")
     kept = frames_shown(count)
     mesh, positions = unfold(result.mesh, result.positions[kept])
+    mesh = replace(mesh, nodes=unfold(result.mesh, result.rest_positions)[1])
     poke = result.scene if result.rod_tip is not None else None
     sideways = across(None if poke is None else poke.direction)
     centre = np.array([*poke.site, 0.0]) if poke is not None else mesh.nodes.mean(axis=0)

@@ -14,7 +14,10 @@ from tisim.view._result import rod, towards
 from tisim.view._told import Told, curve, frames_shown, label, thinned
 from tisim.view._view import REST, Field, Surface, View
 
-_NEEDED = ("frame_start", "node_start", "triangle_start", "value_start", "rod_tip", "surface_displacement")
+_NEEDED = (
+    *("done", "frame_start", "frame_count", "node_start", "triangle_start", "value_start"),
+    *("rod_tip", "surface_displacement"),
+)
 
 
 def view_of_poke(path: Path, index: int | None) -> View:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import linecache
+import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
+from _folders import coupon_entry, write_experiment
 
 from calibration.errors import InputError
+from calibration.experiment import read
 from calibration.inference import Generation
-from calibration.study import Calibration
+from calibration.study import Calibration, tasks_for
 from calibration.study._store import FitStore, locked, remove_fits
+from tisim import laws
 
 HEADER = {"format": 2, "seed": 1}
 
@@ -136,27 +141,28 @@ def test_one_process_at_a_time(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="another calibration is at work here"), locked(tmp_path):
             pass
         with pytest.raises(InputError, match="another calibration is at work here"):
-            remove_fits(tmp_path)
+            remove_fits(tmp_path, {"S0-neo-hookean"})
     assert len(store(tmp_path).history()) == 1
-    remove_fits(tmp_path)
+    remove_fits(tmp_path, {"S0-neo-hookean"})
     assert not store(tmp_path).history_path.exists()
     with locked(tmp_path):
         pass
 
 
 def test_overwriting_removes_fits_alone(tmp_path: Path) -> None:
-    """Whole, unfinished and damaged fits go; what a lab keeps beside them stays."""
+    """Whole, unfinished and damaged fits of this plan go; others, and what a lab keeps beside them, stay."""
     store(tmp_path).append(generation(0))
     (tmp_path / "S1-ogden.json").write_text('{"header": {}, "calibration": {}}')
     (tmp_path / "S2-ogden.json").write_text('{"header": ')
     (tmp_path / "S2-ogden.json.part").write_text("")
-    kept = ["notes.txt", "raw.csv", "settings.json", "thesis"]
+    (tmp_path / "S3-ogden.json").write_text('{"header": {}, "calibration": {}}')
+    kept = ["S3-ogden.json", "notes.txt", "raw.csv", "settings.json", "thesis"]
     (tmp_path / "notes.txt").write_text("x")
     (tmp_path / "raw.csv").write_text("1,2")
     (tmp_path / "settings.json").write_text('{"camera": 1}')
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter.tex").write_text("x")
-    remove_fits(tmp_path)
+    remove_fits(tmp_path, {"S0-neo-hookean", "S1-ogden", "S2-ogden"})
     assert sorted(p.name for p in tmp_path.iterdir() if p.name != ".lock") == kept
     assert (tmp_path / "thesis" / "chapter.tex").exists()
 
@@ -169,3 +175,37 @@ def test_an_option_that_is_left_out_now_is_another_fit(tmp_path: Path) -> None:
     moved.append(generation(0))
     again = FitStore(tmp_path, "S1-neo-hookean", HEADER | {"rig": "abc", "rig_file": "copy/rig.yaml"})
     assert len(again.history()) == 1
+
+
+LAW = """
+from dataclasses import replace
+from tisim import laws
+
+def pack(p):
+    return [FACTOR * p["mu"], p["stiffening"]]
+
+laws.register(replace(laws.get("yeoh"), name="yeoh-of-ones-own", pack=pack))
+"""
+
+
+def test_a_law_of_ones_own_that_has_changed_is_another_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(laws, "_ADDED", {})
+    table = {"stretch": np.linspace(1.0, 1.5, 8), "nominal_stress_kPa": np.linspace(0.0, 9.0, 8)}
+    own = read(write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table}))
+    (material,) = {t.material for t in own.trials}
+    codes = []
+    for folder, factor in (("a", 1.0), ("b", 1.0), ("b", 2.0)):
+        path = tmp_path / folder / "own.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(LAW.replace("FACTOR", str(factor)))
+        linecache.checkcache()
+        runpy.run_path(str(path))
+        (task,) = tasks_for(
+            own, law_names=["yeoh-of-ones-own"], materials=[material], folder=tmp_path / "fits"
+        )
+        codes.append(task.store().header["code"])
+    assert codes[0] == codes[1] != codes[2]
+    (task,) = tasks_for(own, law_names=["ogden"], materials=[material], folder=tmp_path / "fits")
+    assert "code" not in task.store().header

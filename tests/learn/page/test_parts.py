@@ -67,4 +67,5 @@ def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None
     for path, sentence in cases.items():
         refused(call(command.app, path, "--out", tmp_path / "out.html"), str(path), sentence)
     refused(call(command.app, saved, "--shape", "shape-0"), "its content is settled")
+    refused(call(command.app, saved, "--pokes", 8), "its content is settled")
     assert not (tmp_path / "out.html").exists()

@@ -25,6 +25,9 @@ from tisim.result import Result
 from tisim.scene import Beam, ClampImperfections, Imperfections, Void
 
 if TYPE_CHECKING:  # scipy is imported when a scene is solved
+    import numpy as np
+    from numpy.typing import NDArray
+
     from tisim.discretisation.body import Discretisation
 
 MOST_LOSS = 0.95  # largest loss of stiffness or weight anywhere in a beam, as a fraction
@@ -212,6 +215,12 @@ def discretise(result: Result, _: int) -> Discretisation:
     return specimen_discretisation(result.scene, beam_discretisation(result.scene))
 
 
+def rest(result: Result) -> NDArray[np.float64]:
+    from tisim.problems.beam.rest_shape import rest_positions
+
+    return rest_positions(result.scene, result.mesh)
+
+
 KIND = SceneKind(
     scene=Beam,
     check=check,
@@ -223,4 +232,5 @@ KIND = SceneKind(
     solve_chain=solve_chain,
     describe=describe,
     discretise=discretise,
+    rest=rest,
 )
