@@ -63,7 +63,8 @@ def load_intervals(run: Run) -> Intervals | None:
     if weights is not None and weights != _weights(run):
         raise InputError(
             f"{path}: belongs to other weights (trained further, or other members: "
-            f"{', '.join(members) or run.folder.name}); learn.evaluate writes it again"
+            f"{', '.join(members) or run.folder.name}); learn.evaluate"
+            f"{' --ensemble' if run.members else ''} writes it again"
         )
     return Intervals(**content)
 

@@ -190,7 +190,8 @@ def _strip(points: Floats) -> float:
     """Half of the width of a strip that holds a row of points at any heading [m]."""
     from scipy.spatial import cKDTree
 
-    return 0.55 * float(cKDTree(points[:, :2]).query(points[:, :2], k=2)[0][:, 1].max())
+    apart = np.asarray(cKDTree(points[:, :2]).query(points[:, :2], k=2)[0])
+    return 0.55 * float(apart[:, 1].max())
 
 
 def _map(

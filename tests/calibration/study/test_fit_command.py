@@ -120,7 +120,7 @@ def test_killed_and_stopped_it_goes_on_to_the_same_answer(fitted: Path, tmp_path
     history = out / "fits" / "S0-neo-hookean.jsonl"
     arguments = [str(experiment), "--model", "neo-hookean", "--out", str(out), "--workers", "1"]
     arguments.append("--no-held-out")
-    _interrupt(arguments, history, signal.SIGKILL, after=2)
+    _interrupt(arguments, history, signal.SIGKILL, after=1)
     with history.open("a") as file:
         file.write('{"restart": 0, "index": 2, "cand')  # a line truncated by a kill
     stopped = _interrupt(arguments, history, signal.SIGTERM, after=0)
@@ -149,7 +149,7 @@ def _interrupt(arguments: list[str], history: Path, how: signal.Signals, *, afte
     while time.monotonic() < deadline and process.poll() is None:
         if history.exists() and len(history.read_text().splitlines()) > after:
             break
-        time.sleep(0.05)
+        time.sleep(0.005)
     assert process.poll() is None, process.communicate()[0]
     workers = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(how)
