@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import math
 import time
 from collections.abc import Iterator, Sequence
 from importlib.metadata import PackageNotFoundError, version
@@ -193,7 +194,9 @@ def law_table(results: Sequence[Calibration]) -> Table:
             table.add_row(*cells, "-", "-", *(("-", "-") if beams else ()), escape(r.message))
             continue
         sd = r.shear_modulus_sd
-        cells.append(f"{r.shear_modulus / 1e3:.2f}" + (f" +- {sd / 1e3:.2f}" if sd == sd else ""))
+        digits = 2 if not 0.0 < sd < 50.0 else 4 - math.floor(math.log10(sd))  # two of the sd in kPa
+        value = f"{r.shear_modulus / 1e3:.{digits}f}"
+        cells.append(value + (f" +- {sd / 1e3:.{digits}f}" if sd == sd else ""))
         cells.append(f"{r.reduced_chi2:.2f}" if r.mean_dice is None else f"Dice {r.mean_dice:.4f}")
         if beams:
             cells.append("-" if r.rms is None else f"{r.rms * 1e3:.3f}")

@@ -124,6 +124,7 @@ def plan_fit(
         free_bulk_ratio=free_bulk_ratio,
         cards=cards,
     )
+    _check_names(tasks)
     if overwrite:
         _remove_earlier(tasks, folder)
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
@@ -221,6 +222,18 @@ def _check_folder(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise InputError(f"{folder}: expected a folder that can be written to")
+
+
+def _check_names(tasks: Sequence[Task]) -> None:
+    """Refuse fits of two materials that would have one file: "gel" and "gel-stable" of two laws."""
+    made: dict[str, Task] = {}
+    for task in tasks:
+        other = made.setdefault(task.name, task)
+        if other is not task and other.material != task.material:
+            raise InputError(
+                f"materials {other.material} and {task.material}: expected names that tell their fits apart,"
+                f" both have one {task.name}: fit them into two folders (--material, --out)"
+            )
 
 
 def _remove_earlier(tasks: Sequence[Task], folder: Path) -> None:

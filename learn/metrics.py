@@ -43,6 +43,8 @@ class Predictions:
         the surface [mm], shape (f, 2); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
+    clock : time since contact and the rod's speeds of each frame, as in `learn.models.Pokes`, shape (f, 3);
+        (f, 0) without time.
     """
 
     truth: NDArray[np.float32]
@@ -57,6 +59,7 @@ class Predictions:
     interior: Floats = field(default_factory=lambda: np.zeros(0))
     spread: Floats = field(default_factory=lambda: np.zeros(0))
     force_spread: Floats = field(default_factory=lambda: np.zeros(0))
+    clock: Floats = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         if not self.spread.size:
@@ -67,6 +70,8 @@ class Predictions:
             object.__setattr__(self, "interior", np.zeros((*self.depth.shape, 2)))
         if not self.force_spread.size:
             object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
+        if not self.clock.size:
+            object.__setattr__(self, "clock", np.zeros((*self.depth.shape, 0)))
 
     @property
     def distance_mm(self) -> Floats:

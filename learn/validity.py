@@ -271,11 +271,13 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
     return Domain(ranges=ranges, kinds=known, law=store.law, proportional=proportional)
 
 
-def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats) -> Floats:
+def frame_distances(
+    domain: Domain, store: Store, poke: NDArray[np.int64], depth: Floats, clock: Floats | None = None
+) -> Floats:
     """Distance of frames of a store from a domain (`Domain.distance`), (f,).
 
-    `poke` and `depth` [m] are those of the frames, (f,). Times and speeds are not compared. A law other than
-    the domain's counts as in `Domain.distance`.
+    `poke` and `depth` [m] are those of the frames, (f,), and `clock` their times and speeds (`Store.clocks`),
+    (f, 3). A law other than the domain's counts as in `Domain.distance`.
     """
     found = np.empty(len(poke))
     for index in np.unique(poke):
@@ -288,6 +290,7 @@ def frame_distances(domain: Domain, store: Store, poke: NDArray[np.int64], depth
                 direction=store.direction[index],
                 depth=float(depth[frame]),
                 modulus=float(store.modulus[index]),
+                clock=None if clock is None else clock[frame],
             )
             found[frame] = domain.distance(values, store.law)
     return found

@@ -125,6 +125,7 @@ def read_cards(path: Path) -> dict[str, CardFile]:
         raise InputError(f"{path}: expected a folder of material cards, or a card")
     files = [path] if path.is_file() else sorted(path.glob("*.yaml"))
     found: dict[str, CardFile] = {}
+    names: dict[str, str] = {}
     for file in files:
         try:
             content = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -138,7 +139,11 @@ def read_cards(path: Path) -> dict[str, CardFile]:
             first = error.errors()[0]
             key = ".".join(str(x) for x in first["loc"])
             raise InputError(f"{file}: key {key}: {first['msg']}") from None
-        found[card.material] = card
+        if card.material in found:
+            raise InputError(
+                f"{path}: expected one card of {card.material}, got {names[card.material]} and {file.name}"
+            )
+        found[card.material], names[card.material] = card, file.name
         try:
             extended_model(card)
         except ValueError as error:

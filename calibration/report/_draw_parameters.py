@@ -15,6 +15,7 @@ from calibration.pages import FAINT, Picture, looks, paper, picture, plain
 from calibration.report._tables import beam_lengths
 from calibration.study.assessment import spoken
 from calibration.study.calibration import Calibration
+from calibration.study.cards import shear_interval
 
 _SEEN = {
     "identified": "#0072B2",
@@ -76,9 +77,9 @@ def draw_held_out(results: Sequence[Calibration], experiment: Experiment, name: 
         distance.vlines(at, np.minimum(raw, left), np.maximum(raw, left), color=colour, lw=0.6, alpha=0.5)
         distance.plot(at, raw, marker, ms=6, mfc="white", color=colour, alpha=0.8)
         distance.plot(at, left, marker, ms=6, color=colour, label=r.label)
-        own, sd = r.shear_modulus / 1e3, r.shear_modulus_sd / 1e3
+        _, own, low, high, _ = _shear(r)
         modulus.axhline(own, color=colour, lw=0.7, alpha=0.7)
-        modulus.axhspan(own - 1.96 * sd, own + 1.96 * sd, color=colour, alpha=0.08, lw=0)
+        modulus.axhspan(low, high, color=colour, alpha=0.08, lw=0)
         modulus.plot(at, [h.shear_modulus / 1e3 for h in r.held_out], marker, ms=6, color=colour)
     names = [f"{t}\n({lengths[t] * 1e3:g} mm)" for t in trials]
     for axes in (distance, modulus):
@@ -101,15 +102,12 @@ def draw_held_out(results: Sequence[Calibration], experiment: Experiment, name: 
 
 def _shear(r: Calibration) -> Bar:
     """Small-strain modulus of the whole law, also where it has several terms."""
-    half = 1.96 * r.shear_modulus_sd
-    seen = next((e.seen for e in r.estimates if e.name == "shear_modulus"), "identified")
-    return (
-        r.label,
-        r.shear_modulus / 1e3,
-        (r.shear_modulus - half) / 1e3,
-        (r.shear_modulus + half) / 1e3,
-        seen,
-    )
+    own = next((e for e in r.estimates if e.name == "shear_modulus"), None)
+    if own is not None:
+        return _bar(r, own)
+    low, high = (0.0 if part is None else part for part in shear_interval(r))
+    value = r.shear_modulus / 1e3
+    return r.label, value, value * (1.0 + low), value * (1.0 + high), "identified"
 
 
 def _bar(r: Calibration, e: Estimate) -> Bar:

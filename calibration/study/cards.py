@@ -61,7 +61,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         else:
             filled.append(name)
             parameters[name] = _plain(laws.get(name).from_moduli(chosen.shear_modulus, chosen.bulk_modulus))
-    low, high = _interval(chosen)
+    low, high = shear_interval(chosen)
     ratio = belief.softener_ratio
     return {
         "material": chosen.material,
@@ -172,15 +172,28 @@ def _agreement(chosen: Calibration) -> str:
     return f"reduced chi-square {chosen.reduced_chi2:.2f} over {chosen.points} points"
 
 
-def _interval(chosen: Calibration) -> tuple[float | None, float | None]:
+def shear_interval(chosen: Calibration) -> tuple[float | None, float | None]:
     """95 % interval of the shear modulus, relative to it; None if there is none or it is not identified."""
     found = next((e for e in chosen.estimates if e.name == "shear_modulus"), None)
-    if found is None:  # of a diagnosis, which has the sd alone
-        half = 1.96 * chosen.shear_modulus_sd / chosen.shear_modulus
+    if found is None:  # of a law of several terms, or of a diagnosis, which has the sd alone
+        half = _width(chosen) * chosen.shear_modulus_sd / chosen.shear_modulus
         return (-round(half, 5), round(half, 5)) if math.isfinite(half) else (None, None)
     if found.seen in ("not identified", "at a bound"):
         return None, None
     return round(found.low / found.value - 1.0, 5), round(found.high / found.value - 1.0, 5)
+
+
+def _width(chosen: Calibration) -> float:
+    """Half width of a 95 % interval in standard deviations, as the moduli have it.
+
+    It is Student's where the scatter of a few specimens is in it.
+    """
+    widths = [
+        0.5 * abs(math.log(e.high / e.low) if e.relative else e.high - e.low) / e.sd
+        for e in chosen.estimates
+        if e.unit == "Pa" and e.seen == "identified" and e.sd > 0.0
+    ]
+    return max([1.96, *widths])
 
 
 def _certainty(chosen: Calibration) -> str:

@@ -271,7 +271,7 @@ def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
     """Distance of frames from the run's trained ranges (f,); 0 if these are not known."""
     if run.domain is None:
         return np.zeros(len(predictions.depth))
-    return frame_distances(run.domain, store, predictions.poke, predictions.depth)
+    return frame_distances(run.domain, store, predictions.poke, predictions.depth, predictions.clock)
 
 
 def _covered(intervals: Intervals, one: Predicted) -> Covered:

@@ -63,6 +63,7 @@ def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterab
                 interior=np.array([interior(int(index)) for index in poke]),
                 spread=_or_zero(found.spread, away.shape),
                 force_spread=_or_zero(found.force_spread, poke.shape),
+                clock=batch.clock.double().cpu().numpy(),
             )
         )
     return join_predictions(parts)

@@ -17,12 +17,13 @@ import learn
 from learn.data import MemoryDataset, StreamDataset, open_store, split_pokes, statistics
 from learn.errors import InputError
 from learn.evaluation import parts_of
-from learn.evaluation.predictions import interpolation_error_mm
+from learn.evaluation.predictions import interpolation_error_mm, predict_part
 from learn.models import Pokes, make_model, pokes_of, scene_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import CLOCK as CLOCK_NAMES
 from learn.onnx_bundle import TOLERANCE, OnnxBundle, write_bundle
 from learn.training import Recipe, Trainer, load_run
+from learn.validity import frame_distances
 from tests.learn.small_store import write_manifest, write_store
 
 PHASES = ("load", "hold", "retract", "reload", "rest")
@@ -215,3 +216,17 @@ def test_onnx_takes_the_clock(folder: Path, run: Path, tmp_path: Path) -> None:
     now, _ = bundle.poke(code, pokes, 0)
     later, _ = bundle.poke(code, replace(pokes, clock=pokes.clock * torch.tensor([5.0, 0.0, 1.0])), 0)
     assert np.abs(later - now).max() > 10.0 * TOLERANCE * np.abs(now).max()
+
+
+def test_time_counts_in_the_distance_of_an_evaluation(run: Path, tmp_path: Path) -> None:
+    """As in a prediction: a hold a thousand times longer is outside what was trained."""
+    store, loaded = open_store(write_timed_store(tmp_path / "s.zarr")), load_run(run)
+    assert loaded.domain is not None
+    rows = np.flatnonzero(store.presses)[:6]
+    data = MemoryDataset(store, rows)
+    found = predict_part(loaded.model, scene_of(store), data)
+    np.testing.assert_allclose(found.clock, store.clocks(rows), rtol=1e-6)
+    own = found.poke, found.depth
+    inside = frame_distances(loaded.domain, store, *own, found.clock)
+    later = frame_distances(loaded.domain, store, *own, found.clock * [1e3, 1.0, 1.0])
+    assert (later > inside + 1.0).all()

@@ -175,6 +175,13 @@ def test_a_named_specimen_widens_the_interval(measured: Path, tmp_path: Path) ->
     np.testing.assert_allclose(sd, 0.1 * np.abs(stress), rtol=1e-3, atol=1e-3)
 
 
+def test_two_cards_of_one_material_are_refused(tmp_path: Path) -> None:
+    folder = card(tmp_path / "cards")
+    (folder / "S0_backup.yaml").write_text((folder / "S0.yaml").read_text())
+    with pytest.raises(InputError, match=r"expected one card of S0, got S0\.yaml and S0_backup\.yaml"):
+        read_cards(folder)
+
+
 def test_cards_scale_their_parts_by_how_well_they_are_known(tmp_path: Path) -> None:
     effect = {
         "effect": "relaxation",

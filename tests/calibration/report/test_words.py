@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from report_cases import beam_folder, calibration, failed
+from report_cases import beam_folder, calibration, estimate, failed
 
+from calibration.cli import law_table
 from calibration.experiment import read
 from calibration.pages import significant, with_sd
 from calibration.report._compare import compare, far_nuisances
+from calibration.report._draw_parameters import _shear
 from calibration.report._words import verdict
+from calibration.study.cards import shear_interval
 
 
 def test_laws_that_are_alike() -> None:
@@ -122,3 +127,27 @@ def test_nuisances_beyond_two_sd(tmp_path: Path) -> None:
         ("density of S1", "-11 kg/m³"),
         ("mesh of hanging", ""),
     ]
+
+
+def test_the_interval_of_a_modulus_is_that_of_its_constants() -> None:
+    """Student's, where the scatter of a few specimens is in it, for laws of several terms too."""
+    one = calibration(estimates=(replace(estimate(), low=0.75e5, high=1.33e5),))
+    assert shear_interval(one) == (-0.25, 0.33)
+    label, value, low, high, _ = _shear(one)
+    assert (label, value, low, high) == ("neo-hookean", 100.0, 75.0, 133.0)
+    wide = math.exp(4.3 * 0.007)
+    term = replace(estimate("shear_modulus_1"), low=1e5 / wide, high=1e5 * wide)
+    two = calibration(estimates=(term, estimate("bulk_ratio", value=300.0)))
+    half = 4.3 * two.shear_modulus_sd / two.shear_modulus
+    assert shear_interval(two) == pytest.approx((-half, half), abs=1e-5)
+    assert _shear(two)[2:4] == pytest.approx((100.0 * (1 - half), 100.0 * (1 + half)), abs=1e-2)
+    # a diagnosis has the sd alone
+    assert shear_interval(calibration(estimates=())) == pytest.approx((-1.96 * 0.007, 1.96 * 0.007), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "sd", "text"), [(1e5, 700.0, "100.00 +- 0.70"), (153.2, 4.1, "0.1532 +- 0.0041")]
+)
+def test_the_screen_has_the_digits_of_a_soft_gel(modulus: float, sd: float, text: str) -> None:
+    found = calibration(shear_modulus=modulus, shear_modulus_sd=sd)
+    assert text in [cell for column in law_table([found]).columns for cell in column.cells]

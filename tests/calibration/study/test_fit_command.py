@@ -158,6 +158,19 @@ def _interrupt(arguments: list[str], history: Path, how: signal.Signals, *, afte
     return process.communicate(timeout=600)[0]
 
 
+def test_materials_whose_fits_would_have_one_file_are_refused(tmp_path: Path) -> None:
+    stretch = np.linspace(1.05, 1.5, 8)
+    table = {"stretch": stretch, "nominal_stress_kPa": 30.0 * (stretch - stretch**-2)}
+    trials = [coupon_entry(f"t{k}", "a.csv", material=name) for k, name in enumerate(("gel", "gel-stable"))]
+    experiment = write_experiment(
+        tmp_path / "data", trials, tables={"a.csv": table}, materials={"gel": {}, "gel-stable": {}}
+    )
+    done = fit(str(experiment), "--model", "all", "--out", str(tmp_path / "out"), "--workers", "1")
+    assert done.exit_code == 2
+    assert "both have one gel-stable-neo-hookean: fit them into two folders" in done.stderr
+    assert not list((tmp_path / "out").rglob("*.json*"))
+
+
 def test_coupons_alone_hold_the_bulk_modulus(tmp_path: Path) -> None:
     stretch = np.linspace(1.05, 2.0, 20)
     stress = 30.0 * (stretch - stretch**-2)  # kPa: the incompressible neo-Hookean strip
