@@ -60,7 +60,9 @@ class _Uncertainty(_Lenient):
 
 
 # in a card's provenance: what it was fitted to
-FITTED_TO = re.compile(r"experiment '(?P<name>[^']*)' \(sha256 (?P<digest>[0-9a-f]{16})\)")
+FITTED_TO = re.compile(
+    r"experiment (?P<quote>['\"])(?P<name>.*?)(?P=quote) \(sha256 (?P<digest>[0-9a-f]{16})\)"
+)
 
 
 class _Baseline(_Lenient):

@@ -139,6 +139,7 @@ def from_cards(
     specimen_scatter: float | None = None,
     workers: int | None = None,
     source: str = "",
+    unseen: bool = False,
     on_progress: OnMessage = lambda _: None,
 ) -> Prediction:
     """All trials of an experiment whose material has a card, predicted from the cards.
@@ -150,6 +151,7 @@ def from_cards(
     domain : the kind of measurement, where not all are wanted.
     specimen_scatter : sd of ln G of a specimen that is named; that of a careful lab where left out.
     source : what predicts, for people.
+    unseen : True where the cards were fitted to other trials of this experiment.
 
     Raises
     ------
@@ -202,7 +204,7 @@ def from_cards(
             f"{experiment.folder / 'experiment.yaml'}: trials: expected some that can be compared"
             + ("" if domain is None else f" as {domain}")
         )
-    fitted = any(
+    fitted = not unseen and any(
         (found := FITTED_TO.search(str(known[m].provenance or ""))) is not None
         and experiment.digest.startswith(found["digest"])
         for m in wanted

@@ -100,7 +100,9 @@ def from_trials(
         raise InputError(f"{ours.folder}: the baseline cannot be calibrated: {error}") from error
     with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
         write_cards(Path(folder), diagnosis, ours)
-        found = from_cards(Path(folder), theirs, workers=workers, source=source, on_progress=on_progress)
+        found = from_cards(
+            Path(folder), theirs, workers=workers, source=source, unseen=True, on_progress=on_progress
+        )
     notes = (diagnosis.sentence(), *found.notes)
     return replace(found, notes=notes, seconds=time.monotonic() - begun)
 

@@ -22,6 +22,7 @@ from benchmarks.blind.timed.material import Prony, Solid
 from calibration.errors import InputError
 from calibration.predict import app
 from calibration.prediction._cards import extended_model, read_cards
+from calibration.prediction.run import from_cards
 from calibration.prediction.page import _panel
 from calibration.prediction.schema import PredictionFile
 
@@ -141,9 +142,13 @@ def test_a_cause_in_one_material_leaves_the_others_model_as_it_was(measured: Pat
 
 def test_measurements_that_a_card_was_fitted_to_are_no_prediction(measured: Path, tmp_path: Path) -> None:
     digest = calibration.read_experiment(measured).digest
-    where = card(tmp_path / "cards", provenance=f"Fitted to experiment 'x' (sha256 {digest[:16]}) by a test.")
+    name = "Young's modulus of batch 7"  # repr takes other quotes
+    said = f"Fitted to experiment {name!r} (sha256 {digest[:16]}) by a test."
+    where = card(tmp_path / "cards", provenance=said)
     found = calibration.predict(measured, cards=where).prediction
     assert found.fitted
+    # other trials of one experiment have its digest
+    assert not from_cards(where, calibration.read_experiment(measured), unseen=True).fitted
     assert ", to which the models were fitted, the extended model" in found.sentence()
     assert any("this is a fit, not a prediction" in n for n in found.notes)
 
