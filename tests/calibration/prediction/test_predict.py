@@ -22,8 +22,8 @@ from benchmarks.blind.timed.material import Prony, Solid
 from calibration.errors import InputError
 from calibration.predict import app
 from calibration.prediction._cards import extended_model, read_cards
-from calibration.prediction.run import from_cards
 from calibration.prediction.page import _panel
+from calibration.prediction.run import from_cards
 from calibration.prediction.schema import PredictionFile
 
 G, BULK = 3e4, 9e7
