@@ -373,6 +373,10 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
             if not ended:
                 continue
             result = parts.choose(ended)
+            waiting = [own.label for own in task.alternatives if own.store().result() is None]
+            if waiting:
+                said = f"the best so far: {', '.join(waiting)} had not ended"
+                result = replace(result, status="stopped", message=said, note="")
         elif result is None:
             history = [g for g in store.history() if np.isfinite(g.costs).any()]
             if not history:

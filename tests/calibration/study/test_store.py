@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import linecache
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from _folders import coupon_entry, write_experiment
 from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.inference import Generation
-from calibration.study import Calibration, tasks_for
+from calibration.study import Calibration, stopped, tasks_for
 from calibration.study._store import FitStore, locked, remove_fits
 from tisim import laws
 
@@ -209,3 +210,31 @@ def test_a_law_of_ones_own_that_has_changed_is_another_fit(
     assert codes[0] == codes[1] != codes[2]
     (task,) = tasks_for(own, law_names=["ogden"], materials=[material], folder=tmp_path / "fits")
     assert "code" not in task.store().header
+
+
+def test_a_choice_that_was_stopped_is_not_made(tmp_path: Path) -> None:
+    """Of the numbers of Prony terms one has ended: it is the best so far, and no fit."""
+    table = {
+        "time_s": np.linspace(0.0, 60.0, 40),
+        "stretch": np.interp(np.linspace(0.0, 60.0, 40), [0.0, 2.0, 60.0], [1.0, 1.2, 1.2]),
+        "nominal_stress_kPa": np.linspace(0.0, 9.0, 40),
+    }
+    own = read(write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table}))
+    (task,) = tasks_for(
+        own, law_names=["neo-hookean"], materials=["S0"], folder=tmp_path / "fits", specs=("prony",)
+    )
+    (tmp_path / "fits").mkdir()
+    one, *others = task.alternatives
+    ended = Calibration(
+        material="S0", law="neo-hookean", label=one.label, status="converged", message="", density=None,
+        u=(10.0, 5.7, -1.0, 1.0), parameters={"mu": 2e4, "lam": 6e6}, shear_modulus=2e4,
+        points=40, chi2=30.0, reduced_chi2=0.8, parts=one.parts,
+    )  # fmt: skip
+    one.store().finish(ended)
+    (found,) = stopped([task], own)
+    assert found.status == "stopped"
+    assert found.message == f"the best so far: {', '.join(o.label for o in others)} had not ended"
+    for other in others:
+        other.store().finish(replace(ended, label=other.label, chi2=31.0, parts=other.parts))
+    (found,) = stopped([task], own)
+    assert (found.status, found.label) == ("converged", one.label)
