@@ -55,8 +55,8 @@ class Comparison:
 
     @property
     def misses(self) -> bool:
-        """True if the chosen law's chi-square is above what noise makes of it."""
-        return self.chosen.reduced_chi2 > largest_by_chance(self.chosen)
+        """True if the chosen law's chi-square is above what noise makes of it; an overlap has no noise."""
+        return self.chosen.mean_dice is None and self.chosen.reduced_chi2 > largest_by_chance(self.chosen)
 
 
 def compare(results: Sequence[Calibration]) -> Comparison | None:
@@ -71,7 +71,7 @@ def compare(results: Sequence[Calibration]) -> Comparison | None:
     differences = {
         r.label: (r.chi2 - chosen.chi2) / scale + 2.0 * (r.constants - chosen.constants)
         for r in results
-        if usable(r)
+        if usable(r) and r.mean_dice is None  # an overlap is no likelihood
     }
     passed = tuple(r.label for r in results if usable(r) and r.unsettled and not chosen.unsettled)
     return Comparison(chosen=chosen, differences=differences, scale=scale, passed_over=passed)

@@ -46,6 +46,12 @@ def law_rows(
     return [_law_row(r, found, experiment) for r in results]
 
 
+def _agreement(r: Calibration) -> Cell:
+    if r.mean_dice is not None:
+        return _figure(f"Dice {r.mean_dice:.4f}", r.mean_dice)
+    return _figure(significant(r.reduced_chi2), r.reduced_chi2)
+
+
 def _law_row(r: Calibration, found: Comparison | None, experiment: Experiment) -> list[Cell]:
     chosen = found is not None and r is found.chosen
     head = [
@@ -58,7 +64,7 @@ def _law_row(r: Calibration, found: Comparison | None, experiment: Experiment) -
             Cell(text=shear(r), value=r.shear_modulus),
             _bulk(r),
             Cell(text=_shape(r)),
-            _figure(significant(r.reduced_chi2), r.reduced_chi2),
+            _agreement(r),
             Cell(text=NOTHING) if difference is None else _figure(f"{difference:.1f}", difference),
             Cell(text=NOTHING) if r.rms is None else _figure(millimetres(r.rms), r.rms),
             Cell(text=_held_out(r, experiment)),

@@ -80,6 +80,11 @@ def verdict(results: Sequence[Calibration]) -> str:
 
 
 def _laws(found: Comparison, results: Sequence[Calibration]) -> str:
+    own = found.chosen.mean_dice
+    if own is not None:
+        others = [f"{r.label} {r.mean_dice:.4f}" for r in results if r is not found.chosen and r.mean_dice]
+        more = f", of {listed(others)}" if others else ""
+        return f"fitted to overlaps, mean Dice {own:.4f} of {found.chosen.points} photographs{more}"
     said = _compared(found, results)
     for label, difference in found.better.items():
         said += (

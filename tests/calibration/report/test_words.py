@@ -15,6 +15,7 @@ from calibration.pages import significant, with_sd
 from calibration.report._compare import compare, far_nuisances
 from calibration.report._draw_parameters import _shear
 from calibration.report._words import verdict
+from calibration.study.calibration import Calibration
 from calibration.study.cards import shear_interval
 
 
@@ -24,6 +25,25 @@ def test_laws_that_are_alike() -> None:
         "A: shear modulus 100.0 ± 0.7 kPa by neo-hookean; the 2 laws cannot be told apart by this data"
         " (G 100.0 to 102.0 kPa among them)."
     )
+
+
+def test_overlaps_have_no_noise_to_miss() -> None:
+    """A Dice is no likelihood: neither a misfit nor Akaike's difference is stated."""
+
+    def dice(label: str, value: float) -> Calibration:
+        chi2 = 9.0 * (1.0 - value) / 1e-4
+        return calibration(
+            label, objective="dice", points=9, chi2=chi2, reduced_chi2=chi2 / 7.0, estimates=()
+        )
+
+    found = [dice("neo-hookean", 0.955), dice("ogden", 0.95)]
+    said = verdict(found)
+    assert "fitted to overlaps, mean Dice 0.9550 of 9 photographs, of ogden 0.9500" in said
+    assert "misses" not in said
+    assert "told apart" not in said
+    comparison = compare(found)
+    assert comparison is not None
+    assert comparison.differences == {}
 
 
 def test_a_law_that_the_data_prefer() -> None:
