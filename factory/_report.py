@@ -236,7 +236,7 @@ class Screen:
         self._plan, self._target, self._console, self._expected = plan, target, console, expected
         self._traces: dict[int, Trace] = {}
         self._began = self._line = self._picture = time.monotonic()
-        self._first = 0
+        self._first, self._foreign = 0, False
         self._bar = Progress(
             TextColumn("pokes"),
             BarColumn(),
@@ -325,6 +325,8 @@ class Screen:
         try:
             draw_preview(self._plan, self._traces, preview_path(self._target))
         except NotOursError as error:
-            log.warning("%s.", error)
+            if not self._foreign:  # once
+                log.warning("%s.", error)
+            self._foreign = True
         except OSError as error:  # a build must not fail for its preview
             log.warning("%s.", describe_os_error(error, "no preview picture:"))
