@@ -132,6 +132,9 @@ def test_trials_of_one_specimen_share_a_dimension_if_their_section_is_one(experi
     belief = experiment.materials["S0"]
     found = [n for n in admitted([short, long], belief) if n.quantity == "radius"]
     assert [(n.name, n.trials) for n in found] == [("radius of S0", (0, 1))]
+    unnamed = [replace(t, specimen=None) for t in (short, long)]  # one specimen of the material
+    found = [n for n in admitted(unnamed, belief) if n.quantity == "radius"]
+    assert [(n.name, n.trials) for n in found] == [("radius of S0", (0, 1))]
     strip = replace(long, section=tisim.Rectangle(width=0.02, height=0.018), section_sd=(5e-5, 6e-5))
     batch = [replace(t, specimen="batch 1") for t in (short, strip)]
     found = [n for n in admitted(batch, belief) if n.quantity in ("radius", "width", "height")]

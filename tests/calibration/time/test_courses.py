@@ -153,6 +153,21 @@ def test_a_ramp_is_followed_back_to_rest_however_often_it_was_sampled(rate: floa
     assert ramp_start(time, -0.02 * time, time.size) == pytest.approx(0.0, abs=1e-6)
 
 
+def test_the_speed_of_a_noisy_ramp_is_that_of_more_than_four_rows() -> None:
+    time = np.arange(3.0, 10.0, 0.002)
+    for seed in range(3):
+        noise = 5e-5 * np.random.default_rng(seed).standard_normal(time.size)
+        assert ramp_start(time, 0.02 * time + noise, time.size) == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_rest_at_the_surface_is_no_hold() -> None:
+    """The stage stands within a micrometre of it for 50 s, before 2 s of ramp and 10 s of hold."""
+    time = np.arange(0.0, 62.0, 0.1)
+    depth = 1e-3 + np.interp(time, [50.0, 52.0], [0.0, 2.0])
+    window = window_of([poke(time, depth)])
+    assert window.last == pytest.approx(10.0, abs=0.5)
+
+
 def test_creep_is_not_the_end_of_a_ramp() -> None:
     time = np.linspace(0.0, 1000.0, 500)
     assert ramp_start(time, 0.2 + 2e-5 * time, time.size) is None
