@@ -138,28 +138,25 @@ def test_a_scheduler_without_workers_is_waited_for(
     assert "the scheduler has no workers: waiting up to" in caplog.text
 
 
-def test_workers_that_run_two_pokes_in_one_process_are_refused(plan: Plan, tmp_path: Path) -> None:
-    """Their times would be counted twice."""
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
-        ) as cluster,
-        pytest.raises(InputError, match=r"worker .* runs 2 pokes at a time in one process: expected 1"),
-    ):
-        _build(plan, tmp_path / "a.zarr", cluster.scheduler_address, 60)
-
-
-def test_workers_of_another_version_are_refused(
-    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize(
+    ("threads", "here", "sentence"),
+    [
+        (2, {}, r"worker .* runs 2 pokes at a time in one process: expected 1"),  # times would count twice
+        (1, {"tisim": "0.0"}, r"worker .* has tisim .*, expected 0\.0 as here"),
+    ],
+)
+def test_workers_that_would_give_other_results_are_refused(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    threads: int, here: dict[str, str], sentence: str,
+) -> None:  # fmt: skip
     facts = _cluster.worker_facts()
-    here = iter([{**facts, "tisim": "0.0"}])
-    monkeypatch.setattr(_cluster, "worker_facts", lambda: next(here, facts))
+    own = iter([{**facts, **here}])  # asked in this process first
+    monkeypatch.setattr(_cluster, "worker_facts", lambda: next(own, facts))
     with (
         distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+            n_workers=1, threads_per_worker=threads, processes=False, dashboard_address=None
         ) as cluster,
-        pytest.raises(InputError, match=r"worker .* has tisim .*, expected 0\.0 as here"),
+        pytest.raises(InputError, match=sentence),
     ):
         _build(plan, tmp_path / "a.zarr", cluster.scheduler_address, 60)
 
