@@ -23,6 +23,7 @@ from calibration.cli import (
 )
 
 if TYPE_CHECKING:
+    from calibration.fit_plan import FitPlan
     from calibration.results import Fits
 
 app = command()
@@ -166,29 +167,38 @@ def main(
             with FitScreen(console) as screen:
                 found = plan.run(screen.update)
         except KeyboardInterrupt:
-            _write(plan.stopped(), console, plan.folder, cards)
+            _write(plan, plan.stopped(), console, cards)
             raise
-        _write(found, console, plan.folder, cards)
+        _write(plan, found, console, cards)
     raise typer.Exit(0 if found.converged else 1)
 
 
-def _write(found: Fits, console: Console, folder: Path, cards: Path | None) -> None:
+def _write(plan: FitPlan, found: Fits, console: Console, cards: Path | None) -> None:
     if not len(found):
         console.print("No fit has found anything yet: no cards, no report.")
         return
-    for sentence in found.headlines:
+    every = plan.with_earlier(found)
+    for sentence in every.headlines:
         console.print(sentence, markup=False, highlight=False, soft_wrap=True, style="bold")
     for r in found:
         if r.note:
             console.print(f"{r.material}, {r.label}: {r.note}", markup=False, highlight=False, soft_wrap=True)
-    console.print(law_table(found))
-    written = found.write_cards(cards or folder / "cards")
+    console.print(law_table(every))
+    earlier = every.results[len(found) :]
+    if earlier:
+        names = ", ".join(f"{r.material}, {r.label}" for r in earlier)
+        console.print(f"fitted by an earlier run: {escape(names)}", highlight=False, soft_wrap=True)
+    folder = cards or plan.folder / "cards"
+    written = every.write_cards(folder)
     for path in written:
         console.print(f"card: {escape(str(path))}", highlight=False, soft_wrap=True)
-    for name in found.materials:
-        if name not in {p.stem for p in written}:
-            console.print(f"{escape(name)}: no card, since no law has a finished fit", highlight=False)
-    report = found.write_report(folder)
+    for name in every.materials:
+        path = folder / f"{name}.yaml"
+        if path not in written:
+            left = f"; {path} is an earlier run's" if path.exists() else ""
+            text = f"{name}: no card, since no law has a finished fit{left}"
+            console.print(escape(text), highlight=False, soft_wrap=True)
+    report = every.write_report(plan.folder)
     console.print(f"report: {escape(str(report))}", highlight=False, soft_wrap=True)
 
 

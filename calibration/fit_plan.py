@@ -57,6 +57,16 @@ class FitPlan:
 
         return Fits(tuple(stopped(self.tasks, self.experiment)), self.experiment, self.folder)
 
+    def with_earlier(self, found: Fits) -> Fits:
+        """These fits and, after them, those that earlier runs have finished in the folder, to the same data:
+        one card and one report have all laws."""
+        from calibration.study import finished
+
+        own = {own.name for task in self.tasks for own in (task, *task.alternatives)}
+        earlier = finished(self.folder / "fits", self.tasks[0].store().header, without=own)
+        earlier = [r for r in earlier if r.law in laws.names()]
+        return Fits((*found.results, *earlier), self.experiment, self.folder)
+
 
 def plan_fit(
     experiment: str | Path | Experiment,

@@ -1,6 +1,6 @@
 """A calibration study: every material of an experiment against every law, on disk, resumable."""
 
-from calibration.study._store import remove_fits
+from calibration.study._store import finished, remove_fits
 from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration, HeldOut
 from calibration.study.cards import best, card, usable, write_card
@@ -20,6 +20,7 @@ __all__ = [
     "by_cost",
     "calibrate",
     "card",
+    "finished",
     "measurements",
     "remove_fits",
     "run",

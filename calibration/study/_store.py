@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,8 @@ from calibration.inference import Generation
 from calibration.study.calibration import Calibration
 
 _NOT_COMPARED = {"rig_file"}  # a path: "rig" is the content
+# of fits that can stand in one table
+_ALIKE = ("format", "data", "trials", "objective", "rig")
 _ANEW = "--overwrite starts anew, --out writes elsewhere"
 
 
@@ -38,6 +40,35 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def finished(folder: Path, like: Mapping[str, Any], *, without: Collection[str]) -> list[Calibration]:
+    """Fits that earlier runs have finished in a folder, to the same data with the same corrections.
+
+    Parameters
+    ----------
+    folder : Path
+    like : mapping
+        Header of a fit that they are compared with.
+    without : collection of str
+        Names of fits to leave out.
+
+    Returns
+    -------
+    list of Calibration
+        By name; without those among which another fit has chosen.
+    """
+    found: dict[str, Calibration] = {}
+    passed_over = set(without)
+    for path in sorted(folder.glob("*.json")):
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+            if all(data["header"].get(key) == like.get(key) for key in _ALIKE):
+                found[path.stem] = Calibration.from_json(data["calibration"])
+                passed_over |= set(data.get("chosen_from", ()))
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            continue  # it is none of this run, which says so of its own (`FitStore.result`)
+    return [fit for name, fit in found.items() if name not in passed_over]
 
 
 def remove_fits(folder: Path, names: Collection[str]) -> None:
@@ -160,9 +191,11 @@ class FitStore:
                 + "\n"
             )
 
-    def finish(self, calibration: Calibration) -> None:
-        """Write the result, in one piece."""
+    def finish(self, calibration: Calibration, *, chosen_from: Sequence[str] = ()) -> None:
+        """Write the result, in one piece; chosen_from : names of the fits among which the data chose."""
         data = {"header": self.header, "calibration": calibration.to_json()}
+        if chosen_from:
+            data["chosen_from"] = list(chosen_from)
         part = self.result_path.with_suffix(".json.part")
         part.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
         part.replace(self.result_path)

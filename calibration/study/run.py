@@ -318,7 +318,7 @@ def fit_task(
             for t in task.alternatives
         ]
         result = parts.choose(found)
-        store.finish(result)
+        store.finish(result, chosen_from=[t.name for t in task.alternatives])
         return result
     experiment = OnSetup.of(task.experiment, task.setup)
 

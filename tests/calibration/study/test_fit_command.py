@@ -192,6 +192,33 @@ def test_coupons_alone_hold_the_bulk_modulus(tmp_path: Path) -> None:
     )
 
 
+def test_a_second_run_into_a_folder_keeps_the_laws_of_the_first(tmp_path: Path) -> None:
+    stretch = np.linspace(1.05, 2.0, 20)
+    table = {"stretch": stretch, "nominal_stress_kPa": 30.0 * (stretch - stretch**-2)}
+    data, out = tmp_path / "coupons", tmp_path / "out"
+    experiment = write_experiment(data, [coupon_entry("pull", "a.csv")], tables={"a.csv": table})
+    both = ["--out", str(out), "--workers", "1"]
+    assert fit(str(experiment), "--model", "neo-hookean", *both).exit_code == 0
+    done = fit(str(experiment), "--model", "mooney-rivlin", *both)
+    assert done.exit_code == 0, done.output
+    assert "fitted by an earlier run: S0, neo-hookean" in " ".join(done.output.split())
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "neo-hookean" in page
+    assert "mooney-rivlin" in page
+    card = load_card("S0", out / "cards")
+    assert card.law == "neo-hookean"  # fits as well with a constant less
+    filled = " ".join(card.provenance.split()).partition("Not fitted, moduli taken from neo-hookean: ")[2]
+    assert "ogden" in filled
+    assert "mooney-rivlin" not in filled
+
+    table["nominal_stress_kPa"] = 2.0 * table["nominal_stress_kPa"]
+    other = write_experiment(tmp_path / "other", [coupon_entry("pull", "a.csv")], tables={"a.csv": table})
+    done = fit(str(other), "--model", "ogden", *both)
+    assert done.exit_code == 0, done.output
+    assert "earlier run" not in done.output  # of other data
+    assert load_card("S0", out / "cards").law == "ogden"
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
