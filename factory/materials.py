@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -25,11 +25,15 @@ from tisim import Material, laws, material_from_moduli
 
 
 class Uncertainty(Strict):
-    """Relative bounds of the shear modulus (-0.3 = 30 % lower; null: not known) and their source."""
+    """Relative bounds of the shear modulus (-0.3 = 30 % lower; null: not known) and their source.
+
+    `fit`, the covariance of all constants, is for `calibration.predict` alone.
+    """
 
     shear_modulus_low: Annotated[float, Field(gt=-1, le=0)] | None
     shear_modulus_high: Annotated[float, Field(ge=0)] | None
     text: str
+    fit: dict[str, Any] | None = None
 
 
 class CardBaseline(Strict):

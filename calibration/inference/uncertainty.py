@@ -66,6 +66,9 @@ class Identification:
     estimates : tuple of Estimate
     covariance : array, shape (n, n)
         Of u, with the priors, scaled up where the fit is worse than the noise.
+    of_intervals : array, shape (n, n)
+        Covariance of which 1.96 standard deviations are the 95 % intervals: larger where these have Student's
+        t, else the same.
     scale : float
         Factor of the data's covariance: reduced chi-square, at least 1 (Birge's ratio).
     blind : tuple of dict
@@ -76,6 +79,7 @@ class Identification:
 
     estimates: tuple[Estimate, ...]
     covariance: Array
+    of_intervals: Array
     scale: float
     blind: tuple[dict[str, float], ...]
     shear_modulus_sd: float
@@ -109,6 +113,7 @@ def identify(
     return Identification(
         estimates=_estimates(parametrisation, u, covariance, prior_sd),
         covariance=covariance,
+        of_intervals=covariance,
         scale=scale,
         blind=_blind(parametrisation, data, span),
         shear_modulus_sd=_shear_sd(parametrisation, u, covariance),
@@ -136,13 +141,17 @@ def with_prior_sd(
     """
     i = parametrisation.names.index(name)
     _, prior_sd = parametrisation.prior()
-    C = known.covariance
-    slope = C[:, i] / C[i, i]
-    covariance = C + np.outer(slope, slope) * (prior_sd[i] ** 2 - C[i, i])
+
+    def put_back(C: Array) -> Array:
+        slope = C[:, i] / C[i, i]
+        return np.asarray(C + np.outer(slope, slope) * (prior_sd[i] ** 2 - C[i, i]))
+
+    covariance, of_intervals = put_back(known.covariance), put_back(known.of_intervals)
     return replace(
         known,
-        estimates=_estimates(parametrisation, u, covariance, prior_sd),
+        estimates=_estimates(parametrisation, u, covariance, prior_sd, of_intervals),
         covariance=covariance,
+        of_intervals=of_intervals,
         shear_modulus_sd=_shear_sd(parametrisation, u, covariance),
     )
 
@@ -197,28 +206,30 @@ def between_specimens(
 
     _, prior_sd = parametrisation.prior()
     covariance = widened(1.0)
-    wide = _estimates(parametrisation, end.u, widened(float(student.ppf(0.975, k - 1) / 1.96) ** 2), prior_sd)
+    of_intervals = widened(float(student.ppf(0.975, k - 1) / 1.96) ** 2)
     return replace(
         known,
-        estimates=tuple(
-            replace(e, low=w.low, high=w.high)
-            for e, w in zip(_estimates(parametrisation, end.u, covariance, prior_sd), wide, strict=True)
-        ),
+        estimates=_estimates(parametrisation, end.u, covariance, prior_sd, of_intervals),
         covariance=covariance,
+        of_intervals=of_intervals,
         shear_modulus_sd=_shear_sd(parametrisation, end.u, covariance),
     )
 
 
 def _estimates(
-    parametrisation: Parametrisation, u: Array, covariance: Array, prior_sd: Array
+    parametrisation: Parametrisation,
+    u: Array,
+    covariance: Array,
+    prior_sd: Array,
+    of_intervals: Array | None = None,
 ) -> tuple[Estimate, ...]:
+    wide = np.sqrt(np.diag(covariance if of_intervals is None else of_intervals))
     bounds = parametrisation.bounds
     span = bounds[:, 1] - bounds[:, 0]
     estimates = []
     for i, c in enumerate(parametrisation.coordinates):
-        wide = float(np.sqrt(covariance[i, i]))
-        low, high = np.clip([u[i] - 1.96 * wide, u[i] + 1.96 * wide], *bounds[i])
-        sd = min(wide, FLAT * float(span[i]))
+        low, high = np.clip([u[i] - 1.96 * wide[i], u[i] + 1.96 * wide[i]], *bounds[i])
+        sd = min(float(np.sqrt(covariance[i, i])), FLAT * float(span[i]))
         estimates.append(
             Estimate(
                 name=c.name,

@@ -18,7 +18,17 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
-from calibration.parameters import FIELDS, Parametrisation, PartCoordinates, ProtocolWindow, part_of
+from calibration.parameters import (
+    FIELDS,
+    Parametrisation,
+    PartCoordinates,
+    ProtocolWindow,
+    held_part,
+    parametrisation,
+    part_coordinates,
+    part_entry,
+    part_of,
+)
 from calibration.parameters._coordinates import Coordinate, Parameters, shear_modulus
 from calibration.prediction._interval import WIDTH
 from tisim import laws
@@ -26,6 +36,7 @@ from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony
 
 Array = NDArray[np.float64]
 
+ROUNDED = 1e-4  # relative: cards have six digits
 BASE = "neo-hookean"  # the law of cards that name none
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
@@ -55,8 +66,22 @@ class _Effect(_Lenient):
     valid_range: dict[str, tuple[float, float]] = Field(default_factory=dict)
 
 
+class FitFile(BaseModel):
+    """A fit's point in its search coordinates, and their covariance (docs/reference/dataset-format.md)."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    terms: Annotated[int, Field(ge=1)] = 1
+    parts: tuple[str, ...] = ()
+    protocol: tuple[NotNegative, NotNegative, Annotated[int, Field(ge=0)]] = (0.0, 0.0, 0)
+    coordinates: tuple[str, ...]
+    values: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+
+
 class _Uncertainty(_Lenient):
     shear_modulus_high: NotNegative | None = None
+    fit: FitFile | None = None
 
 
 # in a card's provenance: what it was fitted to
@@ -101,7 +126,8 @@ class CardModel:
 
     Attributes
     ----------
-    law : in search coordinates: its shear modulus, and the relative size of each part whose sd is known.
+    law : in the search coordinates of the fit that the card states; else its shear modulus, and the relative
+        size of each part whose sd is known.
     u : the card's point.
     covariance : of u.
     model_error : relative, of the modulus.
@@ -173,17 +199,22 @@ def extended_model(card: CardFile) -> CardModel:
         notes.append(
             f"not predicted with, since the card of {card.material} has no part for it: {', '.join(left_out)}"
         )
-    sds = [(high or 0.0) / WIDTH]
-    law = scaled_law(name, parameters)
-    own = []
-    for part in FIELDS:
-        entry = getattr(card, part)
-        if entry is None:
-            continue
-        known = _relative_sd(card, part)
-        own.append(part_coordinates(part, part_of(part, entry), free=known is not None))
-        sds += [] if known is None else [known]
-    law = law.with_parts(own) if own else law
+    parts = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+    if card.uncertainty.fit is not None:
+        law, u, covariance = _as_fitted(name, parameters, parts, card.uncertainty.fit)
+    else:
+        sds = [(high or 0.0) / WIDTH]
+        law = scaled_law(name, parameters)
+        own = []
+        for field_, part in parts.items():
+            known = _relative_sd(card, field_)
+            own.append(scaled_part(field_, part, free=known is not None))
+            sds += [] if known is None else [known]
+            if known is None:
+                notes.append(f"the card of {card.material} does not state how well its {field_} is known")
+        law = law.with_parts(own) if own else law
+        u = np.array([np.log(laws.get(name).moduli(parameters).shear_modulus), *np.zeros(len(sds) - 1)])
+        covariance = np.diag(np.square(sds))
     labels = [e.effect for e in card.effects if e.becomes]
     ranges: dict[str, tuple[float, float]] = {}
     for e in card.effects:
@@ -193,12 +224,50 @@ def extended_model(card: CardFile) -> CardModel:
     return CardModel(
         label=" + ".join(labels) or law.label.replace("+", " + "),
         law=law,
-        u=np.array([np.log(laws.get(name).moduli(parameters).shear_modulus), *np.zeros(len(sds) - 1)]),
-        covariance=np.diag(np.square(sds)),
+        u=u,
+        covariance=covariance,
         model_error=card.model_error or 0.0,
         notes=tuple(notes),
         ranges=ranges,
     )
+
+
+def _as_fitted(
+    name: str, parameters: Parameters, parts: Mapping[str, Part], fit: FitFile
+) -> tuple[Parametrisation, Array, Array]:
+    """Law with parts in the coordinates of the fit, its point and their covariance.
+
+    ValueError where these do not describe the constants that the card states.
+    """
+    first, last, peaks = fit.protocol
+    window = ProtocolWindow(first=first, last=last, peaks=peaks)
+    searched = [part_coordinates(spec, window) for spec in fit.parts]
+    held = [
+        held_part(f, part, window) for f, part in parts.items() if f not in {own.field for own in searched}
+    ]
+    law = parametrisation(name, terms=fit.terms)
+    law = law.with_parts([*searched, *held]) if searched or held else law
+    if fit.coordinates != law.names or len(fit.values) != len(law.names):
+        raise ValueError(f"key uncertainty.fit.coordinates: expected {', '.join(law.names)}")
+    u, covariance = np.array(fit.values), np.array(fit.covariance)
+    n = len(u)
+    if covariance.shape != (n, n) or np.linalg.eigvalsh(covariance).min() < -ROUNDED * covariance.max():
+        raise ValueError(f"key uncertainty.fit.covariance: expected a covariance of shape ({n}, {n})")
+    found = law.material(u)
+    stated: list[tuple[Mapping[str, Any], Mapping[str, Any]]] = [(found.parameters, parameters)]
+    for part in law.parts:
+        own = parts.get(part.field)
+        stated.append((part_entry(getattr(found, part.field)), {} if own is None else part_entry(own)))
+    if not all(_alike(fitted[key], known.get(key)) for fitted, known in stated for key in fitted):
+        raise ValueError(
+            f"key uncertainty.fit: expected the constants of {name} and its parts as the card states them:"
+            " leave the key out where they were changed"
+        )
+    return law, u, covariance
+
+
+def _alike(a: Any, b: Any) -> bool:
+    return a == b if isinstance(a, str) or b is None else bool(np.allclose(a, b, rtol=ROUNDED, atol=0.0))
 
 
 def baseline_model(card: CardFile) -> CardModel | None:
@@ -228,7 +297,7 @@ def scaled_law(name: str, parameters: Parameters) -> Parametrisation:
     return Parametrisation(law=name, label=name, coordinates=(shear_modulus(),), assemble=assemble)
 
 
-def part_coordinates(field: str, part: Part, *, free: bool) -> PartCoordinates:
+def scaled_part(field: str, part: Part, *, free: bool) -> PartCoordinates:
     """A part as it is; free : with its relative size as a coordinate."""
     name = f"{field}_scale"
     scaled = SCALED.get(type(part)) if free else None

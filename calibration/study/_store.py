@@ -193,7 +193,7 @@ class FitStore:
 
     def finish(self, calibration: Calibration, *, chosen_from: Sequence[str] = ()) -> None:
         """Write the result, in one piece; chosen_from : names of the fits among which the data chose."""
-        data = {"header": self.header, "calibration": calibration.to_json()}
+        data: dict[str, Any] = {"header": self.header, "calibration": calibration.to_json()}
         if chosen_from:
             data["chosen_from"] = list(chosen_from)
         part = self.result_path.with_suffix(".json.part")

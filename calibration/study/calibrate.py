@@ -380,6 +380,7 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen:
         fitted,
         estimates=estimates,
         blind=known.blind,
+        covariance=tuple(tuple(float(c) for c in row) for row in known.of_intervals),
         shear_modulus_sd=known.shear_modulus_sd,
     )
 

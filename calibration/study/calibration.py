@@ -75,6 +75,9 @@ class Calibration:
         At small strain [Pa].
     estimates, blind : tuple
         See `calibration.inference.Identification`; empty where there was no polish.
+    covariance : tuple of tuple of float
+        Of u: 1.96 standard deviations of it are the 95 % intervals of linear theory; empty where there was no
+        polish.
     chi2 : float
         Of `points` measurements under the stated noise, without the prior's share. With the objective "dice"
         the sum of (1 - Dice) / SCALE^2 over `points` photographs, and no measure of likelihood.
@@ -122,6 +125,7 @@ class Calibration:
     bulk_modulus: float = float("nan")
     estimates: tuple[Estimate, ...] = ()
     blind: tuple[dict[str, float], ...] = ()
+    covariance: tuple[tuple[float, ...], ...] = ()
     chi2: float = float("nan")
     points: int = 0
     reduced_chi2: float = float("nan")
@@ -151,11 +155,15 @@ class Calibration:
         return 1.0 - self.chi2 * SCALE**2 / self.points if self.objective == "dice" and self.points else None
 
     @property
+    def terms(self) -> int:
+        """Terms of a series law; 1 for any other."""
+        own = self.label.partition("+")[0]
+        return 1 if own == self.law else int(own.removeprefix(f"{self.law}-"))
+
+    @property
     def parametrisation(self) -> Parametrisation:
         """The law in search coordinates, with its parts."""
-        own = self.label.partition("+")[0]
-        terms = 1 if own == self.law else int(own.removeprefix(f"{self.law}-"))
-        law = parametrisation(self.law, terms=terms)
+        law = parametrisation(self.law, terms=self.terms)
         if not self.parts and not self.held:
             return law
         window = ProtocolWindow(
@@ -212,6 +220,7 @@ class Calibration:
         known["held_out"] = tuple(HeldOut(**_nan(h)) for h in known["held_out"])
         known["blind"] = tuple(dict(b) for b in known["blind"])
         known["u"] = tuple(known["u"])
+        known["covariance"] = tuple(tuple(row) for row in known.get("covariance", ()))
         known["parameters"] = {
             k: tuple(v) if isinstance(v, list) else v for k, v in known["parameters"].items()
         }

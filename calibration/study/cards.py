@@ -72,6 +72,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
             "shear_modulus_low": low,
             "shear_modulus_high": high,
             "text": _certainty(chosen),
+            **_covariance(chosen),
         },
         "density": float(belief.density if belief.density is not None else 1000.0),
         "law": chosen.law,
@@ -111,6 +112,24 @@ def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any
 def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
     """What the material has beside its law, by the card's keys: kinds of `tisim.parts`, parameters."""
     return {name: part_entry(part) for name, part in chosen.material_parts.items()}
+
+
+def _covariance(chosen: Calibration) -> dict[str, Any]:
+    """The fit's point and covariance in its search coordinates, under a key; empty without error bars."""
+    if not chosen.covariance:
+        return {}
+    law = chosen.parametrisation
+    window = law.parts[0].window if law.parts else None
+    return {
+        "fit": {
+            "terms": chosen.terms,
+            **({} if window is None else {"protocol": [window.first, window.last, window.peaks]}),
+            "parts": list(chosen.parts),
+            "coordinates": list(law.names),
+            "values": [float(f"{x:.9g}") for x in chosen.u],
+            "covariance": [[float(f"{c:.6g}") for c in row] for row in chosen.covariance],
+        }
+    }
 
 
 def _provenance(
