@@ -15,7 +15,7 @@ Measurement models become objectives by `calibration.measurements.objective.Mode
 depend on the material alone by `OfMaterial`.
 """
 
-from calibration.inference.polish import FINE_LADDER, Polished, polish
+from calibration.inference.polish import Polished, polish
 from calibration.inference.problem import Linearised, MaterialObjective, Objective, OfMaterial, Problem
 from calibration.inference.search import CmaOptions, Found, Generation, HistoryError, guess, search
 from calibration.inference.uncertainty import (
@@ -28,7 +28,6 @@ from calibration.inference.uncertainty import (
 )
 
 __all__ = [
-    "FINE_LADDER",
     "CmaOptions",
     "Estimate",
     "Found",

@@ -1,22 +1,20 @@
-"""Gauss-Newton polish with step control, from where CMA-ES ended: each linearisation is one batch."""
+"""Polish from where CMA-ES ended: SciPy's bounded least squares, each linearisation one batch of scenes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from calibration.inference.problem import Problem
 
 Array = NDArray[np.float64]
 
-LADDER = (0.0, 1.0, 30.0, 1000.0, 3e4)
-# goes down too where full steps fail again and again: curved valleys of relaxation times and fractions
-FINE_LADDER = (0.0, 0.03, 1.0, 30.0, 1000.0)
 STALLED = 10  # steps that together may gain less than a tenth of what counts as settled, before it ends
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
+SHORTEST = 1e-5  # relative length of a step below which no step is said to lower chi-square
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -49,13 +47,14 @@ def polish(
     problem: Problem,
     start: Array,
     *,
-    max_steps: int = 16,
+    max_steps: int = 80,
     tolerance: float = 0.002,
     settled: float = 0.4,
     difference: float = 0.1,
-    ladder: Sequence[float] = LADDER,
 ) -> Polished:
-    """Minimise the problem's cost by damped Gauss-Newton steps.
+    """Minimise the problem's cost by Gauss-Newton steps in a trust region within the bounds.
+
+    The method is SciPy's `trf` (M. A. Branch, T. F. Coleman and Y. Li, SIAM J. Sci. Comput. 21, 1999).
 
     Nuisances are taken at the start, and again at the end point. A coordinate at its bound stays there while
     the cost falls beyond it. Along a valley without an end (terms that are too much alike) steps gain next to
@@ -72,8 +71,6 @@ def polish(
         Where no step finds what it promises, so much still counts as converged: the default is 0.6 sd.
     difference : float
         Of the central differences, in each coordinate's spread; smaller ones drown in the solver's tolerance.
-    ladder : sequence of float
-        Dampings tried in one batch, over the present one.
 
     Raises
     ------
@@ -82,96 +79,127 @@ def polish(
     """
     bounds = problem.parametrisation.bounds
     u = np.clip(np.asarray(start, dtype=float), bounds[:, 0], bounds[:, 1])
-    damping, fresh = 1e-3, True
-    costs_before: list[float] = []
     if not problem.linearise(u):
         raise ValueError("no equilibrium at the start of the polish")
-    for step in range(1, max_steps + 1):
-        residuals, jacobian = _linearised(problem, u, difference)
-        cost = float(residuals @ residuals)
-        gradient, curvature = jacobian.T @ residuals, jacobian.T @ jacobian
-        near = AT_BOUND * (bounds[:, 1] - bounds[:, 0])
-        free = ~(
-            ((u <= bounds[:, 0] + near) & (gradient > 0)) | ((u >= bounds[:, 1] - near) & (gradient < 0))
-        )
-        promise = _promise(gradient[free], curvature[np.ix_(free, free)])
-        message = ""
-        costs_before.append(cost)
-        gained = max(costs_before[-STALLED - 1 :]) - cost
-        stalled = len(costs_before) > STALLED and gained < 0.1 * settled
-        if stalled and promise >= tolerance:
-            message = f"{STALLED} steps lowered chi-square by {gained:.2g}, though {promise:.2g} was promised"
-        elif promise >= tolerance:
-            # several lengths of damping at once: they are one batch of scenes
-            tries = damping * np.array(ladder)
-            moves = np.array([_move(u, gradient, curvature, free, d, bounds) for d in tries])
-            costs = problem.costs(moves)
-            best = int(costs.argmin())
-            if costs[best] < cost - 0.1 * tolerance:
-                damping = max(1e-6, tries[best] if best else damping / 30.0)
-                u, fresh = moves[best], False
-                continue
-            message = f"no step lowers chi-square, though {promise:.2g} was promised"
-        done = promise < settled
-        if fresh or not done or not problem.linearise(u):
-            return Polished(
-                u=u,
-                cost=cost,
-                residuals=residuals,
-                jacobian=jacobian,
-                converged=done,
-                message="" if done else message,
-                steps=step,
-            )
-        fresh = True
-    residuals, jacobian = _linearised(problem, u, difference)
+    steps = 0
+    while True:
+        way = _Descent(problem, max_steps - steps, tolerance, 0.1 * settled, difference)
+        message = way.go(u)
+        steps += way.steps
+        moved, u = not np.array_equal(way.u, u), way.u
+        if not moved or steps >= max_steps or way.promise >= settled or not problem.linearise(u):
+            break
+    done = way.promise < settled
     return Polished(
         u=u,
-        cost=float(residuals @ residuals),
-        residuals=residuals,
-        jacobian=jacobian,
-        converged=False,
-        message=f"not converged in {max_steps} steps",
-        steps=max_steps,
+        cost=way.cost,
+        residuals=way.residuals,
+        jacobian=way.jacobian,
+        converged=done,
+        message="" if done else message,
+        steps=steps,
     )
 
 
-def _linearised(problem: Problem, u: Array, difference: float) -> tuple[Array, Array]:
-    n = len(u)
-    bounds = problem.parametrisation.bounds
-    steps = difference * problem.parametrisation.spread
-    high = np.minimum(u + steps, bounds[:, 1])
-    low = np.maximum(u - steps, bounds[:, 0])
-    # where a neighbour outside the law's domain or without equilibrium has no answer, its side is left out
-    population = np.vstack([u, u + np.diag(high - u), u + np.diag(low - u)])
-    rows = problem.residuals(population)
-    if not np.isfinite(rows[0]).all():
-        raise ValueError("no equilibrium at a point of the polish")
-    jacobian = np.empty((rows.shape[1], n))
-    for i in range(n):
-        up, down = rows[1 + i], rows[1 + n + i]
-        a, b = (high[i], up) if np.isfinite(up).all() else (u[i], rows[0])
-        c, d = (low[i], down) if np.isfinite(down).all() else (u[i], rows[0])
-        if a == c:
-            raise ValueError(
-                f"no derivative by {problem.parametrisation.names[i]}: neither side has an answer"
+class _EndedError(Exception):
+    """The descent has come to its end, for the reason that it says; none where it is settled."""
+
+
+class _Descent:
+    """A descent from a point.
+
+    Attributes
+    ----------
+    u, residuals, jacobian : where it is.
+    promise : chi-square that a full step would gain by the quadratic model.
+    """
+
+    def __init__(self, problem: Problem, most: int, tolerance: float, little: float, difference: float):
+        self._problem, self._bounds = problem, problem.parametrisation.bounds
+        self._most, self._tolerance, self._little = most, tolerance, little
+        self._steps = difference * problem.parametrisation.spread
+        self._costs: list[float] = []
+        self._seen: tuple[Array, Array] = (np.empty(0), np.empty(0))  # the last point, and its residuals
+
+    @property
+    def steps(self) -> int:
+        """Number of linearisations."""
+        return len(self._costs)
+
+    @property
+    def cost(self) -> float:
+        return self._costs[-1]
+
+    def go(self, start: Array) -> str:
+        """Go from start (n,) as far as it goes; why it ended, empty where it is settled."""
+        try:
+            self._jacobian(start)
+            least_squares(
+                self._residuals,
+                start,
+                jac=self._jacobian,
+                bounds=(self._bounds[:, 0], self._bounds[:, 1]),
+                x_scale=self._problem.parametrisation.spread,
+                ftol=1e-12,
+                xtol=SHORTEST,
+                gtol=1e-12,
             )
-        jacobian[:, i] = (b - d) / (a - c)
-    return rows[0], jacobian
+        except _EndedError as end:
+            return str(end)
+        return f"no step lowers chi-square, though {self.promise:.2g} was promised"
+
+    def _residuals(self, u: Array) -> Array:
+        if not np.array_equal(u, self._seen[0]):
+            self._seen = u.copy(), self._problem.residuals(u[None])[0]
+        return self._seen[1]
+
+    def _jacobian(self, u: Array) -> Array:
+        """Jacobian (m, n) at an accepted point; _EndedError where the descent ends there."""
+        residuals = self._residuals(u)
+        if not np.isfinite(residuals).all():
+            raise ValueError("no equilibrium at a point of the polish")
+        jacobian = self._differences(u, residuals)
+        self.u, self.residuals, self.jacobian = u.copy(), residuals, jacobian
+        gradient = jacobian.T @ residuals
+        near = AT_BOUND * (self._bounds[:, 1] - self._bounds[:, 0])
+        free = ~(
+            ((u <= self._bounds[:, 0] + near) & (gradient > 0))
+            | ((u >= self._bounds[:, 1] - near) & (gradient < 0))
+        )
+        self.promise = _promise(gradient[free], jacobian[:, free])
+        self._costs.append(float(residuals @ residuals))
+        if self.promise < self._tolerance:
+            raise _EndedError
+        gained = max(self._costs[-STALLED - 1 :]) - self.cost
+        if self.steps > STALLED and gained < self._little:
+            raise _EndedError(
+                f"{STALLED} steps lowered chi-square by {gained:.2g}, though {self.promise:.2g} was promised"
+            )
+        if self.steps >= self._most:
+            raise _EndedError(f"not converged in {self._most} steps")
+        return jacobian
+
+    def _differences(self, u: Array, residuals: Array) -> Array:
+        """Jacobian (m, n) by central differences, one batch of scenes; where a neighbour outside the law's
+        domain or without equilibrium has no answer, its side is left out."""
+        n = len(u)
+        high = np.minimum(u + self._steps, self._bounds[:, 1])
+        low = np.maximum(u - self._steps, self._bounds[:, 0])
+        rows = self._problem.residuals(np.vstack([u + np.diag(high - u), u + np.diag(low - u)]))
+        jacobian = np.empty((rows.shape[1], n))
+        for i in range(n):
+            up, down = rows[i], rows[n + i]
+            a, b = (high[i], up) if np.isfinite(up).all() else (u[i], residuals)
+            c, d = (low[i], down) if np.isfinite(down).all() else (u[i], residuals)
+            if a == c:
+                raise ValueError(
+                    f"no derivative by {self._problem.parametrisation.names[i]}: neither side has an answer"
+                )
+            jacobian[:, i] = (b - d) / (a - c)
+        return jacobian
 
 
-def _promise(gradient: Array, curvature: Array) -> float:
-    """Chi-square that a full Gauss-Newton step would gain, by the quadratic model."""
+def _promise(gradient: Array, jacobian: Array) -> float:
     if not len(gradient):
         return 0.0
-    return float(gradient @ np.linalg.lstsq(curvature, gradient, rcond=1e-12)[0])
-
-
-def _move(
-    u: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float, bounds: Array
-) -> Array:
-    move = np.zeros_like(u)
-    inner = curvature[np.ix_(free, free)]
-    scale = damping * np.diag(np.diag(inner)) + 1e-12 * np.trace(inner) * np.eye(len(inner))
-    move[free] = -np.linalg.solve(inner + scale, gradient[free])
-    return np.clip(u + move, bounds[:, 0], bounds[:, 1])
+    return float(gradient @ np.linalg.lstsq(jacobian.T @ jacobian, gradient, rcond=1e-12)[0])

@@ -166,6 +166,8 @@ def between_specimens(
     Biometrika 73, 1986). In each direction the larger of it and the noise's is taken; intervals have
     Student's t with k - 1 degrees of freedom. Nothing changes for one specimen, or if the scores are as the
     noise makes them (W. G. Cochran, Biometrics 10, 1954: sum_s g_s' H_s^-1 g_s, chi-square, p above DIFFER).
+    The noise is as stated, or as large as the misfit within the specimens, each with constants of its own,
+    where that is larger.
 
     Parameters
     ----------
@@ -189,8 +191,10 @@ def between_specimens(
             scores[-1] @ np.linalg.pinv(information, rcond=1e-9, hermitian=True) @ scores[-1]
         )
         freedom += int(np.linalg.matrix_rank(information, rtol=1e-9, hermitian=True))
+    left = int((label != "").sum()) - freedom
+    within = (float(r[label != ""] @ r[label != ""]) - heterogeneity) / left if left > 0 else known.scale
     freedom -= int(np.linalg.matrix_rank(J[label != ""], rtol=1e-9))
-    if freedom < 1 or chi2.sf(heterogeneity / known.scale, freedom) > DIFFER:
+    if freedom < 1 or chi2.sf(heterogeneity / max(1.0, within), freedom) > DIFFER:
         return known
     span = np.ptp(parametrisation.bounds, axis=1)
     inverse = np.linalg.inv(J.T @ J + np.diag(span**-2.0))
@@ -289,28 +293,31 @@ def _shear_sd(parametrisation: Parametrisation, u: Array, covariance: Array) -> 
 
 
 RISE = 1.96  # root of what chi-square rises by from the best point to the end of a 95 % interval
-ROUNDS = 8
+ROUNDS = 8  # of an end, without those that it waits
+AT_REST = 4  # rounds for the other coordinates to come to rest at one point
+RESTLESS = 2  # points at which they do not, after which the linear end stands
 LINEAR = 0.03  # of a parameter: an sd below this is propagated linearly
-CLOSE = 0.1  # an end whose rise is so near to RISE stands
+CLOSE = 0.05  # an end whose rise is so near to RISE stands
+LEFT = 0.2  # chi-square that another step of the other coordinates may promise at an end
 
 
 def profile(problem: Problem, end: Polished, known: Identification) -> tuple[Estimate, ...]:
     """The estimates with their intervals ending where chi-square, minimised over all other coordinates, has
     risen by 3.84 (S. S. Wilks, Ann. Math. Stat. 9, 1938); `sd` and `seen` stay those of linear theory.
 
+    Where the other coordinates do not come to rest on the way to an end (in a valley that curves much, or
+    along a bound), it is the linear one, or one farther away.
+
     Left as they are: all of them where every coordinate's sd is under 3 % (there the linear interval serves),
     those of a coordinate that its prior decides, and an end that no point with an answer leads to. The others
-    are taken along by simplified Newton steps with the Jacobian of `end`; each round is two batches of at
-    most two candidates a coordinate.
+    are taken along by Newton steps with the Jacobian of `end`, updated by what each point shows (C. G.
+    Broyden, Math. Comput. 19, 1965); each round is two batches of at most two candidates a coordinate.
     """
     wanted = [i for i in range(len(end.u)) if not _by_prior(problem, known, i)]
     if all(known.estimates[i].sd < LINEAR * yardstick(problem.parametrisation, i, end.u[i]) for i in wanted):
         return known.estimates
     ends = [_End(problem, end, known, i, side) for i in wanted for side in (-1, 1)]
-    for _ in range(ROUNDS):
-        open_ends = [e for e in ends if not e.done]
-        if not open_ends:
-            break
+    while open_ends := [e for e in ends if not e.done and e.rounds < ROUNDS]:
         first = np.array([e.point() for e in open_ends])
         rows = problem.residuals(first)
         second = np.array([e.taken_along(v, r) for e, v, r in zip(open_ends, first, rows, strict=True)])
@@ -332,6 +339,7 @@ class _End:
     def __init__(self, problem: Problem, end: Polished, known: Identification, i: int, side: int) -> None:
         self.end, self.i, self.side = end, i, side
         self.bounds = problem.parametrisation.bounds
+        self.span = np.sqrt(np.diag(known.covariance))
         _, sd = problem.parametrisation.prior()
         self.priors = int(np.isfinite(sd).sum())  # rows of the residuals, the last ones
         self.scale = known.scale
@@ -343,6 +351,10 @@ class _End:
         # reach and rise where chi-square has risen too little, and too much (inf: no answer)
         self.inside, self.outside = (0.0, 0.0), (np.inf, np.inf)
         self.done = self.room == 0.0
+        self.jacobian = end.jacobian.copy()
+        self.last = (end.u, end.residuals)  # point to which it belongs
+        self.left = 0.0  # what another step of the others promises at the last point
+        self.waited = self.restless = self.rounds = 0
         self.best = self._chi2(end.residuals)
 
     def point(self) -> Array:
@@ -352,22 +364,40 @@ class _End:
         """The point with all other coordinates moved to where the linearised chi-square is least."""
         if not np.isfinite(residuals).all():
             return point
-        others = [k for k in range(len(point)) if k != self.i]
-        J = self.end.jacobian[:, others] * self._weights(len(residuals))[:, None]
-        span = self.bounds[others, 1] - self.bounds[others, 0]
-        curvature = J.T @ J + np.diag(1e-6 * span**-2.0)
+        others, step, _ = self._step(residuals)
         moved = point.copy()
-        moved[others] -= np.linalg.solve(curvature, J.T @ (residuals * self._weights(len(residuals))))
+        moved[others] += step
         return self._held(moved)
+
+    def _step(self, residuals: Array) -> tuple[list[int], Array, float]:
+        """The other coordinates, their Newton step, and the chi-square that it promises to take away."""
+        others = [k for k in range(len(self.end.u)) if k != self.i]
+        J = self.jacobian[:, others] * self._weights(len(residuals))[:, None]
+        span = self.bounds[others, 1] - self.bounds[others, 0]
+        gradient = J.T @ (residuals * self._weights(len(residuals)))
+        step = np.asarray(-np.linalg.solve(J.T @ J + np.diag(1e-6 * span**-2.0), gradient), dtype=float)
+        return others, step, -float(gradient @ step)
 
     def learn(self, tried: list[tuple[Array, Array]]) -> None:
         """Next points to evaluate, from (point, residuals) of this round."""
-        known = [(self._chi2(rows), v) for v, rows in tried if np.isfinite(rows).all()]
+        known = [(v, rows) for v, rows in tried if np.isfinite(rows).all()]
         rise = np.inf
         if known:
-            chi2, v = min(known, key=lambda pair: pair[0])
-            rise = float(np.sqrt(max(chi2 - self.best, 0.0)))
+            for v, rows in known:
+                self._update(v, rows)
+            v, rows = min(known, key=lambda pair: self._chi2(pair[1]))
+            rise = float(np.sqrt(max(self._chi2(rows) - self.best, 0.0)))
+            self.left = self._step(rows)[2]
             self.course = (v - self.end.u) / self.reach
+            if self.left > LEFT and rise > RISE - CLOSE:
+                self.waited += 1
+                if self.waited <= AT_REST:
+                    return
+                self.restless += 1
+                if self.restless == RESTLESS:
+                    self.reach, self.done = self.linear, True
+                    return
+        self.waited, self.rounds = 0, self.rounds + 1
         width = self.outside[0] - self.inside[0]
         if rise < RISE:
             self.inside = (self.reach, rise)
@@ -384,6 +414,16 @@ class _End:
         else:
             self.reach = near + (far - near) * (RISE - low) / (high - low)
 
+    def _update(self, point: Array, residuals: Array) -> None:
+        """Change the Jacobian so that it leads from the last point to this one."""
+        before, rows = self.last
+        step = (point - before) / self.span
+        size = float(step @ step)
+        if size > 0.0:
+            error = residuals - rows - self.jacobian @ (point - before)
+            self.jacobian += np.outer(error, step / self.span) / size
+        self.last = point, residuals
+
     def reached(self) -> float:
         (near, _), (far, high) = self.inside, self.outside
         if self.done:
@@ -392,6 +432,8 @@ class _End:
             reach = self.linear
         else:  # rounds ran out: the far end of what is left, which is wider rather than narrower
             reach = min(far, self.room)
+        if self.left > LEFT:
+            reach = max(reach, self.linear)
         return float(np.clip(self.end.u[self.i] + self.side * reach, *self.bounds[self.i]))
 
     def _held(self, v: Array) -> Array:

@@ -81,12 +81,17 @@ class ModelObjective(Generic[Model]):
         return State(u=np.concatenate([u, self.extras]))
 
     def linearise(self, u: Array, *, rough: bool = False) -> bool:
-        """Update nuisances, discretisation errors and extras at u (n,); False if u has no solution."""
+        """Update nuisances, discretisation errors and extras at u (n,); False if u has no solution.
+
+        With `rough`, for a u that may be far from the data, the extras stay at their centres: they would take
+        the whole misfit upon themselves, by thousands of their standard deviations.
+        """
         if self.frozen:
             return True
         try:
             self.model.update_nuisances(self.state(u), rough=rough)
-            self._take_extras(u)
+            if not rough:
+                self._take_extras(u)
         except ValueError:
             return False
         return True

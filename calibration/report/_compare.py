@@ -11,7 +11,7 @@ from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._nuisances import CORNER_SD, SHARED
 from calibration.study.assessment import largest_by_chance
 from calibration.study.calibration import Calibration
-from calibration.study.cards import best, usable
+from calibration.study.cards import best, misfit_scale, usable
 
 # Burnham and Anderson, Model Selection and Multimodel Inference (2002), 2.6: a difference below 2 leaves a
 # model substantial support, one above 10 essentially none.
@@ -22,10 +22,9 @@ ALIKE, REFUTED = 2.0, 10.0
 class Comparison:
     """The laws of one material.
 
-    chosen: the law with the smallest chi-square + 2 n among finished fits, else the best so far of stopped
-    ones. differences: by label, (chi2 - chi2 of the chosen) / scale + 2 (n - n of the chosen), of finished
-    fits only. scale: reduced chi-square of the chosen law, at least 1, so that a law which misses the data by
-    more than the noise does not beat others by parts of its own error. passed_over: labels of laws with a
+    chosen: the law with the smallest chi-square / scale + 2 n among finished fits, else the best so far of
+    stopped ones. differences: by label, (chi2 - chi2 of the chosen) / scale + 2 (n - n of the chosen), of
+    finished fits only. scale: `calibration.study.cards.misfit_scale`. passed_over: labels of laws with a
     constant at a bound of the search, where the chosen one has none.
     """
 
@@ -67,7 +66,7 @@ def compare(results: Sequence[Calibration]) -> Comparison | None:
         if not stopped:
             return None
         chosen = min(stopped, key=_akaike)
-    scale = max(1.0, chosen.reduced_chi2)
+    scale = misfit_scale(results)
     differences = {
         r.label: (r.chi2 - chosen.chi2) / scale + 2.0 * (r.constants - chosen.constants)
         for r in results

@@ -124,8 +124,8 @@ def rule() -> str:
     return (
         "The law with the lowest Akaike value (chi-square + 2 per constant) leads; a law with a constant at a"
         " bound of the search leads only where all have one. The Akaike difference of"
-        " another law is the difference of the two chi-squares, divided by the leading law's reduced"
-        " chi-square where that is above 1, plus 2 for each constant more. Below"
+        " another law is the difference of the two chi-squares plus 2 for each constant more. Where the least"
+        " reduced chi-square is above 1, chi-squares are divided by it. Below"
         f" {ALIKE:g} the data cannot tell two laws apart; above {REFUTED:g} they speak clearly against"
         " the other law (Burnham and Anderson 2002). A negative difference belongs to a law that fits better"
         " but ends at a bound."

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
 from calibration.parameters import Parametrisation
@@ -124,9 +125,10 @@ def largest_by_chance(result: Calibration) -> float:
 
     With a noise that is itself estimated, with d degrees of freedom, it follows F(freedom, d).
     """
+    tail = 0.5 * erfc(3.0 / sqrt(2.0))
     if result.noise_freedom is None:
-        return 1.0 + 3.0 * sqrt(2.0 / result.freedom)
-    return float(f_distribution.isf(0.5 * erfc(3.0 / sqrt(2.0)), result.freedom, result.noise_freedom))
+        return float(chi2.isf(tail, result.freedom)) / result.freedom
+    return float(f_distribution.isf(tail, result.freedom, result.noise_freedom))
 
 
 def nuisances_lacking(nuisances: Mapping[str, float]) -> list[str]:

@@ -13,7 +13,6 @@ import psutil
 from numpy.typing import NDArray
 
 from calibration.inference import (
-    FINE_LADDER,
     CmaOptions,
     Estimate,
     Generation,
@@ -40,7 +39,6 @@ from calibration.study.measurements import Measurements
 Array = NDArray[np.float64]
 
 BULK = "bulk_ratio"
-_VALLEYS: dict[str, Any] = {"max_steps": 60, "ladder": FINE_LADDER}  # of a polish, for a law with parts
 SOFTEST, STIFFEST = 100.0, 1e7  # shear moduli [Pa]: beyond them a unit was mistaken, as a rule
 
 
@@ -218,7 +216,7 @@ def _descended(problem: Problem, start: Array) -> Polished | None:
     """Result of Gauss-Newton from a start; None where it fails. Relaxation times and fractions make long
     curved valleys, along which a random search gets nowhere."""
     try:
-        return polish(problem, start, **_VALLEYS)
+        return polish(problem, start)
     except ValueError:
         return None
 
@@ -233,7 +231,7 @@ def _polished(
 ) -> Calibration:
     """With error bars, from u on. done : a polish that ended there already."""
     try:
-        end = done or polish(problem, u, **(_VALLEYS if problem.parametrisation.parts else {}))
+        end = done or polish(problem, u)
     except ValueError as error:
         return replace(best, status="not converged", message=f"polish: {error}")
     free = problem.parametrisation
@@ -362,8 +360,6 @@ def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen:
     p = problem.parametrisation
     known = identify(p, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
     estimates = profile(problem, end, known)
-    if p.parts:
-        estimates = _widest(estimates, known.estimates)
     labels = [n for o in problem.objectives for n in _specimens(o)]
     labels += [""] * (len(end.residuals) - len(labels))
     scattered = between_specimens(known, p, end, labels)

@@ -32,13 +32,27 @@ def usable(result: Calibration) -> bool:
 
 
 def best(results: Sequence[Calibration]) -> Calibration | None:
-    """The usable fit with the smallest chi-square, twice its parameters added (Akaike).
+    """The usable fit with the smallest chi-square over `misfit_scale`, twice its parameters added (Akaike).
 
     Fits with a constant at a bound of the search are chosen only where all are.
     """
+    found = _chosen_among(results)
+    scale = misfit_scale(results)
+    return min(found, key=lambda r: r.chi2 / scale + 2.0 * r.constants) if found else None
+
+
+def misfit_scale(results: Sequence[Calibration]) -> float:
+    """What chi-square is divided by where laws are compared: the least reduced one, at least 1.
+
+    So a law that misses the data by more than the noise does not beat others by parts of its own error (QAIC:
+    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2002, 2.5).
+    """
+    return max([1.0, *([min(r.reduced_chi2 for r in found)] if (found := _chosen_among(results)) else [])])
+
+
+def _chosen_among(results: Sequence[Calibration]) -> list[Calibration]:
     found = [r for r in results if usable(r)]
-    found = [r for r in found if not r.unsettled] or found
-    return min(found, key=lambda r: r.chi2 + 2.0 * r.constants) if found else None
+    return [r for r in found if not r.unsettled] or found
 
 
 def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from calibration.measurements.homogeneous._course import (
     largest_before,
     window_of,
 )
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, slope, unstated_sd
+from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE, slope, unstated_sd
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -54,8 +54,8 @@ class Record:
     rate : rate of the stretch [1/s]; in a hold, the stretch of its ramp over the time since the ramp began;
         NaN without a clock.
     estimated : True if the lab states no error of the stress, so that sd comes from the scatter.
-    scatter_points : number of points from whose scatter it comes; 0 if it is stated, or the least error that
-        is assumed (SMALLEST_RELATIVE).
+    scatter_points : number of points from whose scatter it comes; ASSUMED if these are too few; 0 if it is
+        stated, or the scatter is below the least error (SMALLEST_RELATIVE).
     ranges : see `calibration.measurements._model.Record`.
     earlier : number of earlier repeats (same specimen, mode, largest strain and rate).
     alike : number of all repeats, including this record.
@@ -208,7 +208,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
         reloaded=again,
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
-        scatter_points=trial.stretch.size if _scatters(trial, sd) else 0,
+        scatter_points=_scatter_points(trial, sd),
         ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))}
         | ({} if trial.time is None else {"time_s": (float(trial.time[0]), float(trial.time[-1]))}),
         course=None
@@ -283,10 +283,17 @@ def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Ar
     return np.asarray(trial.stress_sd / np.sqrt(count))
 
 
-def _scatters(trial: CouponTrial, sd: Array) -> bool:
-    """True if the standard deviation of the means (k,) comes from the scatter of the curve."""
+ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed
+
+
+def _scatter_points(trial: CouponTrial, sd: Array) -> int:
+    """See `Record.scatter_points`; sd : of the means (k,)."""
+    if trial.stress_sd is not None:
+        return 0
+    if len(np.unique(trial.stretch if trial.time is None else trial.time)) < FEWEST:
+        return ASSUMED
     least = SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0))
-    return trial.stress_sd is None and float(np.median(sd)) > 1.01 * least
+    return trial.stretch.size if float(np.median(sd)) > 1.01 * least else 0
 
 
 def turning(trial: CouponTrial) -> float:

@@ -15,6 +15,7 @@ FLOOR = 0.05
 # though smoothed curves look so. Relative to each stress it would be too small near rest, where a record has
 # many points, and these would decide which cause is named.
 SMALLEST_RELATIVE = 0.005
+FEWEST = 8  # different abscissae from which a scatter about a smooth curve is found at all
 ENOUGH = 24  # least number of points to decide if the scatter grows with the stress:
 CLEARLY = 2.0  # its ratio between the half with larger stresses and the half with smaller ones
 CHANCE = 0.005
@@ -27,7 +28,8 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
     """Standard deviation of means (k,) of a curve whose error the lab does not state.
 
     The error is proportional to the value if the scatter grows with it (`grows`), and constant otherwise. It
-    is at least SMALLEST_RELATIVE of the largest value.
+    is at least SMALLEST_RELATIVE of the largest value. The value is that of a smooth curve: with its own, a
+    point that is too low would count more, and draw the fit down by twice the square of the relative error.
 
     Parameters
     ----------
@@ -36,7 +38,8 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
     """
     largest = max(float(np.abs(measured).max(initial=0.0)), float(np.finfo(float).tiny))
     if grows(over, measured):
-        one = relative_sd(over, measured) * np.maximum(np.abs(values), FLOOR * largest)
+        smooth, _ = _local_line(np.arange(len(values), dtype=float), values, 0.0)
+        one = relative_sd(over, measured) * np.maximum(np.abs(smooth), FLOOR * largest)
     else:
         left = _left(over, measured)
         one = np.full(np.shape(values), 0.0 if left is None else _NORMAL * float(np.median(left[0])))
@@ -62,8 +65,8 @@ def relative_sd(stretch: Array, stress: Array) -> float:
 
     Each inner point is compared with the cubic through its two neighbours on either side (points of equal
     stretch are averaged first). The error is 1.4826 times the median absolute residual over the stress, at
-    least SMALLEST_RELATIVE; SMALLEST_RELATIVE for fewer than 8 different stretches. It does not include an
-    error that all points share.
+    least SMALLEST_RELATIVE; SMALLEST_RELATIVE for fewer than FEWEST different stretches. It does not include
+    an error that all points share.
     """
     found = _left(stretch, stress)
     if found is None:
@@ -76,11 +79,11 @@ def relative_sd(stretch: Array, stress: Array) -> float:
 def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:
     """|residual| of each inner point from the cubic through its neighbours, and the measured values there.
 
-    Residuals are scaled to the standard deviation of one point. None for fewer than 8 different abscissae.
+    Residuals are scaled to the standard deviation of one point. None for fewer than FEWEST abscissae.
     """
     x, first, counts = np.unique(over, return_inverse=True, return_counts=True)
     y = np.bincount(first, weights=measured) / counts
-    if len(x) < 8:
+    if len(x) < FEWEST:
         return None
     inner = np.arange(2, len(x) - 2)
     near = inner[:, None] + np.array([-2, -1, 1, 2])
@@ -100,16 +103,25 @@ def slope(stretch: Array, stress: Array, stretch_sd: float = 0.0) -> Array:
     The window has the nearest 15 % of the points, at least 5, and those within REACH `stretch_sd`, with
     tricube weights: in a narrower one the stretch error would flatten the slope.
     """
-    k = len(stretch)
+    return _local_line(stretch, stress, REACH * stretch_sd)[1]
+
+
+def _local_line(x: Array, y: Array, least: float) -> tuple[Array, Array]:
+    """Value and slope of the local linear regression of y at each x, shape (k,); see `slope`.
+
+    least : least half width of the window.
+    """
+    k = len(x)
     take = min(k, max(5, int(np.ceil(_WINDOW * k))))
-    distance = np.abs(stretch[:, None] - stretch[None, :])
-    reach = np.maximum(np.sort(distance, axis=1)[:, take - 1] * 1.001, REACH * stretch_sd)
+    distance = np.abs(x[:, None] - x[None, :])
+    reach = np.maximum(np.sort(distance, axis=1)[:, take - 1] * 1.001, least)
     if not (reach > 0.0).all():
-        return np.zeros(k)
+        return y.copy(), np.zeros(k)
     weight = np.clip(1.0 - (distance / reach[:, None]) ** 3, 0.0, None) ** 3
     total = weight.sum(axis=1)
-    x_mean, y_mean = weight @ stretch / total, weight @ stress / total
-    dx = stretch[None, :] - x_mean[:, None]
+    x_mean, y_mean = weight @ x / total, weight @ y / total
+    dx = x[None, :] - x_mean[:, None]
     spread = (weight * dx**2).sum(axis=1)
-    moment = (weight * dx * (stress[None, :] - y_mean[:, None])).sum(axis=1)
-    return np.divide(moment, spread, out=np.zeros(k), where=spread > 0.0)
+    moment = (weight * dx * (y[None, :] - y_mean[:, None])).sum(axis=1)
+    slopes = np.divide(moment, spread, out=np.zeros(k), where=spread > 0.0)
+    return y_mean + slopes * (x - x_mean), slopes

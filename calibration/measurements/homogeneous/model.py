@@ -34,8 +34,9 @@ from calibration.measurements.homogeneous._forward import (
     with_effects,
     yielding,
 )
-from calibration.measurements.homogeneous._record import Record, protocol, records_of
+from calibration.measurements.homogeneous._record import ASSUMED, Record, protocol, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
+from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
 from calibration.parameters import Parameters, parametrisation
@@ -406,6 +407,16 @@ class HomogeneousModel(MeasurementModel):
         # the median of the scatter about a curve tells a third of what as many independent points would
         doubt = sum(3.0 * r.points**2 / r.scatter_points for r in self.records if r.scatter_points)
         return float(sum(r.points for r in self.records) ** 2 / doubt) if doubt else np.inf
+
+    def shortcomings(self) -> list[str]:
+        few = [r for r in self.records if r.scatter_points == ASSUMED]
+        if not few:
+            return []
+        return [
+            f"the lab states no error of the stress of {listed(few)}, and fewer than {FEWEST} points show no"
+            f" scatter: {100 * SMALLEST_RELATIVE:g} % of the largest stress is assumed, so that a lack of fit"
+            " cannot be told from noise: state stress_sd_kPa"
+        ]
 
     def noise_sentence(self) -> str:
         stated = [r for r in self.records if not r.estimated]

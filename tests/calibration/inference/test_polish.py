@@ -10,30 +10,27 @@ import pytest
 from numpy.typing import NDArray
 
 from calibration.inference import polish
-from calibration.inference.polish import LADDER, STALLED
+from calibration.inference.polish import STALLED
 
 Array = NDArray[np.float64]
 
 
 class Slope:
-    """One residual of 2 whose slope promises to remove it; each attempt lowers chi-square by `gain`."""
+    """One residual of 2 whose slope promises to remove it; each step lowers chi-square by `gain` alone."""
 
     parametrisation = SimpleNamespace(bounds=np.array([[-1e3, 1e3]]), spread=np.array([1.0]), names=("x",))
 
     def __init__(self, gain: float) -> None:
-        self.chi2, self.gain = 4.0, gain
+        self.chi2, self.gain, self.at = 4.0 + gain, gain, np.full(1, np.nan)
 
     def linearise(self, u: Array, *, rough: bool = False) -> bool:
         del u, rough
         return True
 
     def residuals(self, U: Array) -> Array:
-        return np.sqrt(self.chi2) - 0.1 * (U - U[0])
-
-    def costs(self, U: Array) -> Array:
-        assert len(U) == len(LADDER)
-        self.chi2 -= self.gain
-        return np.full(len(U), self.chi2)
+        if len(U) == 1:
+            self.at, self.chi2 = U[0], self.chi2 - self.gain
+        return np.sqrt(self.chi2) - 0.1 * (U - self.at)
 
 
 @pytest.mark.parametrize(("gain", "steps"), [(0.003, STALLED + 1), (0.03, 30)])
@@ -42,7 +39,5 @@ def test_it_ends_where_ten_steps_gain_next_to_nothing(gain: float, steps: int) -
     end = polish(problem, np.zeros(1), max_steps=30)
     assert not end.converged
     assert end.steps == steps
-    said = (
-        f"{STALLED} steps lowered chi-square by 0.03, though" if steps < 30 else "not converged in 30 steps"
-    )
+    said = f"{STALLED} steps lowered chi-square by" if steps < 30 else "not converged in 30 steps"
     assert end.message.startswith(said)

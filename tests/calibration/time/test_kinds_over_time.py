@@ -13,7 +13,7 @@ from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony, Solid
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, MaterialBelief, PokeRecord, PokeTrial, Trial
-from calibration.inference import FINE_LADDER, Problem, guess, identify, polish
+from calibration.inference import Problem, guess, identify, polish
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._kinds import compared
 from calibration.measurements._state import State
@@ -97,7 +97,7 @@ def test_a_fit_of_a_cylinder_finds_the_truth() -> None:
     problem = Problem(parametrisation=law, objectives=measurements(own, "M", law, workers=1).objectives)
     start = guess(problem)
     assert start is not None
-    end = polish(problem, start, max_steps=60, ladder=FINE_LADDER)
+    end = polish(problem, start)
     assert end.converged
     chi2 = float(end.residuals @ end.residuals) / problem.points
     found = {e.name: e for e in identify(law, end.u, end.jacobian, reduced_chi2=chi2).estimates}
