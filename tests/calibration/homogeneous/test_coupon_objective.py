@@ -81,7 +81,7 @@ def test_without_a_lab_sd_the_scatter_speaks() -> None:
     largest = trial.stress.max()
     np.testing.assert_allclose(record.sd[0], 0.005 * largest)  # near rest, from the curve's largest stress
     # of a smooth curve, which at the end is nearer to the law than the last point
-    np.testing.assert_allclose(record.sd[-1], relative * _law("uniaxial", S)[-1], rtol=0.02)
+    np.testing.assert_allclose(record.sd[-1], relative * _law("uniaxial", S)[-1], rtol=0.03)
 
 
 def test_smooth_or_short_curves_get_the_smallest_relative_sd() -> None:
