@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tisim import laws, parts
+from tisim._checks import check_positive
 from tisim.bodies import Block, Circle, Rectangle, Rod, Vector
 from tisim.course import Course
 from tisim.mesh import Mesh
@@ -79,9 +80,12 @@ def material_from_moduli(
     Raises
     ------
     ValueError
-        For an unknown law, or moduli that the law cannot have.
+        For an unknown law, or moduli or a density that no material or not this law can have.
     """
     chosen = laws.get(law)
+    check_positive("shear_modulus", shear_modulus, "a modulus above 0 Pa")
+    check_positive("bulk_modulus", bulk_modulus, "a modulus above 0 Pa")
+    check_positive("density", density, "a density above 0 kg/m3")
     parameters = chosen.from_moduli(shear_modulus, bulk_modulus)
     chosen.check(parameters)
     return Material(law=law, parameters=parameters, density=density)
@@ -269,10 +273,14 @@ class Beam:
             return
         if self.mesh is None:
             raise TypeError("Beam: expected length, the free length [m], or a mesh")
-        held = ("clamp",) if self.supports == "clamped-free" else ("clamp", "far_clamp")
         # the scene's check refuses other objects and meshes without clamps
-        free = free_length(self.mesh, held) if isinstance(self.mesh, Mesh) else math.nan
+        free = free_length(self.mesh, self.held) if isinstance(self.mesh, Mesh) else math.nan
         object.__setattr__(self, "length", free)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Node sets that the supports hold."""
+        return ("clamp",) if self.supports == "clamped-free" else ("clamp", "far_clamp")
 
 
 @dataclass(frozen=True, kw_only=True)

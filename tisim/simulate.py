@@ -11,6 +11,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from tisim._checks import check_whole
 from tisim.mesh import Mesh
 from tisim.parallel import pool
 from tisim.parallel.chunks import Chunk, make_chunks, own_mesh, solve_chunk
@@ -95,8 +96,8 @@ def simulate(
 
 
 def _simulate(scenes: list[Any], workers: int | None, on_progress: Progress | None) -> list[Result]:
-    if workers is not None and (not isinstance(workers, int) or workers < 1):
-        raise ValueError(f"workers: expected a whole number of at least 1 or None, got {workers!r}")
+    if workers is not None:
+        check_whole("workers", workers)
     for index, scene in enumerate(scenes):
         check_scene(index, scene)
     chunks = make_chunks(scenes)

@@ -11,8 +11,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import tisim
+from tisim.problems.indentation.first_touch import plane_contact
 from tisim.problems.indentation.solve import solve_poke
-from tisim.problems.indentation.system import rod_start
 
 REFERENCE = json.loads(
     (Path(__file__).parents[2] / "benchmarks" / "references" / "poke.json").read_text(encoding="utf-8")
@@ -94,7 +94,7 @@ def test_depth_counts_from_first_touch() -> None:
     for _ in range(20):
         tilt, turn = rng.uniform(0, np.pi / 4), rng.uniform(0, 2 * np.pi)
         axis = np.array([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), -np.cos(tilt)])
-        tip = rod_start(rod, (0.01, -0.02), 0.032, axis)
+        tip = plane_contact(rod, (0.01, -0.02), 0.032, axis)
         across = np.cross(axis, [0.0, 1.0, 0.0])
         across /= np.linalg.norm(across)
         around = np.cross(axis, across)

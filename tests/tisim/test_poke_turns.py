@@ -76,11 +76,11 @@ def test_a_sticking_surface_follows_the_rods_own_turn() -> None:
         ({"turns": ((1.0, (1.0, 0.0, -0.5)),)}, r"Poke\.turns: expected a push within 45 degrees"),
         (
             {"course": None, "depth": 0.01, "site": (0.049, 0.0), "direction": TILT},
-            r"Poke\.direction: expected a path within the block's sides \(x within \+-50, y within \+-50",
+            r"Poke\.direction: expected a path within the body's sides \(x -50 to 50, y -50 to 50 mm\)",
         ),
         (
             {"site": (0.0, -0.0497), "turns": ((1.0, (0.0, -0.3, -1.0)),)},
-            r"Poke\.turns: expected a path within the block's sides .* y = -50\.3 mm",
+            r"Poke\.turns: expected a path within the body's sides .* y = -50\.3 mm",
         ),
     ],
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -145,8 +145,8 @@ class Inclusion(ABC):
                 check_vector(name, value)
             elif name in self.angles:
                 check_number(name, value, "an angle in radians", lambda _: True)
-            elif np.ndim(value):
-                check_vector(name, value, np.size(value))
+            elif _is_triple(type(self), name):
+                check_vector(name, value)
                 for length in value:
                     check_length(name, length)
             else:
@@ -175,6 +175,11 @@ class Inclusion(ABC):
         for name, value in _values(self).items():
             plain[name] = [float(v) for v in value] if np.ndim(value) else float(value)
         return plain
+
+
+def _is_triple(shape: type[Inclusion], name: str) -> bool:
+    """True if a field is a triple of lengths, by its annotation."""
+    return get_origin(get_type_hints(shape)[name]) is tuple
 
 
 def _values(shape: Inclusion) -> dict[str, Any]:

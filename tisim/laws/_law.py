@@ -98,7 +98,9 @@ class Law:
             )
         for name, (unit, shape) in self.parameters.items():
             try:
-                values = np.asarray(parameters[name], dtype=float)
+                given = np.asarray(parameters[name])
+                # text that looks like a number (15e3 in YAML) would fail later, and True is no modulus
+                values = given.astype(float) if given.dtype.kind in "iuf" else np.array(np.nan)
             except (TypeError, ValueError):
                 values = np.array(np.nan)
             if not np.isfinite(values).all() or values.size == 0:

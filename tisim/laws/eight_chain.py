@@ -21,7 +21,7 @@ from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 ENDS = 0.995  # fraction of the chains' length above which their force is extrapolated
 STEPS = 4  # of Newton's method, from a Pade form with an error of 5 %
-LARGEST = 1000.0  # locking stretch, beyond which the chains are Gaussian to rounding errors
+LARGEST = 50.0  # locking stretch, beyond which w - w(x0) loses its digits at small strain
 
 
 @ti.func

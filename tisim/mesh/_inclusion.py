@@ -193,6 +193,7 @@ def _fits(outline: Outline, size: tuple[float, float, float]) -> None:
     )
     if not np.all(np.abs(ends) + THINNEST_GAP <= 0.5 * np.array(size[:2])):
         raise MeshError(
-            "inclusion: its outline comes within 1 mm of the block's side, or leaves the block "
-            f"(centre {tuple(outline.centre)} m, block {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm)"
+            "inclusion: its outline comes within 1 mm of the block's side, or leaves the block (centre"
+            f" x {1e3 * outline.centre[0]:.4g}, y {1e3 * outline.centre[1]:.4g} mm,"
+            f" block {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm)"
         )

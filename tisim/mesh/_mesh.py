@@ -64,7 +64,7 @@ class Mesh:
     elements : ndarray of int32, shape (m, nodes per element)
         Node indices, in the order of VTK; positive volume.
     node_sets : mapping of str to ndarray of int32
-        Named node indices, for example "clamp", "far_clamp", "tip", "base".
+        Named node indices (or a mask over the nodes), for example "clamp", "far_clamp", "tip", "base".
     facet_sets : mapping of str to ndarray of int32, shape (f, nodes per facet)
         Named facets, outward; "surface" is the whole boundary.
     symmetry : tuple of str
@@ -74,7 +74,7 @@ class Mesh:
     Raises
     ------
     ValueError
-        For arrays of wrong shape, coordinates that are not finite, or node indices out of range.
+        For arrays of wrong shape or type, coordinates that are not finite, or node indices out of range.
     """
 
     kind: ElementKind
@@ -85,19 +85,46 @@ class Mesh:
     symmetry: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.kind not in NODES_PER_ELEMENT:
+            raise ValueError(f"mesh kind: expected one of {', '.join(NODES_PER_ELEMENT)}, got {self.kind!r}")
         object.__setattr__(self, "nodes", np.ascontiguousarray(self.nodes, dtype=np.float64))
-        object.__setattr__(self, "elements", np.ascontiguousarray(self.elements, dtype=np.int32))
         width = NODES_PER_ELEMENT[self.kind]
         if self.nodes.ndim != 2 or self.nodes.shape[1] != 3:
             raise ValueError(f"mesh nodes: expected shape (n, 3), got {self.nodes.shape}")
+        object.__setattr__(self, "elements", self._indices("elements", self.elements))
         if self.elements.ndim != 2 or self.elements.shape[1] != width:
             raise ValueError(
                 f"mesh elements: {self.kind} needs shape (m, {width}), got {self.elements.shape}"
             )
         if not np.isfinite(self.nodes).all():
             raise ValueError("mesh nodes: expected finite coordinates")
-        if self.elements.size and (self.elements.min() < 0 or self.elements.max() >= len(self.nodes)):
-            raise ValueError("mesh elements: a node index is out of range")
+        node_sets = {n: self._indices(f"node set {n!r}", _chosen(v)) for n, v in self.node_sets.items()}
+        object.__setattr__(self, "node_sets", node_sets)
+        facet_sets = {n: self._indices(f"facet set {n!r}", v) for n, v in self.facet_sets.items()}
+        object.__setattr__(self, "facet_sets", facet_sets)
+        for name, found in node_sets.items():
+            if found.ndim != 1:
+                raise ValueError(
+                    f"mesh node set {name!r}: expected indices of nodes, got shape {found.shape}"
+                )
+        width = NODES_PER_FACET[FACET_KIND[self.kind]]
+        for name, found in facet_sets.items():
+            if found.size and (found.ndim != 2 or found.shape[1] != width):
+                wanted = f"the nodes of facets, shape (f, {width}), got {found.shape}"
+                raise ValueError(f"mesh facet set {name!r}: expected {wanted}")
+        for name in self.symmetry:
+            if name not in ("x", "y", "z") or f"mirror_{name}" not in node_sets:
+                wanted = "axis names, each with its node set (mirror_y)"
+                raise ValueError(f"mesh symmetry: expected {wanted}, got {self.symmetry!r}")
+
+    def _indices(self, what: str, values: object) -> NDArray[np.int32]:
+        """Node indices as int32, as they are where they are that already."""
+        found = np.asarray(values)
+        if found.size and not np.issubdtype(found.dtype, np.integer):
+            raise ValueError(f"mesh {what}: expected whole numbers, indices of nodes, got {found.dtype}")
+        if found.size and (found.min() < 0 or found.max() >= len(self.nodes)):
+            raise ValueError(f"mesh {what}: a node index is out of range")
+        return np.ascontiguousarray(found, dtype=np.int32)
 
     @property
     def n_nodes(self) -> int:
@@ -108,6 +135,12 @@ class Mesh:
     def n_elements(self) -> int:
         """Number of elements."""
         return len(self.elements)
+
+
+def _chosen(values: object) -> object:
+    """Indices where a mask is True."""
+    found = np.asarray(values)
+    return np.flatnonzero(found) if found.dtype == np.bool_ and found.ndim == 1 else values
 
 
 def boundary_facets(kind: ElementKind, elements: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -156,7 +189,8 @@ def free_length(mesh: Mesh, held: tuple[str, ...]) -> float:
         return float("nan")
     low, high = sets[0].min(axis=0), sets[0].max(axis=0)
     if len(sets) == 1:
-        return float(np.linalg.norm(mesh.nodes - np.clip(mesh.nodes, low, high), axis=1).max())
+        nodes = mesh.nodes[np.unique(mesh.elements)]
+        return float(np.linalg.norm(nodes - np.clip(nodes, low, high), axis=1).max(initial=0.0))
     gaps = np.maximum(sets[1].min(axis=0) - high, low - sets[1].max(axis=0))
     return float(np.linalg.norm(np.maximum(gaps, 0.0)))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -134,12 +135,15 @@ def check_static(solver: Solver, what: str) -> None:
         raise FieldError("solver.method", f"static, the only one offered for {what}", solver.method)
 
 
-def check_stretches(stretches: Any) -> None:
-    """Raise FieldError unless there is at least one stretch and all are above 0."""
+def check_stretches(stretches: Any, mode: str) -> None:
+    """Raise FieldError unless there is at least one stretch and all are possible in this mode of loading."""
     if not isinstance(stretches, tuple | list | np.ndarray) or not len(stretches):
         raise FieldError("stretches", "at least one stretch", stretches)
     for value in stretches:
-        check_positive("stretches", value, "stretches above 0")
+        if mode == "simple-shear":
+            check_number("stretches", value, "finite numbers, 1 + gamma", lambda _: True)
+        else:
+            check_positive("stretches", value, "stretches above 0")
 
 
 def check_mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tuple[str, ...]) -> None:
@@ -155,3 +159,27 @@ def check_mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tup
                 raise FieldError("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
     if not mesh.n_elements:
         raise FieldError("mesh", "at least one element", 0)
+    _check_elements(mesh, node_sets)
+
+
+@lru_cache(maxsize=16)
+def _check_elements(mesh: Mesh, held: tuple[str, ...]) -> None:
+    """FieldError for elements inside-out, or a part of the body that no held node set is connected to."""
+    from scipy import sparse
+    from scipy.sparse.csgraph import connected_components
+
+    from tisim.discretisation.quadrature import reference
+
+    try:
+        reference(mesh)
+    except ValueError as error:
+        raise FieldError("mesh", f"elements of positive volume ({error})", mesh.kind) from None
+    first = np.repeat(mesh.elements[:, 0], mesh.elements.shape[1])
+    ones = np.ones(len(first), dtype=bool)
+    joined = sparse.coo_matrix((ones, (first, mesh.elements.ravel())), shape=(mesh.n_nodes, mesh.n_nodes))
+    _, part = connected_components(joined, directed=False)
+    fixed = np.unique(part[np.concatenate([mesh.node_sets[name] for name in held])])
+    loose = ~np.isin(part[mesh.elements[:, 0]], fixed)
+    if loose.any():
+        wanted = f"elements that are all connected to {' or '.join(held)}, others would fall"
+        raise FieldError("mesh", wanted, f"{int(loose.sum())} that are not")

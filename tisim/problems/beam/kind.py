@@ -54,10 +54,9 @@ def check(scene: Beam) -> None:
     pulled = any(scene.tip_force)
     if pulled and scene.supports == "clamped-clamped":
         raise FieldError("tip_force", "no force on a beam that is clamped at both ends", scene.tip_force)
-    held = ("clamp",) if scene.supports == "clamped-free" else ("clamp", "far_clamp")
     if scene.tip_mass and scene.supports == "clamped-clamped":
         raise FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
-    check_mesh(scene.mesh, node_sets=held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
+    check_mesh(scene.mesh, node_sets=scene.held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
     check_length("length", scene.length)  # after the mesh, from which it may have been derived
     _check_imperfections(scene)
     _check_clamps(scene)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -25,7 +26,7 @@ CLAMPS_PART = 0.01
 def beam_discretisation(scene: Beam) -> Discretisation:
     """Mesh, numbering and symbolic factor of a beam, cached for the next beams on the same mesh."""
     if scene.mesh is not None:
-        return _own_discretisation(scene.mesh)
+        return _own_discretisation(scene.mesh, scene.held)
     return _structured_discretisation(
         scene.length,
         scene.section,
@@ -48,29 +49,28 @@ def _structured_discretisation(
     mirror: bool,
 ) -> Discretisation:
     kind: Any = "tet10" if element == "default" else element
-    return _discretise(
-        beam_mesh(
-            length=length,
-            section=section,
-            supports=supports,
-            kind=kind,
-            axial_element_size=axial_element_size,
-            radial_elements=radial_elements,
-            mirror=mirror,
-        )
+    mesh = beam_mesh(
+        length=length,
+        section=section,
+        supports=supports,
+        kind=kind,
+        axial_element_size=axial_element_size,
+        radial_elements=radial_elements,
+        mirror=mirror,
     )
+    return _discretise(mesh, [name for name in ("clamp", "far_clamp") if name in mesh.node_sets])
 
 
 @lru_cache(maxsize=16)
-def _own_discretisation(mesh: Mesh) -> Discretisation:
-    if "clamp" not in mesh.node_sets:
-        raise ValueError("beam mesh: expected a node set 'clamp'")
-    return _discretise(mesh)
+def _own_discretisation(mesh: Mesh, held: tuple[str, ...]) -> Discretisation:
+    for name in held:
+        if name not in mesh.node_sets:
+            raise ValueError(f"beam mesh: expected a node set {name!r}")
+    return _discretise(mesh, held)
 
 
-def _discretise(mesh: Mesh) -> Discretisation:
-    fixed = np.concatenate([mesh.node_sets[k] for k in ("clamp", "far_clamp") if k in mesh.node_sets])
-    return Discretisation.build(mesh, np.unique(fixed))
+def _discretise(mesh: Mesh, held: Sequence[str]) -> Discretisation:
+    return Discretisation.build(mesh, np.unique(np.concatenate([mesh.node_sets[name] for name in held])))
 
 
 class BeamSystem:

@@ -27,7 +27,7 @@ def check(scene: Press) -> None:
     check_choice("side", scene.side, ("stick", "stop"))
     check_choice("element", scene.element, ("default", "tet4", "tet10", "hex8"))
     check_number("refinement", scene.refinement, "a number between 0.4 and 8", lambda v: 0.4 <= v <= 8.0)
-    check_stretches(scene.stretches)
+    check_stretches(scene.stretches, "uniaxial")
     check_course(scene, start=1.0, instead_of=("stretches",))
     if scene.course is not None:
         _check_way(scene)
@@ -46,7 +46,7 @@ def _check_way(scene: Press) -> None:
     Raises FieldError also if a stretch of the course is not above 0.
     """
     values = np.array(scene.course.values) if scene.course is not None else np.ones(0)
-    check_stretches(tuple(values))
+    check_stretches(tuple(values), "uniaxial")
     before = np.array([1.0, *values[:-1]])
     let_go = bool(((values > before) & (before < 1.0)).any())
     if let_go and scene.platens == "bonded" and scene.side == "stick":

@@ -17,10 +17,10 @@ SECONDS = 0.05  # cost of a scene [core-s]
 
 def check(scene: Coupon) -> None:
     check_choice("mode", scene.mode, ("uniaxial", "equibiaxial", "planar", "simple-shear"))
-    check_stretches(scene.stretches)
+    check_stretches(scene.stretches, scene.mode)
     check_course(scene, start=1.0, instead_of=("stretches",))
     if scene.course is not None:
-        check_stretches(scene.course.values)
+        check_stretches(scene.course.values, scene.mode)
     check_static(scene.solver, "coupons")
 
 

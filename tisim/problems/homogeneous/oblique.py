@@ -16,7 +16,14 @@ from tisim.parallel.threads import one_thread
 from tisim.parts import MaterialPoints
 from tisim.problems._registry import OnStep, skip
 from tisim.problems._stops import stops_of
-from tisim.problems.homogeneous.solve import EDGE, SMALLEST_PART, CouponFrame, coupon_mesh, coupon_result
+from tisim.problems.homogeneous.solve import (
+    EDGE,
+    SMALLEST_PART,
+    SMALLEST_VOLUME,
+    CouponFrame,
+    coupon_mesh,
+    coupon_result,
+)
 from tisim.result import Cost, Result, Status
 from tisim.scene import Coupon
 
@@ -29,7 +36,6 @@ _FREE = {
     "equibiaxial": ((0, 2), (1, 2), (2, 2)),
     "planar": ((0, 2), (1, 2), (2, 2)),
 }
-SMALLEST_VOLUME = 1e-4  # smallest det F in Newton's method
 
 
 @one_thread()

@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 EDGE = 0.010  # of the cube [m]; the stress does not depend on it
 # The middle node is off the centre, so that each solution is a patch test.
 MIDDLE = (0.45, 0.55, 0.48)
+SMALLEST_VOLUME = 1e-2  # det F below which a specimen has collapsed
 SMALLEST_PART = 1.0 / 256.0  # smallest fraction of the way from one stretch to the next
 
 # Axes whose far faces are driven to the stretch, and axes held at rest; the others are free.
@@ -153,7 +154,11 @@ def _moved(scene: Coupon, system: CouponSystem, x: Array, here: float, stretch: 
 def _equilibrium(scene: Coupon, system: CouponSystem, x: Array) -> Outcome:
     if system.potential(x)[1] <= 0.0:
         return Outcome(x, Status.INVERTED, np.inf, 0)
-    return newton(system, x, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations)
+    found = newton(system, x, tolerance=scene.solver.tolerance, max_iterations=scene.solver.max_iterations)
+    if found.status is Status.CONVERGED and system.potential(found.x)[1] < SMALLEST_VOLUME:
+        # a free side whose stress vanishes with its area is no equilibrium
+        return Outcome(x, Status.INVERTED, np.inf, found.iterations)
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tisim._checks import (
     FieldError,
@@ -27,6 +28,8 @@ from tisim.scene import Poke
 
 if TYPE_CHECKING:  # scipy is imported when a scene is solved
     from tisim.discretisation.body import Discretisation
+
+Array = NDArray[np.float64]
 
 STEEPEST = 45.0  # largest angle of the rod's direction from the normal [degrees]
 SECONDS = 10.0  # cost of a scene with the default mesh [core-s]
@@ -51,10 +54,13 @@ def check(scene: Poke) -> None:
     _check_block(scene.block)
     _check_rod(scene.rod)
     check_vector("site", scene.site, 2)
-    inside = np.abs(np.asarray(scene.site)) < 0.5 * np.asarray(scene.block.size[:2])
-    if not inside.all():
-        raise FieldError("site", f"a place on the block's top, {scene.block.size[:2]} m large", scene.site)
     check_length("depth", scene.depth)
+    check_mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))
+    if scene.mesh is not None and scene.block != Block():
+        raise FieldError("block", "none beside a mesh, which has its own shape and inclusion", scene.block)
+    low, high = body_bounds(scene)
+    if not all(a < at < b for a, at, b in zip(low, scene.site, high, strict=False)):
+        raise FieldError("site", f"a place on the top ({_sides(low, high)})", scene.site)
     for name, direction in [("direction", scene.direction), *(("turns", way) for _, way in scene.turns)]:
         _check_way(scene, name, direction)
     if scene.retract_to is not None:
@@ -65,7 +71,6 @@ def check(scene: Poke) -> None:
     check_choice("element", scene.element, ("default", "tet4", "tet10", "hex8", "hex20"))
     check_positive("refinement", scene.refinement)
     check_vector("gravity", scene.gravity)
-    check_mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))
     check_static(scene.solver, "pokes")
     if scene.mesh is None:
         check_indentation(
@@ -75,6 +80,25 @@ def check(scene: Poke) -> None:
             rod=scene.rod,
             refinement=scene.refinement,
         )
+    else:
+        from tisim.problems.indentation.first_touch import FirstTouch, near_facets
+
+        FirstTouch(scene, scene.mesh, near_facets(scene, scene.mesh))
+
+
+def body_bounds(scene: Poke) -> tuple[Array, Array]:
+    """Lowest and highest coordinates (3,) [m] of the block, or of the top and base of the scene's mesh."""
+    if scene.mesh is None:
+        half = 0.5 * np.asarray(scene.block.size)
+        return np.array([-half[0], -half[1], 0.0]), np.array([half[0], half[1], 2.0 * half[2]])
+    top = scene.mesh.nodes[np.unique(scene.mesh.facet_sets["top"])]
+    base = scene.mesh.nodes[scene.mesh.node_sets["base"], 2].min()
+    return np.array([*top[:, :2].min(axis=0), base]), top.max(axis=0)
+
+
+def _sides(low: Array, high: Array) -> str:
+    x, y = (f"{1e3 * low[k]:.4g} to {1e3 * high[k]:.4g}" for k in range(2))
+    return f"x {x}, y {y} mm"
 
 
 def _check_turns(scene: Poke, course: Course) -> None:
@@ -92,26 +116,28 @@ def _check_way(scene: Poke, name: str, direction: Vector) -> None:
     angle = np.degrees(np.arccos(np.clip(-direction[2] / size, -1.0, 1.0))) if size > 0 else 180.0
     if angle > STEEPEST + 1e-6:
         raise FieldError(name, f"a push within {STEEPEST:g} degrees of (0, 0, -1)", direction)
-    if scene.depth * np.cos(np.radians(angle)) >= scene.block.size[2]:
-        raise FieldError("depth", f"less than the block's height of {scene.block.size[2]:g} m", scene.depth)
+    low, high = body_bounds(scene)
+    height = float(high[2] - low[2])
+    if scene.depth * np.cos(np.radians(angle)) >= height:
+        raise FieldError("depth", f"less than the body's height of {height:g} m", scene.depth)
     out = leaves(scene, direction, scene.depth)
     if out is not None:
-        half = [0.5e3 * side for side in scene.block.size[:2]]
         wanted = (
-            f"a path within the block's sides (x within +-{half[0]:g}, y within +-{half[1]:g} mm), which"
-            f" at {1e3 * scene.depth:.3g} mm of depth is at x = {1e3 * out[0]:.3g}, y = {1e3 * out[1]:.3g} mm"
+            f"a path within the body's sides ({_sides(low, high)}), which at {1e3 * scene.depth:.3g} mm of"
+            f" depth is at x = {1e3 * out[0]:.3g}, y = {1e3 * out[1]:.3g} mm"
         )
         raise FieldError(name, wanted, direction)
 
 
 def leaves(scene: Poke, direction: Vector, depth: float) -> tuple[float, float] | None:
-    """End (x, y) [m] of a path from the contact point along `direction` to a depth [m], if off the block.
+    """End (x, y) [m] of a path from the contact point along `direction` to a depth [m], if off the body.
 
-    None if it is within the block's sides.
+    None if it is within the body's sides.
     """
     size = float(np.linalg.norm(direction))
     x, y = (scene.site[k] + depth * direction[k] / size for k in range(2))
-    inside = all(abs(at) <= 0.5 * side for at, side in zip((x, y), scene.block.size[:2], strict=True))
+    low, high = body_bounds(scene)
+    inside = all(a <= at <= b for a, at, b in zip(low, (x, y), high, strict=False))
     return None if inside else (x, y)
 
 

@@ -9,16 +9,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.bodies import Rod
 from tisim.discretisation.body import Discretisation, DiscretisedBody, gravity_load
 from tisim.discretisation.history import History
 from tisim.discretisation.quadrature import TetrahedralParts, facet_areas
 from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
-from tisim.mesh import Mesh
 from tisim.problems.indentation.far_field import FarField
-from tisim.problems.indentation.turning import axes, axis_at, rotation
+from tisim.problems.indentation.first_touch import FirstTouch, near_facets
+from tisim.problems.indentation.turning import axis_at, rotation
 from tisim.scene import Poke
 
 Array = NDArray[np.float64]
@@ -92,13 +91,6 @@ class Remembered(NamedTuple):
     parts: tuple[Array, Array] | None
 
 
-def rod_start(rod: Rod, site: tuple[float, float], height: float, axis: Array) -> Array:
-    """Centre of the tip [m] at first contact with the plane z = height, the axis passing through the site."""
-    down = float(abs(axis[2]))
-    target = np.array([site[0], site[1], height])
-    return target - axis * (rod.reach(down) / down)
-
-
 class PokeSystem:
     """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
 
@@ -128,10 +120,9 @@ class PokeSystem:
         )
         self.axis = self.previous_axis = axis_at(scene, 0.0)
         self.edge = rod.radius if rod.tip == "hemisphere" else rod.edge_radius
-        height = float(mesh.nodes[mesh.facet_sets["top"], 2].max())
-        self._height = height
-        self.start = self._previous_start = rod_start(rod, scene.site, height, self.axis)
-        self.facets = np.ascontiguousarray(self._near(mesh), dtype=np.int32)
+        self.facets = near_facets(scene, mesh)
+        self._touch = FirstTouch(scene, mesh, self.facets)
+        self.start = self._previous_start = self._touch.tip(self.axis)
         self._slot = discretisation.pattern.slots(self.facets)
         shape, self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE[self.facets.shape[1]])
         self._shape = np.ascontiguousarray(shape)
@@ -161,17 +152,6 @@ class PokeSystem:
         self._measure(self.previous, self.facets, self._shape, self._rod, self._gap)
         self.report = np.zeros(6)
 
-    def _near(self, mesh: Mesh) -> NDArray[np.int32]:
-        """Facets of the top that the rod can touch."""
-        top = mesh.facet_sets["top"]
-        centres = mesh.nodes[top].mean(axis=1)[:, :2] - np.asarray(self.scene.site)
-        reach = 0.5 * self.scene.depth + 4.0 * self.scene.rod.radius
-        near = np.zeros(len(top), dtype=bool)
-        for along in axes(self.scene)[:, :2]:
-            travel = np.clip(centres @ along / max(float(along @ along), 1e-12), 0.0, self.scene.depth)
-            near |= np.linalg.norm(centres - travel[:, None] * along, axis=1) < reach
-        return top[near]
-
     def _pose(self, depth: float) -> None:
         self.depth = depth
         rod = self.scene.rod
@@ -192,7 +172,7 @@ class PokeSystem:
         if axis is not None:
             same = np.array_equal(axis, self.previous_axis)
             self.axis = self.previous_axis if same else axis
-            self.start = rod_start(self.scene.rod, self.scene.site, self._height, self.axis)
+            self.start = self._touch.tip(self.axis)
         self._pose(depth)
 
     def turn(self, way: float) -> None:

@@ -1,0 +1,70 @@
+"""Collapsed specimens, numbers given as text, shapes with too few sizes: a status or one sentence each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tisim
+from tisim import laws
+
+
+def test_a_sheet_that_collapses_has_no_equilibrium() -> None:
+    """St Venant-Kirchhoff, biaxial: l3^2 = 1 - 2 nu / (1 - nu) (s^2 - 1) is 0 at s = 1.354."""
+    material = tisim.Material(law="st-venant-kirchhoff", parameters={"mu": 1e4, "lam": 3e4})
+    last = float(np.sqrt(1.0 + 5.0 / 6.0))
+    for stretch in (1.355, 1.36, 1.4):
+        found = tisim.simulate(
+            tisim.Coupon(material=material, mode="equibiaxial", stretches=(1.2, stretch)), workers=1
+        )
+        assert found.status is not tisim.Status.CONVERGED
+        assert len(found.load) == 1
+        assert float(found.message.rpartition(" ")[2]) <= last + 1e-3
+
+
+def test_simple_shear_has_no_smallest_stretch() -> None:
+    material = tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=1e6)
+    found = tisim.simulate(
+        tisim.Coupon(material=material, mode="simple-shear", stretches=(-0.2, 2.2)), workers=1
+    )
+    assert found.nominal_stress == pytest.approx([-1.2e4, 1.2e4], rel=1e-6)
+
+
+@pytest.mark.parametrize("value", ["15e3", True, None])
+def test_numbers_are_numbers(value: Any) -> None:
+    with pytest.raises(ValueError, match=r"parameter mu \[Pa\]: expected finite numbers"):
+        laws.get("neo-hookean").check({"mu": value, "lam": 1e5})
+    with pytest.raises(ValueError, match="shear_modulus: expected a modulus above 0 Pa"):
+        tisim.material_from_moduli("neo-hookean", shear_modulus=value, bulk_modulus=1e5)
+    with pytest.raises(ValueError, match="density: expected a density above 0 kg/m3"):
+        tisim.material_from_moduli("yeoh", shear_modulus=1e4, bulk_modulus=1e5, density=value)
+
+
+@pytest.mark.parametrize(
+    ("inclusion", "words"),
+    [
+        (tisim.BoxInclusion(size=(0.01, 0.01), centre=(0, 0, 0.005)), "size: expected 3 finite numbers"),  # type: ignore[arg-type]
+        (tisim.BoxInclusion(size=0.01, centre=(0, 0, 0.005)), "size: expected 3 finite numbers"),  # type: ignore[arg-type]
+        (
+            tisim.SphereInclusion(radius=(0.01,) * 3, centre=(0, 0, 0.005)),  # type: ignore[arg-type]
+            "radius: expected a length above 0",
+        ),
+    ],
+)
+def test_sizes_of_inclusions_are_checked_by_their_fields(inclusion: tisim.Inclusion, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        inclusion.check()
+
+
+def test_eight_chains_keep_the_digits_of_their_energy() -> None:
+    law = laws.get("eight-chain")
+    law.check({"mu": 1e4, "locking": 49.0, "bulk": 1e6})
+    stretch = np.array([1.0001, 1.001])
+    F = np.array([np.diag([s, s**-0.5, s**-0.5]) for s in stretch])
+    found = laws.evaluate("eight-chain", {"mu": 1e4, "locking": 49.0, "bulk": 1e6}, F)[0]
+    expected = 0.5e4 * (stretch**2 + 2.0 / stretch - 3.0)  # nearly Gaussian chains
+    np.testing.assert_allclose(found, expected, rtol=5e-4)
+    with pytest.raises(ValueError, match="locking"):
+        law.check({"mu": 1e4, "locking": 60.0, "bulk": 1e6})
