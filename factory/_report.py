@@ -33,15 +33,15 @@ log = logging.getLogger(__name__)
 _LINE_SECONDS = 20.0  # between lines where the output is no terminal
 _PICTURE_SECONDS = 120.0
 
-# Measured with Ogden on 2 cores: 12 core-s per poke to 10 mm (recipe quick), 55 s to the end of the poke, at
-# 24 mm on average (recipe sample, 30 mm requested). Deeper steps cost more.
+# Measured with Ogden on 2 cores: 18.5 core-s per solve to 20 mm over inclusions (datasets/cards/paper-ogden),
+# a third of that to 10 mm (benchmarks.pokes --deep). Deeper steps cost more.
 NODES = 5_500
-SECONDS_TO_10_MM = 12.0
-GROWTH = 1.4  # power of the requested depth that fits both
+SECONDS_TO_10_MM = 6.2
+GROWTH = 1.6  # power of the requested depth that fits both
 SECONDS_A_STEP = 0.6  # a hold, or a step of further travel
-FRAMES_REACHED = 0.65  # fraction of the requested frames: many pokes end before the whole depth
+REACHED_MM = 23.0  # mean depth at which pokes end (recipe sample, 30 mm requested)
 SURFACE_NODES = 1_700
-_COMPRESSED = 0.85
+_COMPRESSED = 0.57  # of the same dataset
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def estimate(plan: Plan, target: Path, workers: int, *, overwrite: bool = False)
         finished = staging.finished()
     missing = max(len(plan.pokes) - len(finished), 0)
     solves = sum(not poke.derived and poke.index not in finished for poke in plan.pokes)
-    frames = FRAMES_REACHED * plan.recipe.protocol.depth_mm / plan.recipe.protocol.frame_spacing_mm
+    frames = min(plan.recipe.protocol.depth_mm, REACHED_MM) / plan.recipe.protocol.frame_spacing_mm
     course = plan.pokes[0].scene.course
     if course is not None:
         frames = len(course.frames or ())
