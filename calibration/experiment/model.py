@@ -285,8 +285,8 @@ class CouponTrial:
     specimen : str, optional
         Trials of one specimen share its faults.
     samples_averaged : int
-        Samples of the record behind each point: more than 1 where the record was too long to fit point by
-        point. The stated standard deviations are kept, as if the samples of a run erred together.
+        Samples of the record behind each point, their mean: more than 1 where the record was too long to fit
+        point by point. The standard deviations are those of one sample.
     """
 
     id: str

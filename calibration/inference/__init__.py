@@ -19,6 +19,8 @@ from calibration.inference.polish import Polished, polish
 from calibration.inference.problem import Linearised, MaterialObjective, Objective, OfMaterial, Problem
 from calibration.inference.search import CmaOptions, Found, Generation, HistoryError, guess, search
 from calibration.inference.uncertainty import (
+    LEVEL,
+    WIDTH,
     Estimate,
     Identification,
     between_specimens,
@@ -28,6 +30,8 @@ from calibration.inference.uncertainty import (
 )
 
 __all__ = [
+    "LEVEL",
+    "WIDTH",
     "CmaOptions",
     "Estimate",
     "Found",

@@ -23,6 +23,7 @@ Seen = Literal["identified", "weak", "not identified", "at a bound", "held"]
 PRIOR_SHARE = 0.7
 WEAK, UNSEEN = 0.15, 0.5
 
+LEVEL, WIDTH = 0.95, 1.959964  # of the intervals, and half their width in standard deviations
 DIFFER = 0.01  # p-value of the differences between specimens below which they scatter beyond the noise
 
 FLAT = 12.0**-0.5  # sd of a flat prior over a range, as a fraction of the range
@@ -210,7 +211,7 @@ def between_specimens(
 
     _, prior_sd = parametrisation.prior()
     covariance = widened(1.0)
-    of_intervals = widened(float(student.ppf(0.975, k - 1) / 1.96) ** 2)
+    of_intervals = widened(float(student.ppf(0.5 * (1.0 + LEVEL), k - 1) / WIDTH) ** 2)
     return replace(
         known,
         estimates=_estimates(parametrisation, end.u, covariance, prior_sd, of_intervals),
@@ -232,7 +233,7 @@ def _estimates(
     span = bounds[:, 1] - bounds[:, 0]
     estimates = []
     for i, c in enumerate(parametrisation.coordinates):
-        low, high = np.clip([u[i] - 1.96 * wide[i], u[i] + 1.96 * wide[i]], *bounds[i])
+        low, high = np.clip([u[i] - WIDTH * wide[i], u[i] + WIDTH * wide[i]], *bounds[i])
         sd = min(float(np.sqrt(covariance[i, i])), FLAT * float(span[i]))
         estimates.append(
             Estimate(
@@ -292,7 +293,7 @@ def _shear_sd(parametrisation: Parametrisation, u: Array, covariance: Array) -> 
     return float(np.sqrt(slope @ covariance @ slope))
 
 
-RISE = 1.96  # root of what chi-square rises by from the best point to the end of a 95 % interval
+RISE = WIDTH  # root of what chi-square rises by from the best point to the end of a 95 % interval
 ROUNDS = 8  # of an end, without those that it waits
 AT_REST = 4  # rounds for the other coordinates to come to rest at one point
 RESTLESS = 2  # points at which they do not, after which the linear end stands

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
+from calibration.inference import WIDTH
 from calibration.parameters import (
     FIELDS,
     Parametrisation,
@@ -30,12 +31,12 @@ from calibration.parameters import (
     part_of,
 )
 from calibration.parameters._coordinates import Coordinate, Parameters, shear_modulus
-from calibration.prediction._interval import WIDTH
 from tisim import laws
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony
 
 Array = NDArray[np.float64]
 
+LOWEST = 0.99  # lowest end of a relative interval of a modulus, which is above 0
 ROUNDED = 1e-4  # relative: cards have six digits
 BASE = "neo-hookean"  # the law of cards that name none
 Positive = Annotated[float, Field(gt=0)]
@@ -80,6 +81,7 @@ class FitFile(BaseModel):
 
 
 class _Uncertainty(_Lenient):
+    shear_modulus_low: Annotated[float, Field(gt=-1, le=0)] | None = None
     shear_modulus_high: NotNegative | None = None
     fit: FitFile | None = None
 
@@ -203,7 +205,10 @@ def extended_model(card: CardFile) -> CardModel:
     if card.uncertainty.fit is not None:
         law, u, covariance = _as_fitted(name, parameters, parts, card.uncertainty.fit)
     else:
-        sds = [(high or 0.0) / WIDTH]
+        # of the logarithm, for an interval of the logarithm and for one of the modulus
+        low = card.uncertainty.shear_modulus_low if high is not None else 0.0
+        low = -(high or 0.0) if low is None else low
+        sds = [(np.log1p(high or 0.0) - np.log1p(max(low, -LOWEST))) / (2.0 * WIDTH)]
         law = scaled_law(name, parameters)
         own = []
         for field_, part in parts.items():

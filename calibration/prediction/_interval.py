@@ -26,7 +26,6 @@ from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
 
-LEVEL, WIDTH = 0.95, 1.959964  # of the intervals, and half their width in standard deviations
 SOURCES = ("parameters", "specimens", "noise", "model error", "choice")
 
 
@@ -238,10 +237,8 @@ def _own(model: MeasurementModel, size: int) -> NDArray[np.bool_]:
 
 
 __all__ = [
-    "LEVEL",
     "SCATTER",
     "SOURCES",
-    "WIDTH",
     "Calibrated",
     "PredictedRecord",
     "Record",

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from calibration.inference import WIDTH
 from calibration.pages import BAND, COLOURS, INK, Cell, Picture, paper, picture, plain, template
-from calibration.prediction._interval import SOURCES, WIDTH, Record
+from calibration.prediction._interval import SOURCES, Record
 from calibration.prediction.run import BASELINE, EXTENDED, Prediction
 from calibration.prediction.schema import Entry, PredictionFile, RecordEntry, file_of
 

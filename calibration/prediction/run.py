@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
+from calibration.inference import WIDTH
 from calibration.measurements._baseline import SCATTER, Baseline
 from calibration.measurements._kinds import Kind, compared
 from calibration.measurements._model import MeasurementModel
@@ -26,7 +27,7 @@ from calibration.prediction._cards import (
     extended_model,
     read_cards,
 )
-from calibration.prediction._interval import WIDTH, Calibrated, Record, predict_records
+from calibration.prediction._interval import Calibrated, Record, predict_records
 from calibration.progress import OnMessage
 
 Array = NDArray[np.float64]

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from calibration.prediction._interval import LEVEL, SOURCES, WIDTH, Record
+from calibration.inference import LEVEL, WIDTH
+from calibration.prediction._interval import SOURCES, Record
 from calibration.prediction.run import EXTENDED, Prediction
 
 Array = NDArray[np.float64]

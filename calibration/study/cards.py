@@ -16,6 +16,7 @@ import yaml
 
 from calibration.errors import InputError
 from calibration.experiment import Experiment
+from calibration.inference import WIDTH
 from calibration.parameters import parametrisation, part_entry
 from calibration.study.calibration import Calibration
 from tisim import laws
@@ -196,7 +197,7 @@ def _prior_interval(law: str) -> tuple[float, float]:
     if bulk.prior is None:
         return bulk.low, bulk.high
     centre, sd = bulk.prior
-    return bulk.value(centre - 1.96 * sd), bulk.value(centre + 1.96 * sd)
+    return bulk.value(centre - WIDTH * sd), bulk.value(centre + WIDTH * sd)
 
 
 def _agreement(chosen: Calibration) -> str:
@@ -226,7 +227,7 @@ def _width(chosen: Calibration) -> float:
         for e in chosen.estimates
         if e.unit == "Pa" and e.seen == "identified" and e.sd > 0.0
     ]
-    return max([1.96, *widths])
+    return max([WIDTH, *widths])
 
 
 def _certainty(chosen: Calibration) -> str:

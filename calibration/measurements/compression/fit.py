@@ -68,10 +68,15 @@ class Repeats:
 
 
 def sampled(trial: CouponTrial, strains: tuple[float, float]) -> tuple[Array, Array]:
-    """Stretch and stress [Pa] at POINTS equidistant strains; InputError if the trial does not cover them."""
+    """Stretch and stress [Pa] at POINTS equidistant strains of the first loading.
+
+    InputError if the trial does not cover them.
+    """
     if trial.mode != "uniaxial":
         raise InputError(f"{trial.id}: expected a uniaxial test, got {trial.mode}")
     strain, stress = 1.0 - np.asarray(trial.stretch), np.asarray(trial.stress)
+    loading = slice(0, int(np.argmax(strain)) + 1)
+    strain, stress = strain[loading], stress[loading]
     order = np.argsort(strain, kind="stable")
     strain, stress = strain[order], stress[order]
     if strain[-1] < strains[1] - 1e-9 or strain[0] > strains[0] + 1e-9:

@@ -247,7 +247,7 @@ def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Arr
     if trial.stretch_sd == 0.0:
         return own
     return np.asarray(
-        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / np.sqrt(count))
+        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / _root(trial, count))
     )
 
 
@@ -270,7 +270,7 @@ def _sd_over_time(
         return own
     slopes = slope(mean["stretch"][moves], mean["stress"][moves], trial.stretch_sd)
     last = np.maximum(np.cumsum(moves) - 1, 0)
-    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(count)))
+    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / _root(trial, count)))
 
 
 def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
@@ -280,7 +280,12 @@ def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Ar
             unstated_sd(over, trial.stress[b.points], stress, count),
             SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
         )
-    return np.asarray(trial.stress_sd / np.sqrt(count))
+    return np.asarray(trial.stress_sd / _root(trial, count))
+
+
+def _root(trial: CouponTrial, count: Array) -> Array:
+    """Root of the number of samples in means of `count` points, whose stated errors are white."""
+    return np.asarray(np.sqrt(count * trial.samples_averaged))
 
 
 ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed

@@ -20,6 +20,7 @@ from calibration.measurements.compression import (
     press_curves,
     repeats,
 )
+from calibration.measurements.compression.fit import sampled
 
 CYLINDER = Cylinder(radius=0.025, height=0.030)
 COARSE = 0.5
@@ -111,6 +112,14 @@ def test_the_scatter_of_repeats() -> None:
     assert found.relative_sd == pytest.approx(0.02, rel=1e-6)
     with pytest.raises(InputError, match="at least two"):
         repeats(tests[:1], (0.05, 0.5))
+
+
+def test_an_unloading_after_it_leaves_the_first_loading_as_it_was() -> None:
+    stretch = np.linspace(1.0, 0.4, 100)
+    stress = mooney(stretch, 1e4, 0.0)
+    alone = sampled(trial(stretch, stress), (0.05, 0.5))
+    both = trial(np.concatenate([stretch, stretch[::-1]]), np.concatenate([stress, 0.8 * stress[::-1]]))
+    np.testing.assert_array_equal(sampled(both, (0.05, 0.5)), alone)
 
 
 def test_what_is_no_compression_test_is_refused() -> None:
