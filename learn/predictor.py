@@ -362,6 +362,13 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
     store = open_store(dataset or runs[0].location, verify=False)
     if len(runs) == 1:
         return Predictor(runs[0], store)
+    parts = [split_of_run(store, one).train for one in runs]
+    for other, part in zip(runs[1:], parts[1:], strict=True):
+        if not np.array_equal(part, parts[0]):
+            raise InputError(
+                f"{other.folder}: expected runs that differ in seed alone, this one was trained on other"
+                f" pokes than {runs[0].folder}"
+            )
     domains = [known_domain(one, store) for one in runs]
     known = [domain for domain in domains if domain is not None]
     joined = replace(join_runs(runs), domain=Domain.common(known) if len(known) == len(runs) else None)

@@ -98,6 +98,9 @@ class RealTime:
         for key in ("site_mm", "depth_mm", "angle_deg", "heading_deg"):
             if key in interior:
                 raise InputError(f"scene: unexpected key {key}: it is given with each poke")
+        for key in ("time_s", "rod_speed_mm_per_s", "approach_speed_mm_per_s"):
+            if key in interior:
+                raise InputError(f"scene: unexpected key {key}: the model was trained without time")
         file = load_poke({**interior, "site_mm": (store.middle * 1e3).tolist(), "depth_mm": 1e-3})
         scene, pokes = scene_and_poke(file, store)
         with torch.no_grad():
@@ -145,6 +148,8 @@ class RealTime:
             self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
         )
         distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
+        if depth <= 0.0:
+            distance = 0.0  # nothing moves, whatever was trained
         away, interval, intervals = None, None, None
         if self._intervals is not None and depth > 0.0:
             intervals = self._intervals.over(self._interior.size, values["cover_mm"])
@@ -156,7 +161,7 @@ class RealTime:
             displacement=u,
             force=force,
             force_interval=interval,
-            inside=None if math.isnan(distance) else self._known and distance == 0.0,
+            inside=depth <= 0.0 or (None if math.isnan(distance) else self._known and distance == 0.0),
             distance=distance,
             _intervals=intervals,
             _away=away,

@@ -19,7 +19,7 @@ import zlib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -61,6 +61,7 @@ class _Stated(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    format: Literal[1] = 1  # of `about` and the arrays, raised where the script expects others
     title: str
     lead: str
     notes: tuple[str, ...]
@@ -109,7 +110,8 @@ class Parts:
             raise InputError(
                 f"{path}: expected the parts of a page, as learn.page --parts writes them ({error})"
             ) from None
-        return Parts(**dict(stated), arrays=arrays, graph=graph)
+        texts = {name: value for name, value in stated if name != "format"}
+        return Parts(**texts, arrays=arrays, graph=graph)
 
     def write(self, path: Path) -> Written:
         """Write the page; InputError if it is larger than `LARGEST`."""

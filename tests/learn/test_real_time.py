@@ -130,10 +130,12 @@ def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
 
 
 def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
-    answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=-1e-3)
-    assert answer.force == 0.0
-    assert not answer.displacement.any()
-    assert answer.force_interval is None
+    for depth in (0.0, -1e-3):
+        answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=depth)
+        assert answer.force == 0.0
+        assert not answer.displacement.any()
+        assert answer.force_interval is None
+        assert (answer.inside, answer.distance) == (True, 0.0)  # this is exact, whatever was trained
 
 
 @pytest.mark.parametrize(
@@ -155,5 +157,7 @@ def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: st
 def test_an_interior_has_no_poke_and_no_unknown_keys(predictor: Predictor) -> None:
     with pytest.raises(InputError, match="unexpected key depth_mm"):
         predictor.real_time({**INTERIOR, "depth_mm": 3})
+    with pytest.raises(InputError, match="unexpected key time_s: the model was trained without time"):
+        predictor.real_time({**INTERIOR, "time_s": 1.0})
     with pytest.raises(InputError, match="key shape"):
         predictor.real_time({**INTERIOR, "shape": "shape-9"})

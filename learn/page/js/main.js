@@ -150,7 +150,7 @@ class Page {
     const depth = Math.max(poke.depth, 0);
     const now = Array.from(tip, (v, k) => v * 1e3 + direction[k] * depth);
     const rod = { tip: now, push: direction, radius, edge };
-    const outside = isOutside(answer); // grey, and no halo: the intervals are not calibrated there
+    const outside = isOutside(poke, answer); // grey, and no halo: the intervals are not calibrated there
     const halo = answer.radius && byId("halo").checked && depth > 0 && !outside;
     if (halo) this._scaled(answer.radius);
     this.view.show("surrogate", displacement, halo ? this.shade : null, outside, rod);

@@ -2,15 +2,17 @@
 
 const byId = (id) => document.getElementById(id);
 const SPOKEN_AFTER = 600; // ms after the last change
+const NOT_KNOWN = "not known"; // as the page's description says of a range (learn/page/controls.py)
 
-/** A number with three significant digits and no exponent. */
-/** Whether any quantity of an answer, or its kind of inclusion, is beyond what was trained. */
-export function isOutside({ beyond }) {
-  return Boolean(beyond) && beyond.some((part) => part > 0);
+/** Whether any quantity of an answer, or its kind of inclusion, is beyond what was trained; without contact, where
+ * nothing moves, none is. */
+export function isOutside({ depth }, { beyond }) {
+  return depth > 0 && Boolean(beyond) && beyond.some((part) => part > 0);
 }
 
+/** A number with three significant digits and no exponent. */
 export function number(value) {
-  if (!Number.isFinite(value)) return "not known";
+  if (!Number.isFinite(value)) return NOT_KNOWN;
   if (value === 0) return "0";
   const digits = Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(value))), 0), 8);
   return value.toFixed(digits);
@@ -83,16 +85,16 @@ export class Panel {
     }
     byId("interval").textContent = interval;
     const verdict = this._verdict(poke, answer);
-    const inside = answer.beyond ? !isOutside(answer) : null;
+    const inside = answer.beyond ? !isOutside(poke, answer) : null;
     const words = { true: "inside the trained ranges", false: "outside the trained ranges" };
     byId("inside").textContent = words[inside] ?? "trained ranges not known";
     byId("verdict").textContent = verdict;
     document.body.dataset.inside = String(inside);
-    about.checks.forEach(({ key, kinds }, k) => {
+    about.checks.forEach(({ kinds, trained }, k) => {
       const { value, verdict: cell } = this.rows[k];
       value.textContent = kinds ? about.interiors[poke.interior].kind : number(answer.values[k]);
-      const outside = answer.beyond[k] > 0;
-      cell.textContent = outside ? "outside" : "inside";
+      const outside = touching && answer.beyond[k] > 0;
+      cell.textContent = trained === NOT_KNOWN ? NOT_KNOWN : outside ? "outside" : "inside";
       cell.className = outside ? "outside" : "";
     });
     clearTimeout(this.spoken);
@@ -104,7 +106,8 @@ export class Panel {
   _verdict(poke, answer) {
     const { beyond, values } = answer;
     if (!beyond) return "The trained ranges are not known.";
-    if (!isOutside(answer)) return "Inside the trained ranges.";
+    if (!(poke.depth > 0)) return "No contact: nothing moves.";
+    if (!isOutside(poke, answer)) return "Inside the trained ranges.";
     const names = this.about.checks.flatMap(({ name, units, trained, kinds }, k) => {
       if (!(beyond[k] > 0)) return [];
       const value = kinds ? this.about.interiors[poke.interior].kind : `${number(values[k])} ${units}`.trim();

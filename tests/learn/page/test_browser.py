@@ -161,6 +161,12 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
     answered()
     assert now()["x"] != pytest.approx(2.0)
 
+    page.evaluate("async (poke) => (await tisim).change(poke)", {**POKES[2], "depth": 0.0})
+    answered()
+    assert page.locator("body").get_attribute("data-inside") == "true"
+    assert page.locator("#verdict").inner_text() == "No contact: nothing moves."
+    assert "outside" not in page.locator("#checks").inner_text()
+
     page.evaluate("async (poke) => (await tisim).change(poke)", POKES[2])
     answered()
     assert page.locator("body").get_attribute("data-inside") == "false"
