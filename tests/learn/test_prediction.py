@@ -256,6 +256,14 @@ def test_the_python_interface(run: Path, predictor: Predictor, tmp_path: Path) -
         learn.load(run, dataset=write_store(tmp_path / "o.zarr", seed=4, frames=1))
 
 
+def test_an_ensemble_is_of_runs_that_differ_in_seed_alone(store: Path, run: Path, tmp_path: Path) -> None:
+    same = train_small(store, tmp_path / "seed", "--epochs", 1, "--seed", 5)
+    assert len(learn.load([run, same]).run.members) == 2
+    other = train_small(store, tmp_path / "fold", "--epochs", 1, "--fold", 1)
+    with pytest.raises(InputError, match="fold: expected runs that differ in seed alone"):
+        learn.load([run, other])
+
+
 def test_the_shipped_scene_is_read() -> None:
     from learn.scene_file import load_poke
 
