@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 
 import tisim
 from tisim import laws
+from tisim.problems._registry import kind_of
+from tisim.view import view_of_file
 
 
 def test_a_sheet_that_collapses_has_no_equilibrium() -> None:
@@ -68,3 +72,15 @@ def test_eight_chains_keep_the_digits_of_their_energy() -> None:
     np.testing.assert_allclose(found, expected, rtol=5e-4)
     with pytest.raises(ValueError, match="locking"):
         law.check({"mu": 1e4, "locking": 60.0, "bulk": 1e6})
+
+
+def test_a_coupon_in_a_file_keeps_its_stress_and_a_shear_is_called_one(tmp_path: Path) -> None:
+    material = tisim.material_from_moduli("neo-hookean", shear_modulus=1e4, bulk_modulus=1e6)
+    found = tisim.simulate(tisim.Coupon(material=material, mode="simple-shear", stretches=(1.5,)), workers=1)
+    assert found.nominal_stress is not None
+    path = tisim.write(found, tmp_path / "shear.vtu")
+    (stated,) = meshio.read(path).cell_data["nominal_stress"]
+    assert np.unique(stated) == pytest.approx(found.nominal_stress)
+    assert kind_of(found.scene).describe(found, 0) == "Coupon, simple-shear, shear 0.5, 5 kPa"
+    assert view_of_file(path).labels == ("load 1.5 · nominal stress 5 kPa",)
+    assert tisim.show(found).labels == ("amount of shear 0.5 · nominal stress 5 kPa",)

@@ -69,10 +69,10 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
         The extension determines the format. .vtu: the whole body at its deformed positions [m] (half models
         are unfolded). Point data: `displacement` [m], `rest_position` [m] and one 0/1 mask per node set. Cell
         data: `volume_ratio` (element volume over rest volume) and, constant over the body, `load` and
-        `support_force` (see `Result`), `time` [s] if the result has one and, for a poke, `rod_force` [N],
-        `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length, radius of the tip's edge [m]). Both have
-        the `FIELDS` (`tisim.fields`), whose names end in their units; tensors have nine components, row by
-        row. A result without a scene has no fields.
+        `support_force` (see `Result`), `time` [s] if the result has one, `nominal_stress` [Pa] of a coupon or
+        a press and, for a poke, `rod_force` [N], `rod_tip` [m], `rod_axis` and `rod_shape` (radius, length,
+        radius of the tip's edge [m]). Both have the `FIELDS` (`tisim.fields`), whose names end in their
+        units; tensors have nine components, row by row. A result without a scene has no fields.
         .pvd: all frames, one .vtu each in a folder of the same name next to it, as ParaView reads them.
         .ply, .stl: the deformed surface as triangles [m].
     frame : int
@@ -141,6 +141,8 @@ def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> 
     constant = {"load": result.load[frame], "support_force": result.support_force[frame]}
     if result.time is not None:
         constant["time"] = result.time[frame]
+    if result.nominal_stress is not None:
+        constant["nominal_stress"] = result.nominal_stress[frame]
     if result.rod_force is not None and result.rod_tip is not None:
         rod = result.scene.rod
         time = 0.0 if result.time is None else float(result.time[frame])

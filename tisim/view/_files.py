@@ -100,7 +100,7 @@ def _view_of_vtu(name: str, paths: list[Path]) -> View:
 
 
 _CONSTANT: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys(("load", "time"), ()),
+    **dict.fromkeys(("load", "time", "nominal_stress"), ()),
     **dict.fromkeys(("support_force", "rod_force", "rod_tip", "rod_axis", "rod_shape"), (3,)),
 }
 
@@ -175,6 +175,8 @@ def _told(constant: dict[str, Array], has_rod: bool) -> list[Told]:
         found.append(("load", float(constant["load"]), ""))
     if "time" in constant:
         found.append(("time", float(constant["time"]), "s"))
+    if "nominal_stress" in constant:
+        return [*found, ("nominal stress", 1e-3 * float(constant["nominal_stress"]), "kPa")]
     for name, words in (("rod_force", "force on the rod"), ("support_force", "force of the supports")):
         if name in constant:
             found.append((words, float(np.linalg.norm(constant[name])), "N"))

@@ -137,7 +137,8 @@ def _place(result: Result, frame: int) -> list[Told]:
     if result.rod_tip is not None:
         found.append(("depth", 1e3 * load, "mm"))
     elif result.nominal_stress is not None:
-        found.append(("stretch", load, ""))
+        shears = getattr(result.scene, "mode", "") == "simple-shear"
+        found.append(("amount of shear", load - 1.0, "") if shears else ("stretch", load, ""))
     elif result.time is None:
         found.append(("part of the load", load, ""))
     if result.time is not None:

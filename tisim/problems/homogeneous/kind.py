@@ -50,8 +50,9 @@ def describe(result: Result, frame: int) -> str:
     scene = result.scene
     assert isinstance(scene, Coupon)
     assert result.nominal_stress is not None
-    stress = result.nominal_stress[frame] * 1e-3
-    return f"Coupon, {scene.mode}, stretch {result.load[frame]:.3g}, {stress:.3g} kPa"
+    stress, load = result.nominal_stress[frame] * 1e-3, float(result.load[frame])
+    driven = f"shear {load - 1.0:.3g}" if scene.mode == "simple-shear" else f"stretch {load:.3g}"
+    return f"Coupon, {scene.mode}, {driven}, {stress:.3g} kPa"
 
 
 KIND = SceneKind(
