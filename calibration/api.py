@@ -212,6 +212,7 @@ def diagnose(
         An argument or the experiment cannot be used, or the baseline has no equilibrium anywhere.
     """
     from calibration.diagnosis import Rules, model_of
+    from calibration.diagnosis.card import check_names
     from calibration.diagnosis.laws import diagnose_with_law
 
     if seed < 0:
@@ -220,6 +221,7 @@ def diagnose(
         raise OptionError("noise", noise, "expected stated or data")
     processes(workers)
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
+    check_names({t.material for t in data.trials})
     report = on_progress or to_log
     make = partial(model_of, data, kind=domain, without=list(without), simulator=simulator, workers=workers)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import errno
 import math
 import time
@@ -83,8 +84,8 @@ def command() -> typer.Typer:
 
 
 def names_in(text: str) -> list[str]:
-    """Names that are separated by commas."""
-    return [n.strip() for n in text.split(",") if n.strip()]
+    """Names that are separated by commas; one with a comma is in double quotes."""
+    return [n.strip() for n in next(csv.reader([text], skipinitialspace=True), []) if n.strip()]
 
 
 @contextlib.contextmanager

@@ -70,7 +70,10 @@ def main(
     experiment: Measured,
     model: Laws = "all",
     material: Annotated[
-        str | None, typer.Option(help="Materials, separated by commas. Default: all of the experiment.")
+        str | None,
+        typer.Option(
+            help="Materials, separated by commas (double quotes around a name with one). Default: all."
+        ),
     ] = None,
     terms: Annotated[int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)] = 1,
     time: Annotated[

@@ -7,7 +7,7 @@ can read it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -40,14 +40,19 @@ from tisim import laws
 RIG = "rig.yaml"
 
 
+def check_names(materials: Collection[str]) -> None:
+    """InputError if a material is named as the rig's card is."""
+    if Path(RIG).stem in materials:
+        raise InputError(f"material {Path(RIG).stem}: expected another name, since {RIG} is the rig's card")
+
+
 def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> list[Path]:
     """Write folder/MATERIAL.yaml for each diagnosed material, and folder/rig.yaml if rig effects are named.
 
     A rig.yaml of an earlier diagnosis is removed. Without a named cause the cards are of the baseline.
     Returns the paths written. InputError if a material is named "rig".
     """
-    if Path(RIG).stem in (diagnosis.extended or diagnosis.baseline).shear_modulus_Pa:
-        raise InputError(f"material {Path(RIG).stem}: expected another name, since {RIG} is the rig's card")
+    check_names((diagnosis.extended or diagnosis.baseline).shear_modulus_Pa)
     known = moduli(diagnosis)
     (folder / RIG).unlink(missing_ok=True)
     heading = "Moduli in Pa, density in kg/m3. Diagnosed: see provenance and effects."

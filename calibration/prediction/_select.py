@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
 from fnmatch import fnmatchcase
 
@@ -20,12 +21,12 @@ BY: dict[str, Callable[[Trial], str]] = {
 
 def chosen(experiment: Experiment, pattern: str, option: str) -> tuple[Trial, ...]:
     """Trials that a pattern means: ids with * and ?, or material=, specimen=, length= (of beams [mm]) or
-    mode= (of coupons) before one; several by commas.
+    mode= (of coupons) before one; several by commas, one with a comma in double quotes.
 
     OptionError where it means none, or asks for something else.
     """
     found: list[Trial] = []
-    for one in (p.strip() for p in pattern.split(",")):
+    for one in (p.strip() for p in next(csv.reader([pattern], skipinitialspace=True), [])):
         by, equals, value = one.partition("=")
         if not equals:
             by, value = "id", one

@@ -247,8 +247,12 @@ def render(
 
 def _pictures(folder: Path, sections: Sequence[Section]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    for shown in sections:
+    written: set[str] = set()
+    for nth, shown in enumerate(sections, 1):
         for picture in shown.pictures:
-            part = folder / f"{picture.name}.part"
+            # names of two materials may become one file's ("a/b" and "a b")
+            name = f"{nth}-{picture.name}" if picture.name in written else picture.name
+            written.add(name)
+            part = folder / f"{name}.part"
             part.write_bytes(picture.png)
-            part.replace(folder / picture.name)
+            part.replace(folder / name)
