@@ -189,7 +189,7 @@ def _write(plan: FitPlan, found: Fits, console: Console, cards: Path | None) -> 
     console.print(law_table(every))
     earlier = every.results[len(found) :]
     if earlier:
-        names = ", ".join(f"{r.material}, {r.label}" for r in earlier)
+        names = ", ".join(f"{r.material} {r.label}" for r in earlier)
         console.print(f"fitted by an earlier run: {escape(names)}", highlight=False, soft_wrap=True)
     folder = cards or plan.folder / "cards"
     written = every.write_cards(folder)

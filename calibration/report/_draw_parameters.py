@@ -124,7 +124,8 @@ def _panel(axes: Any, title: str, bars: Sequence[Bar]) -> None:
     low, high = min(b[2] for b in bars), max(b[3] for b in bars)
     if low > 0.0 and high > 8.0 * low:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        few = high < 300.0 * low
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if few else (1.0,), numticks=6))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_locator(NullLocator())
     for row, (_, value, low, high, seen) in enumerate(bars):
