@@ -99,7 +99,7 @@ def test_a_body_may_lie_anywhere_and_be_higher_than_the_default_block() -> None:
         ({"direction": (1.0, 0.0, -1.2), "site": (0.029, 0.0)}, "expected a path within the body's sides"),
         (
             {"block": tisim.Block(inclusion=tisim.SphereInclusion(radius=0.008, centre=(0, 0, 0.008)))},
-            "block: expected none beside a mesh",
+            r"block\.inclusion: expected none beside a mesh",
         ),
     ],
 )

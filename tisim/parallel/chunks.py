@@ -81,7 +81,7 @@ def _mesh_key(index: int, scene: Any, digests: dict[int, str]) -> tuple[Any, ...
     if mesh is not None:
         digest = digests.setdefault(id(mesh), "") or _digest(mesh)
         digests[id(mesh)] = digest
-        return ("own", kind.mesh_key(scene), digest) if kind.chained(scene) else ("own", digest, index)
+        return ("own", kind.name, digest) if kind.chained(scene) else ("own", digest, index)
     key = kind.mesh_key(scene)
     return ("alone", index) if key is None else key
 

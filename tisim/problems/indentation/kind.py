@@ -56,8 +56,9 @@ def check(scene: Poke) -> None:
     check_vector("site", scene.site, 2)
     check_length("depth", scene.depth)
     check_mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))
-    if scene.mesh is not None and scene.block != Block():
-        raise FieldError("block", "none beside a mesh, which has its own shape and inclusion", scene.block)
+    if scene.mesh is not None and scene.block.inclusion is not None:
+        wanted = "none beside a mesh, which has its own (tisim.mesh.block_around makes such a mesh)"
+        raise FieldError("block.inclusion", wanted, scene.block.inclusion)
     low, high = body_bounds(scene)
     if not all(a < at < b for a, at, b in zip(low, scene.site, high, strict=False)):
         raise FieldError("site", f"a place on the top ({_sides(low, high)})", scene.site)
