@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import CouponMode, CouponTrial
-from calibration.measurements._records import Stroke, bins, holds, ramp_start, strokes
+from calibration.measurements._course import STILL, holds, ramp_start, unmoved, window_from
+from calibration.measurements._records import Stroke, strokes
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -22,10 +23,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 STEP = 0.01  # largest change of stretch per step: the stress is taken as linear in time within it
-STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
-NOISE = 6.0  # tolerance of a hold, in standard deviations of the stretch
 NEAR = 25  # half width [rows] of the moving average of the stretch in a hold
-DIFFERENT = 1.1  # ratio of peak strains (I1 - 3) from which two peaks count as different
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -126,11 +124,10 @@ def _lead(time: Array, stretch: Array, holds: Sequence[slice]) -> Array:
 
 
 def holds_of(trial: CouponTrial) -> list[slice]:
-    """Rows of each hold (`calibration.measurements._records.holds`); empty without a clock."""
+    """Rows of each hold (`calibration.measurements._course.holds`); empty without a clock."""
     if trial.time is None:
         return []
-    tolerance = max(STILL * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
-    return holds(trial.time, trial.stretch, tolerance)
+    return holds(trial.time, trial.stretch, unmoved(float(np.ptp(trial.stretch)), trial.stretch_sd))
 
 
 def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]]) -> ProtocolWindow:
@@ -139,7 +136,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
     branches : strokes of each trial.
     """
     ramps, waits, lengths, peaks = [], [], [], []
-    intervals: list[float] = []  # between rows: what a record of a hold alone shows first
+    intervals: list[float] = []
     for trial, runs in zip(trials, branches, strict=True):
         excess = first_excess(trial.mode, trial.stretch)
         for a, b in pairwise(runs):
@@ -161,33 +158,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
             for a, b in pairwise(inside)
             if (a, b) not in still and abs(trial.stretch[b] - trial.stretch[a]) > least
         ]
-    different = 0
-    for k, peak in enumerate(sorted(peaks)):
-        different += k == 0 or peak > DIFFERENT * sorted(peaks)[k - 1]
-    last = max(waits or lengths, default=0.0)
-    first = min([r for r in ramps if r > 0.0] or [i for i in intervals if i > 0.0], default=last)
-    return ProtocolWindow(first=min(first, last), last=last, peaks=different)
-
-
-def bins_over_time(
-    trial: CouponTrial, points: slice, holds: Sequence[slice], most: int
-) -> tuple[Rows, Array]:
-    """Bins as by `bins`, separate for each ramp and hold; in a hold their width grows with its time."""
-    assert trial.time is not None
-    corners = {points.start, points.stop}
-    corners |= {i for h in holds for i in (h.start, h.stop) if points.start < i < points.stop}
-    firsts = []
-    for a, b in pairwise(sorted(corners)):
-        held = any(h.start <= a and b <= h.stop for h in holds)
-        if not held or b - a <= most:
-            firsts.append(a + bins(slice(a, b), most)[0])
-            continue
-        since = trial.time[a:b] - trial.time[a]
-        scale = np.log1p(since / since[1])
-        number = np.floor(most * scale / scale[-1])
-        firsts.append(a + np.flatnonzero(np.diff(number, prepend=-1.0)))
-    first = np.concatenate(firsts) - points.start
-    return first, np.diff(np.append(first, points.stop - points.start)).astype(float)
+    return window_from(ramps=ramps, waits=waits, lengths=lengths, intervals=intervals, peaks=peaks)
 
 
 def largest_before(mode: CouponMode, stretch: Array, before: float) -> float:

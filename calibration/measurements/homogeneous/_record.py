@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import CouponMode, CouponTrial
+from calibration.measurements._course import NOISE, bins_over_time
 from calibration.measurements._records import Stroke, bins, strokes
 from calibration.measurements.homogeneous._course import (
     Course,
-    bins_over_time,
     course_of,
     holds_of,
     largest_before,
@@ -29,7 +29,6 @@ Array = NDArray[np.float64]
 
 MOST = 100  # largest number of points of a branch: more are averaged in bins of neighbours
 TURN = 0.03  # least reversal at a turning point, as a fraction of the record's range
-NOISE = 6.0  # the same, in standard deviations of the stretch
 SAME_REACH, SAME_RATE = 0.05, 1.2  # relative difference of strain, and ratio of rates, between repeats
 LATE = 0.3  # time after the end of a ramp, as a fraction of its duration, from which a hold begins
 
@@ -174,7 +173,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
     rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
     sds, numbers, firsts, counts = [], [], [], []
     for n, b in enumerate(parts):
-        first, count = bins_over_time(trial, b.points, holds, MOST) if timed else bins(b.points, MOST)
+        first, count = bins_over_time(raw_time, b.points, holds, MOST) if timed else bins(b.points, MOST)
         firsts.append(b.points.start + first)
         counts.append(count)
         raw = {

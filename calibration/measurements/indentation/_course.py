@@ -10,17 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import PokeTrial
-from calibration.measurements._records import bins, holds, ramp_start
+from calibration.measurements._course import holds, ramp_start, unmoved, window_from
 from calibration.measurements.indentation._phases import STAGE, Phase, phases_of
 from calibration.measurements.indentation._scene import approach
 from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
-
-STILL = 0.01  # tolerance of a hold, as a fraction of the record's range
-NOISE = 6.0  # tolerance of a hold, in standard deviations of the depth
-DIFFERENT = 1.1  # ratio of peak depths from which two peaks count as different
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -83,7 +79,8 @@ def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
     """
     depth = trial.record.depth
     stage = STAGE * float(np.abs(depth).max())
-    rests = holds(trial.record.time, depth, max(STILL * float(np.ptp(depth)), NOISE * trial.depth_sd, stage))
+    tolerance = max(unmoved(float(np.ptp(depth)), trial.depth_sd), stage)
+    rests = holds(trial.record.time, depth, tolerance)
     found = []
     for p in phases:
         inside = [h for h in rests if h.start < p.points.stop and h.stop > p.points.start]
@@ -97,25 +94,14 @@ def with_holds(trial: PokeTrial, phases: Sequence[Phase]) -> list[Phase]:
     return found
 
 
-def bins_over_time(time: Array, phase: Phase, most: int) -> tuple[Rows, Array]:
-    """Bins as by `bins`; in a hold their width grows with its time."""
-    size = phase.points.stop - phase.points.start
-    if phase.direction != 0.0 or size <= most:
-        return bins(phase.points, most)
-    since = time[phase.points] - time[phase.points.start]
-    scale = np.log1p(since / since[1])
-    first = np.flatnonzero(np.diff(np.floor(most * scale / scale[-1]), prepend=-1.0))
-    return first, np.diff(np.append(first, size)).astype(float)
-
-
 def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
     """Range of times of ramps and holds in contact, and number of different peak depths, of indentations."""
     ramps, waits, lengths, peaks = [], [], [], []
-    intervals: list[float] = []  # between rows: what a record of a hold alone shows first
+    intervals: list[float] = []
     for trial in trials:
         time, phases = trial.record.time, with_holds(trial, phases_of(trial))
         depth = trial.record.depth - approach(trial)
-        least = max(STILL * float(depth.max()), NOISE * trial.depth_sd)
+        least = unmoved(float(depth.max()), trial.depth_sd)
         lengths.append(_time_in_contact(time, depth, slice(0, time.size)))
         intervals += np.diff(time).tolist()
         for p in phases:
@@ -128,11 +114,7 @@ def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
         for a, b in pairwise([p for p in phases if p.direction != 0.0]):
             if a.direction > 0.0 > b.direction:
                 peaks.append(float(trial.record.depth[a.points].max()))
-    peaks.sort()
-    different = sum(k == 0 or peak > DIFFERENT * peaks[k - 1] for k, peak in enumerate(peaks))
-    last = max(waits or lengths, default=0.0)
-    first = min([r for r in ramps if r > 0.0] or [i for i in intervals if i > 0.0], default=last)
-    return ProtocolWindow(first=min(first, last), last=last, peaks=different)
+    return window_from(ramps=ramps, waits=waits, lengths=lengths, intervals=intervals, peaks=peaks)
 
 
 def _time_in_contact(time: Array, depth: Array, points: slice) -> float:

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial
+from calibration.measurements._course import bins_over_time
 from calibration.measurements._records import bins
 from calibration.measurements.homogeneous import unstated_sd
-from calibration.measurements.indentation._course import Course, bins_over_time, course_of, with_holds
+from calibration.measurements.indentation._course import Course, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
     Geometry,
@@ -285,7 +286,8 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
     across = None if raw.force_vector is None else raw.force_vector @ geometry.across.T
     columns: dict[str, list[Array]] = {name: [] for name in (*_ARRAYS, "across")}
     for n, p in enumerate(phases):
-        first, count = bins_over_time(raw.time, p, MOST) if courses else bins(p.points, MOST)
+        held = [p.points] if p.direction == 0.0 else []
+        first, count = bins_over_time(raw.time, p.points, held, MOST) if courses else bins(p.points, MOST)
 
         def mean(
             x: Array, points: slice = p.points, first: NDArray[np.intp] = first, count: Array = count

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calibration.experiment.model import CouponTrial, PokeRecord, PokeTrial
-from calibration.measurements._records import ramp_start
+from calibration.measurements._course import ramp_start
 from calibration.measurements.homogeneous import protocol_window
 from calibration.measurements.homogeneous._course import holds_of
 from calibration.measurements.homogeneous._record import records_of as homogeneous_records
