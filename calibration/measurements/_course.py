@@ -62,7 +62,7 @@ def holds(time: Array, driven: Array, tolerance: float) -> list[slice]:
     return found
 
 
-def ramp_start(time: Array, driven: Array, stop: int) -> float | None:
+def ramp_start(time: Array, driven: Array, stop: int, sd: float = 0.0) -> float | None:
     """Time at which the first ramp of a record left rest, extrapolated from its first rows.
 
     Parameters
@@ -71,6 +71,8 @@ def ramp_start(time: Array, driven: Array, stop: int) -> float | None:
         Time [s], and the driven quantity less its value at rest.
     stop : int
         Row after the last one of the ramp.
+    sd : float
+        Standard deviation of the driven quantity; its speed is that of a change beyond this noise.
 
     Returns
     -------
@@ -80,7 +82,7 @@ def ramp_start(time: Array, driven: Array, stop: int) -> float | None:
     """
     last = min(stop, driven.size - 1)
     gone, travel = driven[0], driven[last] - driven[0]
-    away = np.abs(driven[: last + 1] - gone) > STILL * float(np.abs(driven).max())
+    away = np.abs(driven[: last + 1] - gone) > unmoved(float(np.abs(driven).max()), sd)
     if gone * travel <= 0.0 or abs(gone) > abs(travel) or not away.any():
         return None
     row = max(int(np.argmax(away)), min(BEGINNING, last))

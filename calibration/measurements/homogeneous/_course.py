@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import CouponMode, CouponTrial
-from calibration.measurements._course import STILL, holds, ramp_start, unmoved, window_from
+from calibration.measurements._course import holds, ramp_start, unmoved, window_from
 from calibration.measurements._records import Stroke, strokes
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
@@ -81,7 +81,7 @@ def course_of(trial: CouponTrial, first: Rows, count: Array, before: float, hold
     """
     time = np.zeros(trial.stretch.size) if trial.time is None else trial.time - trial.time[0]
     stretch = _quiet(trial.stretch, holds)
-    lead = _lead(time, stretch, holds)
+    lead = _lead(time, stretch, holds, trial.stretch_sd)
     corners = np.concatenate([[1.0] * len(lead), stretch])
     pieces = np.maximum(1, np.ceil(np.abs(np.diff(corners)) / STEP)).astype(int)
     knots = np.concatenate([[0], np.cumsum(pieces)])
@@ -113,13 +113,14 @@ def _quiet(stretch: Array, holds: Sequence[slice]) -> Array:
     return found
 
 
-def _lead(time: Array, stretch: Array, holds: Sequence[slice]) -> Array:
+def _lead(time: Array, stretch: Array, holds: Sequence[slice], sd: float) -> Array:
     """Extrapolated start of the first ramp [s], shape (1,); empty if the record begins at rest or by a jump.
 
     The first row can lie on the ramp, since rows may be means of several samples.
     """
-    first = strokes(stretch, STILL * float(np.abs(stretch - 1.0).max()))[0]
-    found = ramp_start(time, stretch - 1.0, min([first.points.stop, *(h.start for h in holds)]))
+    first = strokes(stretch, unmoved(float(np.abs(stretch - 1.0).max()), sd))[0]
+    stop = min([first.points.stop, *(h.start for h in holds)])
+    found = ramp_start(time, stretch - 1.0, stop, sd)
     return np.zeros(0) if found is None else np.array([found])
 
 
@@ -152,7 +153,7 @@ def window_of(trials: Sequence[CouponTrial], branches: Sequence[Sequence[Stroke]
         corners |= {i for h in rests for i in (h.start, h.stop - 1)}
         still = {(h.start, h.stop - 1) for h in rests}
         inside = sorted(c for c in corners if not any(h.start < c < h.stop - 1 for h in rests))
-        least = STILL * float(np.abs(trial.stretch - 1.0).max())
+        least = unmoved(float(np.abs(trial.stretch - 1.0).max()), trial.stretch_sd)
         ramps += [
             float(trial.time[b] - trial.time[a])
             for a, b in pairwise(inside)

@@ -15,9 +15,11 @@ from calibration.measurements.indentation._record import records_of
 from tisim import Block
 
 
-def drive(times: list[float], stretches: list[float], *, rows: int = 400, noise: float = 0.0) -> CouponTrial:
+def drive(
+    times: list[float], stretches: list[float], *, rows: int = 400, noise: float = 0.0, seed: int = 1
+) -> CouponTrial:
     at = np.unique(np.concatenate([np.linspace(0.0, times[-1], rows), times]))
-    stretch = np.interp(at, times, stretches) + noise * np.random.default_rng(1).standard_normal(at.size)
+    stretch = np.interp(at, times, stretches) + noise * np.random.default_rng(seed).standard_normal(at.size)
     return CouponTrial(
         id="t",
         material="M",
@@ -68,6 +70,23 @@ def test_the_window_of_a_hold_alone_begins_with_the_interval_between_rows() -> N
     window = protocol_window([held])
     assert window.first == pytest.approx(np.diff(at).min())
     assert window.last == pytest.approx(1000.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_is_no_ramp(seed: int) -> None:
+    """The stretch of a hold alone differs between its ends by its noise, which is 1 % of the strain."""
+    made = drive([0.0, 1000.0], [1.3, 1.3], noise=3e-3, seed=seed)
+    assert made.time is not None
+    assert protocol_window([made]).first == pytest.approx(np.diff(made.time).min())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_does_not_end_the_ramp_that_is_followed_back_to_rest(seed: int) -> None:
+    """The record begins 5 s after its ramp, in which noise turns the stretch by over 1 % of the strain."""
+    made = drive([0.0, 20.0, 100.0], [1.05, 1.25, 1.25], rows=4000, noise=1e-3, seed=seed)
+    (record,) = homogeneous_records([made], courses=True)
+    assert record.course is not None
+    assert record.course.time[0] == pytest.approx(-5.0, abs=3.0)  # else 0, a jump
 
 
 def test_the_window_goes_from_the_shortest_ramp_to_the_longest_hold() -> None:
