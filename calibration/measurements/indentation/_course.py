@@ -112,8 +112,8 @@ def window_of(trials: Sequence[PokeTrial]) -> ProtocolWindow:
             elif depth[p.points].mean() > least:
                 waits.append(took)
         for a, b in pairwise([p for p in phases if p.direction != 0.0]):
-            if a.direction > 0.0 > b.direction:
-                peaks.append(float(trial.record.depth[a.points].max()))
+            if a.direction > 0.0 > b.direction and (peak := float(depth[a.points].max())) > least:
+                peaks.append(peak)
     return window_from(ramps=ramps, waits=waits, lengths=lengths, intervals=intervals, peaks=peaks)
 
 

@@ -165,6 +165,14 @@ def test_time_in_the_air_is_neither_ramp_nor_hold() -> None:
     assert (far.first, far.last) == pytest.approx((near.first, near.last), abs=0.6)
 
 
+def test_peaks_are_depths_from_first_touch() -> None:
+    """Loadings by 1 and 2 mm, after one in the air, differ alike from on the surface and from 18 mm above."""
+    time = np.arange(0.0, 60.0, 0.1)
+    path = np.interp(time, np.arange(0.0, 61.0, 10.0), [-10.0, -0.5, -10.0, 1.0, -10.0, 2.0, -10.0])
+    assert window_of([poke(time, np.maximum(path, 0.0))]).peaks == 2
+    assert window_of([poke(time, 18.0 + path, above_mm=18.0)]).peaks == 2
+
+
 @pytest.mark.parametrize("rate", [5.0, 500.0])
 def test_a_ramp_is_followed_back_to_rest_however_often_it_was_sampled(rate: float) -> None:
     time = np.arange(3.0, 10.0, 1.0 / rate)
