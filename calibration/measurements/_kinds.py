@@ -157,9 +157,9 @@ def _coupons(experiment: Experiment) -> list[Trial]:
 
 
 def _compressed(experiment: Experiment) -> list[bool]:
-    from calibration.measurements.compression._record import goes_into_compression
+    from calibration.measurements.compression._record import between_platens
 
-    return [goes_into_compression(t.mode, t.stretch) for t in experiment.trials if isinstance(t, CouponTrial)]
+    return [between_platens(t.mode, t.stretch) for t in experiment.trials if isinstance(t, CouponTrial)]
 
 
 def _all_compressed(experiment: Experiment) -> bool:

@@ -7,23 +7,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.experiment.model import CouponMode
 from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.homogeneous.kinematics import goes_into_compression, goes_into_tension
 
 Array = NDArray[np.float64]
 
-COMPRESSED = 0.97  # stretch below which a test counts as compression
 # Largest strain of the comparison: up to it the mesh error of a bonded cylinder is below 1 %, and a law with
 # a negative share of the second invariant has an equilibrium (studies/compression).
 LAST = 0.5
 
 
-def goes_into_compression(mode: str, stretch: Array) -> bool:
-    """True for a uniaxial test that goes below COMPRESSED, with less than 3 % of tension."""
-    return mode == "uniaxial" and bool(stretch.min() < COMPRESSED) and bool(stretch.max() < 2.0 - COMPRESSED)
+def between_platens(mode: CouponMode, stretch: Array) -> bool:
+    """True for a test that goes into compression alone, as platens drive it that do not pull."""
+    return goes_into_compression(mode, stretch) and not goes_into_tension(mode, stretch)
 
 
 def is_compressed(record: Record) -> bool:
-    return goes_into_compression(record.mode, record.stretch)
+    return between_platens(record.mode, record.stretch)
 
 
 def compared(record: Record, last: float) -> Record:

@@ -42,6 +42,19 @@ def stress_of(mode: CouponMode, s: Array, by_first: Array | float, by_second: Ar
     return np.asarray(one * by_first + two * by_second)
 
 
+COMPRESSED = 0.97  # stretch below which a test counts as compression, and as much above 1 as tension
+
+
+def goes_into_compression(mode: CouponMode, s: Array) -> bool:
+    """True for a uniaxial test that goes below COMPRESSED."""
+    return mode == "uniaxial" and bool(s.min() < COMPRESSED)
+
+
+def goes_into_tension(mode: CouponMode, s: Array) -> bool:
+    """True for a uniaxial test that goes above 2 - COMPRESSED."""
+    return mode == "uniaxial" and bool(s.max() > 2.0 - COMPRESSED)
+
+
 def slab_factor(x: Array) -> Array:
     """Ratio of the mean pressure under a platen with friction to that without, shape of x (slab method).
 

@@ -14,11 +14,15 @@ from calibration.diagnosis.effects._material_parts import (
     mooney_rivlin,
     stiffening,
 )
-from calibration.diagnosis.effects.homogeneous._pressed import PRESSED
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
-from calibration.measurements.homogeneous.kinematics import first_excess, stress_of
+from calibration.measurements.homogeneous.kinematics import (
+    COMPRESSED,
+    first_excess,
+    goes_into_compression,
+    stress_of,
+)
 
 Array = NDArray[np.float64]
 
@@ -167,7 +171,7 @@ def _several_modes(reached: Sequence[Record], everything: Sequence[Record]) -> b
     del everything
     for material in {r.material for r in reached}:
         mine = [r for r in reached if r.material == material]
-        if len({(r.mode, bool(r.stretch.min() < PRESSED)) for r in mine}) < 2:
+        if len({(r.mode, bool(r.stretch.min() < COMPRESSED)) for r in mine}) < 2:
             return False
     return True
 
@@ -201,7 +205,7 @@ def _both_signs(reached: Sequence[Record], everything: Sequence[Record]) -> bool
     """True if the same material has compression tests and others."""
     for r in reached:
         others = [q for q in everything if q.material == r.material]
-        pressed = [q.mode == "uniaxial" and float(q.stretch.min()) < PRESSED for q in others]
+        pressed = [goes_into_compression(q.mode, q.stretch) for q in others]
         if any(pressed) and not all(pressed):
             return True
     return False

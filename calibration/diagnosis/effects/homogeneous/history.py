@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.special import erf
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._identifiable import different_rates, loads_again, unloads
 from calibration.diagnosis.effects._material_parts import (
     one_time,
     softening_of,
@@ -28,8 +29,6 @@ Array = NDArray[np.float64]
 
 REFERENCE_RATE = 0.01  # strain rate at which the shear modulus holds [1/s]
 
-DISTINCT_RATES = 1.5  # ratio of two rates above which they count as different
-
 
 def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array:
     del s
@@ -40,12 +39,7 @@ def _factor_rate_dependence(s: Array, amplitude: float, record: Record) -> Array
 def _identifiable_rate_dependence(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
     """True if a material is tested at two different rates."""
     del everything
-    for material in {r.material for r in reached}:
-        rates = np.concatenate([r.rate for r in reached if r.material == material])
-        rates = rates[np.isfinite(rates)]
-        if rates.size and rates.max() > DISTINCT_RATES * rates.min():
-            return True
-    return False
+    return different_rates(reached, lambda r: r.rate)
 
 
 SHOWN = 0.1  # shortest resolved relaxation time, relative to the duration of a ramp
@@ -102,12 +96,6 @@ def _factor_hysteresis(s: Array, amplitude: float, record: Record) -> Array:
     return 1.0 - amplitude * np.where(np.isfinite(back), back, 0.0)
 
 
-def _identifiable_hysteresis(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if a record has an unloading."""
-    del everything
-    return any(r.unloads for r in reached)
-
-
 def _largest_energy(found: Occurrence) -> float:
     """Largest energy density in the records for a neo-Hookean solid [J/m3]."""
     return 0.5 * found.shear_modulus * max(float(r.peak.max()) for r in found.records)
@@ -131,7 +119,7 @@ HYSTERESIS = HomogeneousEffect(
     physical_limits=(1.0,),  # the stress vanishes at full unloading
     prior_scale=0.5,
     factor=_factor_hysteresis,
-    identifiable=_identifiable_hysteresis,
+    identifiable=unloads,
     hands_on=_softening_hysteresis,
 )
 
@@ -154,12 +142,6 @@ def _factor_mullins(s: Array, amplitude: float, record: Record) -> Array:
     return 1.0 - amplitude * erf(left) / erf(1.0)
 
 
-def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if a record has a second loading."""
-    del everything
-    return any(r.reloaded for r in reached)
-
-
 def _softening_mullins(found: Occurrence) -> HandedOn:
     return softening_of(
         lambda ratio: found.amplitude * erf(1.0 - ratio) / erf(1.0), energy=_largest_energy(found)
@@ -173,7 +155,7 @@ MULLINS = HomogeneousEffect(
     physical_limits=(1.0,),  # the stiffness vanishes at zero strain
     prior_scale=0.5,
     factor=_factor_mullins,
-    identifiable=_identifiable_mullins,
+    identifiable=loads_again,
     hands_on=_softening_mullins,
 )
 
@@ -198,7 +180,7 @@ PERMANENT_SET = HomogeneousEffect(
     bounds=(0.0, 0.5),
     prior_scale=0.05,
     shift=_shift_permanent_set,
-    identifiable=_identifiable_hysteresis,
+    identifiable=unloads,
     further=True,
 )
 

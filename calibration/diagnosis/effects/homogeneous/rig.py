@@ -8,10 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
-from calibration.diagnosis.effects.homogeneous._pressed import PRESSED
+from calibration.diagnosis.effects._identifiable import compared_with_others
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
-from calibration.measurements.homogeneous.kinematics import slab_factor
+from calibration.measurements.homogeneous.kinematics import (
+    goes_into_compression,
+    goes_into_tension,
+    slab_factor,
+)
 
 Array = NDArray[np.float64]
 
@@ -78,7 +82,7 @@ PLATEN_FRICTION = HomogeneousEffect(
     bounds=(0.0, 1.0),
     prior_scale=0.2,
     factor=_factor_platen_friction,
-    applies_to=lambda record: record.mode == "uniaxial" and bool(record.stretch.min() < PRESSED),
+    applies_to=lambda record: goes_into_compression(record.mode, record.stretch),
     scopes=("mode", "trial"),
 )
 
@@ -93,19 +97,14 @@ def _shift_gauge_length(s: Array, amplitude: float, record: Record) -> Array:
     return np.asarray(np.where(record.stretch > 1.0, amplitude * (record.stretch - 1.0), 0.0))
 
 
-def _compared(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if there is another record of the same material that the candidate does not reach."""
-    return any(r.material == q.material and r not in reached for q in reached for r in everything)
-
-
 GAUGE_LENGTH = HomogeneousEffect(
     effect=catalogue.GAUGE_LENGTH,
     step=1e-3,
     bounds=(-0.3, 0.5),
     prior_scale=0.1,
     shift=_shift_gauge_length,
-    applies_to=lambda record: record.mode == "uniaxial" and bool(record.stretch.max() > 2.0 - PRESSED),
-    identifiable=_compared,
+    applies_to=lambda record: goes_into_tension(record.mode, record.stretch),
+    identifiable=compared_with_others,
     further=True,
     scopes=("material", "trial"),
 )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._identifiable import compared_with_others
 from calibration.measurements.indentation._effect import IndentationEffect
 from calibration.measurements.indentation._record import Record
 from calibration.measurements.indentation._scene import FRICTION as BELIEVED
@@ -126,13 +127,6 @@ def _force_gain(force: Array, amplitude: float, record: Record, variant: float |
     return (1.0 + amplitude) * force
 
 
-def _identifiable_force_gain(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if there is another record of the same material that the candidate does not reach."""
-    names = {r.name for r in reached}
-    materials = {r.material for r in reached}
-    return any(r.material in materials and r.name not in names for r in everything)
-
-
 FORCE_GAIN = IndentationEffect(
     effect=catalogue.FORCE_GAIN,
     step=1e-3,
@@ -140,7 +134,7 @@ FORCE_GAIN = IndentationEffect(
     prior_scale=0.3,
     force=_force_gain,
     stage=4,
-    identifiable=_identifiable_force_gain,
+    identifiable=compared_with_others,
     scopes=("rod", "trial"),
     action="hang a known weight on the load cell",
 )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
+from calibration.diagnosis.effects._identifiable import different_rates, loads_again, unloads
 from calibration.diagnosis.effects._material_parts import one_time, seen, softening_of, viscosity_of
 from calibration.measurements._effect import HandedOn, Occurrence
 from calibration.measurements.indentation._effect import IndentationEffect
@@ -67,16 +68,13 @@ def _variants_relaxation(records: Sequence[Record]) -> tuple[float | None, ...]:
 
 def _identifiable_relaxation(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
     """True if there is a hold, an unloading, or two different rates in one material."""
-    del everything
-    if any(r.unloads or (r.direction == 0).sum() > 2 for r in reached):
-        return True
-    for material in {r.material for r in reached}:
-        times = [
-            float(np.ptp(r.time) / max(np.ptp(r.depth), 1e-9)) for r in reached if r.material == material
-        ]
-        if len(times) > 1 and max(times) > 1.5 * min(times):
-            return True
-    return False
+    held = any((r.direction == 0).sum() > 2 for r in reached)
+    return unloads(reached, everything) or held or different_rates(reached, _speed)
+
+
+def _speed(record: Record) -> Array:
+    """Range of the depth over the duration of the record [m/s], shape (1,)."""
+    return np.array([max(np.ptp(record.depth), 1e-9) / np.ptp(record.time)])
 
 
 def _viscosity_relaxation(found: Occurrence) -> HandedOn:
@@ -120,12 +118,6 @@ def _force_mullins(force: Array, amplitude: float, record: Record, variant: floa
     return force * (1.0 - amplitude * softened)
 
 
-def _identifiable_mullins(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if a record has a second loading."""
-    del everything
-    return any(r.reloaded for r in reached)
-
-
 def _softening_mullins(found: Occurrence) -> HandedOn:
     """Softening of the material equivalent to that of the force.
 
@@ -155,7 +147,7 @@ MULLINS = IndentationEffect(
     variants=lambda _: (FADING_SOFTENING, EVEN_SOFTENING),
     variant_label=lambda variant: "all the way" if variant == EVEN_SOFTENING else "below the deepest depth",
     applies_to=lambda record: record.reloaded,
-    identifiable=_identifiable_mullins,
+    identifiable=loads_again,
     hands_on=_softening_mullins,
     action="poke the same place twice to the same depth",
 )
@@ -189,12 +181,6 @@ def _pull(record: Record, variant: float | None) -> Array:
     return np.asarray((record.direction < 0) * grown * below * above)
 
 
-def _identifiable_adhesion(reached: Sequence[Record], everything: Sequence[Record]) -> bool:
-    """True if a record has an unloading."""
-    del everything
-    return any(r.unloads for r in reached)
-
-
 ADHESION = IndentationEffect(
     effect=catalogue.ADHESION,
     step=1e-4,
@@ -205,7 +191,7 @@ ADHESION = IndentationEffect(
     variants=lambda _: (EVERYWHERE, SHALLOW),
     variant_label=lambda variant: "near the surface" if variant == SHALLOW else "all the way back",
     applies_to=lambda record: record.unloads,
-    identifiable=_identifiable_adhesion,
+    identifiable=unloads,
 )
 
 
