@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, Literal, Protocol, TypeVar, get_type_hints
 
 from tisim.parts import Part
+
+S = TypeVar("S")
 
 Owner = Literal["specimen", "rig", "camera", "simulator"]
 
@@ -112,6 +114,41 @@ def always(reached: Sequence[Any], everything: Sequence[Any]) -> bool:
 def one_variant(records: Sequence[Any]) -> tuple[float | None, ...]:
     del records
     return (None,)
+
+
+def added_to(described: type[S], path: str) -> Callable[[S, float, Any], S]:
+    """Change by an effect that adds its amplitude to one number; the number's name is checked at once.
+
+    Parameters
+    ----------
+    described : dataclass of what the effect changes (a scene, the parameters of a beam).
+    path : name of its field; "imperfections.taper" for a field of a field.
+
+    Returns
+    -------
+    callable
+        Function of (instance, amplitude, anything) to the changed instance.
+
+    Raises
+    ------
+    ValueError
+        If there is no such field, or it is no number.
+    """
+    names = path.split(".")
+    kind: Any = described
+    for name in names:
+        if not is_dataclass(kind) or name not in {f.name for f in fields(kind)}:
+            raise ValueError(f"{described.__name__}: no field {path}")
+        kind = get_type_hints(kind)[name]
+    if kind is not float:
+        raise ValueError(f"{described.__name__}: expected a number in {path}")
+    return lambda x, amplitude, _: _added(x, names, amplitude)
+
+
+def _added(x: Any, names: Sequence[str], amplitude: float) -> Any:
+    first, *rest = names
+    own = getattr(x, first)
+    return replace(x, **{first: _added(own, rest, amplitude) if rest else own + amplitude})
 
 
 @dataclass(frozen=True, kw_only=True)

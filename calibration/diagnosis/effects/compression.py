@@ -17,6 +17,8 @@ from calibration.measurements.homogeneous._record import Record
 
 Array = NDArray[np.float64]
 
+SCOPES = ("mode", "trial")
+
 # -- platen-bonding --
 # The end faces are restrained by the platens: the force is that of a cylinder with free platens times the
 # bonded-to-free force ratio to the power of the amplitude; both are simulated (`tisim.Press`). Amplitude 0 is
@@ -37,7 +39,7 @@ PLATEN_BONDING = CompressionEffect(
     physical_limits=(MOST_BONDED,),
     prior_scale=0.5,
     bonds=True,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -55,7 +57,7 @@ PLATEN_SLIP = CompressionEffect(
     prior_scale=0.3,
     rubs=True,
     further=True,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -71,7 +73,7 @@ PLATEN_TILT = CompressionEffect(
     bounds=(0.0, 0.1),
     prior_scale=0.03,
     tilts=True,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -89,7 +91,7 @@ STRESS_OFFSET = CompressionEffect(
     bounds=(-2e4, 2e4),
     prior_scale=500.0,
     reads=_reads_stress_offset,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 

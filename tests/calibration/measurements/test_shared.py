@@ -11,6 +11,7 @@ import pytest
 from calibration.diagnosis.catalogue import ALIASES, effects_of, true_name
 from calibration.errors import OptionError
 from calibration.measurements._baseline import Baseline
+from calibration.measurements._effect import added_to
 from calibration.measurements._folds import folds_of
 from calibration.measurements._kinds import kinds
 from calibration.measurements._memory import Memory
@@ -216,3 +217,33 @@ def test_a_model_of_one_law_refuses_another_in_a_sentence() -> None:
     with pytest.raises(OptionError, match="indentation has one law only") as refused:
         model.with_law("ogden", 2)
     assert refused.value.option == "--law ogden:2: indentation has one law only, expected auto"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clamp:
+    tilt: float = 0.1
+    sag: float = 0.2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bar:
+    length: float = 1.0
+    material: str = "M"
+    clamp: Clamp = Clamp()
+
+
+def test_an_amplitude_is_added_to_one_number_alone() -> None:
+    assert added_to(Bar, "length")(Bar(), 0.5, None) == Bar(length=1.5)
+    assert added_to(Bar, "clamp.sag")(Bar(), 0.5, None) == Bar(clamp=Clamp(sag=0.7))
+
+
+@pytest.mark.parametrize("path", ["lenght", "clamp.lenght", "length.tilt", "tilt"])
+def test_a_number_that_does_not_exist_is_refused_where_the_effect_is_defined(path: str) -> None:
+    with pytest.raises(ValueError, match=f"Bar: no field {path}"):
+        added_to(Bar, path)
+
+
+@pytest.mark.parametrize("path", ["material", "clamp"])
+def test_an_amplitude_is_added_to_no_text_or_group(path: str) -> None:
+    with pytest.raises(ValueError, match=f"expected a number in {path}"):
+        added_to(Bar, path)

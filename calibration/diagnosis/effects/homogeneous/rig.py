@@ -19,6 +19,8 @@ from calibration.measurements.homogeneous.kinematics import (
 
 Array = NDArray[np.float64]
 
+SCOPES = ("mode", "trial")
+
 # -- strain-offset --
 # Zero error of the strain: the specimen was slack, or preloaded, at the recorded stretch 1.
 
@@ -34,7 +36,7 @@ STRAIN_OFFSET = HomogeneousEffect(
     bounds=(-0.1, 0.1),
     prior_scale=0.03,
     shift=_shift_strain_offset,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -60,7 +62,7 @@ MACHINE_COMPLIANCE = HomogeneousEffect(
     prior_scale=2e-8,
     bounds_in=_bounds_machine_compliance,
     yields=1.0,
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -83,7 +85,7 @@ PLATEN_FRICTION = HomogeneousEffect(
     prior_scale=0.2,
     factor=_factor_platen_friction,
     applies_to=lambda record: goes_into_compression(record.mode, record.stretch),
-    scopes=("mode", "trial"),
+    scopes=SCOPES,
 )
 
 

@@ -17,6 +17,8 @@ from tisim import Mesh, Poke
 
 Array = NDArray[np.float64]
 
+SCOPES = ("rod", "trial")
+
 # -- friction --
 # The coefficient of friction is lower (or higher) than assumed: the surface slips along the indenter's tip.
 
@@ -46,7 +48,7 @@ FRICTION = IndentationEffect(
     straight=True,
     finer=True,
     retracts=True,
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -95,7 +97,7 @@ ROD_ANGLE = IndentationEffect(
     fits=_fits_rod_angle,
     variants=_variants_rod_angle,
     variant_label=lambda variant: "across its plane" if variant == ACROSS else "in its plane",
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -114,7 +116,7 @@ DEPTH_OFFSET = IndentationEffect(
     bounds=(-2e-3, 2e-3),
     prior_scale=0.5e-3,
     shift=_shift_depth_offset,
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -135,7 +137,7 @@ FORCE_GAIN = IndentationEffect(
     force=_force_gain,
     stage=4,
     identifiable=compared_with_others,
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
     action="hang a known weight on the load cell",
 )
 
@@ -156,7 +158,7 @@ FORCE_OFFSET = IndentationEffect(
     prior_scale=0.1,
     force=_force_offset,
     stage=5,
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -176,5 +178,5 @@ FORCE_DRIFT = IndentationEffect(
     prior_scale=0.02,
     force=_force_drift,
     stage=5,
-    scopes=("rod", "trial"),
+    scopes=SCOPES,
 )

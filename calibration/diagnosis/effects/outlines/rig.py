@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
+from calibration.measurements._effect import added_to
 from calibration.measurements.outlines._effect import (
     OutlineEffect,
     Situation,
@@ -46,21 +47,12 @@ GRIP_LENGTH = OutlineEffect(
 # Compliant clamps: they rotate in proportion to their bending moment.
 
 
-def _bend_clamp_compliance(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(
-        beam,
-        clamp_imperfections=replace(
-            beam.clamp_imperfections, compliance=beam.clamp_imperfections.compliance + amplitude
-        ),
-    )
-
-
 CLAMP_COMPLIANCE = OutlineEffect(
     effect=catalogue.CLAMP_COMPLIANCE,
     step=1.0,
     bounds=(0.0, 20.0),
     prior_scale=8.0,
-    bend=_bend_clamp_compliance,
+    bend=added_to(Beam, "clamp_imperfections.compliance"),
 )
 
 
@@ -68,19 +60,12 @@ CLAMP_COMPLIANCE = OutlineEffect(
 # Tilted clamp: its face is rotated, so that the beam leaves it upwards (positive) or downwards.
 
 
-def _bend_clamp_tilt(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(
-        beam,
-        clamp_imperfections=replace(beam.clamp_imperfections, tilt=beam.clamp_imperfections.tilt + amplitude),
-    )
-
-
 CLAMP_TILT = OutlineEffect(
     effect=catalogue.CLAMP_TILT,
     step=5e-3,
     bounds=(-0.1, 0.1),
     prior_scale=0.05,
-    bend=_bend_clamp_tilt,
+    bend=added_to(Beam, "clamp_imperfections.tilt"),
 )
 
 
@@ -107,16 +92,12 @@ GRAVITY_TILT = OutlineEffect(
 # A cantilever has slipped in its grip: its free length is longer (positive) or shorter than measured.
 
 
-def _bend_free_length(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(beam, length=beam.length + amplitude)
-
-
 FREE_LENGTH = OutlineEffect(
     effect=catalogue.FREE_LENGTH,
     step=5e-4,
     bounds=(-8e-3, 8e-3),
     prior_scale=2e-3,
-    bend=_bend_free_length,
+    bend=added_to(Beam, "length"),
     applies_to=cantilever,
 )
 
@@ -125,21 +106,12 @@ FREE_LENGTH = OutlineEffect(
 # The grip squeezes the section: its height is smaller, and its width larger, by this fraction.
 
 
-def _bend_grip_squeeze(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(
-        beam,
-        clamp_imperfections=replace(
-            beam.clamp_imperfections, squeeze=beam.clamp_imperfections.squeeze + amplitude
-        ),
-    )
-
-
 GRIP_SQUEEZE = OutlineEffect(
     effect=catalogue.GRIP_SQUEEZE,
     step=0.02,
     bounds=(0.0, 0.25),
     prior_scale=0.1,
-    bend=_bend_grip_squeeze,
+    bend=added_to(Beam, "clamp_imperfections.squeeze"),
 )
 
 

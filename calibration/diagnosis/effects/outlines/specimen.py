@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.diagnosis import catalogue
+from calibration.measurements._effect import added_to
 from calibration.measurements.outlines._effect import (
     OutlineEffect,
     Situation,
@@ -44,18 +45,12 @@ RADIUS = OutlineEffect(
 # Taper: the section grows (positive) or shrinks linearly along the beam, about the middle of its free length.
 
 
-def _bend_taper(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(
-        beam, imperfections=replace(beam.imperfections, taper=beam.imperfections.taper + amplitude)
-    )
-
-
 TAPER = OutlineEffect(
     effect=catalogue.TAPER,
     step=0.1,
     bounds=(-1.5, 1.5),
     prior_scale=0.5,
-    bend=_bend_taper,
+    bend=added_to(Beam, "imperfections.taper"),
 )
 
 
@@ -63,17 +58,12 @@ TAPER = OutlineEffect(
 # The modulus varies linearly along the beam (a mixture that settled), about the middle of its free length.
 
 
-def _bend_stiffness_gradient_axial(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    grown = beam.imperfections.axial_gradient + amplitude
-    return replace(beam, imperfections=replace(beam.imperfections, axial_gradient=grown))
-
-
 STIFFNESS_GRADIENT_AXIAL = OutlineEffect(
     effect=catalogue.STIFFNESS_GRADIENT_AXIAL,
     step=0.5,
     bounds=(-9.0, 9.0),
     prior_scale=4.0,
-    bend=_bend_stiffness_gradient_axial,
+    bend=added_to(Beam, "imperfections.axial_gradient"),
 )
 
 
@@ -81,17 +71,12 @@ STIFFNESS_GRADIENT_AXIAL = OutlineEffect(
 # The modulus varies linearly from the lower to the upper side (a filler that settled while curing).
 
 
-def _bend_stiffness_gradient_transverse(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    grown = beam.imperfections.transverse_gradient + amplitude
-    return replace(beam, imperfections=replace(beam.imperfections, transverse_gradient=grown))
-
-
 STIFFNESS_GRADIENT_TRANSVERSE = OutlineEffect(
     effect=catalogue.STIFFNESS_GRADIENT_TRANSVERSE,
     step=2.0,
     bounds=(-80.0, 80.0),
     prior_scale=40.0,
-    bend=_bend_stiffness_gradient_transverse,
+    bend=added_to(Beam, "imperfections.transverse_gradient"),
 )
 
 
@@ -99,18 +84,12 @@ STIFFNESS_GRADIENT_TRANSVERSE = OutlineEffect(
 # Residual curvature from casting: the stress-free beam is an arc, curved upwards if positive.
 
 
-def _bend_residual_curvature(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(
-        beam, imperfections=replace(beam.imperfections, curvature=beam.imperfections.curvature + amplitude)
-    )
-
-
 RESIDUAL_CURVATURE = OutlineEffect(
     effect=catalogue.RESIDUAL_CURVATURE,
     step=0.1,
     bounds=(-4.0, 4.0),
     prior_scale=1.0,
-    bend=_bend_residual_curvature,
+    bend=added_to(Beam, "imperfections.curvature"),
 )
 
 
@@ -155,16 +134,12 @@ VOID = OutlineEffect(
 # A surface layer of 1 mm is stiffer than the core by this fraction; locking elements have the same effect.
 
 
-def _bend_skin(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    return replace(beam, imperfections=replace(beam.imperfections, skin=beam.imperfections.skin + amplitude))
-
-
 SKIN = OutlineEffect(
     effect=catalogue.SKIN,
     step=0.1,
     bounds=(-0.9, 3.0),
     prior_scale=1.0,
-    bend=_bend_skin,
+    bend=added_to(Beam, "imperfections.skin"),
 )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from calibration.diagnosis import catalogue
 from calibration.diagnosis.effects._material_parts import branches, stiffening
-from calibration.measurements._effect import HandedOn, Occurrence
+from calibration.measurements._effect import HandedOn, Occurrence, added_to
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._record import reference_time
@@ -108,16 +108,12 @@ RELAXATION = ReleaseEffect(
 # moment proportional to the cube of the curvature.
 
 
-def _alter_strain_stiffening(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, stiffening=s.stiffening + amplitude)
-
-
 STRAIN_STIFFENING = ReleaseEffect(
     effect=catalogue.STRAIN_STIFFENING,
     step=0.001,
     bounds=(-6.0, 10.0),
     prior_scale=1.5,
-    alter=_alter_strain_stiffening,
+    alter=added_to(BeamParameters, "stiffening"),
     action="hang a larger mass; pull a coupon to large strain",
     hands_on=stiffening,
 )
@@ -127,16 +123,12 @@ STRAIN_STIFFENING = ReleaseEffect(
 # Residual curvature from casting: the stress-free beam is an arc, curved upwards if positive.
 
 
-def _alter_residual_curvature(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, curvature=s.curvature + amplitude)
-
-
 RESIDUAL_CURVATURE = ReleaseEffect(
     effect=catalogue.RESIDUAL_CURVATURE,
     step=0.0001,
     bounds=(-2.0, 2.0),
     prior_scale=0.5,
-    alter=_alter_residual_curvature,
+    alter=added_to(BeamParameters, "curvature"),
     action="turn the beam by 180 degrees about its axis",
 )
 
@@ -145,16 +137,12 @@ RESIDUAL_CURVATURE = ReleaseEffect(
 # Axial stiffness gradient: the beam is stiffer towards its free end (positive) or its clamp (negative).
 
 
-def _alter_stiffness_gradient_axial(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, axial_gradient=s.axial_gradient + amplitude)
-
-
 STIFFNESS_GRADIENT_AXIAL = ReleaseEffect(
     effect=catalogue.STIFFNESS_GRADIENT_AXIAL,
     step=0.001,
     bounds=(-8.0, 8.0),
     prior_scale=1.5,
-    alter=_alter_stiffness_gradient_axial,
+    alter=added_to(BeamParameters, "axial_gradient"),
     action="swap the beam's ends",
 )
 

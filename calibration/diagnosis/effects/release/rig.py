@@ -7,15 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.diagnosis import catalogue
+from calibration.measurements._effect import added_to
 from calibration.measurements.release._beam import BeamParameters, Pair
 from calibration.measurements.release._effect import ReleaseEffect, hung
 
+SCOPES = ("load", "trial")
+
 # -- clamp-compliance --
 # Compliant clamp: it rotates in proportion to its bending moment.
-
-
-def _alter_clamp_compliance(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, clamp_compliance=s.clamp_compliance + amplitude)
 
 
 CLAMP_COMPLIANCE = ReleaseEffect(
@@ -23,8 +22,8 @@ CLAMP_COMPLIANCE = ReleaseEffect(
     step=1e-05,
     bounds=(0.0, 1.0),
     prior_scale=0.2,
-    alter=_alter_clamp_compliance,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "clamp_compliance"),
+    scopes=SCOPES,
 )
 
 
@@ -32,17 +31,13 @@ CLAMP_COMPLIANCE = ReleaseEffect(
 # Compliant clamp: it sinks in proportion to its force.
 
 
-def _alter_clamp_sag(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, clamp_sag=s.clamp_sag + amplitude)
-
-
 CLAMP_SAG = ReleaseEffect(
     effect=catalogue.CLAMP_SAG,
     step=1e-07,
     bounds=(0.0, 3e-3),
     prior_scale=5e-4,
-    alter=_alter_clamp_sag,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "clamp_sag"),
+    scopes=SCOPES,
 )
 
 
@@ -50,17 +45,13 @@ CLAMP_SAG = ReleaseEffect(
 # The clamp holds the beam this far behind (positive) or in front of its face.
 
 
-def _alter_grip_length(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, grip_depth=s.grip_depth + amplitude)
-
-
 GRIP_LENGTH = ReleaseEffect(
     effect=catalogue.GRIP_LENGTH,
     step=1e-06,
     bounds=(-1e-2, 1e-2),
     prior_scale=3e-3,
-    alter=_alter_grip_length,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "grip_depth"),
+    scopes=SCOPES,
     action="clamp a metal bar and measure where the clamp holds it",
 )
 
@@ -84,7 +75,7 @@ GRAVITY_TILT = ReleaseEffect(
     bounds=(-0.4, 0.4),
     prior_scale=0.08,
     alter=_alter_gravity_tilt,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
     action="level the rig, or hang a plumb line in view",
 )
 
@@ -93,17 +84,13 @@ GRAVITY_TILT = ReleaseEffect(
 # Mass-proportional damping: a drag force proportional to velocity and mass.
 
 
-def _alter_air_drag(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, mass_damping=s.mass_damping + amplitude)
-
-
 AIR_DRAG = ReleaseEffect(
     effect=catalogue.AIR_DRAG,
     step=0.0002,
     bounds=(0.0, 20.0),
     prior_scale=1.0,
-    alter=_alter_air_drag,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "mass_damping"),
+    scopes=SCOPES,
 )
 
 
@@ -123,7 +110,7 @@ ADDED_MASS = ReleaseEffect(
     bounds=(-2e-2, 4e-2),
     prior_scale=5e-3,
     alter=_alter_added_mass,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
     action="weigh what hangs on the free end: markers, string and hook too",
 )
 
@@ -132,18 +119,14 @@ ADDED_MASS = ReleaseEffect(
 # The hung mass acts above (or below) the centre of the end face: its lever arm changes as the face rotates.
 
 
-def _alter_load_height(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, load_height=s.load_height + amplitude)
-
-
 LOAD_HEIGHT = ReleaseEffect(
     effect=catalogue.LOAD_HEIGHT,
     step=1e-05,
     bounds=(-5e-2, 5e-2),
     prior_scale=2e-2,
-    alter=_alter_load_height,
+    alter=added_to(BeamParameters, "load_height"),
     applies_to=hung,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -165,7 +148,7 @@ LOOSE_LOAD = ReleaseEffect(
     alter=_alter_loose_load,
     applies_to=hung,
     further=True,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -175,19 +158,15 @@ LOOSE_LOAD = ReleaseEffect(
 # until it stops.
 
 
-def _alter_rubbing_load(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, rubbing=s.rubbing + amplitude)
-
-
 RUBBING_LOAD = ReleaseEffect(
     effect=catalogue.RUBBING_LOAD,
     step=1e-07,
     bounds=(0.0, 2e-3),
     prior_scale=2e-4,
-    alter=_alter_rubbing_load,
+    alter=added_to(BeamParameters, "rubbing"),
     applies_to=hung,
     further=True,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -196,18 +175,14 @@ RUBBING_LOAD = ReleaseEffect(
 # deflection at equilibrium. Displacements are relative to that position, so that they are smaller or larger.
 
 
-def _alter_held_pose(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, held_below=s.held_below + amplitude)
-
-
 HELD_POSE = ReleaseEffect(
     effect=catalogue.HELD_POSE,
     step=1e-07,
     bounds=(-2e-3, 2e-3),
     prior_scale=3e-4,
-    alter=_alter_held_pose,
+    alter=added_to(BeamParameters, "held_below"),
     further=True,
-    scopes=("load", "trial"),
+    scopes=SCOPES,
 )
 
 
@@ -215,17 +190,13 @@ HELD_POSE = ReleaseEffect(
 # Scale error of the cameras: displacements are too large (positive) or too small.
 
 
-def _alter_image_scale(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, image_scale=s.image_scale + amplitude)
-
-
 IMAGE_SCALE = ReleaseEffect(
     effect=catalogue.IMAGE_SCALE,
     step=1e-05,
     bounds=(-0.2, 0.2),
     prior_scale=0.01,
-    alter=_alter_image_scale,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "image_scale"),
+    scopes=SCOPES,
     action="move a marker by a known distance in view",
 )
 
@@ -234,17 +205,13 @@ IMAGE_SCALE = ReleaseEffect(
 # The camera frame is rotated about y relative to the beam's frame.
 
 
-def _alter_camera_roll(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, camera_roll=s.camera_roll + amplitude)
-
-
 CAMERA_ROLL = ReleaseEffect(
     effect=catalogue.CAMERA_ROLL,
     step=1e-05,
     bounds=(-0.3, 0.3),
     prior_scale=0.04,
-    alter=_alter_camera_roll,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "camera_roll"),
+    scopes=SCOPES,
     action="put a gauge along the beam in view",
 )
 
@@ -253,15 +220,11 @@ CAMERA_ROLL = ReleaseEffect(
 # The cameras' clock is slow (positive: more time has passed than recorded) or fast.
 
 
-def _alter_clock_rate(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    return replace(s, clock_rate=s.clock_rate + amplitude)
-
-
 CLOCK_RATE = ReleaseEffect(
     effect=catalogue.CLOCK_RATE,
     step=1e-06,
     bounds=(-0.2, 0.2),
     prior_scale=0.002,
-    alter=_alter_clock_rate,
-    scopes=("load", "trial"),
+    alter=added_to(BeamParameters, "clock_rate"),
+    scopes=SCOPES,
 )
