@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, lsq_linear
 
 from calibration.inference.problem import Problem
 
@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 STALLED = 10  # steps that together may gain less than a tenth of what counts as settled, before it ends
 AT_BOUND = 1e-3  # of its range: so near to a bound, a coordinate that is pushed there counts as being there
+LEAST = 1e-9  # room of a coordinate at its bound: the linear problem takes no empty interval
 SHORTEST = 1e-5  # relative length of a step below which no step is said to lower chi-square
 
 
@@ -120,6 +121,10 @@ class _Descent:
         self._steps = difference * problem.parametrisation.spread
         self._costs: list[float] = []
         self._seen: tuple[Array, Array] = (np.empty(0), np.empty(0))  # the last point, and its residuals
+        self.u: Array = np.empty(0)
+        self.residuals: Array = np.empty(0)
+        self.jacobian: Array = np.empty((0, 0))
+        self.promise = np.inf
 
     @property
     def steps(self) -> int:
@@ -155,18 +160,14 @@ class _Descent:
 
     def _jacobian(self, u: Array) -> Array:
         """Jacobian (m, n) at an accepted point; _EndedError where the descent ends there."""
+        if np.array_equal(u, self.u):
+            return self.jacobian
         residuals = self._residuals(u)
         if not np.isfinite(residuals).all():
             raise ValueError("no equilibrium at a point of the polish")
         jacobian = self._differences(u, residuals)
         self.u, self.residuals, self.jacobian = u.copy(), residuals, jacobian
-        gradient = jacobian.T @ residuals
-        near = AT_BOUND * (self._bounds[:, 1] - self._bounds[:, 0])
-        free = ~(
-            ((u <= self._bounds[:, 0] + near) & (gradient > 0))
-            | ((u >= self._bounds[:, 1] - near) & (gradient < 0))
-        )
-        self.promise = _promise(gradient[free], jacobian[:, free])
+        self.promise = self._promise()
         self._costs.append(float(residuals @ residuals))
         if self.promise < self._tolerance:
             raise _EndedError
@@ -178,6 +179,17 @@ class _Descent:
         if self.steps >= self._most:
             raise _EndedError(f"not converged in {self._most} steps")
         return jacobian
+
+    def _promise(self) -> float:
+        """Chi-square that the best step within the bounds would gain, by the quadratic model."""
+        room = self._bounds - self.u[:, None]
+        step = lsq_linear(
+            self.jacobian,
+            -self.residuals,
+            bounds=(np.minimum(room[:, 0], -LEAST), np.maximum(room[:, 1], LEAST)),
+        ).x
+        left = self.residuals + self.jacobian @ step
+        return float(self.residuals @ self.residuals - left @ left)
 
     def _differences(self, u: Array, residuals: Array) -> Array:
         """Jacobian (m, n) by central differences, one batch of scenes; where a neighbour outside the law's
@@ -197,9 +209,3 @@ class _Descent:
                 )
             jacobian[:, i] = (b - d) / (a - c)
         return jacobian
-
-
-def _promise(gradient: Array, jacobian: Array) -> float:
-    if not len(gradient):
-        return 0.0
-    return float(gradient @ np.linalg.lstsq(jacobian.T @ jacobian, gradient, rcond=1e-12)[0])
