@@ -186,6 +186,11 @@ class BeamTrial:
     markers: tuple[Marker, ...] = ()
     marker_sd: float | None = None
 
+    @property
+    def traced(self) -> bool:
+        """True if the outline of at least one photograph is traced."""
+        return any(c.outline is not None for c in self.captures)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PokeRecord:

@@ -141,11 +141,8 @@ class Row:
 
 def traced_beams(experiment: Experiment, material: str) -> list[BeamTrial]:
     """Beams of a material with at least one traced outline."""
-    return [
-        t
-        for t in experiment.trials
-        if isinstance(t, BeamTrial) and t.material == material and any(c.outline for c in t.captures)
-    ]
+    own = [t for t in experiment.trials if t.material == material]
+    return [t for t in own if isinstance(t, BeamTrial) and t.traced]
 
 
 def row(

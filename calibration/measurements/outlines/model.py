@@ -105,9 +105,7 @@ class OutlineModel(MeasurementModel):
         baseline: Baseline | None = None,
         setup: Setup | None = None,
     ) -> None:
-        self.trials = [
-            t for t in experiment.trials if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)
-        ]
+        self.trials = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.traced]
         if not self.trials:
             raise InputError("experiment.yaml: trials: expected a beam with a traced outline")
         for name in dict.fromkeys(t.material for t in self.trials):
