@@ -4,23 +4,29 @@ A new kind is one file with a `MeasurementModel`, and one registration::
 
     register(Kind(name="torsion", holds=lambda experiment: ..., load=lambda: TorsionModel))
 
-A kind that supports fits of time-dependent parts has `over_time`, which is also imported when needed::
+A kind that a fit and predictions compare has `compares`, and one that supports fits of time-dependent parts
+has `over_time`, which is also imported when needed::
 
     register(Kind(..., compares=lambda experiment: ..., over_time=lambda: OVER_TIME))
+
+The order of registration is that of objectives in a fit and of kinds in a prediction.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, CouponTrial, Experiment, PokeTrial, Trial
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._contribution import Contribute, Contribution, FitContext, ObjectiveName
 from calibration.measurements._effect import EffectModel
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._over_time import OverTime
+from calibration.measurements.objective import ModelObjective
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,13 +38,16 @@ class Kind:
     name : name on the command line and in reports.
     holds : function that is True for an experiment with trials of this kind.
     load : function that imports and returns the model class, which is called with an experiment, `effects`,
-        and those options of `build` that `takes` names.
+        those options of `build` that `takes` names and, if the kind has `compares`, `baseline`.
     refines : name of a kind to which the same trials belong; if no kind is named, this one is selected if
         `claims` is True for the experiment, else the other.
-    takes : options of its model: workers, simulator; law, terms and richer (of the baseline).
+    takes : options of its model: workers, simulator, setup; law, terms and richer (of the baseline).
     old_name : name in earlier versions, still accepted.
     compares : function from an experiment of one material to the trials that a fit compares with this kind's
         model; empty for a kind that is only diagnosed.
+    objectives : functions that import what it brings to a fit, by the objective's name; if there is no
+        likelihood among them, it is that of its model.
+    plural : its trials in the name of that likelihood ("pokes"); its own name if left out.
     over_time : function that imports its support of viscosity, softening and fibres; None if it has none.
     """
 
@@ -50,6 +59,8 @@ class Kind:
     takes: tuple[str, ...] = ()
     old_name: str = ""
     compares: Callable[[Experiment], Sequence[Trial]] = lambda _: ()
+    objectives: Mapping[ObjectiveName, Callable[[], Contribute]] = field(default_factory=dict)
+    plural: str = ""
     over_time: Callable[[], OverTime] | None = None
 
 
@@ -112,36 +123,52 @@ def compared(experiment: Experiment) -> list[tuple[Kind, Experiment]]:
 
 
 def build(
-    kind: Kind, experiment: Experiment, *, effects: Mapping[str, EffectModel], **options: Any
+    kind: Kind,
+    experiment: Experiment,
+    *,
+    effects: Mapping[str, EffectModel] | None = None,
+    baseline: Baseline | None = None,
+    **options: Any,
 ) -> MeasurementModel:
     """Build the model of an experiment's measurements of a kind.
 
+    baseline : of a law that is fitted or predicted from; None for the kind's own.
     options : see `Kind.takes`; options that the kind does not take are ignored.
     """
     own = {n: v for n, v in options.items() if n in kind.takes}
-    return kind.load()(experiment, effects=effects, **own)
+    if baseline is not None:
+        own["baseline"] = baseline
+    return kind.load()(experiment, effects=effects or {}, **own)
 
 
-def _loader(module: str, name: str) -> Callable[[], Callable[..., MeasurementModel]]:
-    def load() -> Callable[..., MeasurementModel]:
-        found: Callable[..., MeasurementModel] = getattr(
-            import_module(f"calibration.measurements.{module}.model"), name
-        )
-        return found
+def contribution(
+    kind: Kind, own: Experiment, context: FitContext, objective: ObjectiveName = "likelihood"
+) -> Contribution | None:
+    """What a kind brings to a fit of an experiment of its trials of one material; None if it has no such
+    objective."""
+    if objective in kind.objectives:
+        return kind.objectives[objective]()(own, context)
+    if objective != "likelihood":
+        return None
+    model = build(
+        kind,
+        own,
+        baseline=Baseline.of_law(own.trials, context.law),
+        workers=context.workers,
+        simulator=context.simulator,
+        setup=context.setup,
+    )
+    name = f"{kind.plural or kind.name} {', '.join(t.id for t in own.trials)}"
+    return Contribution(objectives=(ModelObjective(model, name=name),), left_out=tuple(model.left_out()))
 
-    return load
+
+def _late(module: str, name: str) -> Callable[[], Any]:
+    """Function that imports a name of a module of `calibration.measurements` when it is called."""
+    return lambda: getattr(import_module(f"calibration.measurements.{module}"), name)
 
 
-def _follower(module: str) -> Callable[[], OverTime]:
-    def load() -> OverTime:
-        found: OverTime = import_module(f"calibration.measurements.{module}.over_time").OVER_TIME
-        return found
-
-    return load
-
-
-def _traced(experiment: Experiment) -> list[Trial]:
-    return [t for t in experiment.trials if isinstance(t, BeamTrial) and any(c.outline for c in t.captures)]
+def _outlined(experiment: Experiment) -> list[Trial]:
+    return [t for t in experiment.trials if isinstance(t, BeamTrial) and t.traced]
 
 
 def _marked(experiment: Experiment) -> list[Trial]:
@@ -170,57 +197,62 @@ register(
     Kind(
         name="outlines",
         holds=lambda e: any(isinstance(t, BeamTrial) for t in e.trials),
-        load=_loader("outlines", "OutlineModel"),
-        takes=("workers", "simulator"),
+        load=_late("outlines.model", "OutlineModel"),
+        takes=("workers", "simulator", "setup"),
         old_name="beams",
-        compares=_traced,
-        over_time=_follower("outlines"),
-    )
-)
-register(
-    Kind(
-        name="indentation",
-        holds=lambda e: any(isinstance(t, PokeTrial) for t in e.trials),
-        load=_loader("indentation", "IndentationModel"),
-        takes=("workers",),
-        old_name="pokes",
-        compares=_pushed,
-        over_time=_follower("indentation"),
+        compares=_outlined,
+        objectives={"dice": _late("outlines.dice", "overlap")},
+        over_time=_late("outlines.over_time", "OVER_TIME"),
     )
 )
 register(
     Kind(
         name="homogeneous",
         holds=lambda e: any(isinstance(t, CouponTrial) for t in e.trials),
-        load=_loader("homogeneous", "HomogeneousModel"),
+        load=_late("homogeneous.model", "HomogeneousModel"),
         takes=("law", "terms", "richer"),
         old_name="coupons",
         compares=lambda e: [] if _all_compressed(e) else _coupons(e),
-        over_time=_follower("homogeneous"),
+        plural="coupons",
+        over_time=_late("homogeneous.over_time", "OVER_TIME"),
     )
 )
 register(
     Kind(
         name="compression",
         holds=lambda e: any(_compressed(e)),
-        load=_loader("compression", "CompressionModel"),
+        load=_late("compression.model", "CompressionModel"),
         refines="homogeneous",
         claims=_all_compressed,
         old_name="presses",
         compares=lambda e: _coupons(e) if _all_compressed(e) else [],
-        over_time=_follower("compression"),
+        plural="coupons",
+        over_time=_late("compression.over_time", "OVER_TIME"),
+    )
+)
+register(
+    Kind(
+        name="indentation",
+        holds=lambda e: any(isinstance(t, PokeTrial) for t in e.trials),
+        load=_late("indentation.model", "IndentationModel"),
+        takes=("workers",),
+        old_name="pokes",
+        compares=_pushed,
+        plural="pokes",
+        over_time=_late("indentation.over_time", "OVER_TIME"),
     )
 )
 register(
     Kind(
         name="release",
         holds=lambda e: bool(_marked(e)),
-        load=_loader("release", "ReleaseModel"),
+        load=_late("release.model", "ReleaseModel"),
         refines="outlines",
-        claims=lambda e: not _traced(e),
+        claims=lambda e: not _outlined(e),
         takes=("workers",),
         old_name="bars",
         compares=_marked,
-        over_time=_follower("release"),
+        objectives={"likelihood": _late("release.contribution", "likelihood")},
+        over_time=_late("release.over_time", "OVER_TIME"),
     )
 )

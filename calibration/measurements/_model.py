@@ -139,6 +139,10 @@ class MeasurementModel(NoisyModel):
         """Sentences on assumptions and limits of the model, for the verdict."""
         return []
 
+    def left_out(self) -> list[str]:
+        """A sentence for each part of a record that is not compared, for a fit's report."""
+        return []
+
     def shortcomings(self) -> list[str]:
         """Sentences on deficiencies of the simulation at the last update of nuisances, for a fit's report."""
         return []

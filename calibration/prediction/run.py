@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.inference import WIDTH
 from calibration.measurements._baseline import SCATTER, Baseline
-from calibration.measurements._kinds import Kind, compared
+from calibration.measurements._kinds import Kind, build, compared
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.parameters import OPTIONS
@@ -260,11 +260,10 @@ def _by_cards(
 ) -> tuple[list[Record], list[str]]:
     """Records with their predictions; where these lie outside of what the cards' effects were measured in."""
     made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
-    options: dict[str, Any] = {"workers": workers} if "workers" in kind.takes else {}
     try:
         for name, m in models.items():
             _check_parts(kind, own, m)
-            model = kind.load()(own, baseline=Baseline.of_law(own.trials, m.law), **options)
+            model = build(kind, own, baseline=Baseline.of_law(own.trials, m.law), workers=workers)
             made[name] = (model, _from_card(model, m, scatter))
         test = next(iter(made.values()))[0]
         records = predict_records(test, made)

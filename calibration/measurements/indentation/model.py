@@ -73,7 +73,6 @@ class IndentationModel(MeasurementModel):
     Attributes
     ----------
     noise : noise; before `update_nuisances`, that of the load cell only.
-    left_out : a sentence for each record that is not compared as a whole.
 
     Raises
     ------
@@ -132,12 +131,12 @@ class IndentationModel(MeasurementModel):
         that have these forces.
         """
         compared, not_compared = self._part(records_of(trials, self._geometry, courses=self._remembers))
-        self.records, self.left_out = compared, not_compared
+        self.records, self._left_out = compared, not_compared
         if self._fits_law:  # simulated where nuisances are taken
             check_pushed(compared)
         else:
             self.records, ended = reached(self.curves, compared)
-            self.left_out += ended
+            self._left_out += ended
         self.row_record = np.concatenate([np.repeat(k, n) for k, n in self._row_blocks()])
         own = [r.own_sd for r in self.records]
         across = [np.repeat(r.own_sd, 2) for r in self.records if r.across is not None]
@@ -363,9 +362,12 @@ class IndentationModel(MeasurementModel):
 
     # -- for reports --
 
+    def left_out(self) -> list[str]:
+        return list(self._left_out)
+
     def remarks(self) -> list[str]:
         """Sentences on points left out, estimated errors, assumed order of trials, and missing effects."""
-        found = list(self.left_out)
+        found = self.left_out()
         guessed = [r for r in self.records if r.estimated]
         if guessed:
             relative = [

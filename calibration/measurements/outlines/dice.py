@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 from calibration import metrics
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, MaterialBelief
+from calibration.experiment.model import BeamTrial, Experiment, MaterialBelief
+from calibration.inference import OfMaterial
+from calibration.measurements._contribution import Contribution, FitContext
 from calibration.measurements.outlines.fidelity import Fidelity, beam_scene
 from calibration.shape import body_mesh, centreline, sweep
 from tisim import Beam, Material, Result, simulate
@@ -85,7 +87,7 @@ class DiceObjective:
                 f"experiment.yaml: materials.{belief.name}.density_kg_m3: expected, since a beam's shape"
                 " tells only the ratio of weight to stiffness"
             )
-        self.trials = [t for t in trials if any(c.outline for c in t.captures)]
+        self.trials = [t for t in trials if t.traced]
         if not self.trials:
             raise InputError(f"material {belief.name}: expected at least one beam with a traced outline")
         self.name = f"Dice of {belief.name}"
@@ -131,6 +133,16 @@ class DiceObjective:
 
     def _beam(self, trial: BeamTrial, material: Material) -> Beam:
         return beam_scene(trial, material, density=self.density, fidelity=self.fidelity)
+
+
+def overlap(own: Experiment, context: FitContext) -> Contribution:
+    """Objective of traced beams of one material. InputError if the setup is known, which only a likelihood
+    can use."""
+    if context.setup is not None:
+        raise InputError("a known rig corrects outlines: expected the objective likelihood, not dice")
+    beams = [t for t in own.trials if isinstance(t, BeamTrial)]
+    dice = DiceObjective(beams, own.materials[beams[0].material], workers=context.workers)
+    return Contribution(objectives=(OfMaterial(context.law, dice),))
 
 
 def measured_bodies(trial: BeamTrial, *, index: int = 0) -> list[MeasuredBody]:

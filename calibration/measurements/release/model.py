@@ -245,7 +245,6 @@ class ReleaseModel(MeasurementModel):
         }
 
     def left_out(self) -> list[str]:
-        """A phrase for each part of a record that is not compared."""
         names = [r.name for r in self.records if r.loaded and viscous(self.baseline)]
         return [
             f"{n}: the free vibration with its hung mass, which is damped by how it hangs too" for n in names

@@ -1,0 +1,70 @@
+"""Contribution of beams with markers to fits: `ReleaseModel` where they vibrate, FEM where they only rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from calibration.errors import InputError
+from calibration.experiment.model import BeamTrial, Experiment, MaterialBelief
+from calibration.inference import Objective, OfMaterial
+from calibration.measurements._baseline import Baseline
+from calibration.measurements._contribution import Contribution, FitContext
+from calibration.measurements.objective import ModelObjective
+from calibration.measurements.release._record import not_swinging
+from calibration.measurements.release.model import ReleaseModel
+from calibration.measurements.release.objective import MarkerObjective
+
+STEPS = 0.1  # of a search over moduli: 3 % of one put a vibration out of phase
+
+
+def likelihood(own: Experiment, context: FitContext) -> Contribution:
+    """Objectives of marked beams of one material.
+
+    A beam without a free vibration has no reduced beam to correct; its markers are compared where they come
+    to rest only.
+
+    Raises
+    ------
+    InputError
+        If the setup is known, which corrects outlines only, or a trial is incomplete.
+    """
+    trials = [t for t in own.trials if isinstance(t, BeamTrial)]
+    if context.setup is not None:
+        raise InputError(
+            f"trial {trials[0].id}: markers: a known rig corrects outlines, not markers: fit them apart"
+        )
+    why = {t.id: not_swinging(t, own) for t in trials}
+    swinging, still = [t for t in trials if not why[t.id]], [t for t in trials if why[t.id]]
+    left_out = [
+        f"{t.id}: the motion of its markers, only where they come to rest ({why[t.id]})" for t in still
+    ]
+    left_out += [
+        f"{t.id}: the height of its tip force: a body at rest is pulled all over its end"
+        for t in still
+        if t.tip_force_height
+    ]
+    objectives: list[Objective] = []
+    if swinging:
+        model = ReleaseModel(
+            replace(own, trials=tuple(swinging)),
+            baseline=Baseline.of_law(swinging, context.law.in_steps(STEPS)),
+            workers=context.workers,
+        )
+        left_out += model.left_out()
+        objectives.append(ModelObjective(model, name=f"markers of {', '.join(t.id for t in swinging)}"))
+    for t in still:
+        settled = settled_markers(t, own.materials[t.material], workers=context.workers)
+        objectives.append(OfMaterial(context.law, settled))
+    return Contribution(
+        objectives=tuple(objectives), left_out=tuple(left_out), steps=STEPS if swinging else 1.0
+    )
+
+
+def settled_markers(
+    trial: BeamTrial, belief: MaterialBelief, *, workers: int | None = None
+) -> MarkerObjective:
+    """Rest positions of a beam's markers: the mean of the last third of their record."""
+    first = min(float(m.time[0]) for m in trial.markers)
+    last = min(float(m.time[-1]) for m in trial.markers)
+    window = 2.0 / 3.0 * (last - first)
+    return MarkerObjective(trial, belief, stages=("settled",), window=window, workers=workers)
