@@ -79,6 +79,11 @@ def unregister(name: str) -> None:
     del _KINDS[name]
 
 
+def is_added(kind: Kind) -> bool:
+    """True for a kind from outside the package, which other processes may not know."""
+    return kind.name not in _OURS
+
+
 def kinds() -> tuple[str, ...]:
     """Names of all registered kinds."""
     return tuple(_KINDS)
@@ -256,3 +261,5 @@ register(
         over_time=_late("release.over_time", "OVER_TIME"),
     )
 )
+
+_OURS = frozenset(_KINDS)

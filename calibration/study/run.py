@@ -20,6 +20,7 @@ import numpy as np
 from calibration.errors import InputError
 from calibration.experiment import Experiment
 from calibration.inference import Generation, HistoryError
+from calibration.measurements._kinds import Kind, compared, is_added
 from calibration.measurements.outlines.setup import Setup
 from calibration.parameters import parametrisation, part_kind
 from calibration.progress import FitProgress, OnProgress
@@ -92,6 +93,13 @@ class Task:
     def name(self) -> str:
         return f"{self.material}-{self.label}"
 
+    @property
+    def added_kinds(self) -> list[Kind]:
+        """Kinds of measurement from outside the package whose trials it fits."""
+        mine = [t for t in self.experiment.trials if t.material == self.material]
+        found = compared(replace(self.experiment, trials=tuple(mine)))
+        return [kind for kind, _ in found if is_added(kind)]
+
     def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
         """Measurement models of the experiment that it fits."""
         law = parts.with_parts(
@@ -126,6 +134,7 @@ class Task:
             header["parts"] = list(self.parts)
         added = laws.added(self.law)
         own = [*(() if added is None else vars(added).values()), *(part_kind(s).make for s in self.parts)]
+        own += [kind.load for kind in self.added_kinds]
         if any(callable(thing) and not is_own(thing) for thing in own):
             header["code"] = digest_of_code(*own)
         if self.card is not None:
@@ -258,8 +267,8 @@ def _run(
     def show() -> None:
         on_progress(_progress(waiting, ended, total))
 
-    # a law of the caller's own is known to this process only
-    own = [t for t in waiting if _from_outside(t.law)]
+    # a law or kind of measurement of the caller's own is known to this process only
+    own = [t for t in waiting if laws.added(t.law) is not None or t.added_kinds]
     spread = [t for t in waiting if t not in own]
     if min(workers, len(spread)) == 1:
         own, spread = waiting, []
@@ -270,12 +279,6 @@ def _run(
         show()
     if spread:
         _run_spread(spread, workers, ended, show)
-
-
-def _from_outside(law: str) -> bool:
-    """True if a law was registered outside of tisim."""
-    added = getattr(laws, "added", None)  # tisim before its registry of laws has none
-    return added is not None and added(law) is not None
 
 
 def _run_spread(

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import calibration
 from calibration.diagnosis import catalogue, diagnose, kinds, model_of
+from calibration.errors import InputError
 from calibration.experiment import CouponTrial, Experiment, MaterialBelief
 from calibration.measurements import _kinds
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._basis import Columns, legendre
+from calibration.measurements._contribution import Contribution, FitContext
 from calibration.measurements._effect import Effect, EffectModel
 from calibration.measurements._kinds import Kind
 from calibration.measurements._model import MeasurementModel
@@ -22,9 +27,13 @@ from calibration.measurements._noise import Noise
 from calibration.measurements._state import State
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
 from calibration.measurements.homogeneous._record import Record
+from calibration.measurements.objective import ModelObjective
+from calibration.parameters import parametrisation
+from calibration.study import measurements
 
 Array = NDArray[np.float64]
 SHEAR = 3e4
+NEO = parametrisation("neo-hookean")
 
 # -- an effect --
 
@@ -111,6 +120,10 @@ class Twist:
     stiffness: float = 2e-9  # polar moment over length [m3]
 
     @property
+    def id(self) -> str:
+        return self.name
+
+    @property
     def specimen(self) -> str:
         return self.material
 
@@ -134,12 +147,14 @@ class TorsionModel(MeasurementModel):
     kind = "torsion"
     unit = ("mNm", 1e3)
 
-    def __init__(self, experiment: Experiment, *, effects: Mapping[str, EffectModel]) -> None:
+    def __init__(
+        self, experiment: Experiment, *, effects: Mapping[str, EffectModel], baseline: Baseline | None = None
+    ) -> None:
         self.records = [t for t in experiment.trials if isinstance(t, Twist)]
         self.effects = effects
         self.row_record = np.repeat(np.arange(len(self.records)), [r.angle.size for r in self.records])
         self.noise = Noise.independent(np.concatenate([np.full(r.angle.size, r.sd) for r in self.records]))
-        self.baseline = Baseline.per_specimen(self.records, bulk_ratio=1000.0)
+        self.baseline = baseline or Baseline.per_specimen(self.records, bulk_ratio=1000.0)
         self._set_candidates()
 
     def start(self) -> Array:
@@ -186,19 +201,28 @@ BACKLASH = TwistEffect(
 )
 
 
+def twists(experiment: Experiment) -> list[Any]:
+    return [t for t in experiment.trials if isinstance(t, Twist)]
+
+
+TORSION = Kind(name="torsion", holds=lambda e: bool(twists(e)), load=lambda: TorsionModel, compares=twists)
+
+
+@contextmanager
+def registered(kind: Kind) -> Iterator[None]:
+    _kinds.register(kind)
+    try:
+        yield
+    finally:
+        _kinds.unregister(kind.name)
+
+
 @pytest.fixture
 def torsion() -> Iterator[None]:
-    _kinds.register(
-        Kind(
-            name="torsion",
-            holds=lambda e: any(isinstance(t, Twist) for t in e.trials),
-            load=lambda: TorsionModel,
-        )
-    )
-    catalogue.register("torsion", BACKLASH)
-    yield
-    catalogue.unregister("torsion", "backlash")
-    _kinds.unregister("torsion")
+    with registered(TORSION):
+        catalogue.register("torsion", BACKLASH)
+        yield
+        catalogue.unregister("torsion", "backlash")
 
 
 def twisted(slack: float) -> Experiment:
@@ -233,6 +257,61 @@ def test_a_kind_of_ones_own_is_diagnosed(tmp_path: Path) -> None:
     # page and cards need no further code
     assert write_report(found, model, tmp_path, title="torsion")[0].exists()
     assert {p.name for p in write_cards(tmp_path / "cards", found, experiment)} == {"A.yaml", "rig.yaml"}
+
+
+@pytest.mark.usefixtures("torsion")
+def test_a_kind_of_ones_own_is_fitted_and_predicted(tmp_path: Path) -> None:
+    experiment = twisted(0.0)
+    # in this process, the only one that knows the kind
+    fits = calibration.fit(experiment, model=("neo-hookean", "mooney-rivlin"), workers=2)
+    found = fits[0]
+    assert found.status == "converged"
+    assert found.points == 180
+    assert found.shear_modulus_sd < 0.01 * SHEAR
+    assert abs(found.shear_modulus - SHEAR) < 3.0 * found.shear_modulus_sd
+    # page, cards and predictions need no further code
+    assert fits.write_report(tmp_path).exists()
+    fits.write_cards(tmp_path / "cards")
+    predicted = calibration.predict(experiment, cards=tmp_path / "cards").prediction
+    assert set(predicted.of_kind()) == {"torsion"}
+    assert predicted.rms(predicted.records, "extended") == pytest.approx(1e-7, rel=0.2)
+    with pytest.raises(
+        InputError, match="trial t0: --time: expected no torsion, which is not fitted with it"
+    ):
+        calibration.fit(experiment, model="neo-hookean", time="prony:1")
+
+
+@pytest.mark.usefixtures("torsion")
+def test_a_kind_of_ones_own_is_fitted_beside_others() -> None:
+    data = measurements(made(*twisted(0.0).trials, *pulled(0.0).trials), "A", NEO, workers=1)
+    assert [o.name for o in data.objectives] == ["coupons pull", "torsion t0, t1, t2"]
+    assert data.ignored == ()
+
+
+def test_an_objective_of_ones_own_replaces_the_likelihood() -> None:
+    """It states what it leaves out, and shortens the steps of a search over moduli."""
+
+    def first_alone(own: Experiment, context: FitContext) -> Contribution:
+        some = replace(own, trials=own.trials[:1])
+        model = TorsionModel(some, effects={}, baseline=Baseline.of_law(some.trials, context.law))
+        return Contribution(
+            objectives=(ModelObjective(model, name="first twist"),), left_out=("t1: unwound",), steps=0.1
+        )
+
+    with registered(replace(TORSION, objectives={"likelihood": lambda: first_alone})):
+        data = measurements(twisted(0.0), "A", NEO, workers=1)
+        assert [o.points for o in data.objectives] == [60]
+        assert data.ignored == ("t1: unwound",)
+        assert data.law.spread[0] == pytest.approx(0.1 * NEO.spread[0])
+        with pytest.raises(InputError, match="expected at least one beam with a traced outline"):
+            measurements(twisted(0.0), "A", NEO, objective="dice")
+
+
+def test_a_kind_that_compares_nothing_is_only_diagnosed() -> None:
+    with registered(replace(TORSION, compares=lambda _: ())):
+        data = measurements(made(*twisted(0.0).trials, *pulled(0.0).trials), "A", NEO, workers=1)
+        assert [o.name for o in data.objectives] == ["coupons pull"]
+        assert data.ignored[0] == "t0: no kind of measurement compares it in a fit"
 
 
 @pytest.mark.usefixtures("torsion")
