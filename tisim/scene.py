@@ -49,7 +49,7 @@ class Material:
     @property
     def has_parts(self) -> bool:
         """True if the material has viscosity, softening or fibres in addition to its law."""
-        return self.viscosity is not None or self.softening is not None or self.fibres is not None
+        return bool(parts.of(self))
 
     @property
     def remembers(self) -> bool:

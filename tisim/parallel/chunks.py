@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tisim import laws
+from tisim import laws, parts
 from tisim.mesh import Mesh, MeshError
 from tisim.parallel.extensions import Extension, needed
 from tisim.parallel.threads import one_thread
@@ -90,8 +90,8 @@ def _neighbourhood(scene: Any) -> tuple[Any, ...]:
     material = scene.material
     moduli = laws.get(material.law).moduli(material.parameters)
     parameters = sorted((name, repr(value)) for name, value in material.parameters.items())
-    others = (material.viscosity, material.softening, material.fibres)
-    return material.law, moduli.shear_modulus, moduli.bulk_modulus, repr(parameters), repr(others)
+    beside = repr(parts.of(material))
+    return material.law, moduli.shear_modulus, moduli.bulk_modulus, repr(parameters), beside
 
 
 def _portable(scene: Any) -> Any:

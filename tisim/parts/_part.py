@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -25,10 +26,14 @@ class Part(ABC):
         Class attribute: name in material cards; lower case, digits and hyphens.
     title : str
         Class attribute: name for display.
+    units : mapping of str to str, optional
+        Class attribute: unit behind the key of a parameter in material cards, by parameter ({"times": "s"}
+        for the key `times_s`); parameters without one are written under their names.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
+    units: ClassVar[Mapping[str, str]] = {}
 
     @abstractmethod
     def check(self) -> None:
@@ -118,3 +123,12 @@ class Fibres(Part):
         """The direction as a unit vector, shape (3,)."""
         a = np.asarray(self.direction, dtype=float)
         return np.asarray(a / np.linalg.norm(a))
+
+
+# What `tisim.Material` has in addition to its law: kind of part by field, which is also the key in a card.
+FIELDS: dict[str, type[Any]] = {"viscosity": Viscosity, "softening": Softening, "fibres": Fibres}
+
+
+def of(material: Any) -> dict[str, Part]:
+    """Parts of a `tisim.Material`, or of what has its fields of parts, by field; empty for a law alone."""
+    return {field: part for field in FIELDS if (part := getattr(material, field)) is not None}

@@ -11,6 +11,7 @@ terms relax both.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -52,6 +53,7 @@ class HolzapfelGasserOgden(Fibres):
 
     name: ClassVar[str] = "holzapfel-gasser-ogden"
     title: ClassVar[str] = "Holzapfel-Gasser-Ogden fibres"
+    units: ClassVar[Mapping[str, str]] = {"k1": "Pa"}
     energy: ClassVar[Any] = energy
 
     k1: float

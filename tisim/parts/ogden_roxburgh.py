@@ -18,6 +18,7 @@ the same stretch are not modelled.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -76,6 +77,7 @@ class OgdenRoxburgh(Softening):
 
     name: ClassVar[str] = "ogden-roxburgh"
     title: ClassVar[str] = "Ogden-Roxburgh"
+    units: ClassVar[Mapping[str, str]] = {"m": "J_per_m3"}
     energy: ClassVar[Any] = energy
 
     r: float

@@ -12,7 +12,7 @@ modulus in both cases.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -39,6 +39,7 @@ class Prony(Viscosity):
 
     name: ClassVar[str] = "prony"
     title: ClassVar[str] = "Prony series"
+    units: ClassVar[Mapping[str, str]] = {"times": "s"}
 
     fractions: tuple[float, ...]
     times: tuple[float, ...]

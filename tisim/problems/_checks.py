@@ -52,12 +52,8 @@ def check_material(material: Material) -> None:
         laws.get(material.law).pack(material.parameters)
     except (ValueError, TypeError) as error:
         raise FieldError("material.parameters", f"a sound set ({error})", dict(material.parameters)) from None
-    kinds = {"viscosity": parts.Viscosity, "softening": parts.Softening, "fibres": parts.Fibres}
-    for name, kind in kinds.items():
-        part = getattr(material, name)
-        if part is None:
-            continue
-        check_type(f"material.{name}", part, (kind,))
+    for name, part in parts.of(material).items():
+        check_type(f"material.{name}", part, (parts.FIELDS[name],))
         try:
             part.check()
         except FieldError as bad:
@@ -77,11 +73,10 @@ def check_parts(material: Material, takes: tuple[str, ...], name: str) -> None:
     name : str
         Name of the kind, for the error message.
     """
-    for part in ("viscosity", "softening", "fibres"):
-        value = getattr(material, part)
-        if value is not None and part not in takes:
+    for field, part in parts.of(material).items():
+        if field not in takes:
             raise FieldError(
-                f"material.{part}", f"None, since this {name} does not take it into account", value
+                f"material.{field}", f"None, since this {name} does not take it into account", part
             )
 
 

@@ -17,6 +17,7 @@ from tisim._checks import (
     check_within,
 )
 from tisim.bodies import Circle, Rectangle
+from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.problems._stops import shortest_time
@@ -86,7 +87,7 @@ def _check_course(scene: Beam) -> None:
 
 
 def takes(scene: Beam) -> tuple[str, ...]:
-    return ("fibres",) if scene.solver.method == "explicit" else ("viscosity", "softening", "fibres")
+    return ("fibres",) if scene.solver.method == "explicit" else tuple(FIELDS)
 
 
 def _check_imperfections(scene: Beam) -> None:

@@ -12,6 +12,7 @@ from tisim._checks import (
     check_length,
     check_number,
 )
+from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_static, check_stretches, oblique_fibres
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
@@ -55,7 +56,7 @@ def _check_way(scene: Press) -> None:
 
 
 def takes(_: Press) -> tuple[str, ...]:
-    return "viscosity", "softening", "fibres"
+    return tuple(FIELDS)
 
 
 def mesh_key(scene: Press) -> tuple[Any, ...]:

@@ -7,6 +7,7 @@ from typing import Any
 from tisim._checks import (
     check_choice,
 )
+from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_static, check_stretches, oblique_fibres
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
@@ -25,7 +26,7 @@ def check(scene: Coupon) -> None:
 
 
 def takes(_: Coupon) -> tuple[str, ...]:
-    return "viscosity", "softening", "fibres"
+    return tuple(FIELDS)
 
 
 def mesh_key(_: Coupon) -> tuple[Any, ...]:

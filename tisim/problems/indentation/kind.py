@@ -21,6 +21,7 @@ from tisim.bodies import Block, Inclusion, Rod, Vector
 from tisim.course import Course
 from tisim.mesh import ElementKind
 from tisim.mesh.indentation import check_indentation
+from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.result import Result
@@ -168,7 +169,7 @@ def _check_rod(rod: Rod) -> None:
 
 
 def takes(_: Poke) -> tuple[str, ...]:
-    return "viscosity", "softening", "fibres"
+    return tuple(FIELDS)
 
 
 def seconds(scene: Poke) -> float:
