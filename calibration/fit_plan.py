@@ -204,7 +204,6 @@ def _starts(path: str | Path | None, materials: list[str], objective: str) -> di
         return {}
     if objective != "likelihood":
         raise OptionError("start", path, "expected --objective likelihood, overlaps of bodies have no time")
-    from calibration.parameters import FIELDS, part_of
     from calibration.prediction._cards import read_cards
     from calibration.study.parts import CardParts
 
@@ -216,7 +215,7 @@ def _starts(path: str | Path | None, materials: list[str], objective: str) -> di
         if material not in known:
             raise OptionError("start", path, f"expected a card of {material}, found {', '.join(known)}")
         card = known[material]
-        own = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+        own = card.parts()
         if not own:
             raise OptionError(
                 "start", path, f"expected viscosity, softening or fibres in the card of {card.material}"

@@ -20,8 +20,7 @@ from factory._input import Strict, read_mapping, read_yaml
 from factory._laws import LAWS as LAWS
 from factory._laws import Laws, Modulus
 from factory._parts import Fibres, Softening, Viscosity
-from factory._parts import part_entry as part_entry
-from tisim import Material, laws, material_from_moduli
+from tisim import Material, laws, material_from_moduli, parts
 
 
 class Uncertainty(Strict):
@@ -102,8 +101,7 @@ class Card(Strict):
 
     def for_law(self, law: str) -> Material:
         """The material of this card under a law of `tisim.laws`, without its effects."""
-        beside = {"viscosity": self.viscosity, "softening": self.softening, "fibres": self.fibres}
-        return replace(self._in_law(law), **beside)  # type: ignore[arg-type]
+        return replace(self._in_law(law), **parts.of(self))  # type: ignore[arg-type]
 
     def _in_law(self, law: str) -> Material:
         parameters = self.laws.of(law)

@@ -12,10 +12,9 @@ from calibration.experiment import read
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.export import _readme, _registry
 from calibration.export._convert import convert
-from calibration.export._job import PARTS, Job, Target, Written
+from calibration.export._job import Job, Target, Written
 from calibration.export._response import elastic, long_time
 from calibration.export._scene import predict, scene_of, solve
-from calibration.parameters import part_of
 from calibration.prediction._cards import BASE, FITTED_TO, CardFile, read_cards
 from tisim import Material, laws
 
@@ -174,7 +173,7 @@ def _material(path: Path, law: str | None) -> tuple[CardFile, Material]:
         raise InputError(f"--law {name}: expected one of the card's: {', '.join(file.laws)}")
     try:
         laws.get(name).check(file.laws[name])
-        parts = {p: part_of(p, entry) for p in PARTS if (entry := getattr(file, p)) is not None}
+        parts = file.parts()
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
     return file, Material(law=name, parameters=file.laws[name], density=file.density, **parts)  # type: ignore[arg-type]

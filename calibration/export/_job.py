@@ -15,7 +15,6 @@ from calibration.export._scene import BeamScene, Prediction
 from tisim import Material
 
 Array = NDArray[np.float64]
-PARTS = ("viscosity", "softening", "fibres")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

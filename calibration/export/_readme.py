@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.export._forms import COUPLED, VOLUMES, Form
-from calibration.export._job import PARTS, Job, Target, Written
+from calibration.export._job import Job, Target, Written
 from calibration.export._response import (
     elastic,
     fibre_loss,
@@ -16,6 +16,7 @@ from calibration.export._response import (
     softening_loss,
     worst,
 )
+from tisim import parts
 
 TITLES = {
     "polynomial": "polynomial in the isochoric invariants",
@@ -147,7 +148,7 @@ def readme(job: Job, target: Target, written: Written, lost: list[str], notes: l
         f"Shear modulus {form.shear_modulus:.6g} Pa, Young's modulus {form.young:.6g} Pa, Poisson's ratio"
         f" {form.poisson:.6g}, density {job.material.density:.6g} kg/m3."
     )
-    kept = [getattr(job.material, part).title for part in PARTS if part in job.keeps]
+    kept = [part.title for field, part in parts.of(job.material).items() if field in job.keeps]
     if kept:
         out += ["", f"With {', '.join(kept)}."]
     out += ["", "## What is lost", ""]

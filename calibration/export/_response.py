@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from calibration.export._forms import Form
 from calibration.parameters import long_time_parts
-from tisim import Material, laws
+from tisim import Material, laws, parts
 from tisim.parts import MaterialPoints
 
 Array = NDArray[np.float64]
@@ -45,9 +45,7 @@ class Difference:
 
 def long_time(material: Material) -> Material:
     """The same material, stated by its long-time moduli: of the law, the fibres and the softening energy."""
-    fields = ("viscosity", "fibres", "softening")
-    stated = {name: part for name in fields if (part := getattr(material, name)) is not None}
-    found, left = long_time_parts(stated)
+    found, left = long_time_parts(parts.of(material))
     if left == 1.0:
         return material
     return replace(material, parameters=scaled(material, left), **found)  # type: ignore[arg-type]

@@ -31,7 +31,7 @@ from calibration.parameters._parts import (
     part_kinds,
     register_part,
 )
-from calibration.parameters._stated import FIELDS, OPTIONS, held_part, long_time_parts, part_entry, part_of
+from calibration.parameters._stated import OPTIONS, held_part, long_time_parts, part_entry
 from tisim import laws
 
 _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
@@ -75,7 +75,6 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
 
 
 __all__ = [
-    "FIELDS",
     "OPTIONS",
     "Coordinate",
     "Option",
@@ -93,7 +92,6 @@ __all__ = [
     "part_entry",
     "part_kind",
     "part_kinds",
-    "part_of",
     "register",
     "register_part",
     "shear_modulus",

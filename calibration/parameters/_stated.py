@@ -1,45 +1,16 @@
-"""Parts beside a law as a material card states them: read, written, and held in a fit."""
+"""Parts beside a law as a material card states them: written, and held in a fit."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 from calibration.parameters._parts import Option, PartCoordinates, ProtocolWindow
 from tisim import parts
 from tisim.parts import Part
 
-UNITS = ("s", "per_s", "Pa", "J_per_m3")  # that a key of a part may end with
-FIELDS: dict[str, Any] = {
-    "viscosity": parts.Viscosity,
-    "softening": parts.Softening,
-    "fibres": parts.Fibres,
-}
 OPTIONS: dict[str, Option] = {"viscosity": "time", "softening": "damage", "fibres": "fibres"}  # of a fit
-
-
-def part_of(field: str, entry: Mapping[str, Any]) -> Part:
-    """A part as a card states it, with or without units behind its keys. ValueError for one that is none."""
-    kinds = [n for n in parts.names() if issubclass(parts.get(n), FIELDS[field])]
-    if entry.get("kind") not in kinds:
-        raise ValueError(f"key {field}.kind: expected one of {', '.join(kinds)}, got {entry.get('kind')!r}")
-    kind = parts.get(entry["kind"])
-    known = {f.name for f in fields(kind) if f.init}
-    values: dict[str, Any] = {}
-    for key, value in entry.items():
-        if key == "kind":
-            continue
-        name = next((n for n in known if key == n or key in {f"{n}_{unit}" for unit in UNITS}), None)
-        if name is None:
-            raise ValueError(f"key {field}.{key}: expected {', '.join(sorted(known))}")
-        values[name] = tuple(value) if isinstance(value, list) else value
-    try:
-        found = kind(**values)
-        found.check()
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"key {field}: {error}") from None
-    return found
 
 
 def long_time_parts(stated: Mapping[str, Part]) -> tuple[dict[str, Part], float]:
@@ -68,19 +39,8 @@ def long_time_parts(stated: Mapping[str, Part]) -> tuple[dict[str, Part], float]
 
 
 def part_entry(part: Part) -> dict[str, Any]:
-    """A part as a card states it: its kind, and its parameters to six digits."""
-    entry: dict[str, Any] = {"kind": part.name}
-    for f in fields(part):
-        value = getattr(part, f.name)
-        if isinstance(value, tuple):
-            entry[f.name] = [_rounded(x) for x in value]
-        else:
-            entry[f.name] = value if isinstance(value, str) else _rounded(value)
-    return entry
-
-
-def _rounded(x: float) -> float:
-    return float(f"{x:.6g}")
+    """A part as cards and fits state it, to six digits."""
+    return parts.encode(part, digits=6)
 
 
 def held_part(field: str, part: Part, window: ProtocolWindow) -> PartCoordinates:

@@ -20,7 +20,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from calibration.errors import InputError
 from calibration.inference import WIDTH
 from calibration.parameters import (
-    FIELDS,
     Parametrisation,
     PartCoordinates,
     ProtocolWindow,
@@ -28,11 +27,10 @@ from calibration.parameters import (
     parametrisation,
     part_coordinates,
     part_entry,
-    part_of,
 )
 from calibration.parameters._coordinates import Coordinate, Parameters, shear_modulus
 from tisim import laws
-from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony
+from tisim.parts import FIELDS, HolzapfelGasserOgden, OgdenRoxburgh, Part, Prony, decode
 
 Array = NDArray[np.float64]
 
@@ -121,6 +119,12 @@ class CardFile(BaseModel):
     softening: dict[str, Any] | None = None
     fibres: dict[str, Any] | None = None
 
+    def parts(self) -> dict[str, Part]:
+        """Parts beside the law, by field. ValueError for one that is none."""
+        return {
+            field: decode(field, entry) for field in FIELDS if (entry := getattr(self, field)) is not None
+        }
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CardModel:
@@ -201,7 +205,7 @@ def extended_model(card: CardFile) -> CardModel:
         notes.append(
             f"not predicted with, since the card of {card.material} has no part for it: {', '.join(left_out)}"
         )
-    parts = {f: part_of(f, entry) for f in FIELDS if (entry := getattr(card, f)) is not None}
+    parts = card.parts()
     if card.uncertainty.fit is not None:
         law, u, covariance = _as_fitted(name, parameters, parts, card.uncertainty.fit)
     else:

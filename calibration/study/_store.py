@@ -13,7 +13,9 @@ import numpy as np
 
 from calibration.errors import InputError
 from calibration.inference import Generation
+from calibration.parameters import part_entry
 from calibration.study.calibration import Calibration
+from tisim.parts import decode
 
 _NOT_COMPARED = {"rig_file"}  # a path: "rig" is the content
 # of fits that can stand in one table
@@ -92,6 +94,16 @@ def _is_fit(path: Path) -> bool:
     except (ValueError, RecursionError):
         return True
     return isinstance(found, dict) and ("format" if path.suffix == ".jsonl" else "header") in found
+
+
+def _stated(key: str, value: Any) -> Any:
+    """A header's value to be compared: a card's parts are the same with and without units behind keys."""
+    if key != "card" or not isinstance(value, dict):
+        return value
+    try:
+        return {field: part_entry(decode(field, entry)) for field, entry in value.items()}
+    except ValueError:
+        return value
 
 
 def _take(handle: int) -> bool:
@@ -204,7 +216,7 @@ class FitStore:
         if not isinstance(found, dict):
             raise InputError(f"{path}: damaged, expected the header of a fit ({_ANEW})")
         compared = {**self.header, **found}.keys() - _NOT_COMPARED
-        other = sorted(k for k in compared if found.get(k) != self.header.get(k))
+        other = sorted(k for k in compared if _stated(k, found.get(k)) != _stated(k, self.header.get(k)))
         if other:
             raise InputError(
                 f"{path}: made with another {' and '.join(other)}; expected the same to go on ({_ANEW})"

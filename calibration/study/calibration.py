@@ -14,11 +14,10 @@ from calibration.parameters import (
     held_part,
     parametrisation,
     part_coordinates,
-    part_of,
 )
 from calibration.study.assessment import misfit_lacking, sentence
 from tisim import Material
-from tisim.parts import Part
+from tisim.parts import Part, decode
 
 Status = Literal["converged", "lack of fit", "not converged", "no equilibrium", "stopped"]
 
@@ -169,7 +168,7 @@ class Calibration:
         window = ProtocolWindow(
             first=self.protocol["first"], last=self.protocol["last"], peaks=int(self.protocol["peaks"])
         )
-        held = [held_part(name, part_of(name, entry), window) for name, entry in self.held.items()]
+        held = [held_part(name, decode(name, entry), window) for name, entry in self.held.items()]
         return law.with_parts([*(part_coordinates(spec, window) for spec in self.parts), *held])
 
     @property

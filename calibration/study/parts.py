@@ -10,7 +10,7 @@ where records have hundreds of points.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import product
 from typing import Any
 
@@ -100,10 +100,13 @@ class CardParts:
 
 def _in_words(part: Part) -> str:
     """prony, fractions 0.3 and 0.2, times 1 and 20."""
-    entry = part_entry(part)
-    kind = str(entry.pop("kind"))
-    numbers = {k: v if isinstance(v, list) else [v] for k, v in entry.items()}
-    return ", ".join([kind, *(f"{k} {' and '.join(str(x) for x in v)}" for k, v in numbers.items())])
+    values = {f.name: getattr(part, f.name) for f in fields(part)}
+    each = {name: v if isinstance(v, tuple) else (v,) for name, v in values.items()}
+    return ", ".join([part.name, *(f"{name} {' and '.join(map(_word, v))}" for name, v in each.items())])
+
+
+def _word(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 def asked(**options: str | None) -> tuple[str, ...]:

@@ -325,7 +325,7 @@ def test_files_that_are_no_cards_or_no_empty_folders(tmp_path: Path) -> None:
     for path, out, sentence in (
         (tmp_path / "none.yaml", "o", f"error: {tmp_path / 'none.yaml'}: expected a material card"),
         (CLEAN / "experiment.yaml", "o", f"error: {CLEAN / 'experiment.yaml'}: expected a material card"),
-        (broken, "o", f"error: {broken}: key viscosity: times"),
+        (broken, "o", f"error: {broken}: key viscosity.times_s: expected"),
         (CARDS / "S0.yaml", "full", f"error: --out {tmp_path / 'full'}: expected an empty folder"),
         (
             CARDS / "S0.yaml",

@@ -8,9 +8,9 @@ import pytest
 
 import factory
 from factory._errors import InputError
-from factory._parts import part_entry
 from tests.factory.conftest import TINY
 from tests.factory.timed_cases import FIBRES, SOFTENING, TIMED, VISCOUS, card, recipe
+from tisim import parts
 
 
 def test_a_card_s_parts_are_those_of_the_material_under_any_law(tmp_path: Path) -> None:
@@ -26,18 +26,11 @@ def test_a_card_s_parts_are_those_of_the_material_under_any_law(tmp_path: Path) 
 
 def test_a_part_is_written_as_it_is_read(tmp_path: Path) -> None:
     cards = card(tmp_path, "\n".join((VISCOUS, SOFTENING, FIBRES)))
-    found = factory.load_card("S1", cards)
-    assert part_entry(found.viscosity) == {  # type: ignore[arg-type]
-        "kind": "prony",
-        "fractions": [0.2, 0.1],
-        "times_s": [1.0, 30.0],
-        "modulus": "long-time",
-    }
-    lines = [f"{n}: {part_entry(getattr(found, n))}" for n in ("viscosity", "softening", "fibres")]
-    again = factory.load_card("S1", card(tmp_path, "\n".join(lines)))
-    assert part_entry(again.viscosity) == part_entry(found.viscosity)  # type: ignore[arg-type]
-    assert part_entry(again.softening) == part_entry(found.softening)  # type: ignore[arg-type]
-    assert part_entry(again.fibres) == part_entry(found.fibres)  # type: ignore[arg-type]
+    found = parts.of(factory.load_card("S1", cards))
+    lines = [f"{field}: {parts.encode(part)}" for field, part in found.items()]
+    again = parts.of(factory.load_card("S1", card(tmp_path, "\n".join(lines))))
+    assert list(again) == ["viscosity", "softening", "fibres"]
+    assert again == found
 
 
 def test_an_effect_that_changes_the_law_keeps_the_parts(tmp_path: Path) -> None:
