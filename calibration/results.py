@@ -10,6 +10,7 @@ from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.study.calibration import Calibration
@@ -163,10 +164,8 @@ class DiagnosisResult:
         folder.mkdir(parents=True, exist_ok=True)
         write_report(self.diagnosis, self.model, folder, title=self.experiment.name)
         write_cards(folder / "cards", self.diagnosis, self.experiment)
-        part = folder / "diagnosis.json.part"
         text = json.dumps(self.diagnosis.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
-        part.write_text(text + "\n", encoding="utf-8")
-        part.replace(folder / "diagnosis.json")
+        write_whole(folder / "diagnosis.json", text + "\n")
         return folder / "report.html"
 
     def _rows(self) -> list[tuple[str, str, str, str]]:
@@ -227,9 +226,7 @@ class PredictionResult:
 
         folder = Path(folder)
         page, *_ = write_page(self.prediction, folder)
-        part = folder / "prediction.json.part"
-        part.write_text(file_of(self.prediction).model_dump_json(indent=1) + "\n", encoding="utf-8")
-        part.replace(folder / "prediction.json")
+        write_whole(folder / "prediction.json", file_of(self.prediction).model_dump_json(indent=1) + "\n")
         return page
 
     def rows(self) -> list[tuple[str, ...]]:

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from calibration._files import write_whole
 from calibration.experiment import PhotoSettings
 from calibration.experiment.model import BeamTrial, Capture, Registration, TracedOutline
 from calibration.photo._board import Board
 from calibration.photo._camera import Camera
-from calibration.photo._files import centreline_csv, outline_csv, png, stl, write_whole
+from calibration.photo._files import centreline_csv, outline_csv, png, stl
 from calibration.photo._image import Grey, read_photograph
 from calibration.photo._picture import strip
 from calibration.photo._trace import Specimen, trace

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -14,25 +11,11 @@ import trimesh
 import yaml
 from numpy.typing import NDArray
 
+from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment import load
 from calibration.experiment.model import TracedOutline
 from calibration.shape import Centreline
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Puts a file in place in one step; a killed run leaves the old one or none."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            Path(name).unlink()
-        raise
 
 
 def outline_csv(outline: TracedOutline) -> bytes:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Checkerboard, PhotoSettings, read, read_photo_settings
 from calibration.photo._board import Board, find_board
 from calibration.photo._camera import Camera, calibrate
 from calibration.photo._chain import LEDGER, Job, digest, kept, run
-from calibration.photo._files import png, write_copy, write_whole
+from calibration.photo._files import png, write_copy
 from calibration.photo._image import PhotoProblem, UnusablePhotographs, read_photograph
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import Reconstruction

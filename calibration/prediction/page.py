@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration._files import write_whole
 from calibration.inference import WIDTH
 from calibration.pages import BAND, COLOURS, INK, Cell, Picture, paper, picture, plain, template
 from calibration.prediction._interval import SOURCES, Record
@@ -57,18 +58,11 @@ from others. They hold for single points; errors of neighbouring points are alik
 
 def write_page(found: Prediction, folder: Path) -> list[Path]:
     """Write folder/report.html and folder/prediction.png; their paths, the page first."""
-    folder.mkdir(parents=True, exist_ok=True)
     shown = draw(found)
-    written = []
-    for name, content in (
-        ("report.html", render(found, shown).encode("utf-8")),
-        (shown.name, shown.png),
-    ):
-        part = folder / f"{name}.part"
-        part.write_bytes(content)
-        part.replace(folder / name)
-        written.append(folder / name)
-    return written
+    return [
+        write_whole(folder / "report.html", render(found, shown)),
+        write_whole(folder / shown.name, shown.png),
+    ]
 
 
 def render(found: Prediction, shown: Picture) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from calibration._files import write_whole
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.measurements.homogeneous.model import HomogeneousModel
 from calibration.measurements.objective import ModelObjective
@@ -219,11 +220,7 @@ def write_page(folder: Path, results: Sequence[Calibration], experiment: Experim
     sections = [section([r for r in results if r.material == m], experiment) for m in materials]
     text = render(sections, results, experiment, command(folder, results, experiment))
     _pictures(folder / "pictures", sections)
-    path = folder / "report.html"
-    part = path.with_suffix(".html.part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(path)
-    return path
+    return write_whole(folder / "report.html", text)
 
 
 def render(
@@ -246,13 +243,10 @@ def render(
 
 
 def _pictures(folder: Path, sections: Sequence[Section]) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
     written: set[str] = set()
     for nth, shown in enumerate(sections, 1):
         for picture in shown.pictures:
             # names of two materials may become one file's ("a/b" and "a b")
             name = f"{nth}-{picture.name}" if picture.name in written else picture.name
             written.add(name)
-            part = folder / f"{name}.part"
-            part.write_bytes(picture.png)
-            part.replace(folder / name)
+            write_whole(folder / name, picture.png)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration._files import whole_name, write_whole
 from calibration.errors import InputError
 from calibration.inference import Generation
 from calibration.parameters import part_entry
@@ -86,14 +87,15 @@ def remove_fits(folder: Path, names: Collection[str]) -> None:
 
 def _is_fit(path: Path) -> bool:
     """True for a file that a fit wrote, or that has a fit's name but cannot be read."""
-    if not path.name.endswith((".json", ".jsonl", ".json.part")):
+    suffix = Path(whole_name(path.name)).suffix
+    if suffix not in (".json", ".jsonl"):
         return False
     try:
         text = path.read_text(encoding="utf-8")
-        found = json.loads(text.partition("\n")[0] if path.suffix == ".jsonl" else text)
+        found = json.loads(text.partition("\n")[0] if suffix == ".jsonl" else text)
     except (ValueError, RecursionError):
         return True
-    return isinstance(found, dict) and ("format" if path.suffix == ".jsonl" else "header") in found
+    return isinstance(found, dict) and ("format" if suffix == ".jsonl" else "header") in found
 
 
 def _stated(key: str, value: Any) -> Any:
@@ -182,7 +184,7 @@ class FitStore:
         self._check(header, self.history_path)
         found = [self._generation(line, number) for number, line in enumerate(whole[1:], 2)]
         if len(whole) < len(text.splitlines()):
-            self.history_path.write_text("".join(whole), encoding="utf-8")
+            write_whole(self.history_path, "".join(whole))
         return found
 
     def append(self, generation: Generation) -> None:
@@ -208,9 +210,7 @@ class FitStore:
         data: dict[str, Any] = {"header": self.header, "calibration": calibration.to_json()}
         if chosen_from:
             data["chosen_from"] = list(chosen_from)
-        part = self.result_path.with_suffix(".json.part")
-        part.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-        part.replace(self.result_path)
+        write_whole(self.result_path, json.dumps(data, indent=1) + "\n")
 
     def _check(self, found: object, path: Path) -> None:
         if not isinstance(found, dict):

@@ -14,6 +14,7 @@ from typing import Any
 
 import yaml
 
+from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment import Experiment
 from calibration.inference import WIDTH
@@ -106,12 +107,8 @@ def write_card(folder: Path, results: Sequence[Calibration], experiment: Experim
 
 def save(path: Path, content: Mapping[str, Any], heading: str) -> Path:
     """Write a YAML file under a line of comment, in one piece; its folder is made."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".yaml.part")
     text = yaml.safe_dump(dict(content), sort_keys=False, allow_unicode=True, width=110)
-    part.write_text(f"# {heading}\n{text}", encoding="utf-8")
-    part.replace(path)
-    return path
+    return write_whole(path, f"# {heading}\n{text}")
 
 
 def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any]:

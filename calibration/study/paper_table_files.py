@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rich.table import Table
 
+from calibration._files import write_whole
 from calibration.metrics import METRICS
 from calibration.study.paper_table import Row
 
@@ -93,7 +94,7 @@ def write_markdown(path: Path, rows: Sequence[Row], *, command: str, source: str
             for r in rows
         ),
     ]
-    _whole(path, "\n".join(lines) + "\n")
+    write_whole(path, "\n".join(lines) + "\n")
 
 
 def write_csv(path: Path, rows: Sequence[Row]) -> None:
@@ -138,7 +139,7 @@ def write_csv(path: Path, rows: Sequence[Row]) -> None:
                 *_further(r, further),
             ]
         )
-    _whole(path, text.getvalue())
+    write_whole(path, text.getvalue())
 
 
 def _further_names(rows: Sequence[Row]) -> list[str]:
@@ -188,9 +189,3 @@ def _cells(r: Row) -> list[str]:
 
 def _number(value: float, form: str) -> str:
     return "" if math.isnan(value) else format(value, form)
-
-
-def _whole(path: Path, text: str) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(path)

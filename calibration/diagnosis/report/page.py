@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
+from calibration._files import write_whole
 from calibration.diagnosis.drawing import Figure, figures_of
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report import _tables as tables
@@ -36,9 +37,9 @@ def write_report(diagnosis: Diagnosis, model: MeasurementModel, folder: Path, *,
     pictures = _pictures(figures, taken={evidence.name})
     text = render(diagnosis, model, evidence, pictures, title=title, extra=extra)
     folder.mkdir(parents=True, exist_ok=True)
-    written = [_write(folder / "report.html", text.encode("utf-8"))]
+    written = [write_whole(folder / "report.html", text)]
     for p in (evidence, *(p for _, p in pictures)):
-        written.append(_write(folder / p.name, p.png))
+        written.append(write_whole(folder / p.name, p.png))
     return written
 
 
@@ -101,10 +102,3 @@ def _pictures(figures: list[Figure], taken: set[str]) -> list[tuple[Figure, Pict
         taken.add(made.name.lower())
         found.append((f, made))
     return found
-
-
-def _write(path: Path, content: bytes) -> Path:
-    part = path.with_name(f"{path.name}.part")
-    part.write_bytes(content)
-    part.replace(path)
-    return path
