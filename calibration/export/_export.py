@@ -150,7 +150,15 @@ def export_card(
     if measured is not None and file.material not in measured.materials:
         known = ", ".join(measured.materials)
         raise InputError(f"--experiment {experiment}: expected material {file.material}, it has {known}")
+    named = "" if measured is None else measured.name
+    weighed = None if measured is None else measured.materials[file.material].density
+    if weighed is not None:
+        material = replace(material, density=weighed)
     made, notes, high = _job(file, material, target, measured, trial, scene, refinement, most_loss)
+    if weighed is not None and weighed != file.density:
+        notes.append(
+            f"density {weighed:g} kg/m3, as experiment {named!r} states it; the card has {file.density:g}"
+        )
     folder.mkdir(parents=True, exist_ok=True)
     written = target.write(made, folder)
     lost = _readme.losses(made, high)

@@ -35,9 +35,7 @@ _NOT = re.compile(
 # the name, and the unit if there is one, decides; without a unit a line of two quantities decides nothing.
 _WORDS: tuple[tuple[re.Pattern[str], tuple[Quantity, ...]], ...] = (
     (re.compile(r"\btime\b|\bzeit\b|pruefzeit|prufzeit|testzeit|\btemps\b|\bdauer\b"), ("time",)),
-    (re.compile(r"\b(true|log|logarithmic|hencky|wahre)\b.*(strain|dehnung|deformation)"), ("true-strain",)),
-    (re.compile(r"\b(true|cauchy|wahre)\b.*(stress|spannung|contrainte)"), ("true-stress",)),
-    (re.compile(r"\bstretch\b|stretch ratio|\blambda\b|\bλ\b"), ("stretch",)),
+    (re.compile(r"\bstretch\b|(elongation|extension) ratio|\blambda\b|\bλ\b"), ("stretch",)),
     (re.compile(r"stress|spannung|contrainte"), ("stress",)),
     (re.compile(r"strain"), ("strain",)),
     (
@@ -57,6 +55,18 @@ _WORDS: tuple[tuple[re.Pattern[str], tuple[Quantity, ...]], ...] = (
         ("displacement",),
     ),
 )
+
+
+# Words that say of which measure a strain or a stress is, before it, behind it, or in brackets.
+_TRUE = re.compile(r"\b(true|wahre[rsn]?|vraie?s?)\b")
+_TRUE_STRAIN = re.compile(r"\b(log|logarithmi\w*|hencky|naturelle|natural(?! rubber)|ln)\b")
+_TRUE_STRESS = re.compile(r"\bcauchy\b")
+_STRAIN, _STRESS = re.compile(r"strain|dehnung|deformation"), re.compile(r"stress|spannung|contrainte")
+# Measures of large strain that no record is read in: neither nominal nor true.
+_OTHER = re.compile(
+    r"\b(green|lagrang\w*|almansi|euler\w*|biot|piola|kirchhoff|pk2|second|2nd|zweite[rsn]?)\b"
+)
+_NOMINAL = re.compile(r"\b(first|1st|pk1|erste[rsn]?|premier)\b")
 
 
 def plain(name: str) -> str:
@@ -79,6 +89,11 @@ def quantity(name: str, unit: Unit | None) -> Quantity | None:
     text = plain(name)
     if _NOT.search(text):
         return None
+    if _OTHER.search(text) and not _NOMINAL.search(text):
+        return None
+    true = _true(text)
+    if true is not None:
+        return true if unit is None or unit.dimension == DIMENSIONS[true] else None
     # the source of a strain in brackets, as in "Tensile strain (Extension)", does not name the column
     text = re.sub(r"\([^()]*\)", "", text).strip() or text
     for pattern, candidates in _WORDS:
@@ -91,6 +106,15 @@ def quantity(name: str, unit: Unit | None) -> Quantity | None:
             return fitting[0]
         if text == "extension" and unit.dimension == "ratio":
             return "strain"
+    return None
+
+
+def _true(text: str) -> Quantity | None:
+    """True strain or true stress, where a name says so in any order."""
+    if _STRAIN.search(text) and (_TRUE.search(text) or _TRUE_STRAIN.search(text)):
+        return "true-strain"
+    if _STRESS.search(text) and (_TRUE.search(text) or _TRUE_STRESS.search(text)):
+        return "true-stress"
     return None
 
 

@@ -102,9 +102,9 @@ class LabTest:
         InputError
             A cell is empty or no number; one sentence with the line.
         """
-        mark = decimals_of(
-            self.file, [c for col in self.columns for c in col.cells if is_number(c)], decimals
-        )
+        _, separator = self.file.tables.get(self.sheet, ((), ""))
+        given = [c for col in self.columns for c in col.cells if is_number(c)]
+        mark = decimals_of(self.file, given, decimals, separator=separator)
         values = np.empty(len(column.cells))
         for k, cell in enumerate(column.cells):
             try:
@@ -238,24 +238,25 @@ def table(
             )
     cells: list[tuple[str, ...]] = []
     for row in rows:
-        values = split(row, separator)[skip:]
-        if any(values[count:]) or len(values) < count:
-            got = max((k + 1 for k, v in enumerate(values) if v), default=0)
+        given = split(row, separator)[skip:]
+        if any(given[count:]) or len(given) < count:
+            got = max((k + 1 for k, v in enumerate(given) if v), default=0)
             raise file.error(
                 f"expected {count} values ({', '.join(names)[:80]}), got {got}", row, sheet=sheet
             )
-        cells.append(values[:count])
+        cells.append(given[:count])
     columns = []
     for k, text in enumerate(names):
         own, stated = name_and_unit(text)
         below = unit(units[k]) if units is not None and k < len(units) else None
         if below is not None:
             own, stated = (own if stated is not None and stated.dimension == below.dimension else text), below
-        columns.append(
-            Column(
-                header=own, unit=stated, quantity=quantity(own, stated), cells=tuple(row[k] for row in cells)
-            )
-        )
+        values = [row[k] for row in cells]
+        if stated is not None and stated.dimension == "ratio" and stated.factor == 1.0:
+            # a share that a workbook shows in percent, below a header in mm/mm
+            shares = [k + skip in row.percent and is_number(v) for row, v in zip(rows, values, strict=True)]
+            values = [f"{float(v) / 100:.15g}" if s else v for v, s in zip(values, shares, strict=True)]
+        columns.append(Column(header=own, unit=stated, quantity=quantity(own, stated), cells=tuple(values)))
     return LabTest(
         file=file,
         name=name,

@@ -24,11 +24,15 @@ _THOUSANDS_COMMA = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d+)?")  # 1.234,5 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A line of a file, or a row of a sheet, counted from 1; cells: of a sheet, a line is split later."""
+    """A line of a file, or a row of a sheet, counted from 1.
+
+    cells : of a sheet; a line is split later. percent : indices of those that the workbook shows in percent.
+    """
 
     number: int
     text: str
     cells: tuple[str, ...] = ()
+    percent: frozenset[int] = frozenset()
 
     @property
     def empty(self) -> bool:
@@ -177,7 +181,9 @@ def separator_of(file: LabFile, rows: Sequence[Row]) -> str:
     return found[0]
 
 
-def decimals_of(file: LabFile, cells: Sequence[str], stated: str | None = None) -> str:
+def decimals_of(
+    file: LabFile, cells: Sequence[str], stated: str | None = None, *, separator: str = ""
+) -> str:
     """The mark of decimals, "." or ",", that all these cells agree on.
 
     Parameters
@@ -186,11 +192,13 @@ def decimals_of(file: LabFile, cells: Sequence[str], stated: str | None = None) 
         Cells of numbers.
     stated : {"point", "comma"}, optional
         What the lab says of it.
+    separator : str
+        Of the columns: a semicolon is that of a language whose decimals have a comma.
 
     Raises
     ------
     InputError
-        Cells contradict each other or the statement, or could be either ("1,234").
+        Cells contradict each other or the statement, or could be either ("1,234"; "1.234" with semicolons).
     """
     commas = [c for c in cells if "," in c]
     points = [c for c in cells if "." in c]
@@ -208,10 +216,11 @@ def decimals_of(file: LabFile, cells: Sequence[str], stated: str | None = None) 
         )
     if decimal_comma:
         return ","
-    if decimal_point or not commas:
+    if decimal_point or not (commas or (points and separator == ";")):
         return "."
+    either = [*commas, *points][0]
     raise file.error(
-        f"expected decimals that can be told from thousands, {commas[0]!r} may be either: state decimals"
+        f"expected decimals that can be told from thousands, {either!r} may be either: state decimals"
         " (comma or point)"
     )
 

@@ -79,8 +79,9 @@ def _rows(values: Iterator[tuple[Any, ...]], where: str) -> Iterator[Row]:
         if len(row) > _MOST_COLUMNS:
             raise InputError(f"{where} row {number}: expected at most {_MOST_COLUMNS} columns")
         cells = tuple(_text(cell.value, cell.number_format) for cell in row)
+        shares = frozenset(k for k, cell in enumerate(row) if "%" in (cell.number_format or ""))
         if filled or any(cells):
-            yield Row(number=number, text="\t".join(cells), cells=cells)
+            yield Row(number=number, text="\t".join(cells), cells=cells, percent=shares)
         filled = any(cells)
 
 

@@ -8,15 +8,20 @@ are those of the computer's language.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 from calibration.lab_files._formats import Importer, register
-from calibration.lab_files._quantities import quantity
+from calibration.lab_files._quantities import plain, quantity
 from calibration.lab_files._table import Block, LabTest, blocks, from_block, parameters_of
 from calibration.lab_files._text import LabFile, Row, split
 from calibration.lab_files._units import name_and_unit, unit
 
 _WORDS = re.compile(r"\b(instron|bluehill)\b|results? table", re.IGNORECASE)
+_SIZE = re.compile(
+    r"diameter|durchmesser|width|breite|thickness|dicke|area|flache|cross.?section|querschnitt|length|lange"
+    r"|height|hohe|gauge|gage|\bl0\b"
+)
 _PARAMETER = re.compile(r'^"?[^,;:"]+ : [^,;"]+"?[,;]')
 
 
@@ -48,17 +53,34 @@ def _timed(block: Block, separator: str) -> bool:
     return False
 
 
+def _goes_on(block: Block, found: Sequence[Block], separator: str) -> bool:
+    """True if a table without time is the rest of the raw data before it, behind a line of text."""
+    before = found[[b is block for b in found].index(True) - 1]
+    width = len(split(before.rows[-1], separator))
+    names = [c for c in split(block.header, separator) if c]
+    return block.units is None and len(split(block.rows[0], separator)) == width and len(names) < width
+
+
 def _read(file: LabFile) -> tuple[LabTest, ...]:
     found, separator = blocks(file, file.sheets[0])
     separators = (separator, *(s for s in (";", ",", "\t") if s != separator))
-    parameters: dict[str, str] = {}
+    common: dict[str, str] = {}  # above the first table, for all specimens
+    own: dict[str, str] = {}
     tests: list[LabTest] = []
     results: Block | None = None
     for block in found:
-        parameters |= parameters_of(block.above, separators)
+        own |= parameters_of(block.above, separators)
         if _timed(block, separator):
             name = f"table {len(tests) + 1}"
-            tests.append(from_block(file, block, separator, name=name, parameters=dict(parameters)))
+            tests.append(from_block(file, block, separator, name=name, parameters={**common, **own}))
+            # the size of a specimen is not that of the next
+            common = common or {n: text for n, text in own.items() if not _SIZE.search(plain(n))}
+            own = {}
+        elif tests and _goes_on(block, found, separator):
+            raise file.error(
+                "expected rows of numbers up to an empty line, this line of text stands within raw data",
+                block.header,
+            )
         else:
             results = block
     if not tests:

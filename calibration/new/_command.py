@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -116,13 +116,14 @@ def _build(files: list[Path], out: Path, yes: Path | None) -> None:
     if yes is not None:
         made = build(read_answers(yes), yes.parent, out, Nobody(yes))
     else:
-        raw = interview(files, out.absolute().name)
+        raw: dict[str, Any] = {}
         try:
+            interview(files, out.absolute().name, raw)
             made = build(validate(raw), Path.cwd(), out, Terminal(raw), raw)
-        except InputError:
-            typer.echo(
-                f"Nothing is written. An answers file that says what you said (--yes FILE):\n{dump(raw)}"
-            )
+        except (InputError, KeyboardInterrupt):
+            if raw.get("trials"):
+                said = "Nothing is written. An answers file that says what you said (--yes FILE):"
+                typer.echo(f"\n{said}\n{dump(raw)}")
             raise
     for text in made.defaults:
         typer.echo(f"not stated, taken: {text}")

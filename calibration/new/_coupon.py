@@ -41,15 +41,22 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     raw = record.si(strain_column, strain_kind)
     length = None
     if strain_kind == "stretch":
+        if entry.displacement_positive is not None:
+            raise record.error(
+                f"displacement_positive: expected none beside the column of stretch {strain_column.header}"
+            )
         stretch = raw
     else:
         sign = record.towards_tension(strain_column, raw)
         if strain_kind == "displacement":
             raw = record.zeroed(strain_column, raw, "where the specimen is at rest")
+            sheared = mode == "simple-shear"
             length = record.length(
                 "rest_length_mm",
-                r"length|gauge|gage|\bheight\b|\bl0\b|messlange|einspannlange|hohe\b",
-                "length at rest that is stretched: between the grips, or a cylinder's height [mm]",
+                "" if sheared else r"length|gauge|gage|\bheight\b|\bl0\b|messlange|einspannlange|hohe\b",
+                "height over which the specimen is sheared: between the plates [mm]"
+                if sheared
+                else "length at rest that is stretched: between the grips, or a cylinder's height [mm]",
             )
             raw = raw / length
         stretch = np.exp(sign * raw) if strain_kind == "true-strain" else 1.0 + sign * raw
@@ -72,7 +79,7 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     load = load * record.force_sign(load, stretch)
     force = area = None
     if stress_kind == "force":
-        stress = load / record.area()
+        stress = load / record.area(sheared=mode == "simple-shear")
     elif stress_kind == "true-stress":
         stress = load / stretch  # at constant volume: nominal = true / stretch
         work.defaults.append(f"{entry.id}: nominal stress from true stress at constant volume")

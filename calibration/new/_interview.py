@@ -16,8 +16,8 @@ _PHOTOS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 _OUTLINE = {"side", "x_mm", "z_mm"}
 
 
-def interview(files: list[Path], name: str) -> dict[str, Any]:
-    """Answers with the trials of these files, each with id, kind, file and material.
+def interview(files: list[Path], name: str, raw: dict[str, Any]) -> None:
+    """Fill answers with the trials of these files, each with id, kind, file and material.
 
     Parameters
     ----------
@@ -25,17 +25,20 @@ def interview(files: list[Path], name: str) -> dict[str, Any]:
         Photographs, traced outlines (side, x_mm, z_mm), records of machines.
     name : str
         Proposed for the experiment.
+    raw : dict
+        Takes the answers as they are given.
 
     Raises
     ------
     InputError
-        A file cannot be read.
+        A file is missing, of which nothing is asked before, or cannot be read.
     """
-    raw: dict[str, Any] = {"name": _text("name of the experiment", name), "materials": {}, "trials": []}
-    material: str | None = None
     for file in files:
         if not file.is_file():
             raise InputError(f"{file}: expected a file, there is none")
+    raw |= {"name": _text("name of the experiment", name), "materials": {}, "trials": []}
+    material: str | None = None
+    for file in files:
         kind = _sort(file)
         if kind is None:
             format, tests = read_lab_file(file)
@@ -55,7 +58,6 @@ def interview(files: list[Path], name: str) -> dict[str, Any]:
         else:
             trial["file"] = str(file.absolute())
         raw["trials"].append(trial)
-    return raw
 
 
 def _sort(file: Path) -> str | None:

@@ -127,6 +127,8 @@ class Record:
         if column is None:
             if needed:
                 raise self.error("expected a column of time")
+            if self.entry.leave_out_rows:
+                raise self.error("leave_out_rows: expected a column of time, against which rows would stand")
             return None
         time = self.si(column, "time")
         without = "" if needed else "; columns: {time: none} goes on without the time"
@@ -164,7 +166,8 @@ class Record:
         given = self.entry.displacement_positive
         if given is None:
             named = pulls(column.header)
-            about = " ".join([self.test.name, *self.test.parameters.values(), *self.test.parameters])
+            texts = [*self.test.parameters.values(), *self.test.parameters]
+            about = " ".join([self.test.name, *texts, *(c.header for c in self.test.columns)])
             rises = float(values.max()) > -float(values.min())
             pushed = bool(_PUSHED.search(about)) and not _PULLED.search(about)
             # a column of strain that rises in a compression test has the push positive, against its name
@@ -219,9 +222,10 @@ class Record:
         return -1.0
 
     def length(self, key: str, pattern: str, text: str) -> float:
-        """A length of the specimen [m]: the answers', the file header's, or asked."""
+        """A length of the specimen [m]: the answers', the file header's (not for an empty pattern), or
+        asked."""
         given = getattr(self.entry, key)
-        header = None if given is not None else self.stated(pattern, "length")
+        header = None if given is not None or not pattern else self.stated(pattern, "length")
         value = self.work.settle(
             self.where,
             key,
@@ -246,8 +250,11 @@ class Record:
             return entry.width_mm * entry.thickness_mm * 1e-6
         return None
 
-    def area(self) -> float:
-        """Rest area of the specimen [m2]: by the answers, or the file's header, or asked."""
+    def area(self, *, sheared: bool = False) -> float:
+        """Rest area that bears the force [m2]: by the answers, or the file's header, or asked.
+
+        sheared : in simple shear it is no section that a header states.
+        """
         entry = self.entry
         assert isinstance(entry, CouponAnswers)
         if self.entry_area is not None:
@@ -257,12 +264,16 @@ class Record:
             return width * self.length(
                 "thickness_mm", "thickness|dicke", "the specimen's thickness at rest [mm]"
             )
-        header = self.header_area()
+        header = None if sheared else self.header_area()
+        text = "the sheared area, along which the force acts [mm2]"
+        if not sheared:
+            others = "(or diameter_mm, or width_mm and thickness_mm)"
+            text = f"the area of the specimen's section at rest [mm2] {others}"
         value = self.work.settle(
             self.where,
             "area_mm2",
             None,
-            "the area of the specimen's section at rest [mm2] (or diameter_mm, or width_mm and thickness_mm)",
+            text,
             above_zero,
             default=None if header is None else round(header * 1e6, 9),
             why="" if header is None else f"read from the header of {self.test.file.path.name}",
@@ -270,15 +281,14 @@ class Record:
         return float(value) * 1e-6
 
     def header_area(self) -> float | None:
-        """Rest area by the file's header [m2]; None where it states none."""
+        """Rest area by the file's header [m2]; None where it states none, or several that differ."""
         area = self.stated("cross.?section|area|querschnitt|flache", "area")
-        if area is not None:
-            return area
         diameter = self.stated("diameter|durchmesser", "length")
-        if diameter is not None:
-            return math.pi / 4 * diameter**2
         width, thickness = self.stated("width|breite", "length"), self.stated("thickness|dicke", "length")
-        return None if width is None or thickness is None else width * thickness
+        found = [] if area is None else [area]
+        found += [] if diameter is None else [math.pi / 4 * diameter**2]
+        found += [] if width is None or thickness is None else [width * thickness]
+        return found[0] if found and max(found) <= 1.02 * min(found) else None
 
     def stated(self, pattern: str, dimension: str) -> float | None:
         """A parameter above the table by its name, in SI.

@@ -103,8 +103,10 @@ def test_linear_tetrahedra_are_told_with_their_error(tmp_path: Path) -> None:
     values = json.loads(text(tmp_path / "n" / "material.json"))
     g = values["k_mu"]
     assert (values["k_lambda"] / (2 * (values["k_lambda"] + g)), values["density"]) == pytest.approx(
-        (0.45, 1000.0)
+        (0.45, 1019.1)
     )
+    stated = "density 1019.1 kg/m3, as experiment 'clean' states it; the card has 1000"
+    assert any(stated in remark for remark in done.remarks)
     mesh = tisim.read(tmp_path / "n" / "beam.msh")
     assert done.job.scene is not None
     np.testing.assert_array_equal(mesh.elements, done.job.scene.mesh.elements)
