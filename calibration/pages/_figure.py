@@ -46,8 +46,8 @@ def picture(figure: Figure, name: str, caption: str) -> Picture:
 
 
 def file_name(name: str) -> str:
-    """The name with letters, digits, dots and dashes alone, of any language."""
-    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "picture"
+    """The name with ASCII letters, digits, dots and dashes alone; two names may become one."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "picture"
 
 
 def plain(axes: Any) -> Any:
