@@ -33,6 +33,27 @@ class Slope:
         return np.sqrt(self.chi2) - 0.1 * (U - self.at)
 
 
+class Wall:
+    """One residual, 1 - 0.1 x, that is least beyond the bound x = 0.5."""
+
+    parametrisation = SimpleNamespace(bounds=np.array([[-1.0, 0.5]]), spread=np.array([1.0]), names=("x",))
+
+    def linearise(self, u: Array, *, rough: bool = False) -> bool:
+        del u, rough
+        return True
+
+    def residuals(self, U: Array) -> Array:
+        return np.asarray(1.0 - 0.1 * U)
+
+
+def test_what_lies_beyond_a_bound_is_no_gain() -> None:
+    """At 0.49 a step to the bound gains 0.002 of chi-square; a free one would gain 0.9."""
+    problem: Any = Wall()
+    end = polish(problem, np.array([0.49]))
+    assert end.converged
+    assert end.steps == 1
+
+
 @pytest.mark.parametrize(("gain", "steps"), [(0.003, STALLED + 1), (0.03, 30)])
 def test_it_ends_where_ten_steps_gain_next_to_nothing(gain: float, steps: int) -> None:
     problem: Any = Slope(gain)

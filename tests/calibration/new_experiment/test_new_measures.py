@@ -120,6 +120,14 @@ def test_a_headers_length_and_section_are_not_those_of_a_shear(tmp_path: Path) -
     head = "".join(f"Specimen properties : {name},{size},mm\n" for name, size in sizes)
     with pytest.raises(InputError, match="height over which the specimen is sheared"):
         trial(tmp_path, head + table(**columns_), mode="simple-shear", displacement_positive="tension")
+    with pytest.raises(InputError, match="the sheared area, along which the force acts"):
+        trial(
+            tmp_path / "area",
+            head + table(**columns_),
+            mode="simple-shear",
+            rest_length_mm=4.0,
+            displacement_positive="tension",
+        )
     stated = {"rest_length_mm": 4.0, "area_mm2": 800.0, "displacement_positive": "tension"}
     found = trial(tmp_path / "stated", head + table(**columns_), mode="simple-shear", **stated)
     np.testing.assert_allclose(found.stretch, 1.0 + gamma, rtol=1e-6)

@@ -202,6 +202,16 @@ def test_cards_scale_their_parts_by_how_well_they_are_known(tmp_path: Path) -> N
     assert more.viscosity.spectrum().strengths == pytest.approx([0.066] * 6)
 
 
+@pytest.mark.parametrize("logarithmic", [True, False])
+def test_an_interval_of_a_modulus_is_read_as_it_was_written(tmp_path: Path, logarithmic: bool) -> None:
+    """sd of 15 %: e^(1.96 sd) - 1 upwards where it is that of a logarithm, 1.96 sd where it is symmetric."""
+    wide = 1.959964 * 0.15
+    low, high = (np.expm1(-wide), np.expm1(wide)) if logarithmic else (-wide, wide)
+    stated = {"shear_modulus_high": float(high), "shear_modulus_low": float(low), "text": ""}
+    (known,) = read_cards(card(tmp_path / "cards", uncertainty=stated)).values()
+    assert np.sqrt(extended_model(known).covariance[0, 0]) == pytest.approx(0.15, rel=0.04)
+
+
 def test_what_lies_outside_of_where_a_card_was_measured_is_said(measured: Path, tmp_path: Path) -> None:
     """Relaxation measured for 20 s gives a note in tests of 30 and 62 s; measured for 100 s, it does not."""
     effect = {
