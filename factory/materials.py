@@ -66,6 +66,8 @@ class Card(Strict):
         Code in the stiffness profiles, from 0 (softest) to below 1 (1 is rigid).
     laws : Laws
         Parameters law by law.
+    fitted_to : dict, optional
+        Experiment and kinds of measurement that it was fitted to, for `calibration.predict`.
     law : str, optional
         The law that was fitted, or fitted best; parameters of others follow from its moduli or from fits.
     model_error : float, optional
@@ -87,6 +89,7 @@ class Card(Strict):
     density: Modulus
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
+    fitted_to: dict[str, Any] | None = None
     law: Text | None = None
     model_error: Annotated[float, Field(ge=0)] | None = None
     baseline: CardBaseline | None = None

@@ -91,6 +91,7 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     )
     content = card([fit], experiment)
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
+    content["fitted_to"]["kinds"] = [diagnosis.subject.kind]
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
         " root of the reduced chi-square of the material's own records where that is above 1, and at least"

@@ -15,7 +15,7 @@ from calibration.export._convert import convert
 from calibration.export._job import Job, Target, Written
 from calibration.export._response import elastic, long_time
 from calibration.export._scene import predict, scene_of, solve
-from calibration.prediction._cards import BASE, FITTED_TO, CardFile, read_cards
+from calibration.prediction._cards import BASE, CardFile, read_cards
 from tisim import Material, laws
 
 MOST_LOSS = 0.5  # of stress, rms
@@ -241,16 +241,16 @@ def _job(
 
 def _notes(file: CardFile, experiment: Experiment | None) -> list[str]:
     found = []
-    named = FITTED_TO.search(str(file.provenance or ""))
-    if named and experiment is None:
+    origin = file.origin
+    if origin is not None and experiment is None:
         found.append(
-            f"the card was calibrated on experiment {named['name']!r}: give --experiment FOLDER for a scene"
-            " of its beam"
+            f"the card was calibrated on experiment {origin.experiment!r}: give --experiment FOLDER for a"
+            " scene of its beam"
         )
-    elif named and experiment is not None and not experiment.digest.startswith(named["digest"]):
+    elif origin is not None and experiment is not None and not experiment.digest.startswith(origin.sha256):
         found.append(
-            f"the card was calibrated on experiment {named['name']!r} (sha256 {named['digest']}), the scene"
-            f" is of {experiment.name!r} (sha256 {experiment.digest[:16]})"
+            f"the card was calibrated on experiment {origin.experiment!r} (sha256 {origin.sha256[:16]}), the"
+            f" scene is of {experiment.name!r} (sha256 {experiment.digest[:16]})"
         )
     left = [e for e in file.effects if not e.becomes]
     if left:

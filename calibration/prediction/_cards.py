@@ -84,10 +84,18 @@ class _Uncertainty(_Lenient):
     fit: FitFile | None = None
 
 
-# in a card's provenance: what it was fitted to
-FITTED_TO = re.compile(
+# in the provenance of a card of before `fitted_to`
+_FITTED_TO = re.compile(
     r"experiment (?P<quote>['\"])(?P<name>.*?)(?P=quote) \(sha256 (?P<digest>[0-9a-f]{16})\)"
 )
+
+
+class FittedTo(_Lenient):
+    """Experiment that a card was fitted to, and kinds of measurement; all of it where none are stated."""
+
+    experiment: str
+    sha256: str
+    kinds: tuple[str, ...] = ()
 
 
 class _Baseline(_Lenient):
@@ -107,6 +115,7 @@ class CardFile(BaseModel):
     mixture: Any = None
     derived: Any = None
     provenance: Any = None
+    fitted_to: FittedTo | None = None
     stiffness: Any = None
     uncertainty: _Uncertainty = Field(default_factory=_Uncertainty)
     density: Positive = 1000.0
@@ -118,6 +127,14 @@ class CardFile(BaseModel):
     viscosity: dict[str, Any] | None = None
     softening: dict[str, Any] | None = None
     fibres: dict[str, Any] | None = None
+
+    @property
+    def origin(self) -> FittedTo | None:
+        """What it was fitted to; of an earlier card as its provenance says it, None where it does not."""
+        found = _FITTED_TO.search(str(self.provenance or ""))
+        if self.fitted_to is not None or found is None:
+            return self.fitted_to
+        return FittedTo(experiment=found["name"], sha256=found["digest"])
 
     def parts(self) -> dict[str, Part]:
         """Parts beside the law, by field. ValueError for one that is none."""

@@ -20,7 +20,6 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
 from calibration.parameters import OPTIONS
 from calibration.prediction._cards import (
-    FITTED_TO,
     CardFile,
     CardModel,
     baseline_model,
@@ -205,11 +204,7 @@ def from_cards(
             f"{experiment.folder / 'experiment.yaml'}: trials: expected some that can be compared"
             + ("" if domain is None else f" as {domain}")
         )
-    fitted = not unseen and any(
-        (found := FITTED_TO.search(str(known[m].provenance or ""))) is not None
-        and experiment.digest.startswith(found["digest"])
-        for m in wanted
-    )
+    fitted = not unseen and any(_is_fit(known[r.material], r, experiment) for r in records)
     if fitted:
         notes.append("the cards were fitted to these measurements: this is a fit, not a prediction")
     if len({frozenset(r.predicted) for r in records}) > 1:
@@ -225,6 +220,14 @@ def from_cards(
         seconds=time.monotonic() - begun,
         fitted=fitted,
     )
+
+
+def _is_fit(card: CardFile, record: Record, experiment: Experiment) -> bool:
+    """True if a card was fitted to measurements of this kind in this experiment."""
+    origin = card.origin
+    if origin is None or not origin.sha256 or not experiment.digest.startswith(origin.sha256):
+        return False
+    return not origin.kinds or record.kind in origin.kinds
 
 
 def _of_card(card: CardFile, yardstick: CardFile | None) -> dict[Name, CardModel]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment import Experiment
 from calibration.inference import WIDTH
+from calibration.measurements._kinds import compared
 from calibration.parameters import parametrisation, part_entry
 from calibration.study.calibration import Calibration
 from tisim import laws
@@ -84,6 +86,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "mixture": f"softener ratio {ratio:g}" if ratio is not None else chosen.material,
         "derived": False,
         "provenance": _provenance(results, chosen, filled, fitted, experiment),
+        "fitted_to": fitted_to(experiment, chosen.material, objective=chosen.objective),
         "uncertainty": {
             "shear_modulus_low": low,
             "shear_modulus_high": high,
@@ -96,6 +99,13 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "laws": parameters,
         **_parts(chosen),
     }
+
+
+def fitted_to(experiment: Experiment, material: str, *, objective: str = "likelihood") -> dict[str, Any]:
+    """What a card was fitted to: name and sha256 of the experiment, and the kinds of measurement."""
+    own = replace(experiment, trials=tuple(t for t in experiment.trials if t.material == material))
+    kinds = [kind.name for kind, _ in compared(own) if objective in ("likelihood", *kind.objectives)]
+    return {"experiment": experiment.name, "sha256": experiment.digest, "kinds": kinds}
 
 
 def write_card(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> Path:

@@ -153,6 +153,17 @@ def test_measurements_that_a_card_was_fitted_to_are_no_prediction(measured: Path
     assert any("this is a fit, not a prediction" in n for n in found.notes)
 
 
+@pytest.mark.parametrize(("kinds", "fitted"), [(["homogeneous"], True), (["indentation"], False), ([], True)])
+def test_another_kind_of_measurement_of_an_experiment_is_predicted(
+    measured: Path, tmp_path: Path, kinds: list[str], fitted: bool
+) -> None:
+    digest = calibration.read_experiment(measured).digest
+    stated = {"experiment": "any", "sha256": digest, "kinds": kinds}
+    found = calibration.predict(measured, cards=card(tmp_path / "cards", fitted_to=stated)).prediction
+    assert found.fitted == fitted
+    assert any("this is a fit, not a prediction" in n for n in found.notes) == fitted
+
+
 def test_a_wide_band_leaves_the_lines_to_be_seen(measured: Path, tmp_path: Path) -> None:
     """The band is wide for a baseline error of ten times the modulus; a narrow band is drawn completely."""
     spans = []
