@@ -9,6 +9,7 @@ from pydantic import Field
 
 from calibration.experiment._fields import CsvFile, Name, Noise, Strict
 from calibration.experiment._files import Files, parse_table
+from calibration.experiment._thinning import groups
 from calibration.experiment.model import Array, CouponMode, CouponTrial
 
 _KPA = 1e3
@@ -44,8 +45,9 @@ def read_coupon(entry: CouponEntry, files: Files, where: str) -> CouponTrial:
     if bad.size and entry.mode != "simple-shear":  # there it is 1 + gamma, of any sign
         row = int(bad[0])
         raise table.error(row, f"column stretch: expected more than 0, got {stretch[row]:g}")
-    columns, each = _averaged(
-        {n: table.numbers[n] for n in ("stretch", "nominal_stress_kPa", "time_s") if n in table}, len(table)
+    columns, samples = _averaged(
+        {n: table.numbers[n] for n in ("stretch", "nominal_stress_kPa", "time_s") if n in table},
+        entry.stretch_sd,
     )
     return CouponTrial(
         id=entry.id,
@@ -55,20 +57,20 @@ def read_coupon(entry: CouponEntry, files: Files, where: str) -> CouponTrial:
         stretch=columns["stretch"],
         stress=columns["nominal_stress_kPa"] * _KPA,
         time=columns.get("time_s"),
-        samples_averaged=each,
+        samples=samples,
         stretch_sd=entry.stretch_sd,
         stress_sd=None if entry.stress_sd_kPa is None else entry.stress_sd_kPa * _KPA,
     )
 
 
-def _averaged(columns: dict[str, Array], rows: int) -> tuple[dict[str, Array], int]:
-    """Columns with runs of samples averaged so that at most `_MOST_POINTS` are left, and the length of a run.
+def _averaged(columns: dict[str, Array], stretch_sd: float) -> tuple[dict[str, Array], Array | None]:
+    """Columns with at most `_MOST_POINTS` rows, means of neighbours, and the number of samples in each.
 
-    Runs follow the order of the record, so that loading and unloading stay apart.
+    The means follow the order of the record, so that loading and unloading stay apart.
     """
-    each = -(-rows // _MOST_POINTS)
-    if each == 1:
-        return columns, 1
-    starts = np.arange(0, rows, each)
-    counts = np.diff(np.append(starts, rows))
-    return {name: np.add.reduceat(values, starts) / counts for name, values in columns.items()}, each
+    rows = len(columns["stretch"])
+    if rows <= _MOST_POINTS:
+        return columns, None
+    starts = groups(columns["stretch"], _MOST_POINTS, sd=stretch_sd)
+    counts = np.diff(np.append(starts, rows)).astype(float)
+    return {name: np.add.reduceat(values, starts) / counts for name, values in columns.items()}, counts

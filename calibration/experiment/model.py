@@ -289,9 +289,9 @@ class CouponTrial:
         [Pa]; None where the lab does not state it.
     specimen : str, optional
         Trials of one specimen share its faults.
-    samples_averaged : int
-        Samples of the record behind each point, their mean: more than 1 where the record was too long to fit
-        point by point. The standard deviations are those of one sample.
+    samples : array, shape (k,), optional
+        Number of samples that each point is the mean of, where the record was too long to fit point by point;
+        None for one each. The standard deviations are those of one sample.
     """
 
     id: str
@@ -303,7 +303,7 @@ class CouponTrial:
     stretch_sd: float = 0.0
     stress_sd: float | None = None
     specimen: str | None = None
-    samples_averaged: int = 1
+    samples: Array | None = None
 
 
 Trial = BeamTrial | PokeTrial | CouponTrial

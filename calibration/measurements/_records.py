@@ -10,6 +10,8 @@ from typing import Protocol, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.experiment._thinning import groups
+
 Array = NDArray[np.float64]
 
 
@@ -55,10 +57,19 @@ def strokes(driven: Array, tolerance: float) -> list[Stroke]:
     ]
 
 
-def bins(points: slice, most: int) -> tuple[NDArray[np.intp], Array]:
-    """First index of each of at most `most` bins, relative to the slice's start, and their sizes."""
+def bins(
+    points: slice, most: int, *, driven: Array | None = None, sd: float = 0.0
+) -> tuple[NDArray[np.intp], Array]:
+    """First index of each of at most `most` bins, relative to the slice's start, and their sizes.
+
+    Bins have equal numbers of rows; with the driven quantity of the whole record, and its standard deviation,
+    equal shares of rows and way (`calibration.experiment._thinning.groups`).
+    """
     size = points.stop - points.start
-    first = np.unique(np.linspace(0, size, min(size, most), endpoint=False).astype(np.intp))
+    if driven is None:
+        first = np.unique(np.linspace(0, size, min(size, most), endpoint=False).astype(np.intp))
+    else:
+        first = groups(driven[points], most, sd=sd)
     return first, np.diff(np.append(first, size)).astype(float)
 
 

@@ -170,9 +170,9 @@ def _beams(
 def _averaged(experiment: Experiment, material: str) -> list[str]:
     return [
         f"{t.id}: a record of more than {len(t.stress):,} points: each point is the mean of"
-        f" {t.samples_averaged:,} samples"
+        f" neighbours, {t.samples.mean():,.3g} on average"
         for t in experiment.trials
-        if isinstance(t, CouponTrial) and t.material == material and t.samples_averaged > 1
+        if isinstance(t, CouponTrial) and t.material == material and t.samples is not None
     ]
 
 

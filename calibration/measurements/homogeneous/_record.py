@@ -173,7 +173,12 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
     rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
     sds, numbers, firsts, counts = [], [], [], []
     for n, b in enumerate(parts):
-        first, count = bins_over_time(raw_time, b.points, holds, MOST) if timed else bins(b.points, MOST)
+        if timed:
+            first, count = bins_over_time(raw_time, b.points, holds, MOST)
+        else:
+            first, count = bins(b.points, MOST, driven=trial.stretch, sd=trial.stretch_sd)
+        weight = np.ones(len(excess)) if trial.samples is None else trial.samples
+        samples = np.add.reduceat(weight[b.points], first)
         firsts.append(b.points.start + first)
         counts.append(count)
         raw = {
@@ -184,13 +189,13 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
             "peak": peak,
             "rate": raw_rate,
         }
-        mean = {name: np.add.reduceat(x[b.points], first) / count for name, x in raw.items()}
+        mean = {name: np.add.reduceat((weight * x)[b.points], first) / samples for name, x in raw.items()}
         for name in _AVERAGED:
             rows[name].append(mean[name])
         if timed:
-            sds.append(_sd_over_time(trial, b, holds, mean, first, count))
+            sds.append(_sd_over_time(trial, b, holds, mean, first, count, samples))
         else:
-            sds.append(_sd(trial, b, mean["stretch"], mean["stress"], count))
+            sds.append(_sd(trial, b, mean["stretch"], mean["stress"], count, samples))
         numbers.append(np.full(first.size, float(n)))
     whole: dict[str, Any] = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
     sd = np.concatenate(sds)
@@ -236,17 +241,17 @@ def _loads_again(turn: Array) -> bool:
     return bool((~unloading[int(np.argmax(unloading)) :]).any())
 
 
-def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array) -> Array:
+def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array, samples: Array) -> Array:
     """Standard deviation of the means in bins [Pa], including the stretch error.
 
     An error estimated from the scatter is at least SMALLEST_RELATIVE of the trial's largest stress, for any
-    number of averaged points.
+    number of averaged points. count, samples : of points, and of samples of the record, in each bin.
     """
-    own = _own_sd(trial, b, trial.stretch[b.points], stress, count)
+    own = _own_sd(trial, b, trial.stretch[b.points], stress, count, samples)
     if trial.stretch_sd == 0.0:
         return own
     return np.asarray(
-        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / _root(trial, count))
+        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / np.sqrt(samples))
     )
 
 
@@ -257,10 +262,11 @@ def _sd_over_time(
     mean: Mapping[str, Array],
     first: NDArray[np.intp],
     count: Array,
+    samples: Array,
 ) -> Array:
     """As `_sd`, with the scatter about a smooth curve of time; a hold has the slope of the last ramp."""
     assert trial.time is not None
-    own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count)
+    own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count, samples)
     if trial.stretch_sd == 0.0:
         return own
     rows = b.points.start + first
@@ -269,22 +275,17 @@ def _sd_over_time(
         return own
     slopes = slope(mean["stretch"][moves], mean["stress"][moves], trial.stretch_sd)
     last = np.maximum(np.cumsum(moves) - 1, 0)
-    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / _root(trial, count)))
+    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(samples)))
 
 
-def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array) -> Array:
+def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array, samples: Array) -> Array:
     """Standard deviation of the stress alone [Pa]; over : abscissa of the curve, for the scatter about it."""
     if trial.stress_sd is None:
         return np.maximum(
             unstated_sd(over, trial.stress[b.points], stress, count),
             SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
         )
-    return np.asarray(trial.stress_sd / _root(trial, count))
-
-
-def _root(trial: CouponTrial, count: Array) -> Array:
-    """Root of the number of samples in means of `count` points, whose stated errors are white."""
-    return np.asarray(np.sqrt(count * trial.samples_averaged))
+    return np.asarray(trial.stress_sd / np.sqrt(samples))
 
 
 ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed

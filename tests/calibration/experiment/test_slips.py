@@ -166,11 +166,14 @@ def test_a_long_record_is_averaged_in_bins(tmp_path: Path) -> None:
     (folder / "pull.csv").write_text("\n".join(lines) + "\n")
     (trial,) = read(folder).trials
     assert isinstance(trial, CouponTrial)
-    assert trial.samples_averaged == 50
-    assert len(trial.stretch) == len(trial.stress) == 4000
-    assert trial.stretch[0] == pytest.approx(stretch[:50].mean(), abs=1e-7)
-    assert trial.stress[-1] == pytest.approx(1e3 * stress[-50:].mean(), abs=0.1)
-    assert np.std(trial.stress - 1e5 * (trial.stretch - 1.0)) == pytest.approx(1e3 / np.sqrt(50), rel=0.05)
+    assert trial.samples is not None
+    assert trial.samples.sum() == n
+    assert len(trial.stretch) == len(trial.stress) == len(trial.samples) <= 4000
+    assert np.median(trial.samples) == 50.0
+    first = int(trial.samples[0])
+    assert trial.stretch[0] == pytest.approx(stretch[:first].mean(), abs=1e-7)
+    error = (trial.stress - 1e5 * (trial.stretch - 1.0)) * np.sqrt(trial.samples)
+    assert np.std(error) == pytest.approx(1e3, rel=0.05)
 
 
 def test_a_record_of_usual_length_is_kept_as_it_is(tmp_path: Path) -> None:
@@ -182,5 +185,5 @@ def test_a_record_of_usual_length_is_kept_as_it_is(tmp_path: Path) -> None:
     )
     (trial,) = read(folder).trials
     assert isinstance(trial, CouponTrial)
-    assert trial.samples_averaged == 1
+    assert trial.samples is None
     assert (trial.stretch == stretch).all()
