@@ -59,7 +59,7 @@ class Rod:
     Attributes
     ----------
     radius, length : float
-        Radius and length [m].
+        Radius and length [m]; the length is that of pictures, in contact the shaft has no end.
     tip : "flat" or "hemisphere"
         Shape of the tip.
     edge_radius : float

@@ -188,6 +188,9 @@ class Imperfections:
 class ClampImperfections:
     """Deviations of clamps from ideal ones, which hold the end sections upright and in shape.
 
+    The equilibrium is continued from that of the ideal beam: beyond the load at which the ideal beam buckles
+    (a beam that stands upright) it may be another than the one to which the imperfect beam would bend.
+
     Attributes
     ----------
     tilt : float
@@ -197,8 +200,8 @@ class ClampImperfections:
     far_shift : (float, float)
         Displacement (dx, dz) of the far clamp [m].
     compliance : float
-        Additional rotation of each clamp about the middle of its face, per bending moment that it carries
-        [rad/(N m)]; solved for to 1e-4 of the angle.
+        Additional rotation of each clamp about the middle of its face, about y, per bending moment about y
+        that it carries [rad/(N m)]; solved for to 1e-4 of the angle. Loads along y are refused beside it.
     squeeze : float
         Fraction by which the held section's height (z) is reduced; its width (y) grows at constant area.
     """
@@ -213,6 +216,10 @@ class ClampImperfections:
 @dataclass(frozen=True, kw_only=True)
 class Beam:
     """A prismatic beam along x, held in grips at x < 0 (and x > length), under gravity and a tip load.
+
+    Where loads and fibres have the mirror plane y = 0, half of it is solved, which cannot leave that plane. A
+    strip on edge that would buckle sideways is then in an equilibrium that is not stable; with a component of
+    1e-4 of the load along y the whole beam is solved, and finds the stable one.
 
     Attributes
     ----------
@@ -379,8 +386,10 @@ class Press:
     platens : "bonded" or "free"
         Bonded: the end faces stick to the platens all over (glued, or rough). Free: they slide without
         friction, and the body remains a cylinder down to a stretch of about 0.44, where its surface becomes
-        unstable. In a test that never exceeds the rest height they push and do not pull: a viscous body that
-        recovers more slowly than they open loses contact, with force 0. Bonded platens pull. Coulomb
+        unstable. An eighth of the body is solved: that a slender one buckles sideways before (a height above
+        three radii or so) does not show. In a test that never exceeds the rest height they push and do not
+        pull: a viscous body that recovers more slowly than they open loses contact, with force 0. Bonded
+        platens pull. Coulomb
         friction, which lies between the two, is not available.
     stretches : tuple of float
         Height over rest height, all falling from 1 or all rising from 1, solved in sequence.

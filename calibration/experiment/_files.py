@@ -207,7 +207,8 @@ def parse_table(
     """
     try:
         rows = csv.reader(io.StringIO(content.decode("utf-8-sig"), newline=""), strict=True)
-        header = [name.strip() for name in next(rows, [])]
+        above = (row for row in rows if any(cell.strip() for cell in row))
+        header = [name.strip() for name in next(above, [])]
         _check_header(header, path, required=(*texts, *numbers), optional=optional)
         found: dict[str, list[str]] = {name: [] for name in header}
         lines = []

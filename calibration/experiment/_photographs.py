@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
-from calibration.errors import InputError
-from calibration.experiment._yaml import load
+from calibration.experiment._fields import Coordinate, Doubt, Length, Strict
+from calibration.experiment._yaml import load, parse
 
 PHOTOGRAPHS = "photographs.yaml"
 
 
-class PhotoSettings(BaseModel):
+class PhotoSettings(Strict):
     """photographs.yaml: positions in the specimen's frame (x out of the clamp face, z up, y from the camera).
 
     Attributes
@@ -32,16 +33,14 @@ class PhotoSettings(BaseModel):
         Further photographs of the same board by the same camera, from other directions.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    board_corner_mm: tuple[float, float] | None = None
-    board_corner_sd_mm: float = Field(default=0.1, ge=0)
-    board_distance_mm: float | None = Field(default=None, gt=0)
-    board_distance_sd_mm: float = Field(default=0.5, ge=0)
-    board_roll_sd_deg: float = Field(default=0.1, ge=0)
-    square_sd: float = Field(default=0.001, ge=0, lt=0.1)
-    clamp_front_mm: float | None = Field(default=None, lt=0)
-    clamp_back_mm: float | None = Field(default=None, gt=0)
+    board_corner_mm: tuple[Coordinate, Coordinate] | None = None
+    board_corner_sd_mm: Doubt = 0.1
+    board_distance_mm: Length | None = None
+    board_distance_sd_mm: Doubt = 0.5
+    board_roll_sd_deg: Annotated[float, Field(ge=0, le=90)] = 0.1
+    square_sd: Annotated[float, Field(ge=0, lt=0.1)] = 0.001
+    clamp_front_mm: Annotated[Coordinate, Field(lt=0)] | None = None
+    clamp_back_mm: Length | None = None
     calibration_photos: tuple[str, ...] = ()
 
 
@@ -53,14 +52,5 @@ def read_photo_settings(folder: Path) -> PhotoSettings:
     path = folder / PHOTOGRAPHS
     if not path.exists():
         return PhotoSettings()
-    raw = load(path.read_bytes(), path)
-    if raw is None:
-        raw = {}
-    if not isinstance(raw, dict):
-        raise InputError(f"{path}: expected keys and values")
-    try:
-        return PhotoSettings.model_validate(raw)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}: {key}: {first['msg']}") from None
+    content = path.read_bytes()
+    return PhotoSettings() if load(content, path) is None else parse(content, path, PhotoSettings)

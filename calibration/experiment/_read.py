@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Literal
@@ -89,7 +90,7 @@ def read(folder: Path, *, leave_out_rows: bool = False) -> Experiment:
     """
     files = Files(Path(folder), leave_out_rows=leave_out_rows)
     entry = parse(files.read(MAIN, ""), files.main, ExperimentEntry)
-    trials = tuple(_trial(trial, files) for trial in entry.trials)
+    trials = _told_apart(tuple(_trial(trial, files) for trial in entry.trials))
     materials = {
         name: MaterialBelief(
             name=name,
@@ -106,6 +107,17 @@ def read(folder: Path, *, leave_out_rows: bool = False) -> Experiment:
         materials=MappingProxyType(materials),
         trials=trials,
         digest=files.digest(),
+    )
+
+
+def _told_apart(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
+    """The trials; specimens of two materials that have one name get their material's before it."""
+    materials: dict[str, set[str]] = {}
+    for t in trials:
+        materials.setdefault(t.specimen or t.material, set()).add(t.material)
+    shared = {name for name, owners in materials.items() if len(owners) > 1}
+    return tuple(
+        replace(t, specimen=f"{t.material} {t.specimen}") if t.specimen in shared else t for t in trials
     )
 
 

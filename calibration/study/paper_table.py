@@ -174,7 +174,7 @@ def row(
         assert density is not None  # a fit to outlines is refused without one
         trials = traced_beams(experiment, material)
         found, trouble = measure(fit, trials, bodies, density=density, workers=workers)
-        message = "; ".join(m for m in (fit.message, trouble) if m)
+        message = "; ".join(m for m in (fit.message, trouble, fit.note) if m)
     return Row(
         law=law,
         material=material,

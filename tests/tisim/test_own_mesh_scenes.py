@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -173,3 +175,42 @@ def test_nodes_that_no_element_uses_have_no_part_in_the_length() -> None:
     mesh = bar()
     more = replace(mesh, nodes=np.vstack([mesh.nodes, [[0.5, 0.0, 0.0]]]))
     assert tisim.Beam(material=SOFT, mesh=more).length == pytest.approx(0.06)
+
+
+def test_a_half_mesh_is_refused_where_a_load_crosses_its_mirror() -> None:
+    """It would not move, and be called converged."""
+    first = tisim.simulate(tisim.Beam(material=SOFT, length=0.05), workers=1)
+    assert first.mesh.symmetry == ("y",)
+    again = tisim.Beam(material=SOFT, mesh=first.mesh, length=0.05)
+    assert tisim.simulate(again, workers=1).ok
+    for change in ({"gravity": (0.0, -9.81, 0.0)}, {"tip_force": (0.0, 0.01, 0.0)}):
+        with pytest.raises(ValueError, match=r"mesh: expected a whole body \(tisim\.mesh\.unfold\)"):
+            tisim.simulate(replace(again, **change), workers=1)  # type: ignore[arg-type]
+
+
+def test_imperfections_are_refused_on_a_mesh_that_they_are_not_measured_on() -> None:
+    own = bar()
+    moved = replace(own, nodes=own.nodes + np.array([0.03, 0.0, 0.0]))
+    tilted = tisim.ClampImperfections(tilt=0.1)
+    assert tisim.simulate(tisim.Beam(material=SOFT, mesh=own, clamp_imperfections=tilted), workers=1).ok
+    for mesh, more in ((moved, {}), (own, {"length": 0.05})):
+        scene = tisim.Beam(material=SOFT, mesh=mesh, clamp_imperfections=tilted, **more)  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="mesh: expected a beam from its clamp's face at x = 0"):
+            tisim.simulate(scene, workers=1)
+    assert tisim.simulate(tisim.Beam(material=SOFT, mesh=moved), workers=1).ok
+
+
+def test_a_compliant_clamp_turns_about_y_alone() -> None:
+    clamps = tisim.ClampImperfections(compliance=30.0)
+    with pytest.raises(ValueError, match=r"clamp_imperfections\.compliance: expected 0 where gravity"):
+        tisim.simulate(
+            tisim.Beam(material=SOFT, length=0.05, gravity=(0.0, -9.81, 0.0), clamp_imperfections=clamps),
+            workers=1,
+        )
+
+
+def test_a_series_of_loading_and_unloading_has_rising_steps(tmp_path: Path) -> None:
+    coupon = tisim.Coupon(material=SOFT, mode="uniaxial", stretches=(1.1, 1.3, 1.1))
+    path = tisim.write(tisim.simulate(coupon, workers=1), tmp_path / "coupon.pvd")
+    steps = [float(s) for s in re.findall(r'timestep="([^"]+)"', path.read_text(encoding="utf-8"))]
+    assert steps == [0.0, 1.0, 2.0]

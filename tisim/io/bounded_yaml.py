@@ -130,13 +130,21 @@ class _Loader(yaml.SafeLoader):
         return value
 
 
+# Numbers are those of YAML 1.2: in 1.1, 0100 is octal (64), 16:40 of base 60 (1000), and 1e3 a text. What is
+# no number here stays text, which a key that expects a number refuses.
+_REPLACED = {f"tag:yaml.org,2002:{name}" for name in ("timestamp", "int", "float")}
 _Loader.yaml_implicit_resolvers = {
-    start: [(tag, pattern) for tag, pattern in entries if tag != "tag:yaml.org,2002:timestamp"]
+    start: [(tag, pattern) for tag, pattern in entries if tag not in _REPLACED]
     for start, entries in _Loader.yaml_implicit_resolvers.items()
 }
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+.0123456789")
-)
+for _tag, _pattern in (
+    ("int", r"^[-+]?(0|[1-9][0-9]*)$"),
+    (
+        "float",
+        r"^[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$",
+    ),
+):
+    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(_pattern), list("-+.0123456789"))
 
 
 def _measure(

@@ -113,6 +113,8 @@ def _write_series(result: Result, path: Path) -> None:
     folder = path.with_suffix("")
     folder.mkdir(exist_ok=True)
     moments = result.load if result.time is None else result.time
+    if not (np.diff(moments) > 0.0).all():  # loading and unloading have the same load
+        moments = np.arange(len(moments), dtype=float)
     series = [None] * len(moments) if result.scene is None else fields_of_frames(result)
     rows = []
     for frame, (found, moment) in enumerate(zip(series, moments, strict=True)):

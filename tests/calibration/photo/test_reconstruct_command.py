@@ -245,10 +245,10 @@ def test_stopped_in_between(lab: Path, tmp_path: Path, monkeypatch: pytest.Monke
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("board_corner: [1, 2]", "photographs.yaml: board_corner: Extra inputs"),
-        ("square_sd: .nan", "photographs.yaml: square_sd"),
-        ("clamp_front_mm: 3", "photographs.yaml: clamp_front_mm"),
-        ("- 1", "expected keys and values"),
+        ("board_corner: [1, 2]", "photographs.yaml: unknown key board_corner: expected board_corner_mm"),
+        ("square_sd: .nan", "photographs.yaml: key square_sd"),
+        ("clamp_front_mm: 3", "photographs.yaml: key clamp_front_mm"),
+        ("- 1", "expected keys and values at the top level"),
         ("calibration_photos: [none.png]", "none.png: no such photograph"),
     ],
 )

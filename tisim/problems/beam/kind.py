@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tisim._checks import (
     FieldError,
     check_choice,
@@ -17,6 +19,7 @@ from tisim._checks import (
     check_within,
 )
 from tisim.bodies import Circle, Rectangle
+from tisim.mesh import Mesh
 from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh
 from tisim.problems._registry import OnStep, SceneKind
@@ -26,13 +29,13 @@ from tisim.result import Result
 from tisim.scene import Beam, ClampImperfections, Imperfections, Void
 
 if TYPE_CHECKING:  # scipy is imported when a scene is solved
-    import numpy as np
     from numpy.typing import NDArray
 
     from tisim.discretisation.body import Discretisation
 
 MOST_LOSS = 0.95  # largest loss of stiffness or weight anywhere in a beam, as a fraction
 MOST_TILT = 0.8  # of a clamp [rad]
+SIDEWAYS = 0.05  # part of a load along y that a clamp which turns about y may bear
 SECONDS_PER_NODE = 5e-5  # of a static beam [core-s]
 SECONDS_DYNAMIC = 20.0
 
@@ -59,12 +62,40 @@ def check(scene: Beam) -> None:
         raise FieldError("tip_mass", "no mass on a beam that is clamped at both ends", scene.tip_mass)
     check_mesh(scene.mesh, node_sets=scene.held, facet_sets=("tip",) if pulled or scene.tip_mass else ())
     check_length("length", scene.length)  # after the mesh, from which it may have been derived
+    if scene.mesh is not None:
+        _check_own_mesh(scene, scene.mesh)
     _check_imperfections(scene)
     _check_clamps(scene)
     _check_course(scene)
     if scene.solver.method != "static" and not is_ideal(scene):
         wanted = "static, the only one offered where the specimen or the clamps are not ideal"
         raise FieldError("solver.method", wanted, scene.solver.method)
+
+
+NEAR = 1e-3  # of the length: a clamp's face may be so far from where it is expected
+
+
+def _check_own_mesh(scene: Beam, mesh: Mesh) -> None:
+    """Refuse a mirror plane that the loads break, and a place that imperfections are not measured from."""
+    fibres = None if scene.material.fibres is None else np.abs(scene.material.fibres.axis())
+    for name in mesh.symmetry:
+        k = "xyz".index(name)
+        oblique = fibres is not None and 1e-9 < fibres[k] < 1.0 - 1e-9
+        if scene.gravity[k] or scene.tip_force[k] or oblique:
+            crossed = f"gravity, tip force or fibres cross its mirror plane {name}"
+            wanted = f"a whole body (tisim.mesh.unfold), since {crossed}"
+            raise FieldError("mesh", wanted, mesh.symmetry)
+    if is_ideal(scene):
+        return
+    used = mesh.nodes[np.unique(mesh.elements), 0]
+    near = float(mesh.nodes[mesh.node_sets["clamp"], 0].max())
+    far = float(used.max() if len(scene.held) == 1 else mesh.nodes[mesh.node_sets["far_clamp"], 0].min())
+    if max(abs(near), abs(far - scene.length)) > NEAR * scene.length:
+        wanted = (
+            f"a beam from its clamp's face at x = 0 to x = {scene.length:g} m, its length, since the"
+            " imperfections of specimen and clamps are measured from there"
+        )
+        raise FieldError("mesh", wanted, (near, far))
 
 
 def _check_course(scene: Beam) -> None:
@@ -159,6 +190,10 @@ def _check_clamps(scene: Beam) -> None:
         name, value = ("far_tilt", c.far_tilt) if c.far_tilt else ("far_shift", c.far_shift)
         raise FieldError(f"clamp_imperfections.{name}", "0 on a beam without a far clamp", value)
     check_not_negative("clamp_imperfections.compliance", c.compliance, "a compliance of 0 rad/(N m) or more")
+    sideways = [abs(v[1]) > SIDEWAYS * float(np.linalg.norm(v)) for v in (scene.gravity, scene.tip_force)]
+    if c.compliance and any(sideways):
+        wanted = "0 where gravity or tip force act along y, since the clamps turn about y alone"
+        raise FieldError("clamp_imperfections.compliance", wanted, c.compliance)
     check_number(
         "clamp_imperfections.squeeze", c.squeeze, "a part between 0 and 0.5", lambda v: 0.0 <= v <= 0.5
     )

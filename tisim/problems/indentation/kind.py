@@ -24,6 +24,7 @@ from tisim.mesh.indentation import check_indentation
 from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
+from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
 from tisim.scene import Poke
 
@@ -57,6 +58,8 @@ def check(scene: Poke) -> None:
     check_vector("site", scene.site, 2)
     check_length("depth", scene.depth)
     check_mesh(scene.mesh, node_sets=("base",), facet_sets=("top",))
+    if scene.mesh is not None and scene.mesh.symmetry:
+        raise FieldError("mesh", "a whole body (tisim.mesh.unfold makes it whole)", scene.mesh.symmetry)
     if scene.mesh is not None and scene.block.inclusion is not None:
         wanted = "none beside a mesh, which has its own (tisim.mesh.block_around makes such a mesh)"
         raise FieldError("block.inclusion", wanted, scene.block.inclusion)
@@ -186,7 +189,8 @@ def describe(result: Result, frame: int) -> str:
     scene = result.scene
     assert isinstance(scene, Poke)
     assert result.rod_force is not None
-    down = abs(scene.direction[2]) / float(np.linalg.norm(scene.direction))
+    axis = axis_at(scene, 0.0 if result.time is None else float(result.time[frame]))
+    down = abs(float(axis[2]))
     angle = np.degrees(np.arccos(min(down, 1.0)))
     force = float(np.linalg.norm(result.rod_force[frame]))
     return f"Poke to {result.load[frame] * 1e3:.1f} mm at {angle:.0f}°, {force:.2f} N"
