@@ -21,6 +21,34 @@ class Circle:
 
     radius: float
 
+    @property
+    def half_width(self) -> float:
+        """Half the extent along y [m]."""
+        return self.radius
+
+    @property
+    def half_height(self) -> float:
+        """Half the extent along z [m]."""
+        return self.radius
+
+    @property
+    def area(self) -> float:
+        """Area [m2]."""
+        return math.pi * self.radius**2
+
+    def second_moment(self, axis: Literal["y", "z"]) -> float:
+        """Second moment of area about the central axis y or z [m4]; of a circle the same about both."""
+        del axis
+        return math.pi * self.radius**4 / 4.0
+
+    def scaled(self, factor: float) -> Circle:
+        """The circle with its radius times `factor` [-]."""
+        return Circle(radius=factor * self.radius)
+
+    def grown(self, by: float) -> Circle:
+        """The circle with its edge moved outward by `by` [m], inward where negative."""
+        return Circle(radius=self.radius + by)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Rectangle:
@@ -34,6 +62,34 @@ class Rectangle:
 
     width: float
     height: float
+
+    @property
+    def half_width(self) -> float:
+        """Half the extent along y [m]."""
+        return 0.5 * self.width
+
+    @property
+    def half_height(self) -> float:
+        """Half the extent along z [m]."""
+        return 0.5 * self.height
+
+    @property
+    def area(self) -> float:
+        """Area [m2]."""
+        return self.width * self.height
+
+    def second_moment(self, axis: Literal["y", "z"]) -> float:
+        """Second moment of area about the central axis y or z [m4]: about y, heights count cubed."""
+        along, across = (self.width, self.height) if axis == "y" else (self.height, self.width)
+        return along * across**3 / 12.0
+
+    def scaled(self, factor: float) -> Rectangle:
+        """The rectangle with both sizes times `factor` [-]."""
+        return Rectangle(width=factor * self.width, height=factor * self.height)
+
+    def grown(self, by: float) -> Rectangle:
+        """The rectangle with each edge moved outward by `by` [m], inward where negative."""
+        return Rectangle(width=self.width + 2.0 * by, height=self.height + 2.0 * by)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,16 +32,6 @@ class Side:
     tangent: Array
 
 
-def half_height(section: Section) -> float:
-    """Half the section's height in the image plane [m]."""
-    return section.radius if isinstance(section, tisim.Circle) else 0.5 * section.height
-
-
-def half_width(section: Section) -> float:
-    """Half the section's extent towards the camera [m]."""
-    return section.radius if isinstance(section, tisim.Circle) else 0.5 * section.width
-
-
 def unproject(view: View, pixels: Array, section: Section, *, plane: float, side: int, window: float) -> Side:
     """Outline and axis behind a smooth piece of silhouette.
 
@@ -61,12 +51,12 @@ def unproject(view: View, pixels: Array, section: Section, *, plane: float, side
     if isinstance(section, tisim.Circle):
         reach = section.radius * normal
     else:
-        reach = np.column_stack([across, across])[:, [0, 0, 1]] * 0.5 * section.height
-        reach[:, 1] = 0.5 * section.width * np.sign(normal[:, 1])
+        reach = np.column_stack([across, across])[:, [0, 0, 1]] * section.half_height
+        reach[:, 1] = section.half_width * np.sign(normal[:, 1])
     share = 1.0 + reach[:, 1] / ray[:, 1]
     touch = eye[[0, 2]] + share[:, None] * ray[:, [0, 2]]
     axis = touch - reach[:, [0, 2]]
-    return Side(outline=axis + half_height(section) * across, axis=axis, tangent=along)
+    return Side(outline=axis + section.half_height * across, axis=axis, tangent=along)
 
 
 def end_face(
@@ -80,7 +70,7 @@ def end_face(
     else:
         ring = np.column_stack([np.cos(turn), np.sin(turn)])
         ring /= np.abs(ring).max(axis=1, keepdims=True)
-        ring *= 0.5 * np.array([section.height, section.width])
+        ring *= np.array([section.half_height, section.half_width])
     normal = np.array([-tangent[1], tangent[0]])
     eye = view.eye
     flat = axis_end + ring[:, :1] * normal
@@ -149,7 +139,7 @@ def to_plane(view: View, contour: Contour, section: Section, *, plane: float) ->
     upper, lower = side(contour.upper, 1), side(contour.lower, -1)
     if not len(contour.end):
         return Edges(upper=upper, lower=lower, diameter=_diameter(upper, lower), end=None, end_sd=0.0)
-    height = 2 * half_height(section)
+    height = 2 * section.half_height
     tangent, middle = _end_line(upper, lower, height)
     normal = np.array([-tangent[1], tangent[0]])
     rim = view.on_plane(contour.end, plane) - middle

@@ -16,7 +16,7 @@ from calibration.photo._contour import Contour, trace_contour
 from calibration.photo._foreground import Body, Foreground, find_body, lay_out, segment, show_body
 from calibration.photo._frame import Face, Scale, axis_height, find_face, settle
 from calibration.photo._image import Grey, PhotoProblem
-from calibration.photo._silhouette import Edges, Section, half_height, half_width, to_plane
+from calibration.photo._silhouette import Edges, Section, to_plane
 
 Array = NDArray[np.float64]
 
@@ -196,7 +196,7 @@ def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, setting
         It cannot be used: a sentence, and a picture of what was found.
     """
     section = specimen.section
-    touching = half_width(section)
+    touching = section.half_width
     distance = touching if settings.board_distance_mm is None else settings.board_distance_mm * 1e-3
     view = locate(board, camera)
     found = segment(image, board, view)
@@ -206,7 +206,7 @@ def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, setting
     def edges(focal: float, away: float) -> Edges:
         return to_plane(locate(board, camera.with_focal(focal)), contour, section, plane=-away)
 
-    height, height_sd = 2 * half_height(section), specimen.section_sd
+    height, height_sd = 2 * section.half_height, specimen.section_sd
     _check_size(image, found, body, edges(camera.focal, distance).diameter, height)
     scale = settle(
         lambda focal, away: edges(focal, away).diameter,
@@ -252,7 +252,7 @@ def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, setting
 def _body(
     image: Grey, found: Foreground, view: View, specimen: Specimen, settings: PhotoSettings, distance: float
 ) -> Body:
-    height = 2 * half_height(specimen.section)
+    height = 2 * specimen.section.half_height
     return find_body(
         image,
         found,
@@ -291,7 +291,7 @@ def _contour(
         plane=-distance,
         start=max(starts),
         stop=min(stops) if specimen.supports == "clamped-clamped" else None,
-        height=2 * half_height(specimen.section),
+        height=2 * specimen.section.half_height,
     )
 
 
@@ -318,7 +318,7 @@ def _origin(
     """x, z of the specimen's frame in the board's [m], their sd [m], the clamp's face where it was used."""
     if settings.board_corner_mm is not None:
         corner = -1e-3 * np.array(settings.board_corner_mm)
-        height = 2 * half_height(specimen.section)
+        height = 2 * specimen.section.half_height
         off = axis_height(both, float(corner[0]), height)[0] - float(corner[1])
         if abs(off) > 0.5 * height:
             raise PhotoProblem(
@@ -332,5 +332,5 @@ def _origin(
     back = plane + settings.clamp_back_mm * 1e-3 if settings.clamp_back_mm is not None else 0.0
     front = plane + settings.clamp_front_mm * 1e-3 if settings.clamp_front_mm is not None else None
     face = find_face(image, found, body.label, view, body.near, plane=plane, front=front, back=back)
-    z, z_sd = axis_height(both, face.x, 2 * half_height(specimen.section))
+    z, z_sd = axis_height(both, face.x, 2 * specimen.section.half_height)
     return np.array([face.x, z]), float(np.sqrt(0.5 * (face.sd**2 + z_sd**2))), face

@@ -73,7 +73,7 @@ def _section_ring(section: tisim.Circle | tisim.Rectangle, segments: int, true_a
             radius *= np.sqrt(2 * np.pi / (segments * np.sin(2 * np.pi / segments)))
         phase = 2 * np.pi * np.arange(segments) / segments
         return np.asarray(radius * np.column_stack([np.cos(phase), np.sin(phase)]))
-    y, z = section.width / 2, section.height / 2
+    y, z = section.half_width, section.half_height
     corners = np.array([[y, -z], [y, z], [-y, z], [-y, -z]])
     side = np.linspace(0.0, 1.0, max(segments // 4, 1), endpoint=False)[:, None]
     return np.concatenate([(1 - side) * corners[i] + side * corners[(i + 1) % 4] for i in range(4)])

@@ -13,7 +13,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, TracedOutline
 from calibration.measurements.outlines._edges import Feet, edges, feet
 from calibration.measurements.outlines._noise import contour_root, smooth_basis
-from tisim import Circle, Result
+from tisim import Result
 
 Array = NDArray[np.float64]
 Image = Callable[[Array], Array]
@@ -102,8 +102,7 @@ def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = 
 
     InputError if fewer than 3 points of an edge remain.
     """
-    section = trial.section
-    half = section.radius if isinstance(section, Circle) else section.height / 2.0
+    half = trial.section.half_height
     end = trial.free_length if trial.supports == "clamped-clamped" else np.inf
 
     def kept(edge: Array) -> Array:
@@ -150,8 +149,7 @@ def photographs_of(trials: Sequence[BeamTrial]) -> list[TracedPhotograph]:
 
 def _corners(outline: TracedOutline, trial: BeamTrial) -> Array:
     """Exponential decays from each clamp along each edge, of height 1 at the clamp, shape (k, c)."""
-    section = trial.section
-    half = section.radius if isinstance(section, Circle) else section.height / 2.0
+    half = trial.section.half_height
     ends = (0.0, trial.free_length) if trial.supports == "clamped-clamped" else (0.0,)
     n = len(outline.upper)
     x = np.concatenate([outline.upper[:, 0], outline.lower[:, 0]])

@@ -154,19 +154,14 @@ class Section:
 def section_of(shape: Circle | Rectangle) -> Section:
     """Moments of a circular or rectangular section."""
     if isinstance(shape, Circle):
-        r = shape.radius
-        return Section(
-            area=np.pi * r**2,
-            inertia=np.pi * r**4 / 4.0,
-            fourth=r**2 / 2.0,
-            shear_coefficient=SHEAR_COEFFICIENTS["circle"],
-        )
-    w, h = shape.width, shape.height
+        kind, fourth = "circle", shape.radius**2 / 2.0
+    else:
+        kind, fourth = "rectangle", 0.15 * shape.height**2
     return Section(
-        area=w * h,
-        inertia=w * h**3 / 12.0,
-        fourth=0.15 * h**2,
-        shear_coefficient=SHEAR_COEFFICIENTS["rectangle"],
+        area=shape.area,
+        inertia=shape.second_moment("y"),
+        fourth=fourth,
+        shear_coefficient=SHEAR_COEFFICIENTS[kind],
     )
 
 

@@ -109,7 +109,7 @@ def corrections(
 def uncorrected(record: Record, *, usual: bool = True) -> Correction:
     """Correction of a record without FEM: the usual stiff root, or with `usual` False plain beam theory."""
     return Correction(
-        stiff_root=USUAL * _height(record) if usual else 0.0,
+        stiff_root=USUAL * 2.0 * record.parameters.section.half_height if usual else 0.0,
         extra_inertia=0.0,
         markers=np.zeros((len(record.positions), 2)),
         drop=float(-record.equilibrium[record.outer, 1].mean()),
@@ -166,7 +166,7 @@ def _with_root(record: Record, parameters: BeamParameters, aim: Array) -> BeamPa
     aim : displacement of the markers by FEM [m], shape (m, 2). ValueError if there is no such stiff root.
     """
     drop = float(-aim[record.outer, 1].mean())
-    widest = _WIDEST * _height(record)
+    widest = _WIDEST * 2.0 * record.parameters.section.half_height
 
     def off(root: float) -> float:
         return _equilibrium(replace(parameters, stiff_root=root), record)[1] - drop
@@ -181,8 +181,3 @@ def _equilibrium(parameters: BeamParameters, record: Record) -> tuple[Array, flo
     q = ReducedBeam(parameters).equilibrium()
     moved = beam_markers(parameters, q[None], record.positions).displacement[:, 0]
     return moved, float(-moved[record.outer, 1].mean())
-
-
-def _height(record: Record) -> float:
-    section = record.parameters.section
-    return float(getattr(section, "height", 2.0 * getattr(section, "radius", 0.0)))

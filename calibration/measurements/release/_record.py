@@ -13,7 +13,6 @@ from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment, Marker, MaterialBelief
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release.ringdown import ringdown
-from tisim import Circle
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -313,7 +312,7 @@ def _record(trial: BeamTrial, experiment: Experiment) -> Record:
             f"{where}.markers: expected {FIRST + FEWEST:g} periods of free vibration after the release"
             f" ({(FIRST + FEWEST) * period:.2g} s), got {max(time[-1], 0.0):.2g} s"
         )
-    height = 2.0 * trial.section.radius if isinstance(trial.section, Circle) else trial.section.height
+    height = 2.0 * trial.section.half_height
     near = np.array([m.position[0] < NEAR * height for m in trial.markers])
     every = np.unique(np.concatenate([m.time for m in trial.markers]))
     sampled, held, equilibrium = [], [], []

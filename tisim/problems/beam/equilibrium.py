@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.bodies import Circle
+from tisim.bodies import Rectangle
 from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.nonlinear.newton import Outcome, newton
 from tisim.problems.beam.rods import planar_rod
@@ -131,29 +131,19 @@ def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
     4-node tetrahedra would be thousands of times the load.
     """
     section = scene.section
-    if isinstance(section, Circle):
-        area, inertia = np.pi * section.radius**2, np.pi * section.radius**4 / 4.0
-        thick = section.radius
-    else:
-        area = section.width * section.height
-        inertia = None
-        thick = 0.5 * max(section.width, section.height)
-    line = scene.material.density * area * np.asarray(scene.gravity, dtype=float)
+    line = scene.material.density * section.area * np.asarray(scene.gravity, dtype=float)
     tip = np.asarray(scene.tip_force, dtype=float)
     across = (line * scene.length + tip) * np.array([0.0, 1.0, 1.0])
     size = float(np.linalg.norm(across))
     e2 = across / size if size > 0 else np.array([0.0, 0.0, 1.0])
-    if inertia is None:
-        if abs(e2[1]) > 1e-12 and abs(e2[2]) > 1e-12:
-            return None  # a rectangle bent off its principal planes leaves the plane of the load
-        b, h = (section.width, section.height) if abs(e2[2]) > 0.5 else (section.height, section.width)  # type: ignore[union-attr]
-        inertia = b * h**3 / 12.0
+    if isinstance(section, Rectangle) and abs(e2[1]) > 1e-12 and abs(e2[2]) > 1e-12:
+        return None  # a rectangle bent off its principal planes leaves the plane of the load
     g, k = body.moduli.shear_modulus, body.moduli.bulk_modulus
     young = 9.0 * k * g / (3.0 * k + g)
     s, r, theta = planar_rod(
         length=scene.length,
-        bending=young * inertia,
-        stretching=young * area,
+        bending=young * section.second_moment("y" if abs(e2[2]) > 0.5 else "z"),
+        stretching=young * section.area,
         line_load=(float(line[0]), float(line @ e2)),
         tip_force=(float(tip[0]), float(tip @ e2)),
         clamped_end=scene.supports == "clamped-clamped",
@@ -164,6 +154,7 @@ def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
     offset, side = rest @ e2, rest @ e3
     angle = np.interp(t, s, theta)
     poisson = (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+    thick = max(section.half_width, section.half_height)
     held = np.exp(-((t / (HELD * thick)) ** 2))
     if scene.supports == "clamped-clamped":
         held = held + np.exp(-(((scene.length - t) / (HELD * thick)) ** 2))

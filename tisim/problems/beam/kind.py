@@ -24,7 +24,7 @@ from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh
 from tisim.problems._registry import OnStep, SceneKind
 from tisim.problems._stops import shortest_time
-from tisim.problems.beam.rest_shape import half_sizes, is_ideal, is_planar, skin_profile
+from tisim.problems.beam.rest_shape import is_ideal, is_planar, skin_profile
 from tisim.result import Result
 from tisim.scene import Beam, ClampImperfections, Imperfections, Void
 
@@ -124,7 +124,7 @@ def takes(scene: Beam) -> tuple[str, ...]:
 def _check_imperfections(scene: Beam) -> None:
     s = scene.imperfections
     check_type("imperfections", s, (Imperfections,))
-    b, h = half_sizes(scene.section)
+    b, h = scene.section.half_width, scene.section.half_height
     # the arc is shorter than a semicircle and does not fold inside; sizes and moduli stay well above 0
     check_within("imperfections.curvature", s.curvature, min(3.0 / scene.length, 0.5 / h), " /m on this beam")
     along = MOST_LOSS / (0.5 * scene.length)

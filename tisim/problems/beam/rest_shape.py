@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.bodies import Circle, Rectangle
+from tisim.bodies import Circle
 from tisim.discretisation.quadrature import reference
 from tisim.mesh import Mesh
 from tisim.scene import Beam, ClampImperfections, Imperfections, Void
@@ -157,16 +157,9 @@ def skin_profile(scene: Beam) -> tuple[float, float, float]:
 
 def _skin(scene: Beam, points: Array, weights: Array) -> Array:
     """`skin_profile` at the points, exact for the mesh since the moments are those of its quadrature."""
-    b, h = half_sizes(scene.section)
+    b, h = scene.section.half_width, scene.section.half_height
     basis = np.stack([np.ones_like(weights), (points[..., 1] / b) ** 2, (points[..., 2] / h) ** 2])
     moments = np.einsum("ieq,jeq,eq->ij", basis, basis, weights)
     stretching, about_y, about_z = skin_factors(scene)
     wanted = moments[0] * [stretching, about_z, about_y]
     return np.asarray(np.einsum("i,ieq->eq", np.linalg.solve(moments, wanted), basis))
-
-
-def half_sizes(section: Circle | Rectangle) -> tuple[float, float]:
-    """Half width (y) and half height (z) [m]."""
-    if isinstance(section, Circle):
-        return section.radius, section.radius
-    return 0.5 * section.width, 0.5 * section.height

@@ -23,10 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
-from tisim.bodies import Circle
 from tisim.laws import Moduli
 from tisim.mesh import Mesh
-from tisim.problems.beam.rest_shape import along, half_sizes, heaviness, scale, skin_factors
+from tisim.problems.beam.rest_shape import along, heaviness, scale, skin_factors
 from tisim.scene import Beam
 
 Array = NDArray[np.float64]
@@ -252,7 +251,7 @@ def _chain(scene: Beam, moduli: Moduli, faces: Array, yielding: float) -> _Chain
     h = scene.length / SEGMENTS
     middle = np.asarray((np.arange(SEGMENTS) + 0.5) * h, dtype=np.float64)
     joint = np.asarray(np.arange(SEGMENTS + 1) * h, dtype=np.float64)
-    area, inertia = _section(scene)
+    area, inertia = scene.section.area, scene.section.second_moment("y")
     young = (
         9.0 * moduli.bulk_modulus * moduli.shear_modulus / (3.0 * moduli.bulk_modulus + moduli.shear_modulus)
     )
@@ -302,14 +301,6 @@ def _in_steps(chain: _Chain) -> tuple[Array, Array] | None:
         if step < SMALLEST_STEP:
             return None
     return p, reaction
-
-
-def _section(scene: Beam) -> tuple[float, float]:
-    """Area [m2] and second moment of area about y [m4]."""
-    b, h = half_sizes(scene.section)
-    if isinstance(scene.section, Circle):
-        return np.pi * h**2, np.pi * h**4 / 4.0
-    return 4.0 * b * h, 4.0 * b * h**3 / 3.0
 
 
 def _tension(force: Array, p: Array) -> tuple[Array, Array, Array]:
@@ -390,7 +381,7 @@ def body_positions(scene: Beam, mesh: Mesh, rod: Rod) -> Array:
     """
     x, y, z = mesh.nodes.T
     inside = np.clip(x, 0.0, scene.length)
-    half_height = half_sizes(scene.section)[1]
+    half_height = scene.section.half_height
     squeeze = np.exp(-inside / (SQUEEZED * half_height))
     if scene.supports == "clamped-clamped":
         squeeze = squeeze + np.exp(-(scene.length - inside) / (SQUEEZED * half_height))

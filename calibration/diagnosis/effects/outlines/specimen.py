@@ -15,7 +15,7 @@ from calibration.measurements.outlines._effect import (
     Situation,
     cantilever,
 )
-from tisim import Beam, Circle, Void
+from tisim import Beam, Void
 
 Array = NDArray[np.float64]
 
@@ -24,12 +24,7 @@ Array = NDArray[np.float64]
 
 
 def _bend_radius(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    if isinstance(beam.section, Circle):
-        return replace(beam, section=Circle(radius=beam.section.radius + amplitude))
-    s = beam.section
-    return replace(
-        beam, section=replace(s, width=s.width + 2.0 * amplitude, height=s.height + 2.0 * amplitude)
-    )
+    return replace(beam, section=beam.section.grown(amplitude))
 
 
 RADIUS = OutlineEffect(

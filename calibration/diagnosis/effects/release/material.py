@@ -12,7 +12,6 @@ from calibration.measurements._effect import HandedOn, Occurrence, added_to
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release._effect import ReleaseEffect
 from calibration.measurements.release._record import reference_time
-from tisim import Circle, Rectangle
 
 # -- creep --
 # Creep: the relaxation modulus falls by this fraction of its value at 1 s per decade of time, from 1 ms to
@@ -170,10 +169,7 @@ DENSITY = ReleaseEffect(
 
 
 def _alter_section_scale(s: BeamParameters, amplitude: float, _: float | None) -> BeamParameters:
-    grown = 1.0 + amplitude
-    if isinstance(s.section, Circle):
-        return replace(s, section=Circle(radius=grown * s.section.radius))
-    return replace(s, section=Rectangle(width=grown * s.section.width, height=grown * s.section.height))
+    return replace(s, section=s.section.scaled(1.0 + amplitude))
 
 
 SECTION_SCALE = ReleaseEffect(
