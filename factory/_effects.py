@@ -10,9 +10,15 @@ from pydantic import Field, field_validator
 
 from factory._errors import InputError
 from factory._input import Strict
-from tisim import Material, Moduli, laws, material_from_moduli
+from tisim import Material, laws, material_from_moduli
 
 BASE = "neo-hookean"  # the law that effects extend
+# effects that extend the base law by one constant, and the law that has it
+EXTENSIONS: dict[str, laws.Extension] = {
+    "strain-stiffening": "yeoh",
+    "second-invariant": "mooney-rivlin",
+    "limited-extensibility": "eight-chain",
+}
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 # effects that a dataset applies: the parameter that is read, and the property that it changes
@@ -126,46 +132,23 @@ def extended(material: Material, effects: Sequence[CardEffect], name: str) -> Ma
 
 
 def _with(material: Material, effect: str, value: float) -> Material:
-    law = laws.get(material.law)
-    moduli = law.moduli(material.parameters)
+    moduli = laws.get(material.law).moduli(material.parameters)
     if effect == "density":
         if not value > -1.0:
             raise ValueError(f"expected a value above -1, got {value:g}")
         return replace(material, density=material.density * (1.0 + value))
     if effect == "compressibility":
+        found = moduli.with_poisson_ratio(moduli.poisson_ratio - value)
         # the other parameters, e.g. a stiffening or a locking stretch, are kept
-        scaled = law.from_moduli(moduli.shear_modulus, _bulk(moduli, value))
-        own = {n: material.parameters[n] for n in law.parameters if n not in ("lam", "bulk")}
-        return replace(material, parameters={**scaled, **own})
+        return replace(
+            material, parameters=laws.with_moduli(material.law, material.parameters, **vars(found))
+        )
     if effect == "creep":
         return material
     if material.law != BASE:
         raise ValueError(f"asks for another law than {material.law}, which another effect asks for: keep one")
-    stiffer = _in_law(material, effect, value)
-    return replace(material, law=stiffer.law, parameters=stiffer.parameters)
-
-
-def _bulk(moduli: Moduli, drop: float) -> float:
-    """Bulk modulus [Pa] with Poisson's ratio lower by `drop`."""
-    g, k = moduli.shear_modulus, moduli.bulk_modulus
-    nu = (3.0 * k - 2.0 * g) / (6.0 * k + 2.0 * g) - drop
-    if not -1.0 < nu < 0.5:
-        raise ValueError(f"leaves a Poisson ratio of {nu:.3g}, expected one between -1 and 0.5")
-    return 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
-
-
-def _in_law(material: Material, effect: str, value: float) -> Material:
-    """Extend a neo-Hookean material by one constant, at the same small-strain moduli."""
-    moduli = laws.get(material.law).moduli(material.parameters)
-    g, k = moduli.shear_modulus, moduli.bulk_modulus
-    if effect == "strain-stiffening":
-        return Material(law="yeoh", parameters={"mu": g, "stiffening": value, "bulk": k})
-    if effect == "second-invariant":
-        constants = {"c10": 0.5 * g * (1.0 - value), "c01": 0.5 * g * value}
-        return Material(law="mooney-rivlin", parameters={**constants, "bulk": k})
-    if not 0.0 < value < 1.0:
-        raise ValueError(f"expected a value between 0 and 1, got {value:g}")
-    return Material(law="eight-chain", parameters={"mu": g, "locking": value**-0.5, "bulk": k})
+    law = EXTENSIONS[effect]
+    return replace(material, law=law, parameters=laws.extension(law, value, **vars(moduli)))
 
 
 def in_one_law(materials: Mapping[str, Material]) -> dict[str, Material]:

@@ -134,14 +134,7 @@ def _law(
         law = diagnosis.subject.law
         return law, laws.get(law).from_moduli(shear, bulk)
     law, parameters = diagnosis.subject.other_laws[name]
-    units = {n: unit for n, (unit, _) in laws.get(law).parameters.items()}
-
-    def times(n: str, value: float | tuple[float, ...]) -> float | tuple[float, ...]:
-        if units[n] != "Pa":
-            return value
-        return tuple(ratio * v for v in value) if isinstance(value, tuple) else ratio * value
-
-    return law, {n: times(n, value) for n, value in parameters.items()}
+    return law, laws.scaled(law, parameters, ratio)
 
 
 def _rig(at_fault: list[int], diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:

@@ -86,13 +86,16 @@ class Form:
     @property
     def young(self) -> float:
         """Young's modulus at small strain [Pa]."""
-        return 9.0 * self.bulk * self.shear_modulus / (3.0 * self.bulk + self.shear_modulus)
+        return self._moduli.young_modulus
 
     @property
     def poisson(self) -> float:
         """Poisson's ratio at small strain [-]."""
-        k, g = self.bulk, self.shear_modulus
-        return (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+        return self._moduli.poisson_ratio
+
+    @property
+    def _moduli(self) -> laws.Moduli:
+        return laws.Moduli(shear_modulus=self.shear_modulus, bulk_modulus=self.bulk)
 
     def stress(self, stretches: Array) -> Array:
         """Principal first Piola-Kirchhoff stresses [Pa] at principal stretches, both (n, 3)."""

@@ -312,13 +312,10 @@ def baseline_model(card: CardFile) -> CardModel | None:
 
 def scaled_law(name: str, parameters: Parameters) -> Parametrisation:
     """A law whose moduli are one multiple of those given; what has no unit (an exponent) stays."""
-    law = laws.get(name)
-    reference = law.moduli(parameters).shear_modulus
-    stiff = [n for n, (unit, _) in law.parameters.items() if unit == "Pa"]
+    reference = laws.get(name).moduli(parameters).shear_modulus
 
     def assemble(v: dict[str, float]) -> Parameters:
-        factor = v["shear_modulus"] / reference
-        return {n: _times(x, factor) if n in stiff else x for n, x in parameters.items()}
+        return laws.scaled(name, parameters, v["shear_modulus"] / reference)
 
     return Parametrisation(law=name, label=name, coordinates=(shear_modulus(),), assemble=assemble)
 
@@ -333,9 +330,10 @@ def scaled_part(field: str, part: Part, *, free: bool) -> PartCoordinates:
         if scaled is None:
             return part
         key, power = scaled
-        value = _times(getattr(part, key), values[name] ** power)
+        known, factor = getattr(part, key), values[name] ** power
+        value: Any = tuple(x * factor for x in known) if isinstance(known, tuple) else known * factor
         if key == "r":
-            value = max(float(value), 1.0)  # type: ignore[arg-type]
+            value = max(float(value), 1.0)
         return replace(part, **{key: value})
 
     return PartCoordinates(
@@ -356,7 +354,3 @@ def _relative_sd(card: CardFile, field: str) -> float | None:
             amplitude = next(iter(e.parameters.values()))
             return abs(amplitude.sd / amplitude.value) if amplitude.value else None
     return None
-
-
-def _times(x: float | tuple[float, ...], factor: float) -> float | tuple[float, ...]:
-    return tuple(v * factor for v in x) if isinstance(x, tuple) else x * factor

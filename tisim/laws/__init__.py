@@ -46,6 +46,7 @@ from tisim.laws import (
     stiffening_neo_hookean,
     yeoh,
 )
+from tisim.laws._constants import Extension, extension, scaled, with_moduli
 from tisim.laws._energy import by_invariants, first_isochoric, lazy, ti
 from tisim.laws._law import Law, Moduli, Parameters
 
@@ -147,6 +148,7 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "Extension",
     "Law",
     "LawReport",
     "Moduli",
@@ -156,10 +158,13 @@ __all__ = [
     "by_invariants",
     "check_law",
     "evaluate",
+    "extension",
     "first_isochoric",
     "get",
     "names",
     "register",
+    "scaled",
     "ti",
     "unregister",
+    "with_moduli",
 ]

@@ -26,6 +26,25 @@ class Moduli:
     shear_modulus: float
     bulk_modulus: float
 
+    @property
+    def young_modulus(self) -> float:
+        """Young's modulus [Pa]."""
+        g, k = self.shear_modulus, self.bulk_modulus
+        return 9.0 * k * g / (3.0 * k + g)
+
+    @property
+    def poisson_ratio(self) -> float:
+        """Poisson's ratio [-]."""
+        g, k = self.shear_modulus, self.bulk_modulus
+        return (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+
+    def with_poisson_ratio(self, nu: float) -> Moduli:
+        """The same shear modulus with Poisson's ratio `nu` [-]; ValueError outside -1 to 0.5."""
+        if not -1.0 < nu < 0.5:
+            raise ValueError(f"expected a Poisson ratio between -1 and 0.5, got {nu:.3g}")
+        g = self.shear_modulus
+        return Moduli(shear_modulus=g, bulk_modulus=2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Law:

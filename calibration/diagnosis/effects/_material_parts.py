@@ -16,6 +16,7 @@ from scipy.optimize import least_squares, nnls
 from scipy.special import erf
 
 from calibration.measurements._effect import HandedOn, Occurrence
+from tisim import laws
 from tisim.parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 
 Array = NDArray[np.float64]
@@ -166,13 +167,12 @@ def stiffening(found: Occurrence) -> HandedOn:
     if found.amplitude < 0.0:
         text = "no law: one that softens with strain has no least energy"
         return HandedOn(field="law", remarks=(text,))
-    return _law("yeoh", lambda g, k: {"mu": g, "stiffening": found.amplitude, "bulk": k})
+    return _law("yeoh", found.amplitude)
 
 
 def mooney_rivlin(found: Occurrence) -> HandedOn:
     """Mooney-Rivlin law: the amplitude is the fraction C01 / (C10 + C01) of the second invariant."""
-    c = found.amplitude
-    return _law("mooney-rivlin", lambda g, k: {"c10": 0.5 * g * (1.0 - c), "c01": 0.5 * g * c, "bulk": k})
+    return _law("mooney-rivlin", found.amplitude)
 
 
 def eight_chain(found: Occurrence) -> HandedOn:
@@ -180,11 +180,14 @@ def eight_chain(found: Occurrence) -> HandedOn:
     if not 0.0 < found.amplitude < 1.0:
         text = "no law: the chains would lock at rest"
         return HandedOn(field="law", remarks=(text,))
-    return _law("eight-chain", lambda g, k: {"mu": g, "locking": found.amplitude**-0.5, "bulk": k})
+    return _law("eight-chain", found.amplitude)
 
 
-def _law(name: str, parameters: Callable[[float, float], dict[str, float]]) -> HandedOn:
-    return HandedOn(field="law", law=lambda g, k: (name, parameters(g, k)), states="the small-strain modulus")
+def _law(name: laws.Extension, amplitude: float) -> HandedOn:
+    def law(shear: float, bulk: float) -> tuple[str, dict[str, float]]:
+        return name, laws.extension(name, amplitude, shear_modulus=shear, bulk_modulus=bulk)
+
+    return HandedOn(field="law", law=law, states="the small-strain modulus")
 
 
 def seen(times: list[Array]) -> tuple[float, float]:

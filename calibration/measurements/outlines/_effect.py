@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calibration.experiment.model import BeamTrial
 from calibration.measurements._effect import EffectModel
 from calibration.measurements.outlines.simulators import Simulator
-from tisim import Beam, Material, laws
+from tisim import Beam
 
 Array = NDArray[np.float64]
 
@@ -77,13 +77,6 @@ class OutlineEffect(EffectModel):
         """Trial, material and specimen: any of these can be named, also by a rig file."""
         trial: BeamTrial = getattr(record, "trial", record)
         return (trial.id, trial.material, trial.specimen or trial.material)
-
-
-def with_moduli(material: Material, *, shear: float, bulk: float) -> Material:
-    """Material with other moduli [Pa]; dimensionless parameters (a stiffening) stay."""
-    law = laws.get(material.law)
-    plain = {n: material.parameters[n] for n, (unit, _) in law.parameters.items() if unit != "Pa"}
-    return replace(material, parameters={**law.from_moduli(shear, bulk), **plain})
 
 
 def cantilever(trial: BeamTrial) -> bool:

@@ -138,8 +138,7 @@ def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
     e2 = across / size if size > 0 else np.array([0.0, 0.0, 1.0])
     if isinstance(section, Rectangle) and abs(e2[1]) > 1e-12 and abs(e2[2]) > 1e-12:
         return None  # a rectangle bent off its principal planes leaves the plane of the load
-    g, k = body.moduli.shear_modulus, body.moduli.bulk_modulus
-    young = 9.0 * k * g / (3.0 * k + g)
+    young = body.moduli.young_modulus
     s, r, theta = planar_rod(
         length=scene.length,
         bending=young * section.second_moment("y" if abs(e2[2]) > 0.5 else "z"),
@@ -153,12 +152,13 @@ def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
     e3 = np.cross([1.0, 0.0, 0.0], e2)
     offset, side = rest @ e2, rest @ e3
     angle = np.interp(t, s, theta)
-    poisson = (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
     thick = max(section.half_width, section.half_height)
     held = np.exp(-((t / (HELD * thick)) ** 2))
     if scene.supports == "clamped-clamped":
         held = held + np.exp(-(((scene.length - t) / (HELD * thick)) ** 2))
-    narrowing = poisson * np.maximum(1.0 - held, 0.0) * np.interp(t, s, np.gradient(theta, s))
+    narrowing = (
+        body.moduli.poisson_ratio * np.maximum(1.0 - held, 0.0) * np.interp(t, s, np.gradient(theta, s))
+    )
     offset, side = offset + 0.5 * narrowing * (offset**2 - side**2), side * (1.0 + narrowing * offset)
     x1 = np.interp(t, s, r[:, 0]) - offset * np.sin(angle) + (rest[:, 0] - t)
     x2 = np.interp(t, s, r[:, 1]) + offset * np.cos(angle)

@@ -252,9 +252,7 @@ def _chain(scene: Beam, moduli: Moduli, faces: Array, yielding: float) -> _Chain
     middle = np.asarray((np.arange(SEGMENTS) + 0.5) * h, dtype=np.float64)
     joint = np.asarray(np.arange(SEGMENTS + 1) * h, dtype=np.float64)
     area, inertia = scene.section.area, scene.section.second_moment("y")
-    young = (
-        9.0 * moduli.bulk_modulus * moduli.shear_modulus / (3.0 * moduli.bulk_modulus + moduli.shear_modulus)
-    )
+    young = moduli.young_modulus
     stretching, bending, _ = skin_factors(scene)
     weight = scene.material.density * area * h * heaviness(scene, middle) * scale(scene, middle) ** 2
     beyond = np.cumsum(weight[::-1])[::-1] - 0.5 * weight

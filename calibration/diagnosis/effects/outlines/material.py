@@ -10,14 +10,22 @@ from numpy.typing import NDArray
 from calibration.diagnosis import catalogue
 from calibration.diagnosis.effects._material_parts import stiffening, viscosity_of
 from calibration.measurements._effect import HandedOn, Occurrence
-from calibration.measurements.outlines._effect import (
-    OutlineEffect,
-    Situation,
-    with_moduli,
-)
+from calibration.measurements.outlines._effect import OutlineEffect, Situation
 from tisim import Beam, laws
 
 Array = NDArray[np.float64]
+
+
+def _moduli(beam: Beam) -> laws.Moduli:
+    return laws.get(beam.material.law).moduli(beam.material.parameters)
+
+
+def _at(beam: Beam, moduli: laws.Moduli) -> Beam:
+    """The beam with other moduli of its material; dimensionless constants (a stiffening) stay."""
+    material = beam.material
+    parameters = laws.with_moduli(material.law, material.parameters, **vars(moduli))
+    return replace(beam, material=replace(material, parameters=parameters))
+
 
 # -- density --
 # The density differs from the stated one by this fraction: only the ratio of stiffness to weight matters.
@@ -64,11 +72,8 @@ STRAIN_STIFFENING = OutlineEffect(
 
 
 def _bend_compressibility(beam: Beam, amplitude: float, _: Situation) -> Beam:
-    moduli = laws.get(beam.material.law).moduli(beam.material.parameters)
-    g, k = moduli.shear_modulus, moduli.bulk_modulus
-    nu = (3.0 * k - 2.0 * g) / (6.0 * k + 2.0 * g) - amplitude
-    bulk = 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
-    return replace(beam, material=with_moduli(beam.material, shear=g, bulk=bulk))
+    moduli = _moduli(beam)
+    return _at(beam, moduli.with_poisson_ratio(moduli.poisson_ratio - amplitude))
 
 
 COMPRESSIBILITY = OutlineEffect(
@@ -85,10 +90,10 @@ COMPRESSIBILITY = OutlineEffect(
 
 
 def _bend_creep(beam: Beam, amplitude: float, situation: Situation) -> Beam:
-    moduli = laws.get(beam.material.law).moduli(beam.material.parameters)
+    moduli = _moduli(beam)
     part = 1.0 - amplitude * float(np.log10(situation.time))
-    softer = with_moduli(beam.material, shear=part * moduli.shear_modulus, bulk=part * moduli.bulk_modulus)
-    return replace(beam, material=softer)
+    softer = laws.Moduli(shear_modulus=part * moduli.shear_modulus, bulk_modulus=part * moduli.bulk_modulus)
+    return _at(beam, softer)
 
 
 def _viscosity_creep(found: Occurrence) -> HandedOn:
