@@ -29,6 +29,7 @@ from pathlib import Path
 from calibration.errors import InputError, OptionError
 from calibration.experiment import Experiment, read
 from calibration.fit_plan import plan_fit, processes
+from calibration.fit_request import FitRequest
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 
@@ -60,25 +61,25 @@ def read_experiment(folder: str | Path, *, leave_out_rows: bool = False) -> Expe
 def fit(
     experiment: str | Path | Experiment,
     *,
-    model: str | Sequence[str] = "all",
+    model: str | Sequence[str] = FitRequest.model,
     materials: Sequence[str] | None = None,
-    terms: int = 1,
+    terms: int = FitRequest.terms,
     time: str | None = None,
     damage: str | None = None,
-    fibres: bool = False,
-    objective: str = "likelihood",
-    free_bulk_ratio: bool = False,
+    fibres: bool = FitRequest.fibres,
+    objective: str = FitRequest.objective,
+    free_bulk_ratio: bool = FitRequest.free_bulk_ratio,
     rig: str | Path | None = None,
     start: str | Path | None = None,
     out: str | Path | None = None,
-    seed: int = 1,
+    seed: int = FitRequest.seed,
     population: int | None = None,
-    generations: int = 60,
-    restarts: int = 0,
-    polish: bool = True,
-    held_out: bool = True,
+    generations: int = FitRequest.generations,
+    restarts: int = FitRequest.restarts,
+    polish: bool = FitRequest.polish,
+    held_out: bool = FitRequest.held_out,
     workers: int | None = None,
-    overwrite: bool = False,
+    overwrite: bool = FitRequest.overwrite,
     on_progress: OnProgress | None = None,
 ) -> Fits:
     """Fit constitutive laws to all measurements of each material.
@@ -137,8 +138,7 @@ def fit(
         An argument, the experiment or the folder cannot be used.
     """
     with tempfile.TemporaryDirectory(prefix="calibration-") as memory:
-        plan = plan_fit(
-            experiment,
+        request = FitRequest(
             model=model,
             materials=materials,
             terms=terms,
@@ -159,7 +159,7 @@ def fit(
             workers=workers,
             overwrite=overwrite,
         )
-        found = plan.run(on_progress or to_log)
+        found = plan_fit(experiment, request).run(on_progress or to_log)
     return found if out is not None else Fits(found.results, found.experiment)
 
 

@@ -21,6 +21,7 @@ from calibration.cli import (
     names_in,
     plain_ends,
 )
+from calibration.fit_request import FitRequest
 
 if TYPE_CHECKING:
     from calibration.fit_plan import FitPlan
@@ -75,7 +76,9 @@ def main(
             help="Materials, separated by commas (double quotes around a name with one). Default: all."
         ),
     ] = None,
-    terms: Annotated[int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)] = 1,
+    terms: Annotated[
+        int, typer.Option(help="Terms of a series law (Ogden).", min=1, max=3)
+    ] = FitRequest.terms,
     time: Annotated[
         str | None,
         typer.Option(
@@ -96,17 +99,17 @@ def main(
             "--fibres",
             help="One family of fibres beside the law, at the same angle in all homogeneous tests.",
         ),
-    ] = False,
+    ] = FitRequest.fibres,
     objective: Annotated[
         str, typer.Option(help="likelihood, or dice: the overlap of bodies, as in the paper.")
-    ] = "likelihood",
+    ] = FitRequest.objective,
     free_bulk_ratio: Annotated[
         bool,
         typer.Option(
             "--free-bulk-ratio",
             help="Fit K/G too, from photographed beams. Default: fixed at 300, as in a diagnosis.",
         ),
-    ] = False,
+    ] = FitRequest.free_bulk_ratio,
     rig: Annotated[
         Path | None,
         typer.Option(
@@ -124,16 +127,22 @@ def main(
         Path | None, typer.Option(help="Folder of the results. Default: calibrations/EXPERIMENT.")
     ] = None,
     cards: Annotated[Path | None, typer.Option(help="Folder of the cards. Default: OUT/cards.")] = None,
-    seed: Seed = 1,
+    seed: Seed = FitRequest.seed,
     population: Annotated[
         int | None, typer.Option(help="Candidates per generation. Default: 4 + 3 ln n.", min=4)
     ] = None,
-    generations: Annotated[int, typer.Option(help="Largest number of generations.", min=1)] = 60,
-    restarts: Annotated[int, typer.Option(help="Restarts with twice the population.", min=0)] = 0,
-    polish: Annotated[bool, typer.Option(help="Gauss-Newton polish and error bars.")] = True,
-    held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = True,
+    generations: Annotated[
+        int, typer.Option(help="Largest number of generations.", min=1)
+    ] = FitRequest.generations,
+    restarts: Annotated[
+        int, typer.Option(help="Restarts with twice the population.", min=0)
+    ] = FitRequest.restarts,
+    polish: Annotated[bool, typer.Option(help="Gauss-Newton polish and error bars.")] = FitRequest.polish,
+    held_out: Annotated[bool, typer.Option(help="Predict each beam from the others.")] = FitRequest.held_out,
     workers: Workers = None,
-    overwrite: Annotated[bool, typer.Option(help="Discard earlier results and start again.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option(help="Discard earlier results and start again.")
+    ] = FitRequest.overwrite,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """Fit constitutive laws to all measurements of an experiment; writes fits, cards and report.html."""
@@ -141,8 +150,7 @@ def main(
     with plain_ends():
         from calibration.fit_plan import plan_fit
 
-        plan = plan_fit(
-            experiment,
+        request = FitRequest(
             model=model,
             materials=None if material is None else names_in(material),
             terms=terms,
@@ -163,6 +171,7 @@ def main(
             workers=workers,
             overwrite=overwrite,
         )
+        plan = plan_fit(experiment, request)
         if plan.rig is not None:
             console.print(plan.rig.sentence, markup=False, highlight=False)
     with plain_ends(f"Stopped. The same command goes on; the best so far is in {plan.folder}."):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
+from calibration.fit_request import FitRequest
 from calibration.progress import OnProgress
 from calibration.results import Fits
 from tisim import laws
@@ -68,57 +69,41 @@ class FitPlan:
         return Fits((*found.results, *earlier), self.experiment, self.folder)
 
 
-def plan_fit(
-    experiment: str | Path | Experiment,
-    *,
-    model: str | Sequence[str],
-    materials: Sequence[str] | None,
-    terms: int,
-    time: str | None,
-    damage: str | None,
-    fibres: bool,
-    objective: str,
-    free_bulk_ratio: bool,
-    rig: str | Path | None,
-    start: str | Path | None,
-    out: str | Path,
-    seed: int,
-    population: int | None,
-    generations: int,
-    restarts: int,
-    polish: bool,
-    held_out: bool,
-    workers: int | None,
-    overwrite: bool,
-) -> FitPlan:
-    """The plan of `fit`, with its parameters; nothing is computed."""
+def plan_fit(experiment: str | Path | Experiment, request: FitRequest) -> FitPlan:
+    """The checked plan of a fit: makes its folder, removes earlier results where asked, computes nothing."""
     from calibration.inference import CmaOptions
     from calibration.study import FitOptions, OnSetup, parts, tasks_for
 
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
-    names = law_names(model)
-    if not 1 <= terms <= 3:
-        raise OptionError("terms", terms, "expected 1 to 3")
+    names = law_names(request.model)
+    if not 1 <= request.terms <= 3:
+        raise OptionError("terms", request.terms, "expected 1 to 3")
+    objective = request.objective
     if objective not in ("likelihood", "dice"):
         raise OptionError("objective", objective, "expected likelihood or dice")
-    wanted = _materials(materials, data)
-    specs = parts.asked(time=time, damage=damage, fibres="fibres" if fibres else None)
+    wanted = _materials(request.materials, data)
+    specs = parts.asked(time=request.time, damage=request.damage, fibres="fibres" if request.fibres else None)
     if specs and objective != "likelihood":
         raise OptionError(
             parts.option_of(specs[0]),
             specs[0],
             "expected --objective likelihood, overlaps of bodies have no time",
         )
-    cards = _starts(start, wanted, objective)
+    cards = _starts(request.start, wanted, objective)
     parts.check(data, wanted, specs, cards)
-    setup = _rig(rig, data, objective, wanted)
-    folder = Path(out)
+    setup = _rig(request.rig, data, objective, wanted)
+    folder = Path(request.out)
     options = FitOptions(
-        cma=CmaOptions(seed=seed, population=population, max_generations=generations, restarts=restarts),
-        gauss_newton=polish and objective == "likelihood",  # Dice is not smooth where it is best
-        leave_one_out=held_out,
+        cma=CmaOptions(
+            seed=request.seed,
+            population=request.population,
+            max_generations=request.generations,
+            restarts=request.restarts,
+        ),
+        gauss_newton=request.polish and objective == "likelihood",  # Dice is not smooth where it is best
+        leave_one_out=request.held_out,
     )
-    count = processes(workers)
+    count = processes(request.workers)
     _check_folder(folder)
     tasks = tasks_for(
         data,
@@ -126,16 +111,16 @@ def plan_fit(
         materials=wanted,
         folder=folder / "fits",
         options=options,
-        terms=terms,
+        terms=request.terms,
         objective="likelihood" if objective == "likelihood" else "dice",
         setup=setup,
-        setup_file="" if rig is None else str(rig),
+        setup_file="" if request.rig is None else str(request.rig),
         specs=specs,
-        free_bulk_ratio=free_bulk_ratio,
+        free_bulk_ratio=request.free_bulk_ratio,
         cards=cards,
     )
     _check_names(tasks)
-    if overwrite:
+    if request.overwrite:
         _remove_earlier(tasks, folder)
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
