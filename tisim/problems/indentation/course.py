@@ -14,12 +14,13 @@ from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.damped import solve_step
 from tisim.problems.indentation.steps import (
     BETWEEN,
+    CUT,
     FIRST_STEP,
     IN_VAIN,
-    LARGEST_STEP,
     SMALLEST_STEP,
     Frame,
     frame_of,
+    next_step,
     predict,
 )
 from tisim.problems.indentation.system import PokeSystem
@@ -122,7 +123,7 @@ def _advance(
             walk.cuts += 1
             in_vain += outcome.iterations
             if way:
-                walk.step = 0.4 * min(walk.step, share * way)
+                walk.step = CUT * min(walk.step, share * way)
             else:
                 part = 0.5 * share
             spent = in_vain >= IN_VAIN * scene.solver.max_iterations
@@ -132,10 +133,7 @@ def _advance(
             continue
         walk.velocity = (outcome.x - walk.x) / pace if pace else None
         if way:
-            if outcome.iterations <= 6:
-                walk.step = min(2.0 * walk.step, LARGEST_STEP)
-            elif outcome.iterations > 12:
-                walk.step *= 0.7
+            walk.step = next_step(walk.step, outcome.iterations)
         part = 1.0
         walk.x, walk.depth, walk.time = outcome.x, target, time
         block.last_residual = outcome.residual

@@ -21,12 +21,13 @@ from tisim.problems.indentation.kind import ELEMENT
 from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.steps import (
     BETWEEN,
+    CUT,
     FIRST_STEP,
     IN_VAIN,
-    LARGEST_STEP,
     SMALLEST_STEP,
     Frame,
     frame_of,
+    next_step,
     predict,
 )
 from tisim.problems.indentation.system import PokeSystem
@@ -127,7 +128,7 @@ def _push(
                     next_frame = way * min(way * target + LATER * scene.frame_spacing, way * goal)
                     if refused == 1:
                         continue
-                step *= 0.4
+                step *= CUT
                 if step < SMALLEST_STEP:
                     return frames, status, steps, cuts
                 continue
@@ -137,10 +138,7 @@ def _push(
             x, depth = outcome.x, target
             on_step(travelled / way_to_go)
             system.accept(x)
-            if outcome.iterations <= 6:
-                step = min(step * 2.0, LARGEST_STEP)
-            elif outcome.iterations > 12:
-                step *= 0.7
+            step = next_step(step, outcome.iterations)
             if frame:
                 in_vain = 0
                 frames.append(frame_of(outcome.x, system, outcome.residual))

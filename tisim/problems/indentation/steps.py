@@ -16,6 +16,10 @@ Array = NDArray[np.float64]
 # Penetration, as a fraction of the edge radius, beyond which a step is refused.
 REFUSE_AT = 0.5
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
+# A step that took at most EASY iterations of Newton's method lets the next one grow, one that took more than
+# HARD lets it shrink, and a refused step is tried again smaller.
+EASY, HARD = 6, 12
+GROW, SHRINK, CUT = 2.0, 0.7, 0.4
 # Iterations that refused steps between two frames may take, in units of the largest number of one step. Near
 # the end of a poke, where tissue is crushed, smaller steps gain a tenth of a millimetre at the cost of the
 # whole poke before.
@@ -74,6 +78,13 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
     if outcome.status is not Status.CONVERGED:
         return outcome.status
     return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
+
+
+def next_step(step: float, iterations: int) -> float:
+    """Length of the step [m] after one of length `step` that was accepted after so many iterations."""
+    if iterations <= EASY:
+        return min(GROW * step, LARGEST_STEP)
+    return SHRINK * step if iterations > HARD else step
 
 
 def predict(system: PokeSystem, x: Array, move: Array) -> Array:
