@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim import Inclusion
+from tisim.mesh import triangles
 
 SIZE = 32  # grid points a side
 LEVELS = 128  # of a stiffness profile
@@ -178,8 +179,7 @@ def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
     Parameters
     ----------
     facets : ndarray of int
-        tri3, tri6, quad4 or quad8, outward. A quad becomes two triangles (one where two of its nodes
-        coincide), a 6-node triangle four, an 8-node quad six (fewer where nodes coincide).
+        As for `tisim.mesh.triangles`.
 
     Returns
     -------
@@ -188,22 +188,7 @@ def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
     triangles : ndarray of int, shape (t, 3)
         Indices into `nodes`.
     """
-    width = facets.shape[1]
-    if width == 3:
-        triangles = facets
-    elif width == 4:
-        triangles = np.stack([facets[:, [0, 1, 2]], facets[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
-    elif width == 6:
-        split = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
-        triangles = facets[:, split].reshape(-1, 3)
-    elif width == 8:
-        split = [[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 6], [4, 6, 7]]
-        triangles = facets[:, split].reshape(-1, 3)
-    else:
-        raise ValueError(f"facets of {width} nodes: expected 3, 4, 6 or 8")
-    a, b, c = triangles.T
-    triangles = triangles[(a != b) & (b != c) & (c != a)]
-    nodes, local = np.unique(triangles, return_inverse=True)
+    nodes, local = np.unique(triangles(facets), return_inverse=True)
     return nodes.astype(np.int64), local.reshape(-1, 3).astype(np.int32)
 
 

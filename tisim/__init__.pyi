@@ -12,11 +12,11 @@ from .bodies import (
 from .course import Course
 from .fields import Fields, Quantities, fields, fields_of_frames
 from .io import export
-from .io.export import surface_triangles, write
+from .io.export import write
 from .io.picture import picture
 from .io.read import read
 from .laws import Moduli
-from .mesh import Mesh
+from .mesh import Mesh, surface_triangles
 from .parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 from .problems.beam.rest_shape import rest_positions
 from .problems.dynamics.paper_stop import PaperStop, paper_stop

@@ -9,18 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.fields import Fields, Quantities, fields, fields_of_frames, unfold_quantities
-from tisim.mesh import Mesh, boundary_facets, unfold
+from tisim.mesh import Mesh, surface_triangles, unfold
 from tisim.mesh.quality import volumes
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result, frame_index
 
-# Triangles of facets; those of six or eight nodes are cut at their middle nodes.
-_TRIANGLES = {
-    3: ((0, 1, 2),),
-    4: ((0, 1, 2), (0, 2, 3)),
-    6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
-    8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
-}
 # Names of fields in files, with their units, and attributes of `tisim.Quantities`.
 FIELDS = {
     "cauchy_stress_Pa": "cauchy",
@@ -33,22 +26,6 @@ FIELDS = {
     "strain_energy_density_J_per_m3": "energy_density",
 }
 _VTK = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20"}
-
-
-def surface_triangles(mesh: Mesh) -> NDArray[np.int32]:
-    """Triangles of a mesh's boundary, node indices (t, 3), outward.
-
-    A half model is open at its mirror plane; `tisim.mesh.unfold` returns the whole body.
-    """
-    facets = mesh.facet_sets.get("surface")
-    return triangles(boundary_facets(mesh.kind, mesh.elements) if facets is None else facets)
-
-
-def triangles(facets: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Facets of 3, 4, 6 or 8 nodes as triangles (t, 3), without collapsed ones (of wedges)."""
-    cut = facets[:, _TRIANGLES[facets.shape[1]]].reshape(-1, 3)
-    a, b, c = cut.T
-    return np.ascontiguousarray(cut[(a != b) & (b != c) & (c != a)])
 
 
 def checked_path(path: str | Path) -> Path:

@@ -14,6 +14,7 @@ from tisim.mesh._mesh import (
     with_facet_set,
     with_node_set,
 )
+from tisim.mesh._triangles import surface_triangles, triangles
 from tisim.mesh.beam import PAPER_LAYER, PAPER_RINGS, Outline, beam_mesh, outline
 from tisim.mesh.block_around import block_around
 from tisim.mesh.indentation import poke_mesh
@@ -45,7 +46,9 @@ __all__ = [
     "quality",
     "refine_around",
     "smooth",
+    "surface_triangles",
     "to_quadratic",
+    "triangles",
     "unfold",
     "volumes",
     "with_facet_set",

@@ -8,9 +8,8 @@ import numpy as np
 
 from tisim.bodies import Rod
 from tisim.fields import Quantities, fields_of_frames, unfold_quantities
-from tisim.io.export import triangles
 from tisim.io.picture import across, describe
-from tisim.mesh import Mesh, boundary_facets, unfold
+from tisim.mesh import Mesh, boundary_facets, triangles, unfold
 from tisim.problems.indentation.rod import rod_surface
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
