@@ -18,15 +18,8 @@ import numpy as np
 import tisim
 from calibration.errors import InputError
 from calibration.experiment import CouponTrial, read
-from calibration.measurements.compression import (
-    Cylinder,
-    Platens,
-    PressCurves,
-    PressFit,
-    fit_press,
-    press_curves,
-    repeats,
-)
+from calibration.measurements.compression import Cylinder, Platens, PressCurves, press_curves
+from studies.compression.fit import PressFit, fit_press, repeats
 from studies.measured import ROOT, real
 
 PICTURE = Path(__file__).with_name("curves.png")

@@ -20,15 +20,9 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
 from calibration.experiment import CouponMode, CouponTrial, read
-from calibration.measurements.homogeneous import (
-    CouponFit,
-    FitStatus,
-    fit_coupons,
-    nominal_stress,
-    nominal_stresses,
-    percent_error,
-)
+from calibration.measurements.homogeneous import nominal_stress, nominal_stresses, percent_error
 from calibration.parameters import parametrisation
+from studies.coupons.fit import CouponFit, FitStatus, fit_coupons
 from studies.measured import ROOT, real
 
 PAGE = Path(__file__).with_name("README.md")

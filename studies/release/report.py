@@ -23,15 +23,14 @@ from calibration.measurements.release import (
     Fidelity,
     MarkerObjective,
     Match,
-    MotionFit,
     Nuisances,
     RingDown,
-    fit_motion,
     marker_displacements,
     ringdown,
 )
 from calibration.parameters import parametrisation
 from studies.measured import ROOT, real
+from studies.release.fit import MotionFit, fit_motion
 from tisim import Material, simulate
 from tisim.mesh import beam_mesh
 

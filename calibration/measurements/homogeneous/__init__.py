@@ -1,18 +1,14 @@
-"""Homogeneous material tests (coupons): nominal stress without a mesh, and fits with uncertainty."""
+"""Homogeneous material tests (coupons): nominal stress without a mesh, weights and windows of records."""
 
 from calibration.measurements.homogeneous._forward import predicted
 from calibration.measurements.homogeneous._record import protocol_window
 from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, slope, unstated_sd
-from calibration.measurements.homogeneous.fit import CouponFit, FitStatus, fit_coupons
 from calibration.measurements.homogeneous.misfit import percent_error
 from calibration.measurements.homogeneous.stress import MODES, nominal_stress, nominal_stresses
 
 __all__ = [
     "MODES",
     "SMALLEST_RELATIVE",
-    "CouponFit",
-    "FitStatus",
-    "fit_coupons",
     "nominal_stress",
     "nominal_stresses",
     "percent_error",

@@ -2,7 +2,6 @@
 
 from calibration.measurements.release._nuisances import HELD
 from calibration.measurements.release._record import hung_mass, not_swinging
-from calibration.measurements.release.fit import MotionFit, fit_motion
 from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
 from calibration.measurements.release.objective import Damping, Fidelity, MarkerObjective, Match, Nuisances
 from calibration.measurements.release.ringdown import RingDown, ringdown
@@ -14,10 +13,8 @@ __all__ = [
     "MarkerObjective",
     "Match",
     "Motion",
-    "MotionFit",
     "Nuisances",
     "RingDown",
-    "fit_motion",
     "hung_mass",
     "marker_displacements",
     "marker_motion",

@@ -127,7 +127,7 @@ class MarkerObjective:
     window : duration of the motion from the first sample on [s]; later samples are averaged and compared with
         the static equilibrium.
     tip_mass : mass that moves with the free face [kg]; None for the mass whose weight is the tip force.
-    damping : damping of `residuals(materials)`; `fit_motion` fits it, with `coordinates`.
+    damping : damping of `residuals(materials)`; `coordinates` are those of a fit to it.
     nuisances : standard deviations of the nuisances.
     fidelity : discretisation of the simulation.
     workers : number of processes; None for all cores.

@@ -12,15 +12,8 @@ import pytest
 import tisim
 from calibration.errors import InputError
 from calibration.experiment import CouponTrial, read
-from calibration.measurements.compression import (
-    Cylinder,
-    PressCurves,
-    Repeats,
-    fit_press,
-    press_curves,
-    repeats,
-)
-from calibration.measurements.compression.fit import sampled
+from calibration.measurements.compression import Cylinder, PressCurves, press_curves
+from studies.compression.fit import Repeats, fit_press, repeats, sampled
 
 CYLINDER = Cylinder(radius=0.025, height=0.030)
 COARSE = 0.5

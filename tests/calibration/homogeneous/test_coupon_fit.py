@@ -8,8 +8,9 @@ import coupon_cases as made
 import numpy as np
 import pytest
 
-from calibration.measurements.homogeneous import FitStatus, fit_coupons, percent_error
+from calibration.measurements.homogeneous import percent_error
 from calibration.parameters import parametrisation
+from studies.coupons.fit import FitStatus, fit_coupons
 
 S = np.linspace(1.02, 3.0, 25)
 # the true laws are incompressible: K/G at its upper bound

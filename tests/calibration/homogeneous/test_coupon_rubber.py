@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from calibration.experiment import CouponTrial, read
-from calibration.measurements.homogeneous import fit_coupons, percent_error
+from calibration.measurements.homogeneous import percent_error
 from calibration.parameters import parametrisation
+from studies.coupons.fit import fit_coupons
 
 ROOT = Path(__file__).parents[3]
 MEASURED = Path(os.environ.get("TISIM_MEASURED", ROOT.parent / "shared" / "measured"))

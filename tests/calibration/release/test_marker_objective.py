@@ -10,15 +10,9 @@ import pytest
 
 import tisim
 from calibration.errors import InputError
-from calibration.measurements.release import (
-    Damping,
-    Fidelity,
-    MarkerObjective,
-    Nuisances,
-    fit_motion,
-    hung_mass,
-)
+from calibration.measurements.release import Damping, Fidelity, MarkerObjective, Nuisances, hung_mass
 from calibration.parameters import parametrisation
+from studies.release.fit import fit_motion
 
 QUICK = Fidelity(layer=0.02, rings=1, time_step=3e-3)
 LAW = parametrisation("neo-hookean")

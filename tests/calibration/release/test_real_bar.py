@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from calibration.experiment import read
-from calibration.measurements.release import Damping, MarkerObjective, Nuisances, fit_motion, ringdown
+from calibration.measurements.release import Damping, MarkerObjective, Nuisances, ringdown
 from calibration.parameters import parametrisation
+from studies.release.fit import fit_motion
 
 ROOT = Path(__file__).resolve().parents[3]
 MEASURED = Path(os.environ.get("TISIM_MEASURED") or ROOT.parent / "shared" / "measured")
