@@ -62,16 +62,25 @@ def test_sizes_of_inclusions_are_checked_by_their_fields(inclusion: tisim.Inclus
         inclusion.check()
 
 
-def test_eight_chains_keep_the_digits_of_their_energy() -> None:
-    law = laws.get("eight-chain")
-    law.check({"mu": 1e4, "locking": 49.0, "bulk": 1e6})
-    stretch = np.array([1.0001, 1.001])
+@pytest.mark.parametrize("locking", [9.0, 11.0, 30.0, 300.0, 1000.0])
+def test_eight_chains_keep_the_digits_of_their_energy(locking: float) -> None:
+    """Against 50 digits: w(x) - w(x0), of which the nearly Gaussian part cancels."""
+    mpmath = pytest.importorskip("mpmath")
+    mpmath.mp.dps = 50
+    stretch = np.array([1.0001, 1.001, 1.3])
     F = np.array([np.diag([s, s**-0.5, s**-0.5]) for s in stretch])
-    found = laws.evaluate("eight-chain", {"mu": 1e4, "locking": 49.0, "bulk": 1e6}, F)[0]
-    expected = 0.5e4 * (stretch**2 + 2.0 / stretch - 3.0)  # nearly Gaussian chains
-    np.testing.assert_allclose(found, expected, rtol=5e-4)
-    with pytest.raises(ValueError, match="locking"):
-        law.check({"mu": 1e4, "locking": 60.0, "bulk": 1e6})
+    found = laws.evaluate("eight-chain", {"mu": 1e4, "locking": locking, "bulk": 1e6}, F)[0]
+
+    def w(x: object) -> object:
+        b = mpmath.findroot(lambda t: mpmath.coth(t) - 1 / t - x, 3 * x)
+        return x * b + mpmath.log(b / mpmath.sinh(b)), b
+
+    x0 = 1 / mpmath.mpf(locking)
+    rest, b0 = w(x0)
+    for s, energy in zip(stretch, found, strict=True):
+        first = mpmath.mpf(float(s)) ** 2 + 2 / mpmath.mpf(float(s))
+        exact = 1e4 * 3 * locking / b0 * (w(mpmath.sqrt(first / 3) * x0)[0] - rest)
+        assert energy == pytest.approx(float(exact), rel=1e-6)
 
 
 def test_a_coupon_in_a_file_keeps_its_stress_and_a_shear_is_called_one(tmp_path: Path) -> None:

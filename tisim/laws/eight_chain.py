@@ -21,7 +21,8 @@ from tisim.laws._law import Law, Moduli, Parameters, scalar
 
 ENDS = 0.995  # fraction of the chains' length above which their force is extrapolated
 STEPS = 4  # of Newton's method, from a Pade form with an error of 5 %
-LARGEST = 50.0  # locking stretch, beyond which w - w(x0) loses its digits at small strain
+LARGEST = 1000.0  # locking stretch, beyond which the chains are Gaussian to rounding errors
+SMALL = 0.1  # fraction of the chains' length below which w - w(x0) is a series, whose terms cancel nowhere
 
 
 @ti.func
@@ -48,6 +49,14 @@ def _chain(x):
 
 
 @ti.func
+def _small(i1, q):
+    """(w(x) - w(x0)) / q for short chains, q = x0^2: 3/2 e + 9/20 q (u^2 - 1) + ..., u = i1 / 3 = 1 + e."""
+    u, e = i1 / 3.0, (i1 - 3.0) / 3.0
+    second, third, fourth = u + 1.0, u * u + u + 1.0, (u + 1.0) * (u * u + 1.0)
+    return e * (1.5 + q * (0.45 * second + q * (297.0 / 1050.0 * third + q * 1539.0 / 7000.0 * fourth)))
+
+
+@ti.func
 def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for all laws
     x0 = 1.0 / prm[1]
     at_rest, b0, _ = _chain(x0)
@@ -58,7 +67,10 @@ def energy(I1, I2, J, prm: ti.template()):  # noqa: ARG001 - one signature for a
     d = half * b / x
     # derivative of b / x by I1bar, with dx/dI1bar = x0^2 / (6 x)
     dd = half * (steep * x - b) / (x * x) * x0 * x0 / (6.0 * x)
-    return by_invariants(6.0 * half / (x0 * x0) * (w - at_rest), d, dd, i1, a, J)
+    grown = (w - at_rest) / (x0 * x0)
+    if x < SMALL and x0 < SMALL:
+        grown = _small(i1, x0 * x0)
+    return by_invariants(6.0 * half * grown, d, dd, i1, a, J)
 
 
 def _fault(parameters: Parameters) -> str:
