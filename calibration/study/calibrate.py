@@ -190,14 +190,17 @@ def calibrate(
     )
 
 
-def best_so_far(data: Measurements, generations: Sequence[Generation]) -> Calibration:
-    """The best candidate of an unfinished search, as a calibration with status "stopped"."""
+def best_so_far(data: Measurements, generations: Sequence[Generation]) -> Calibration | None:
+    """The best candidate of an unfinished search, as a calibration with status "stopped".
+
+    None if it has no answer any more: the search may have had one from a mesh or a step that differs.
+    """
     costs = np.array([g.costs.min() for g in generations])
     g = generations[int(costs.argmin())]
     u = g.candidates[g.costs.argmin()]
     problem = Problem(parametrisation=_searched(data), objectives=data.objectives)
     if not problem.linearise(u, rough=True):
-        raise ValueError("the best candidate so far has no answer any more")
+        return None
     message = f"stopped after {len(generations)} generations: no polish, mesh correction or error bars"
     return replace(
         _point(problem, data, u, status="stopped", message=message),

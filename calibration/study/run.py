@@ -385,8 +385,10 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
             if not history:
                 continue
             data = task.measurements(OnSetup.of(experiment, task.setup), workers=1)
-            result = best_so_far(data, history)
-            result = _with_setup(result, task)
+            best = best_so_far(data, history)
+            if best is None:
+                continue
+            result = _with_setup(best, task)
         found.append(result)
     return found
 

@@ -43,6 +43,7 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
         for t in still
         if t.tip_force_height
     ]
+    left_out += [note for t in trials if (note := _taken_as_exact(t, own.materials[t.material]))]
     objectives: list[Objective] = []
     if swinging:
         model = ReleaseModel(
@@ -57,6 +58,23 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
         objectives.append(OfMaterial(context.law, settled))
     return Contribution(
         objectives=tuple(objectives), left_out=tuple(left_out), steps=STEPS if swinging else 1.0
+    )
+
+
+def _taken_as_exact(trial: BeamTrial, belief: MaterialBelief) -> str:
+    """Sentence on the stated standard deviations that the intervals of a fit of markers leave out; or ""."""
+    doubts = {
+        "free length": trial.free_length_sd,
+        "section": max(trial.section_sd),
+        "density": belief.density_sd,
+    }
+    stated = [name for name, sd in doubts.items() if sd > 0.0]
+    if not stated:
+        return ""
+    listed = " and ".join(filter(None, (", ".join(stated[:-1]), stated[-1])))
+    return (
+        f"{trial.id}: the stated standard deviation of {listed}: a fit of markers takes"
+        " them as exact, and its intervals are too narrow by what they add"
     )
 
 

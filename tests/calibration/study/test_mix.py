@@ -11,6 +11,7 @@ from _folders import beam_entry, coupon_entry, marker_columns, measured, poke_en
 
 from calibration.errors import InputError
 from calibration.experiment import read
+from calibration.experiment.model import BeamTrial, Experiment
 from calibration.parameters import parametrisation
 from calibration.study import calibrate, measurements, write_card
 from factory.materials import load_card
@@ -48,6 +49,26 @@ def test_beams_pokes_and_coupons_are_one_fit(tmp_path: Path) -> None:
     assert [o.name for o in data.objectives] == ["coupons pull", "pokes press", "markers of bar"]
     assert any(t.startswith("bar: the motion") for t in data.ignored)
     assert sum(o.points for o in data.objectives) == 20 + 21 + 3
+
+
+def test_doubts_that_a_fit_of_markers_takes_as_exact_are_told(tmp_path: Path) -> None:
+    experiment = read(mixed(tmp_path, kinds="beam"))
+    (bar,) = experiment.trials
+    assert isinstance(bar, BeamTrial)
+    certain = replace(
+        experiment,
+        trials=(replace(bar, free_length_sd=0.0, section_sd=(0.0,)),),
+        materials={"S0": replace(experiment.materials["S0"], density_sd=0.0)},
+    )
+
+    def told(given: Experiment) -> list[str]:
+        return [t for t in measurements(given, "S0", NEO, workers=1).ignored if "as exact" in t]
+
+    assert told(certain) == []
+    (all_of_them,) = told(experiment)
+    assert all_of_them.startswith("bar: the stated standard deviation of free length, section and density:")
+    (density,) = told(replace(certain, materials=experiment.materials))
+    assert density.startswith("bar: the stated standard deviation of density:")
 
 
 def test_settled_markers_say_the_modulus(tmp_path: Path) -> None:

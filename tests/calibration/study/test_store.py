@@ -13,7 +13,8 @@ from _folders import coupon_entry, write_experiment
 
 from calibration.errors import InputError
 from calibration.experiment import read
-from calibration.inference import Generation
+from calibration.inference import Generation, Problem
+from calibration.parameters import parametrisation
 from calibration.study import Calibration, stopped, tasks_for
 from calibration.study._store import FitStore, locked, remove_fits
 from tisim import laws
@@ -238,3 +239,20 @@ def test_a_choice_that_was_stopped_is_not_made(tmp_path: Path) -> None:
         other.store().finish(replace(ended, label=other.label, chi2=31.0, parts=other.parts))
     (found,) = stopped([task], own)
     assert (found.status, found.label) == ("converged", one.label)
+
+
+def test_a_stopped_search_whose_best_has_no_answer_any_more_tells_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C wrote a traceback and no report of the other fits."""
+    table = {"stretch": np.linspace(1.0, 1.5, 8), "nominal_stress_kPa": np.linspace(0.0, 9.0, 8)}
+    own = read(write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table}))
+    (task,) = tasks_for(own, law_names=["neo-hookean"], materials=["S0"], folder=tmp_path / "fits")
+    (tmp_path / "fits").mkdir()
+    law = parametrisation("neo-hookean")
+    middle = law.bounds.mean(axis=1)
+    task.store().append(replace(generation(0), candidates=np.stack([middle, middle])))
+    (found,) = stopped([task], own)
+    assert found.status == "stopped"
+    monkeypatch.setattr(Problem, "linearise", lambda *_, **__: False)
+    assert stopped([task], own) == []
