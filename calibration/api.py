@@ -300,8 +300,12 @@ def predict(
         raise OptionError("predict", None, "expected the trials to predict, beside --calibrate")
     if cards is not None and extend:
         raise OptionError("extend", ", ".join(extend), "expected without cards, which state their effects")
+    if cards is not None and law != "auto":
+        raise OptionError("law", law, "expected without cards, which state their laws")
     if calibrate is not None and baseline is not None:
         raise OptionError("baseline", baseline, "expected with cards only, a fit has its own")
+    if calibrate is not None and specimen_scatter is not None:
+        raise OptionError("specimen_scatter", specimen_scatter, "expected with cards only")
     if specimen_scatter is not None and not 0.0 <= specimen_scatter < 2.0:
         raise OptionError("specimen_scatter", specimen_scatter, "expected a number from 0 to 2")
     if seed < 0:

@@ -316,6 +316,10 @@ def test_bad_cards_are_one_sentence(
         (["--calibrate", "held", "--predict", "fast"], "fast: no trial has that id: expected some of slow,"),
         (["--calibrate", "held", "--predict", "age=3"], "expected ids of trials, or material=..."),
         (["--calibrate", "held", "--predict", "slow", "--law", "jelly"], "--law jelly"),
+        (
+            ["--calibrate", "held", "--predict", "slow", "--specimen-scatter", "0.1"],
+            "--specimen-scatter 0.1: expected with cards only",
+        ),
     ],
 )
 def test_bad_options_are_one_sentence(
@@ -325,6 +329,12 @@ def test_bad_options_are_one_sentence(
     assert done.exit_code == 2
     assert sentence in done.output
     assert len(done.output.strip().splitlines()) == 1
+
+
+def test_a_law_beside_cards_is_refused(measured: Path, tmp_path: Path) -> None:
+    """It was taken and did nothing."""
+    with pytest.raises(InputError, match=r"law.*expected without cards, which state their laws"):
+        calibration.predict(measured, card(tmp_path / "cards"), law="ogden", workers=1)
 
 
 def test_a_kind_that_does_not_follow_a_part_says_so(measured: Path, tmp_path: Path) -> None:
