@@ -9,9 +9,12 @@ import pydantic
 import yaml
 
 import calibration.experiment as experiment
+from calibration.experiment._photographs import PhotoSettings
 from tests.packaging.blocks import ROOT
 
-PAGE = (ROOT / "docs" / "reference" / "experiment-format.md").read_text(encoding="utf-8")
+DOCS = ROOT / "docs"
+PAGE = (DOCS / "reference" / "experiment-format.md").read_text(encoding="utf-8")
+PHOTOGRAPH_PAGE = (DOCS / "how-to" / "photograph.md").read_text(encoding="utf-8")
 
 
 def models() -> set[type[pydantic.BaseModel]]:
@@ -20,7 +23,7 @@ def models() -> set[type[pydantic.BaseModel]]:
     waiting: list[type[pydantic.BaseModel]] = [experiment.Strict]
     while waiting:
         for child in waiting.pop().__subclasses__():
-            if child.__module__.startswith("calibration.experiment"):
+            if child.__module__.startswith("calibration.experiment") and child is not PhotoSettings:
                 found.add(child)
             waiting.append(child)
     return found
@@ -31,6 +34,11 @@ def test_every_key_is_on_the_page() -> None:
     assert len(keys) > 40
     words = set(re.findall(r"[A-Za-z_]\w*", PAGE))
     assert keys <= words, sorted(keys - words)
+
+
+def test_every_key_of_photographs_yaml_is_on_its_page() -> None:
+    words = set(re.findall(r"[A-Za-z_]\w*", PHOTOGRAPH_PAGE))
+    assert PhotoSettings.model_fields.keys() <= words, sorted(PhotoSettings.model_fields.keys() - words)
 
 
 def test_the_page_shows_keys_that_exist() -> None:
