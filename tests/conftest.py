@@ -59,6 +59,7 @@ LONG = (
     "calibration/interface/test_commands.py",
     "tisim/test_parts_point.py",
     "calibration/indentation/test_poke_objective.py",
+    "calibration/study/test_error_bars.py",
     "tisim/test_dynamics.py",
     "calibration/diagnosis_release/test_bar_verdicts.py",
     "calibration/metrics/test_metrics_distance.py",

@@ -11,6 +11,7 @@ from tisim.result import Status
 from tisim.scene import Beam, Material, Solver
 
 BEAMS = [("clamped-free", 0.05), ("clamped-free", 0.1), ("clamped-clamped", 0.15)]
+COARSE = {"axial_element_size": 0.0125, "radial_elements": 1}  # a status is a status on any mesh
 
 
 @pytest.mark.parametrize("ratio", [20.0, 1000.0])
@@ -43,10 +44,18 @@ def test_load_steps_without_element_pressures(monkeypatch):
     assert np.abs(slow.positions - quick.positions).max() < 1e-6 * size
 
 
+def check_ended(result):
+    assert result.positions.shape == (0, result.mesh.n_nodes, 3)
+    assert result.support_force.shape == (0, 3)
+    assert result.load.size == result.residual.size == result.min_jacobian.size == 0
+    assert "no equilibrium found beyond" in result.message
+    assert result.status.value in result.message
+
+
 @pytest.mark.parametrize("ratio", [20.0, 1000.0])
 def test_absurd_load_ends_with_a_status(ratio):
     """Shear modulus 10 Pa: the body's own weight is 50 times its stiffness."""
-    scene = Beam(material=neo_hookean(10.0, ratio), length=0.05, solver=Solver(max_iterations=15))
+    scene = Beam(material=neo_hookean(10.0, ratio), length=0.05, solver=Solver(max_iterations=15), **COARSE)
     result = solve_beam(scene)
     if result.ok:
         weight = 1000 * 9.81 * np.pi * 0.01**2 * 0.05
@@ -54,20 +63,18 @@ def test_absurd_load_ends_with_a_status(ratio):
         assert result.min_jacobian[0] > 0
         assert result.support_force[0, 2] == pytest.approx(weight, rel=1e-5)
     else:
-        assert result.positions.shape == (0, result.mesh.n_nodes, 3)
-        assert result.support_force.shape == (0, 3)
-        assert result.load.size == result.residual.size == result.min_jacobian.size == 0
-        assert "no equilibrium found beyond" in result.message
-        assert result.status.value in result.message
+        check_ended(result)
 
 
 def test_law_without_answer_under_pressure_ends_with_a_status():
     """A St Venant-Kirchhoff beam that stands on its grip under fifty times gravity collapses."""
     stiff = Material(law="st-venant-kirchhoff", parameters={"mu": 1e4, "lam": 5e4})
-    scene = Beam(material=stiff, length=0.05, gravity=(-500.0, 0.0, 0.0), solver=Solver(max_iterations=15))
+    scene = Beam(
+        material=stiff, length=0.05, gravity=(-500.0, 0.0, 0.0), solver=Solver(max_iterations=15), **COARSE
+    )
     result = solve_beam(scene)
     assert result.status is not Status.CONVERGED
-    assert result.positions.shape[0] == 0
+    check_ended(result)
 
 
 def test_no_load_is_rest():
