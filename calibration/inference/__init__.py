@@ -17,6 +17,7 @@ depend on the material alone by `OfMaterial`.
 
 from calibration.inference.polish import Polished, polish
 from calibration.inference.problem import Linearised, MaterialObjective, Objective, OfMaterial, Problem
+from calibration.inference.profile_likelihood import profile
 from calibration.inference.search import CmaOptions, Found, Generation, HistoryError, guess, search
 from calibration.inference.uncertainty import (
     LEVEL,
@@ -25,7 +26,6 @@ from calibration.inference.uncertainty import (
     Identification,
     between_specimens,
     identify,
-    profile,
     with_prior_sd,
 )
 
