@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment.model import CouponTrial
-from calibration.measurements.homogeneous import nominal_stress, percent_error, predicted
+from calibration.measurements.homogeneous import nominal_stress, predicted
 from calibration.measurements.homogeneous._record import Record
 from calibration.measurements.indentation.model import IndentationModel
 from calibration.measurements.objective import ModelObjective
@@ -28,18 +28,19 @@ def material_of(result: Calibration) -> Material:
 
 
 def coupon_errors(coupon: Coupon, results: Sequence[Calibration]) -> Mapping[str, float]:
-    """rms error of each law [% of the curve's largest stress]; NaN without an answer."""
-    trial, record = coupon
-    largest = float(np.abs(trial.stress).max(initial=0.0))
+    """rms error of each law over the points that a fit compares [% of their largest stress]; NaN without an
+    answer."""
+    _, record = coupon
+    largest = float(np.abs(record.stress).max(initial=0.0))
     if not largest:
         return {r.label: float("nan") for r in results}
     found = {}
     for r in results:
         if r.parts or r.held:  # along the record's course
-            left = predicted(material_of(r), [(record, record.stretch)])[0] - record.stress
-            found[r.label] = 100.0 * float(np.sqrt(np.mean(left**2))) / largest
+            along = predicted(material_of(r), [(record, record.stretch)])[0]
         else:
-            found[r.label] = percent_error(trial, material_of(r))
+            along = nominal_stress(material_of(r), record.mode, record.stretch)
+        found[r.label] = 100.0 * float(np.sqrt(np.mean((along - record.stress) ** 2))) / largest
     return found
 
 
@@ -88,7 +89,7 @@ def _panel(
     axes.set_xlabel("shear" if shear else "stretch", fontsize=9)
     start = 1.0 if shear else 0.0
     _measured(axes, record, record.stretch - start, size=3)
-    stretch = np.linspace(float(trial.stretch.min()), float(trial.stretch.max()), 120)
+    stretch = np.linspace(float(record.stretch.min()), float(record.stretch.max()), 120)
     for r in fitted:
         if r.parts or r.held:  # damage alone: loading and unloading without a clock
             along = predicted(material_of(r), [(record, record.stretch)])[0]

@@ -170,6 +170,21 @@ class CompressionModel(HomogeneousModel):
     def repeated(self) -> tuple[str, ...]:
         return self.repeatability.repeats
 
+    def _cut(self) -> dict[str, float]:
+        """Largest strain of each record of which a part is not compared."""
+        reach = {r.name: float(1.0 - r.stretch.min()) for r in self.whole_range if is_compressed(r)}
+        return {name: strain for name, strain in reach.items() if strain > self.last}
+
+    def left_out(self) -> list[str]:
+        return [
+            *super().left_out(),
+            *(
+                f"{name}: its part beyond a strain of {self.last:g}, of {strain:.2g} measured: beyond"
+                f" {LAST:g}, the simulation of bonded cylinders is not good enough"
+                for name, strain in self._cut().items()
+            ),
+        ]
+
     def remarks(self) -> list[str]:
         c = self.bonded.cylinder
         size = f"{2e3 * c.radius:g} x {1e3 * c.height:g} mm"
@@ -181,9 +196,9 @@ class CompressionModel(HomogeneousModel):
             "platens that hold in part are taken between free and bonded ones, which are simulated; Coulomb"
             " friction itself is not",
         ]
-        cut = [r for r in self.whole_range if is_compressed(r) and 1.0 - r.stretch.min() > self.last]
+        cut = self._cut()
         if cut:
-            furthest = max(float(1.0 - r.stretch.min()) for r in cut)
+            furthest = max(cut.values())
             found.append(
                 f"compared up to a strain of {self.last:g} only, of {furthest:.2g} measured: beyond {LAST:g},"
                 " the simulation of bonded cylinders is not good enough"

@@ -13,6 +13,8 @@ from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.parameters import parametrisation
+from calibration.report import page
+from calibration.report._draw_records import coupon_errors
 from calibration.study import calibrate, measurements, write_card
 from factory.materials import load_card
 
@@ -49,6 +51,25 @@ def test_beams_pokes_and_coupons_are_one_fit(tmp_path: Path) -> None:
     assert [o.name for o in data.objectives] == ["coupons pull", "pokes press", "markers of bar"]
     assert any(t.startswith("bar: the motion") for t in data.ignored)
     assert sum(o.points for o in data.objectives) == 20 + 21 + 3
+
+
+def test_compression_beyond_what_is_compared_is_told_and_no_part_of_the_errors(tmp_path: Path) -> None:
+    """Stiffer beyond a strain of one half than the law: the report's rms was that of the whole record."""
+    stretch = np.linspace(1.0, 0.35, 66)
+    stress = 10.0 * (stretch - stretch**-2) * np.where(stretch < 0.499, 1.5, 1.0)
+    table = {"stretch": stretch, "nominal_stress_kPa": stress}
+    experiment = read(
+        write_experiment(tmp_path, [coupon_entry("push", "push.csv")], tables={"push.csv": table})
+    )
+    data = measurements(experiment, "S0", NEO, workers=1)
+    (told,) = data.ignored
+    assert told.startswith("push: its part beyond a strain of 0.5, of 0.65 measured:")
+    (coupon,) = page._coupons(data)
+    assert coupon[1].points == 51
+    found = calibrate(data)
+    assert found.shear_modulus == pytest.approx(1e4, rel=0.02)
+    (error,) = coupon_errors(coupon, [found]).values()
+    assert error < 1.0
 
 
 def test_doubts_that_a_fit_of_markers_takes_as_exact_are_told(tmp_path: Path) -> None:
