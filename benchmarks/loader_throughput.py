@@ -20,7 +20,7 @@ from rich.table import Table
 from zarr.codecs import BloscCodec, BloscShuffle
 
 from learn.benchmark import loader_rates
-from learn.data import Store
+from learn.data import Setup, Store
 from learn.data._files import group_here
 
 # name, frames a chunk, frames a shard, codec of Blosc (None: uncompressed), shuffle
@@ -59,10 +59,14 @@ def store_of(folder: Path, data: np.ndarray[Any, Any]) -> Store:
     flat = np.stack(np.meshgrid(np.arange(32.0), np.arange(32.0)), axis=-1).reshape(-1, 2) * 3.125e-3
     zero = np.zeros(1, dtype=np.int64)
     points = np.column_stack([flat, np.zeros(1024)])
+    setup = Setup(
+        points=points, normals=np.repeat(three, 1024, axis=0), level_depth=np.zeros(128),
+        rod_radius=2.5e-3, rod_edge=1e-3,
+    )  # fmt: skip
     return Store(
-        location=str(folder), attributes={}, points=points, normals=np.repeat(three, 1024, axis=0),
-        profile=np.zeros((1, 1024, 128), dtype=np.uint8), level_depth=np.zeros(128),
-        rod_radius=2.5e-3, rod_edge=1e-3, done=one.astype(bool), shape=zero, softness=zero, geometry=zero,
+        location=str(folder), attributes={}, setups=(setup,), setup_index=zero,
+        profile=np.zeros((1, 1024, 128), dtype=np.uint8), done=one.astype(bool),
+        shape=zero, softness=zero, geometry=zero,
         modulus=one, direction=three, path_start=three, frame_start=zero, frame_count=np.array([frames]),
         frame_poke=np.zeros(frames, dtype=np.int64), depth=np.full(frames, 1e-3),
         rod_force=np.repeat(three, frames, axis=0), solved_as=zero,
@@ -98,7 +102,7 @@ def main() -> None:
             store = store_of(path, data)
             rates = loader_rates(store)
             size = sum(f.stat().st_size for f in path.rglob("*") if f.is_file())
-            stream, memmap = rates["streamed, shuffled blocks"], rates["NumPy memmap"]
+            stream, memmap = rates["streamed, shuffled shards"], rates["NumPy memmap"]
             table.add_row(
                 name,
                 f"{size / data.nbytes:.2f}",

@@ -1,6 +1,6 @@
 """Baselines for the models: no motion, the nearest training poke, principal modes, an analytic kernel.
 
-Each is fitted to a training part and then evaluated like a model, on the scene that it was fitted on.
+Each is fitted to a training part and then evaluated like a model, on the grids that it was fitted on.
 `BASELINES` holds them by their names in the tables; to add one, subclass `Baseline` and add it there.
 """
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from torch import nn
 
 from learn.data import MemoryDataset
-from learn.models import Pokes, Response, Scene, pokes_of
+from learn.models import Pokes, Response, Scene, Scenes, pokes_of
 
 Floats = NDArray[np.float64]
 MODES = 64
@@ -27,10 +27,10 @@ _RIDGE = 1e-6
 
 
 class Baseline(ABC):
-    """A prediction fitted to a training part; evaluated like a model, on the scene it was fitted on."""
+    """A prediction fitted to a training part; evaluated like a model, on the grids it was fitted on."""
 
     @abstractmethod
-    def fit(self, data: MemoryDataset, scene: Scene) -> None:
+    def fit(self, data: MemoryDataset, scenes: Scenes) -> None:
         """Fit to the training part."""
 
     @abstractmethod
@@ -86,7 +86,7 @@ def response(displacement: NDArray[np.floating[Any]], force: NDArray[np.floating
 class Zero(Baseline):
     """No motion; the force is the training part's mean."""
 
-    def fit(self, data: MemoryDataset, scene: Scene) -> None:  # noqa: ARG002
+    def fit(self, data: MemoryDataset, scenes: Scenes) -> None:  # noqa: ARG002
         self.force = float(np.mean([float(b.force.mean()) for b in data.batches(1)]))
 
     def predict(self, scene: Scene, pokes: Pokes) -> Response:
@@ -97,12 +97,13 @@ class Zero(Baseline):
 class Nearest(Baseline):
     """The most similar training poke at the most similar depth, scaled by depth and modulus."""
 
-    def fit(self, data: MemoryDataset, scene: Scene) -> None:
+    def fit(self, data: MemoryDataset, scenes: Scenes) -> None:
         batch = data.__getitems__(np.arange(len(data)))
         pokes = pokes_of(batch)
-        self.features = np.column_stack([describe(scene, pokes)[:, :7], pokes.depth.numpy() / _DEPTH])
+        about = scenes.rows(describe, pokes)
+        self.features = np.column_stack([about[:, :7], pokes.depth.numpy() / _DEPTH])
         self.field = batch.displacement.numpy() / pokes.depth.numpy()[:, None, None].astype(np.float32)
-        self.force = batch.force.numpy() / force_unit(scene, pokes)
+        self.force = batch.force.numpy() / scenes.rows(force_unit, pokes)
 
     def predict(self, scene: Scene, pokes: Pokes) -> Response:
         mine = np.column_stack([describe(scene, pokes)[:, :7], pokes.depth.numpy() / _DEPTH])
@@ -114,7 +115,7 @@ class Nearest(Baseline):
 class Modes(Baseline):
     """Principal modes of the displacement over depth, with coefficients from a small network."""
 
-    def fit(self, data: MemoryDataset, scene: Scene) -> None:
+    def fit(self, data: MemoryDataset, scenes: Scenes) -> None:
         batch = data.__getitems__(np.arange(len(data)))
         pokes = pokes_of(batch)
         fields = batch.displacement.numpy().reshape(len(data), -1) / pokes.depth.numpy()[:, None].astype("f4")
@@ -123,9 +124,9 @@ class Modes(Baseline):
         self.modes = modes[: min(MODES, len(modes))]
         wanted = (fields - self.mean) @ self.modes.T
         self.unit = wanted.std(axis=0).max() + 1e-12
-        log_force = np.log(batch.force.numpy() / force_unit(scene, pokes))
+        log_force = np.log(batch.force.numpy() / scenes.rows(force_unit, pokes))
         self.log_force = float(log_force.mean())
-        x = torch.from_numpy(self._inputs(scene, pokes)).float()
+        x = torch.from_numpy(scenes.rows(self._inputs, pokes)).float()
         y = np.column_stack([wanted / self.unit, (log_force - self.log_force) * 0.3])
         self._train(x, torch.from_numpy(y).float())
 
@@ -170,11 +171,11 @@ class Kernel(Baseline):
     inclination, depth and the soft tissue below the contact. It is equivariant.
     """
 
-    def fit(self, data: MemoryDataset, scene: Scene) -> None:
+    def fit(self, data: MemoryDataset, scenes: Scenes) -> None:
         normal, right = np.zeros((1, 1)), np.zeros(1)
         logs, columns = [], []
-        for batch in data.batches(16):
-            pokes = pokes_of(batch)
+        for k, batch in scenes.each(data.batches(16)):
+            scene, pokes = scenes.scenes[k], pokes_of(batch)
             basis = self._basis(scene, pokes)
             truth = (batch.displacement.numpy() / pokes.depth.numpy()[:, None, None]).reshape(-1)
             normal, right = normal + basis.T @ basis, right + basis.T @ truth

@@ -13,7 +13,7 @@ import torch
 
 from learn.data import Batch, MemoryDataset, Store, StreamDataset, make_batch
 from learn.data.loaders import epoch_order
-from learn.models import InvariantGnn, Model, Pokes, Response, Scene, pokes_of
+from learn.models import InvariantGnn, Model, Pokes, Response, Scene, Scenes, pokes_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import OnnxBundle
 from learn.predictor import Predictor
@@ -54,15 +54,15 @@ def loader_rates(
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "displacement.f4"
-        shape = (store.frames, len(store.points), 3)
+        shape = (store.frames, store.n_points, 3)
         array = np.memmap(path, dtype=np.float32, mode="w+", shape=shape)
-        for first in range(0, store.frames, store.block):
-            block = store.displacement(slice(first, min(first + store.block, store.frames)))
-            array[first : first + len(block)] = block
+        for first in range(0, store.frames, store.shard):
+            some = store.displacement(slice(first, min(first + store.shard, store.frames)))
+            array[first : first + len(some)] = some
         array.flush()
         mapped = np.memmap(path, dtype=np.float32, mode="r", shape=shape)
         rates = {
-            "streamed, shuffled blocks": _rate(store.frames, streamed, repeats),
+            "streamed, shuffled shards": _rate(store.frames, streamed, repeats),
             "NumPy memmap": _rate(store.frames, lambda e: _memmap_batches(store, mapped, batch, e), repeats),
         }
     memory = MemoryDataset(store, rows)
@@ -71,12 +71,16 @@ def loader_rates(
 
 
 @torch.inference_mode()
-def latencies(run: Run, scene: Scene, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
+def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
     """Latency of one poke: name, threads, median and best [ms]; the interior is already encoded."""
     times: list[tuple[str, str, float, float]] = []
-    rows = np.arange(min(BATCH, store.frames))
+    setup = store.setup_index[store.geometry[store.frame_poke]]
+    rows = np.flatnonzero(setup == setup[0])[:BATCH]
     data, model, name = MemoryDataset(store, rows), run.model, run.recipe.model
-    one, many = pokes_of(data[0]), pokes_of(data.__getitems__(rows))
+    scenes = Scenes.of(store)
+    scene = scenes.scenes[setup[0]]
+    [(_, _, many)] = scenes.parts(pokes_of(data.__getitems__(np.arange(len(rows)))))
+    one = type(many)(**{name: value[:1] for name, value in vars(many).items()})
     encoded = model.encode(scene, model.prepare(scene))
     shape, level = store.shapes[store.shape[0]], store.softness_names[store.softness[0]]
     interior = {"shape": shape, "softness": level}

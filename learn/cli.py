@@ -303,10 +303,18 @@ def export(
     run: Annotated[Path, typer.Argument(help="Folder of a run.")],
     dataset: Dataset = None,
     out: Annotated[Path | None, typer.Option(help="Default: onnx/ in the run.")] = None,
+    shape: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Shape of the dataset for whose block the files are; needed if the blocks differ.",
+            show_default=False,
+        ),
+    ] = None,
     plugin: Plugins = None,
     _version: Version = False,
 ) -> None:
-    """Export a run as ONNX on the dataset's grid, and check it on test pokes."""
+    """Export a run as ONNX on a grid of the dataset, and check it on test pokes."""
     console = make_console()
     with plain_errors():
         from learn.onnx_bundle import write_bundle
@@ -315,7 +323,7 @@ def export(
         load_plugins(plugin or [])
         predictor = load(run, dataset=dataset)
         files, wrong, pokes = write_bundle(
-            predictor.run, predictor.store, out or run / "onnx", predictor.domain
+            predictor.run, predictor.store, out or run / "onnx", predictor.domain, shape=shape
         )
         console.print(
             f"{', '.join(str(path) for path in files)} and model.json; "
@@ -352,7 +360,6 @@ def bench(
     with plain_errors():
         from learn.benchmark import BATCH, latencies, loader_rates, yardstick
         from learn.data import open_store
-        from learn.models import scene_of
         from learn.training import load_run
 
         load_plugins(plugin or [])
@@ -363,11 +370,10 @@ def bench(
                 raise InputError(
                     f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
                 )
-        scene = scene_of(store)
-        rows = [row for run in loaded for row in latencies(run, scene, store, repeats)]
+        rows = [row for run in loaded for row in latencies(run, store, repeats)]
         print_table(
             console,
-            f"One poke of {len(store.points)} points, the interior encoded before",
+            f"One poke of {store.n_points} points, the interior encoded before",
             ["", "threads", "median ms", "best ms"],
             [[name, threads, f"{median:.2f}", f"{best:.2f}"] for name, threads, median, best in rows],
         )

@@ -30,7 +30,7 @@ from torch import Tensor, nn
 from learn.data import MemoryDataset, Store, split_of_run
 from learn.data.loaders import no_clock
 from learn.errors import InputError
-from learn.models import Cegnn, InvariantGnn, Pokes, Scene, pokes_of, scene_of
+from learn.models import Cegnn, InvariantGnn, Pokes, Scene, Scenes, pokes_of
 from learn.models._encoder import Encoded, Stencil, gathered
 from learn.training import Run
 from learn.validity import Domain
@@ -221,20 +221,31 @@ def largest_difference(folder: Path, run: Run, scene: Scene, pokes: Pokes) -> fl
 
 
 def write_bundle(
-    run: Run, store: Store, folder: Path, domain: Domain | None
+    run: Run, store: Store, folder: Path, domain: Domain | None, *, shape: str | None = None
 ) -> tuple[list[Path], float, int]:
-    """Write a run for the dataset's grid, check it on test pokes, and write model.json.
+    """Write a run for a grid of the dataset, check it on test pokes, and write model.json.
+
+    The grid is that of the block in which `shape` stands, and the check is on test pokes in this block, or on
+    any if none is of the test part. Without `shape`, that of the only block.
 
     Returns
     -------
     The files, the largest relative difference from torch, and the number of pokes checked. InputError if
     the difference is above `TOLERANCE`; the files are then removed.
     """
-    scene = scene_of(store)
-    test = MemoryDataset(store, split_of_run(store, run).test)
+    if shape is not None and shape not in store.shapes:
+        raise InputError(f"--shape {shape}: expected one of {', '.join(store.shapes)}")
+    number = store.setup_under(None if shape is None else [shape])
+    scenes = Scenes.of(store)
+    scene, here = scenes.scenes[number], store.setup_index[store.geometry[store.frame_poke]] == number
+    rows = split_of_run(store, run).test
+    rows = rows[here[rows]] if here[rows].any() else np.flatnonzero(here & store.presses)
+    some = np.linspace(0, len(rows) - 1, min(_CHECKED, len(rows))).astype(int)
+    [(_, _, checked)] = scenes.parts(
+        pokes_of(MemoryDataset(store, rows[some]).__getitems__(np.arange(len(some))))
+    )
     files = export(run, scene, folder)
-    some = np.linspace(0, len(test) - 1, min(_CHECKED, len(test))).astype(int)
-    wrong = largest_difference(folder, run, scene, pokes_of(test.__getitems__(some)))
+    wrong = largest_difference(folder, run, scene, checked)
     if not wrong <= TOLERANCE:
         for path in files.values():
             path.unlink()

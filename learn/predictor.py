@@ -29,14 +29,12 @@ from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
-from learn.scene_file import PokeScene, kind_of, load_poke, scene_and_poke
+from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, load_run
 from learn.validity import (
     Check,
     Domain,
-    Interior,
     domain_of,
-    interior_of,
     poke_values,
     unknown_checks,
 )
@@ -164,7 +162,7 @@ def _html_table(rows: Sequence[tuple[str, str]]) -> str:
 
 
 class Predictor:
-    """A trained run, or several as an ensemble, ready to predict pokes on the dataset's block.
+    """A trained run, or several as an ensemble, ready to predict pokes.
 
     Attributes
     ----------
@@ -194,7 +192,7 @@ class Predictor:
         Raises
         ------
         InputError
-            If a key is wrong, or the poke does not fit the dataset's block.
+            If a key is wrong, or the poke does not fit the block.
         OutsideDomainError
             If `strict` is set and the poke is outside the domain of validity, or that is not known.
         """
@@ -210,11 +208,10 @@ class Predictor:
                 wanted = "expected no key time_s, since"
             timed = "with" if self.run.model.takes_clock else "without"
             raise InputError(f"{where}: {wanted} the model was trained {timed} time")
-        inputs, pokes = scene_and_poke(poke, self.store, where)
-        asked = self._values(inputs, pokes), kind_of(poke, self.store), poke.law
+        given = scene_and_poke(poke, self.store, where)
         with torch.no_grad():
-            response = self.run.model(inputs, pokes)
-        answer = self._answer(poke, inputs, pokes, response, asked)
+            response = self.run.model(given.scene, given.pokes)
+        answer = self._answer(poke, given, response)
         if not (np.isfinite(answer.displacement).all() and np.isfinite(answer.force)):
             raise InputError(f"{where}: the model's answer is not finite")
         if strict and answer.inside is not True:
@@ -227,7 +224,7 @@ class Predictor:
         Parameters
         ----------
         interior : keys as in `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion,
-            softness or shear_modulus_kPa, and law.
+            block_mm, softness or shear_modulus_kPa, and law.
 
         Raises
         ------
@@ -236,38 +233,27 @@ class Predictor:
         """
         return RealTime(self, interior)
 
-    def _interior(self, scene: Scene) -> Interior:
-        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
-        return interior_of(self.store, profile)
-
-    def _values(self, scene: Scene, pokes: Pokes) -> dict[str, float]:
-        """The poke's quantities, by key of `learn.validity.QUANTITIES`."""
-        return poke_values(
-            self.store,
-            self._interior(scene),
+    def _answer(self, poke: PokeScene, given: PokeInput, response: Response) -> PokePrediction:
+        setup, interior, scene, pokes = given
+        u, force = response.displacement.numpy(), float(response.force[0])
+        values = poke_values(
+            setup,
+            interior,
             start=pokes.start[0].numpy(),
             direction=pokes.direction[0].numpy(),
             depth=float(pokes.depth[0]),
             modulus=float(pokes.modulus[0]),
             clock=pokes.clock[0].numpy(),
         )
-
-    def _answer(
-        self,
-        poke: PokeScene,
-        scene: Scene,
-        pokes: Pokes,
-        response: Response,
-        asked: tuple[dict[str, float], str | None, str | None],
-    ) -> PokePrediction:
-        u, force = response.displacement.numpy(), float(response.force[0])
-        values, _, law = asked
-        distance = self.domain.distance(values, law) if self.domain else 0.0
-        interior = (self._interior(scene).size, values["cover_mm"])
-        radius, factor = self._interval(response, pokes, interior, distance)
+        asked = values, kind_of(poke, self.store), poke.law
+        distance = self.domain.distance(values, poke.law) if self.domain else 0.0
+        away = np.linalg.norm(setup.points - pokes.start.numpy(), axis=1)
+        radius, factor = self._interval(
+            response, away, float(pokes.depth[0]), (interior.size, values["cover_mm"]), distance
+        )
         return PokePrediction(
             poke=poke,
-            points=self.store.points,
+            points=setup.points,
             displacement=u[0],
             force=force,
             radius=radius,
@@ -278,7 +264,12 @@ class Predictor:
         )
 
     def _interval(
-        self, response: Response, pokes: Pokes, interior: tuple[float, float], distance: float
+        self,
+        response: Response,
+        away: Floats,
+        depth: float,
+        interior: tuple[float, float],
+        distance: float,
     ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
@@ -286,8 +277,8 @@ class Predictor:
         intervals = self.intervals.over(*interior)
         radius = intervals.radius_at_mm(
             np.linalg.norm(response.displacement[0].numpy(), axis=1),
-            away=np.linalg.norm(self.store.points - pokes.start.numpy(), axis=1),
-            depth=float(pokes.depth[0]),
+            away=away,
+            depth=depth,
             spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
             distance=distance,
         )
@@ -312,6 +303,7 @@ class Predictor:
             ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes"),
             ("trained on", f"{run.statistics.frames} frames"),
             ("shapes", ", ".join(store.shapes)),
+            ("blocks", store.describe_blocks()),
             ("softness levels", ", ".join(store.softness_names)),
             ("intervals", "yes" if self.has_intervals else "none"),
         ]

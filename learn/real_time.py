@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
-from learn.scene_file import first_touch, kind_of, load_poke, scene_and_poke
-from learn.validity import interior_of, poke_values
+from learn.scene_file import kind_of, load_poke, scene_and_poke
+from learn.validity import poke_values
 
 if TYPE_CHECKING:
     from learn.evaluation import Intervals
@@ -74,8 +74,8 @@ class RealTime:
     Parameters
     ----------
     predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
-    interior : keys of `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion, softness or
-        shear_modulus_kPa, and law.
+    interior : keys of `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion, block_mm,
+        softness or shear_modulus_kPa, and law.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class RealTime:
     Raises
     ------
     InputError
-        If the run has another model, a key is wrong, or the inclusion does not fit the dataset's block.
+        If the run has another model, a key is wrong, or the inclusion does not fit the block.
     """
 
     def __init__(self, predictor: Predictor, interior: Mapping[str, Any]) -> None:
@@ -101,17 +101,17 @@ class RealTime:
         for key in ("time_s", "rod_speed_mm_per_s", "approach_speed_mm_per_s"):
             if key in interior:
                 raise InputError(f"scene: unexpected key {key}: the model was trained without time")
-        file = load_poke({**interior, "site_mm": (store.middle * 1e3).tolist(), "depth_mm": 1e-3})
-        scene, pokes = scene_and_poke(file, store)
+        middle = (store.setups[0].middle * 1e3).tolist()
+        file = load_poke({**interior, "site_mm": middle, "depth_mm": 1e-3})
+        self._setup, self._interior, scene, pokes = scene_and_poke(file, store)
         with torch.no_grad():
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
-        self._store, self._domain = store, predictor.domain
+        self._domain = predictor.domain
         self._known = self._domain is None or self._domain.knows(kind_of(file, store))
-        profile = (scene.profile[0].numpy() * 255).round().astype(np.uint8)
-        self._interior, self._law = interior_of(store, profile), file.law
+        self._law = file.law
         self._intervals = predictor.intervals
-        self.points, self.modulus = store.points, float(pokes.modulus[0])
+        self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
 
     def __call__(
@@ -142,10 +142,10 @@ class RealTime:
             )
         if not (math.isfinite(depth) and math.isfinite(site[0]) and math.isfinite(site[1])):
             raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
-        start = first_touch(self._store, site, push)
+        start = self._setup.first_touch(site, push)
         u, force = self._single(start, push, depth, self.modulus)
         values = poke_values(
-            self._store, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
+            self._setup, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
         )
         distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
         if depth <= 0.0:

@@ -1,15 +1,15 @@
 """A poke to predict, as a YAML file or a dictionary in users' units: lengths in mm, angles in degrees.
 
-The keys are those of `PokeScene`. A poke that does not fit the dataset's block is refused with the name of
+The keys are those of `PokeScene`. A poke that does not fit the block is refused with the name of
 the key, since no model can predict it. `learn.validity` checks whether a poke is inside the trained ranges.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 import torch
@@ -18,10 +18,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from learn._yaml import first_fault, read_yaml
 from learn.data._format import RIGID
+from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
-from learn.models import Pokes, Scene, make_scene
-from learn.validity import shape_kind
+from learn.models import Pokes, Scene, scene_on
+from learn.validity import Interior, interior_of, shape_kind
 
 _MM = 1e-3
 STEEPEST = 45.0  # [degrees]: largest angle between push and normal, as in the simulator
@@ -116,6 +117,8 @@ class PokeScene(_Strict):
     angle_deg : angle between the push and the surface's normal, 0 to 45.
     heading_deg : direction of the push's horizontal part, from x towards y.
     shape, inclusion : a shape of the dataset by name, or any other inclusion; exactly one of the two.
+    block_mm : length, width and height of the block around an `inclusion`; by default that of the dataset,
+        if all its shapes stand in blocks of one size.
     time_s, rod_speed_mm_per_s, approach_speed_mm_per_s : time since first contact, current speed of the rod
         (0 in a hold, negative in a retraction), speed of approach; all three, for models trained with time.
     softness, shear_modulus_kPa : a level of the dataset by name, or the shear modulus at small strain;
@@ -130,6 +133,7 @@ class PokeScene(_Strict):
     heading_deg: Annotated[float, Field(strict=True, ge=-360, le=360)] = 0.0
     shape: Name | None = None
     inclusion: Inclusion | None = None
+    block_mm: tuple[Length, Length, Length] | None = None
     softness: Name | None = None
     shear_modulus_kPa: Annotated[float, Field(strict=True, gt=0, lt=1e6)] | None = None
     law: Name | None = None
@@ -142,6 +146,8 @@ class PokeScene(_Strict):
         for one, other in (("shape", "inclusion"), ("softness", "shear_modulus_kPa")):
             if (getattr(self, one) is None) == (getattr(self, other) is None):
                 raise ValueError(f"expected either {one} or {other}")
+        if self.shape is not None and self.block_mm is not None:
+            raise ValueError("expected no key block_mm beside shape, which stands in its own block")
         if len({value is None for value in self._clock}) > 1:
             raise ValueError(
                 "expected time_s, rod_speed_mm_per_s and approach_speed_mm_per_s, or none of them"
@@ -182,26 +188,43 @@ def load_poke(source: Path | str | Mapping[str, Any] | PokeScene) -> PokeScene:
         raise InputError(f"{where}: {first_fault(error, source)}") from None
 
 
-def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple[Scene, Pokes]:
-    """The scene (the store's grid over one interior) and the poke.
+def setup_of_scene(file: PokeScene, store: Store, where: str = "scene") -> Setup:
+    """The setup of a poke: that of its shape, or the indenter on the stated block, or on the only one."""
+    if file.shape is not None:
+        return store.setups[int(store.setup_index[_geometry(file, store, where)])]
+    if file.block_mm is not None:
+        return store.setups[0].with_block([v * _MM for v in file.block_mm])
+    if len(store.setups) > 1:
+        raise InputError(
+            f"{where}: expected key block_mm, the block's sides, since the dataset has "
+            f"{store.describe_blocks()}"
+        )
+    return store.setup
 
-    InputError, which begins with `where`, for a poke that does not fit the store's block.
+
+class PokeInput(NamedTuple):
+    """Input for the prediction of a poke: the model's is `scene` and `pokes`."""
+
+    setup: Setup
+    interior: Interior
+    scene: Scene
+    pokes: Pokes
+
+
+def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> PokeInput:
+    """Input for the prediction of a poke, with the setup's grid over one interior.
+
+    InputError, which begins with `where`, for a poke that does not fit the block.
     """
-    _check_fit(file, store, where)
-    profile = _profile(file, store, where)
-    scene = make_scene(
-        points=store.points,
-        normals=store.normals,
-        profile=profile[None],
-        level_depth=store.level_depth,
-        rod_radius=store.rod_radius,
-        rod_edge=store.rod_edge,
-    )
+    setup = setup_of_scene(file, store, where)
+    _check_fit(file, setup, where)
+    profile = _profile(file, store, setup, where)
+    scene = scene_on(setup, profile[None])
     lean, heading = math.radians(file.angle_deg), math.radians(file.heading_deg)
     sine, cosine = math.sin(lean), math.cos(lean)
     direction = np.array([sine * math.cos(heading), sine * math.sin(heading), -cosine])
-    start = first_touch(store, (file.site_mm[0] * _MM, file.site_mm[1] * _MM), direction)
-    _check_cover(file, store, profile, start + direction * file.depth_mm * _MM, where)
+    start = setup.first_touch((file.site_mm[0] * _MM, file.site_mm[1] * _MM), direction)
+    _check_cover(file, setup, profile, start + direction * file.depth_mm * _MM, where)
 
     def tensor(*values: float) -> torch.Tensor:
         return torch.tensor(values, dtype=torch.float64)
@@ -214,7 +237,7 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> tuple
         modulus=tensor(_modulus(file, store, where)),
         clock=tensor(*(file.clock or ()))[None],
     )
-    return scene, pokes
+    return PokeInput(setup, interior_of(setup, profile), scene, pokes)
 
 
 def kind_of(file: PokeScene, store: Store) -> str | None:
@@ -222,11 +245,11 @@ def kind_of(file: PokeScene, store: Store) -> str | None:
     return file.inclusion.kind if file.inclusion else shape_kind(store, file.shape or "")
 
 
-def _check_fit(file: PokeScene, store: Store, where: str) -> None:
-    size = np.array(store.block_size) * 1e3
-    middle = store.middle * 1e3
+def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
+    size = np.array(setup.block_size) * 1e3
+    middle = setup.middle * 1e3
     low, high = middle - size[:2] / 2, middle + size[:2] / 2
-    radius = store.rod_radius * 1e3
+    radius = setup.rod_radius * 1e3
     for k, value in enumerate(file.site_mm):
         if not low[k] + radius <= value <= high[k] - radius:
             bounds = ", ".join(
@@ -245,7 +268,7 @@ def _check_fit(file: PokeScene, store: Store, where: str) -> None:
     if body is None or isinstance(body, NoInclusion):
         return
     centre, half = np.array(body.centre_mm), np.array(body.half_mm)
-    base = store.points[0, 2] * 1e3 - size[2]
+    base = setup.top * 1e3 - size[2]
     limits = [(low[0], high[0]), (low[1], high[1]), (base, base + size[2])]
     for k, (axis, (a, b)) in enumerate(zip("xyz", limits, strict=True)):
         # an inclusion may be sunk into the base, but some of it has to be in the block
@@ -259,31 +282,19 @@ def _check_fit(file: PokeScene, store: Store, where: str) -> None:
 
 
 def _check_cover(
-    file: PokeScene, store: Store, profile: NDArray[np.uint8], tip: NDArray[np.float64], where: str
+    file: PokeScene, setup: Setup, profile: NDArray[np.uint8], tip: NDArray[np.float64], where: str
 ) -> None:
     """Raise InputError if the centre of the tip would end within the rigid inclusion."""
-    column = int(np.linalg.norm(store.points[:, :2] - tip[:2], axis=1).argmin())
+    column = int(np.linalg.norm(setup.points[:, :2] - tip[:2], axis=1).argmin())
     rigid = profile[column] == RIGID
-    height = store.block_size[2]
-    level = int((store.points[0, 2] - tip[2]) / height * len(rigid))
+    height = setup.block_size[2]
+    level = int((setup.top - tip[2]) / height * len(rigid))
     if rigid[: min(max(level, 0), len(rigid))].any():
         cover = float(rigid.argmax()) * height / len(rigid) * 1e3
         raise InputError(
             f"{where}: key depth_mm: expected less, the tip would end within the rigid inclusion, which "
             f"lies under {cover:.3g} mm of cover there, got {file.depth_mm:g}"
         )
-
-
-def first_touch(store: Store, site: Sequence[float], direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Centre of the tip [m], (3,), when the rod first touches the top.
-
-    `site` is the intersection of its axis with the top, (x, y) [m], `direction` the unit vector of the push.
-    """
-    cosine = -float(direction[2])
-    sine = math.hypot(float(direction[0]), float(direction[1]))
-    above = store.rod_edge * (1 - cosine) + (store.rod_radius - store.rod_edge) * sine
-    top = np.array([site[0], site[1], store.points[0, 2]])
-    return np.asarray(top - direction * (above / cosine))
 
 
 def _modulus(file: PokeScene, store: Store, where: str) -> float:
@@ -299,22 +310,27 @@ def _modulus(file: PokeScene, store: Store, where: str) -> float:
     return float(moduli[0])
 
 
-def _profile(file: PokeScene, store: Store, where: str) -> NDArray[np.uint8]:
+def _geometry(file: PokeScene, store: Store, where: str) -> int:
+    """The interior of the named shape, at the named level of softness if there is one."""
+    if file.shape not in store.shapes:
+        raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}")
+    mine = store.shape == store.shapes.index(file.shape)
+    if file.softness is not None and file.softness in store.softness_names:
+        mine &= store.softness == store.softness_names.index(file.softness)
+    if not mine.any():
+        raise InputError(f"{where}: key shape: the dataset has no poke of {file.shape}")
+    return int(store.geometry[mine][0])
+
+
+def _profile(file: PokeScene, store: Store, setup: Setup, where: str) -> NDArray[np.uint8]:
     """Profile under each point, (n, levels); silicone around `inclusion` is 0: only rigidity is read."""
     if file.shape is not None:
-        if file.shape not in store.shapes:
-            raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}")
-        mine = store.shape == store.shapes.index(file.shape)
-        if file.softness is not None and file.softness in store.softness_names:
-            mine &= store.softness == store.softness_names.index(file.softness)
-        if not mine.any():
-            raise InputError(f"{where}: key shape: the dataset has no poke of {file.shape}")
-        return np.asarray(store.profile[store.geometry[mine][0]])
+        return np.asarray(store.profile[_geometry(file, store, where)])
     body = file.inclusion
     assert body is not None
-    columns = np.repeat(store.points[:, None], len(store.level_depth), axis=1)
-    columns[..., 2] -= store.level_depth
+    columns = np.repeat(setup.points[:, None], len(setup.level_depth), axis=1)
+    columns[..., 2] -= setup.level_depth
     centre = np.zeros(3) if isinstance(body, NoInclusion) else np.array(body.centre_mm) * _MM
     # heights count from the base of the block
-    centre[2] += store.points[0, 2] - store.block_size[2]
+    centre[2] += setup.top - setup.block_size[2]
     return np.where(body.inside(columns - centre), RIGID, 0).astype(np.uint8)

@@ -19,6 +19,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import first_fault
 from learn.data._format import RIGID
+from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 
@@ -248,13 +249,13 @@ def domain_of(store: Store, rows: NDArray[np.int64]) -> Domain:
     for poke in np.unique(frames):
         mine = rows[frames == poke]
         depths, clocks = store.depth[mine], store.clocks(mine)
-        geometry = int(store.geometry[poke])
+        geometry, setup = int(store.geometry[poke]), store.setup_of(poke)
         if geometry not in interiors:
-            interiors[geometry] = interior_of(store, store.profile[geometry])
+            interiors[geometry] = interior_of(setup, store.profile[geometry])
         ends = ((depths.min(), clocks.min(axis=0)), (depths.max(), clocks.max(axis=0)))
         for depth, clock in ends:
             found = poke_values(
-                store,
+                setup,
                 interiors[geometry],
                 start=store.path_start[poke],
                 direction=store.direction[poke],
@@ -281,10 +282,11 @@ def frame_distances(
     """
     found = np.empty(len(poke))
     for index in np.unique(poke):
-        interior = interior_of(store, store.profile[int(store.geometry[index])])
+        setup = store.setup_of(index)
+        interior = interior_of(setup, store.profile[int(store.geometry[index])])
         for frame in np.flatnonzero(poke == index):
             values = poke_values(
-                store,
+                setup,
                 interior,
                 start=store.path_start[index],
                 direction=store.direction[index],
@@ -309,13 +311,13 @@ class Interior(NamedTuple):
     size: float
 
 
-def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
+def interior_of(setup: Setup, profile: NDArray[np.uint8]) -> Interior:
     """Interior of a `profile`, the stored stiffness under each point, shape (n, levels)."""
     rigid = profile == RIGID
-    length, breadth, height = store.block_size
+    length, breadth, height = setup.block_size
     columns = rigid.any(axis=1)
     soft = np.where(columns, rigid.argmax(axis=1), rigid.shape[1]) * (height / rigid.shape[1])
-    area = columns.sum() * length * breadth / len(store.points)
+    area = columns.sum() * length * breadth / len(setup.points)
     tall = (height - float(soft.min())) * 1e3 if columns.any() else 0.0
     volume = float(rigid.mean()) * length * breadth * height
     return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall, 1e3 * math.cbrt(volume))
@@ -323,20 +325,21 @@ def interior_of(store: Store, profile: NDArray[np.uint8]) -> Interior:
 
 def interior_at(store: Store, poke: int) -> tuple[float, float]:
     """Size of the inclusion of one stored poke, and the cover over it [mm]."""
-    interior = interior_of(store, store.profile[int(store.geometry[poke])])
-    return interior.size, 1e3 * _cover(store, interior, store.path_start[poke], store.direction[poke])
+    setup = store.setup_of(poke)
+    interior = interior_of(setup, store.profile[int(store.geometry[poke])])
+    return interior.size, 1e3 * _cover(setup, interior, store.path_start[poke], store.direction[poke])
 
 
-def _cover(store: Store, interior: Interior, start: Floats, direction: Floats) -> float:
+def _cover(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
     """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
-    x, y = (store.points[:, :2] - contact_site(store, start, direction)).T
+    x, y = (setup.points[:, :2] - setup.contact_site(start, direction)).T
     square = x * x + y * y
-    near = square <= max(store.rod_radius**2, float(square.min()))
+    near = square <= max(setup.rod_radius**2, float(square.min()))
     return float(interior.soft[near].min())
 
 
 def poke_values(
-    store: Store,
+    setup: Setup,
     interior: Interior,
     *,
     start: Floats,
@@ -352,11 +355,11 @@ def poke_values(
     interior : from `interior_of`.
     start, direction, depth, modulus, clock : the poke in SI units, as in `learn.models.Pokes`.
     """
-    length, width, height = store.block_size
-    site = contact_site(store, start, direction)
-    cover, level = _cover(store, interior, start, direction), height / len(store.level_depth)
+    length, width, height = setup.block_size
+    site = setup.contact_site(start, direction)
+    cover, level = _cover(setup, interior, start, direction), height / len(setup.level_depth)
     cosine = min(1.0, float(-direction[2]))
-    to_side = float((np.array([length, width]) / 2 - np.abs(site - store.middle)).min())
+    to_side = float((np.array([length, width]) / 2 - np.abs(site - setup.middle)).min())
     timed = {}
     if clock is not None and len(clock):
         timed = dict(zip(CLOCK_QUANTITIES, (clock * np.array([1.0, 1e3, 1e3])).tolist(), strict=True))
@@ -366,8 +369,8 @@ def poke_values(
         "cover_mm": cover * 1e3,
         "depth_over_cover": depth * cosine / max(cover, level),
         "shear_modulus_kPa": modulus * 1e-3,
-        "rod_radius_mm": store.rod_radius * 1e3,
-        "rod_edge_mm": store.rod_edge * 1e3,
+        "rod_radius_mm": setup.rod_radius * 1e3,
+        "rod_edge_mm": setup.rod_edge * 1e3,
         "block_x_mm": length * 1e3,
         "block_y_mm": width * 1e3,
         "block_z_mm": height * 1e3,
@@ -376,11 +379,6 @@ def poke_values(
         "inclusion_height_mm": interior.height,
         **timed,
     }
-
-
-def contact_site(store: Store, start: Floats, direction: Floats) -> Floats:
-    """Intersection of the indenter's axis with the rest surface, (x, y) [m]."""
-    return np.asarray(start[:2] + (store.points[0, 2] - start[2]) / direction[2] * direction[:2])
 
 
 def shape_kind(store: Store, name: str) -> str | None:

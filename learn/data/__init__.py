@@ -2,6 +2,7 @@
 
 from learn.data.folds import FOLDS, Split, contact_points, split_of, split_of_run, split_pokes
 from learn.data.loaders import Batch, MemoryDataset, StreamDataset, make_batch
+from learn.data.setup import Setup
 from learn.data.statistics import Statistics, statistics
 from learn.data.store import Store, open_store
 
@@ -9,6 +10,7 @@ __all__ = [
     "FOLDS",
     "Batch",
     "MemoryDataset",
+    "Setup",
     "Split",
     "Statistics",
     "Store",

@@ -64,6 +64,11 @@ ARRAYS: dict[str, Needed] = {
     "surface_triangle": Needed(rows="triangle", kinds="i", row=(3,), big=True),
     "surface_displacement": Needed(rows="value", row=(3,), units="m", big=True),
 }
+# in place of those of one block, in datasets whose shapes stand in blocks of different sizes
+BLOCKS: dict[str, Needed] = {
+    "grid_rest": Needed(rows="geometry", row=(GRID, GRID, 3), units="m"),
+    "level_depth": Needed(rows="geometry", row=(LEVELS,), units="m"),
+}
 # only in datasets whose recipe gives the rod a course over time
 TIMED: dict[str, Needed] = {
     "time": Needed(rows="frame", units="s"),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, KDTree
 
 from learn.data._facets import eight_node_facets, facet_weights
+from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 
@@ -39,14 +40,14 @@ def areas(points: Floats) -> Floats:
     return np.asarray(area / area.mean())
 
 
-def scattered(store: Store, count: int, *, seed: int = 0) -> Floats:
+def scattered(setup: Setup, count: int, *, seed: int = 0) -> Floats:
     """Scattered points on the block's top face, within the outermost grid points.
 
     Returns
     -------
     Rest positions [m], shape (count, 3): evenly scattered, each 0.6 spacings or more from the next.
     """
-    low, high = store.points[:, :2].min(axis=0), store.points[:, :2].max(axis=0)
+    low, high = setup.points[:, :2].min(axis=0), setup.points[:, :2].max(axis=0)
     random = np.random.default_rng(seed)
     chosen = random.uniform(low, high, (count, 2))
     spacing = np.sqrt(np.prod(high - low) / count)
@@ -58,24 +59,24 @@ def scattered(store: Store, count: int, *, seed: int = 0) -> Floats:
         np.add.at(chosen, pairs[:, 0], push)
         np.add.at(chosen, pairs[:, 1], -push)
         chosen = np.clip(chosen, low, high)
-    return np.column_stack([chosen, np.full(count, store.points[0, 2])])
+    return np.column_stack([chosen, np.full(count, setup.top)])
 
 
-def jittered(store: Store, random: np.random.Generator) -> Floats:
+def jittered(setup: Setup, random: np.random.Generator) -> Floats:
     """The grid's points, each moved at random within its cell and the outermost grid points [m], (n, 3)."""
-    low, high = store.points[:, :2].min(axis=0), store.points[:, :2].max(axis=0)
-    cell = (high - low) / (round(len(store.points) ** 0.5) - 1)
-    points = store.points.copy()
+    low, high = setup.points[:, :2].min(axis=0), setup.points[:, :2].max(axis=0)
+    cell = (high - low) / (round(len(setup.points) ** 0.5) - 1)
+    points = setup.points.copy()
     moved = points[:, :2] + random.uniform(-0.5, 0.5, (len(points), 2)) * cell
     points[:, :2] = np.clip(moved, low, high)
     return points
 
 
-def nearest_columns(store: Store, points: Floats) -> NDArray[np.int64]:
+def nearest_columns(setup: Setup, points: Floats) -> NDArray[np.int64]:
     """Index of the grid point nearest to each point of the top face, shape (n,)."""
-    side = round(len(store.points) ** 0.5)
-    low = store.points.min(axis=0)[:2]
-    step = (store.points.max(axis=0)[:2] - low) / (side - 1)
+    side = round(len(setup.points) ** 0.5)
+    low = setup.points.min(axis=0)[:2]
+    step = (setup.points.max(axis=0)[:2] - low) / (side - 1)
     column, row = np.rint(((points[:, :2] - low) / step).T).astype(int)
     return np.asarray(row * side + column, dtype=np.int64)
 
@@ -94,14 +95,14 @@ class SurfaceField:
     def __init__(self, store: Store, pokes: Iterable[int]) -> None:
         self.store = store
         self._meshes: dict[int, _TopFace] = {}
-        for poke in pokes:
-            rest, triangles, moved = store.surface(int(poke))
-            top = np.abs(rest[:, 2] - store.points[0, 2]) < _TOP
+        for poke in map(int, pokes):
+            rest, triangles, moved = store.surface(poke)
+            top = np.abs(rest[:, 2] - store.setup_of(poke).top) < _TOP
             if top.sum() < 4:
                 raise InputError(f"{store.location}: the surface of poke {poke} has no nodes on the top face")
             number = np.where(top, np.cumsum(top) - 1, -1)
             own = number[triangles[top[triangles].all(axis=1)]]
-            self._meshes[int(poke)] = _TopFace(
+            self._meshes[poke] = _TopFace(
                 xy=rest[top, :2], facets=eight_node_facets(own), moved=np.ascontiguousarray(moved[:, top])
             )
 

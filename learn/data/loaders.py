@@ -1,4 +1,4 @@
-"""Frames as batches of tensors: a part in memory, or streamed block by block through a shuffle buffer."""
+"""Frames as batches of tensors: a part in memory, or streamed shard by shard through a shuffle buffer."""
 
 from __future__ import annotations
 
@@ -91,11 +91,11 @@ class MemoryDataset(torch.utils.data.Dataset[Batch]):
 
     def __init__(self, store: Store, rows: NDArray[np.int64]) -> None:
         self.store, self.rows = store, np.asarray(rows, dtype=np.int64)
-        self._displacement = np.empty((len(rows), len(store.points), 3), dtype=np.float32)
-        block = store.block
-        for first in np.unique(self.rows // block) * block:
-            here = np.flatnonzero((self.rows >= first) & (self.rows < first + block))
-            values = store.displacement(slice(int(first), min(int(first) + block, store.frames)))
+        self._displacement = np.empty((len(rows), store.n_points, 3), dtype=np.float32)
+        shard = store.shard
+        for first in np.unique(self.rows // shard) * shard:
+            here = np.flatnonzero((self.rows >= first) & (self.rows < first + shard))
+            values = store.displacement(slice(int(first), min(int(first) + shard, store.frames)))
             self._displacement[here] = values[self.rows[here] - first]
 
     def __len__(self) -> int:
@@ -127,10 +127,10 @@ class MemoryDataset(torch.utils.data.Dataset[Batch]):
 class StreamDataset(torch.utils.data.IterableDataset[Batch]):
     """An iterable torch dataset of whole batches; with a DataLoader use `batch_size=None`.
 
-    Blocks (files of the store) are read in random order into a buffer of `shuffle_buffer` blocks; batches are
-    drawn at random from the buffer while two other threads read the next block. Memory is thus bounded by
-    shuffle_buffer + 2 blocks (`bytes_held`), whatever the store's size, and every frame occurs exactly once
-    per epoch. Loader workers and the ranks of torchrun each take a subset of the blocks, with a different
+    Shards (files of the store) are read in random order into a buffer of `shuffle_buffer` shards; batches are
+    drawn at random from the buffer while two other threads read the next shard. Memory is thus bounded by
+    shuffle_buffer + 2 shards (`bytes_held`), whatever the store's size, and every frame occurs exactly once
+    per epoch. Loader workers and the ranks of torchrun each take a subset of the shards, with a different
     shuffle in each.
 
     >>> data = StreamDataset("https://example.org/pokes.zarr", split.train, batch=64, seed=1)
@@ -153,7 +153,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         self.rows = np.sort(np.asarray(rows, dtype=np.int64))
         self.batch, self.shuffle_buffer, self.seed = batch, max(1, shuffle_buffer), seed
         self.rank, self.world = rank, world
-        self._block, self._chunk = self.store.block, self.store.chunk  # slow to look up
+        self._per_shard, self._chunk = self.store.shard, self.store.chunk  # slow to look up
         # shared, so that workers of a DataLoader see it change
         self._epoch = torch.zeros(1, dtype=torch.int64).share_memory_()
         self._spare: list[list[Floats32]] = []
@@ -170,7 +170,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
     @property
     def bytes_held(self) -> int:
         """Upper bound of the displacement held at any time [bytes]."""
-        return (self.shuffle_buffer + 2) * self._block * len(self.store.points) * 3 * 4
+        return (self.shuffle_buffer + 2) * self._per_shard * self.store.n_points * 3 * 4
 
     def __len__(self) -> int:
         """Number of frames; that of batches depends on the workers."""
@@ -180,30 +180,30 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         worker = torch.utils.data.get_worker_info()
         count, number = (worker.num_workers, worker.id) if worker is not None else (1, 0)
         share, shares = self.rank * count + number, self.world * count
-        blocks = np.unique(self.rows // self._block)
+        shards = np.unique(self.rows // self._per_shard)
         if self.seed is not None:
-            blocks = blocks[epoch_order(len(blocks), self.seed, self.epoch)]
+            shards = shards[epoch_order(len(shards), self.seed, self.epoch)]
         random = np.random.default_rng(
             np.random.SeedSequence(entropy=self.seed or 0, spawn_key=(self.epoch, share))
         )
-        yield from self._deal(blocks[share::shares], random)
+        yield from self._deal(shards[share::shares], random)
 
-    def _deal(self, blocks: NDArray[np.int64], random: np.random.Generator) -> Iterator[Batch]:
-        counts = [len(self._rows_of(int(block))) for block in blocks]
-        room = min(self.shuffle_buffer * self._block, sum(counts))
+    def _deal(self, shards: NDArray[np.int64], random: np.random.Generator) -> Iterator[Batch]:
+        counts = [len(self._rows_of(int(shard))) for shard in shards]
+        room = min(self.shuffle_buffer * self._per_shard, sum(counts))
         # new memory costs as much as decompressing into it: the next epoch reuses the buffers
         buffers = self._spare.pop() if self._spare else self._buffers()
         held = buffers[0]
         rows = np.empty(room, dtype=np.int64)
-        room_to_read = buffers[1:]  # a block is read into one while the other is copied into the buffer
+        room_to_read = buffers[1:]  # a shard is read into one while the other is copied into the buffer
         free, full = np.arange(room), np.empty(0, dtype=np.int64)  # positions in the buffer
         with ThreadPoolExecutor(_READERS) as readers:
-            waiting = [self._ask(readers, int(block), room_to_read[0]) for block in blocks[:1]]
+            waiting = [self._ask(readers, int(shard), room_to_read[0]) for shard in shards[:1]]
             for number, count in enumerate(counts):
-                new_rows, new = self._got(int(blocks[number]), room_to_read[number % 2], waiting.pop())
-                if number + 1 < len(blocks):
+                new_rows, new = self._got(int(shards[number]), room_to_read[number % 2], waiting.pop())
+                if number + 1 < len(shards):
                     spare = room_to_read[(number + 1) % 2]
-                    waiting.append(self._ask(readers, int(blocks[number + 1]), spare))
+                    waiting.append(self._ask(readers, int(shards[number + 1]), spare))
                 while len(free) < count:
                     pick, full = full[: self.batch], full[self.batch :]
                     yield make_batch(self.store, rows[pick], held[pick])
@@ -218,22 +218,22 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         self._spare.append(buffers)
 
     def _buffers(self) -> list[Floats32]:
-        block, points = min(self._block, self.store.frames), len(self.store.points)
-        held = min(self.shuffle_buffer * self._block, len(self.rows))
-        return [np.empty((count, points, 3), dtype=np.float32) for count in (held, block, block)]
+        shard, points = min(self._per_shard, self.store.frames), self.store.n_points
+        held = min(self.shuffle_buffer * self._per_shard, len(self.rows))
+        return [np.empty((count, points, 3), dtype=np.float32) for count in (held, shard, shard)]
 
-    def _rows_of(self, block: int) -> NDArray[np.int64]:
-        first = block * self._block
-        low, high = np.searchsorted(self.rows, [first, first + self._block])
+    def _rows_of(self, shard: int) -> NDArray[np.int64]:
+        first = shard * self._per_shard
+        low, high = np.searchsorted(self.rows, [first, first + self._per_shard])
         return self.rows[low:high]
 
-    def _span(self, block: int) -> tuple[int, int]:
-        rows = self._rows_of(block)
+    def _span(self, shard: int) -> tuple[int, int]:
+        rows = self._rows_of(shard)
         return int(rows[0]), int(rows[-1]) + 1
 
-    def _ask(self, readers: ThreadPoolExecutor, block: int, room: Floats32) -> list[Future[Floats32]]:
-        """Read a block's frames, divided between two chunks so that both readers have equal work."""
-        start, stop = self._span(block)
+    def _ask(self, readers: ThreadPoolExecutor, shard: int, room: Floats32) -> list[Future[Floats32]]:
+        """Read a shard's frames, divided between two chunks so that both readers have equal work."""
+        start, stop = self._span(shard)
         chunk = self._chunk
         middle = min(max(round((start + stop) / 2 / chunk) * chunk, start), stop)
         return [
@@ -243,9 +243,9 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         ]
 
     def _got(
-        self, block: int, room: Floats32, asked: list[Future[Floats32]]
+        self, shard: int, room: Floats32, asked: list[Future[Floats32]]
     ) -> tuple[NDArray[np.int64], Floats32]:
         for part in asked:
             part.result()
-        rows, (start, stop) = self._rows_of(block), self._span(block)
+        rows, (start, stop) = self._rows_of(shard), self._span(shard)
         return rows, room[: len(rows)] if len(rows) == stop - start else room[rows - start]

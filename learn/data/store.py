@@ -1,15 +1,15 @@
-"""A finished dataset: its small tables in memory, its displacement field block by block.
+"""A finished dataset: its small tables in memory, its displacement field file by file.
 
 >>> store = open_store("datasets/quick-ogden.zarr")
->>> store.frames, store.points.shape
+>>> store.frames, len(store.setups), store.n_points
 >>> store.displacement(slice(0, 64))               # [m], (64, 1024, 3) float32
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from learn.data._files import Source, displacement_reader, group_here, reading
 from learn.data._format import (
     ARRAYS,
+    BLOCKS,
     FORMAT,
     GRID,
     LEVELS,
@@ -31,6 +32,7 @@ from learn.data._format import (
     check_rows,
 )
 from learn.data.moduli import moduli
+from learn.data.setup import Setup, grid_normals
 from learn.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -66,10 +68,9 @@ class Store:
     Attributes
     ----------
     location, attributes : folder, zip or URL, and attributes of the root group.
-    points, normals : rest positions [m] and outward unit normals of the grid, shape (n, 3).
+    setups : the blocks, each with its grid, and the indenter: one, unless the shapes' blocks differ in size.
+    setup_index : setup of each geometry, shape (g,).
     profile : stiffness under each point as stored, top level first, shape (g, n, levels), uint8.
-    level_depth : depth of each level below the surface [m], shape (levels,).
-    rod_radius, rod_edge : radii of the indenter and of its tip's edge, equal for a hemisphere [m].
     done : True for each poke that was simulated, shape (p,).
     shape, softness, geometry : indices of each poke, shape (p,).
     modulus : shear modulus at small strain [Pa], shape (p,).
@@ -85,12 +86,9 @@ class Store:
 
     location: str
     attributes: dict[str, Any]
-    points: Floats
-    normals: Floats
+    setups: tuple[Setup, ...]
+    setup_index: Ints
     profile: NDArray[np.uint8]
-    level_depth: Floats
-    rod_radius: float
-    rod_edge: float
     done: NDArray[np.bool_]
     shape: Ints
     softness: Ints
@@ -159,17 +157,46 @@ class Store:
     def softness_names(self) -> list[str]:
         return [str(name) for name in self.attributes["softness"]]
 
-    @cached_property
-    def middle(self) -> Floats:
-        """Middle of the top face, (x, y) [m]."""
-        return np.asarray((self.points[:, :2].min(axis=0) + self.points[:, :2].max(axis=0)) / 2)
+    @property
+    def setup(self) -> Setup:
+        """The only setup. InputError if there are several, and the caller has to choose one."""
+        if len(self.setups) > 1:
+            raise InputError(f"{self.location}: has {self.describe_blocks()}: expected a single block")
+        return self.setups[0]
 
-    @cached_property
-    def block_size(self) -> tuple[float, float, float]:
-        """Length, width and height of the block [m]; the grid's points are the centres of equal cells."""
-        low, high = self.points.min(axis=0), self.points.max(axis=0)
-        length, width = (high - low)[:2] * GRID / (GRID - 1)
-        return float(length), float(width), float(self.level_depth[0] + self.level_depth[-1])
+    def setup_of(self, poke: int) -> Setup:
+        """The setup of a poke."""
+        return self.setups[int(self.setup_index[self.geometry[poke]])]
+
+    def setup_under(self, shapes: Sequence[str] | None) -> int:
+        """Index of the setup that these shapes share, or of the only one; InputError names `--shape`."""
+        if len(self.setups) == 1:
+            return 0
+        wanted = [self.shapes.index(name) for name in shapes or ()]
+        found = np.unique(self.setup_index[self.geometry[np.isin(self.shape, wanted)]])
+        if len(found) != 1:
+            raise InputError(
+                f"{self.location}: has {self.describe_blocks()}: expected --shape, a shape in the block that"
+                " is wanted, or several in one block"
+            )
+        return int(found[0])
+
+    def describe_blocks(self) -> str:
+        """Number and sizes of the blocks: "36 blocks of 70 to 130 x 71 to 129 x 24 to 40 mm"."""
+        sizes = np.array([setup.block_size for setup in self.setups]) * 1e3
+        ends = zip(sizes.min(axis=0), sizes.max(axis=0), strict=True)
+        sides = " x ".join(f"{a:.4g}" if b - a < 1e-6 else f"{a:.4g} to {b:.4g}" for a, b in ends)
+        return f"{len(sizes)} block{'s' if len(sizes) > 1 else ''} of {sides} mm"
+
+    @property
+    def n_points(self) -> int:
+        """Number of points of each grid."""
+        return int(self.profile.shape[1])
+
+    @property
+    def rod_radius(self) -> float:
+        """Radius of the indenter [m]."""
+        return self.setups[0].rod_radius
 
     @property
     def pokes(self) -> int:
@@ -180,8 +207,8 @@ class Store:
         return len(self.depth)
 
     @property
-    def block(self) -> int:
-        """Number of frames in one file (a shard) of the displacement, which are best read together."""
+    def shard(self) -> int:
+        """Number of frames in one file of the displacement, which are best read together."""
         array: Any = group_here(self.location)["grid_displacement"]
         return int((array.shards or array.chunks)[0])
 
@@ -198,7 +225,7 @@ class Store:
         """
         start, stop, _ = rows.indices(self.frames)
         if out is None:
-            out = np.empty((max(stop - start, 0), len(self.points), 3), dtype=np.float32)
+            out = np.empty((max(stop - start, 0), self.n_points, 3), dtype=np.float32)
         with reading(f"{self.location}: grid_displacement"):
             reader = displacement_reader(self.location)
             if reader is not None:
@@ -255,6 +282,7 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
         )
     check_attributes(source.location, attributes)
     arrays = ARRAYS | (TIMED if "time" in group else {}) | (SIMILAR if "solved_as" in group else {})
+    arrays |= BLOCKS if getattr(group.get("grid_rest"), "ndim", 0) == 4 else {}
     check_arrays(source.location, group, attributes, arrays)
     if verify:
         source.check_manifest(list(arrays))
@@ -269,17 +297,13 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
             raise InputError(f"{location}: {name} has a value that is not finite")
     check_rows(source.location, table, attributes)
     done = table["done"].astype(bool)
-    radius, edge = _rod(source.location, attributes)
-    points = table["grid_rest"].reshape(-1, 3).astype(np.float64)
+    setups, setup_index = _setups(table, _rod(source.location, attributes))
     return Store(
         location=source.location,
         attributes=attributes,
-        points=points,
-        normals=grid_normals(table["grid_rest"].astype(np.float64)),
+        setups=setups,
+        setup_index=setup_index,
         profile=table["profile"].reshape(-1, GRID * GRID, LEVELS),
-        level_depth=table["level_depth"].astype(np.float64),
-        rod_radius=radius,
-        rod_edge=edge,
         done=done,
         shape=table["poke_shape"].astype(np.int64),
         softness=table["poke_softness"].astype(np.int64),
@@ -299,11 +323,25 @@ def open_store(location: str | Path, *, verify: bool = True) -> Store:
     )
 
 
-def grid_normals(grid: Floats) -> Floats:
-    """Unit normals (n, 3) of a grid of points (rows, columns, 3): step of columns x step of rows."""
-    along, up = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    normal = np.cross(along, up).reshape(-1, 3)
-    return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))
+def _setups(table: dict[str, NDArray[Any]], rod: tuple[float, float]) -> tuple[tuple[Setup, ...], Ints]:
+    """The different setups of a store, and that of each geometry."""
+    grids = table["grid_rest"].reshape(-1, GRID, GRID, 3).astype(np.float64)
+    levels = table["level_depth"].reshape(len(grids), LEVELS).astype(np.float64)
+    rows = np.concatenate([grids.reshape(len(grids), -1), levels], axis=1)
+    _, first, index = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)  # as stored
+    setups = tuple(
+        Setup(
+            points=grids[k].reshape(-1, 3),
+            normals=grid_normals(grids[k]),
+            level_depth=levels[k],
+            rod_radius=rod[0],
+            rod_edge=rod[1],
+        )
+        for k in first[order]
+    )
+    place = np.argsort(order)[index.reshape(-1)]
+    return setups, np.broadcast_to(place, len(table["profile"])).astype(np.int64)
 
 
 def rigid_masks(profile: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], Ints]:

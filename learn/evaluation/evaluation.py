@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import torch
@@ -28,6 +29,7 @@ from learn.evaluation.intervals import (
 )
 from learn.evaluation.intervals_file import load_intervals
 from learn.evaluation.predictions import (
+    Cloud,
     SymmetryError,
     interpolation_error_mm,
     predict_on,
@@ -36,7 +38,7 @@ from learn.evaluation.predictions import (
 )
 from learn.evaluation.summary import Outside, Row, by_depth, by_distance, by_softness, over_folds, summarise
 from learn.metrics import Predictions
-from learn.models import Ensemble, Scene, pokes_of, scene_of
+from learn.models import Ensemble, Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run
 from learn.validity import frame_distances
@@ -166,8 +168,8 @@ def evaluate(
     on_progress : called before each step.
     """
     found = Evaluation(runs=runs, store=store, device=torch.device(device))
-    here = scene_of(store)
-    scene = here.to(found.device)
+    here = Scenes.of(store)
+    scenes = here.to(found.device)
     fitted: set[str] = set()
     predicted: list[Predicted] = []
     tested = np.zeros(store.frames, dtype=bool)
@@ -179,7 +181,7 @@ def evaluate(
         test = MemoryDataset(store, split.test)
         steps.next(f"{run.folder}: {len(test)} test frames")
         run.model.to(found.device)
-        predictions = predict_part(run.model, scene, test)
+        predictions = predict_part(run.model, scenes, test)
         found.folds.setdefault(name, []).append(by_softness(predictions))
         found.models += [name] if name not in found.models else []
         tested[split.test] = True
@@ -188,7 +190,7 @@ def evaluate(
         for band, row in by_depth(predictions).items():
             found.depths.setdefault(f"{name}, {band}", []).append(row)
         predicted.append(Predicted(run, name, predictions, _distance(run, store, predictions)))
-        _look_closer(found, predicted[-1], scene, split, clouds=clouds and not found.clouds)
+        _look_closer(found, predicted[-1], scenes, split, clouds=clouds and not found.clouds)
         run.model.cpu()
         key = _part(run.recipe)
         if not baselines or key in fitted or not len(split.train):
@@ -284,8 +286,8 @@ def _covered(intervals: Intervals, one: Predicted) -> Covered:
     )
 
 
-def _look_closer(found: Evaluation, one: Predicted, scene: Scene, split: Split, *, clouds: bool) -> None:
-    """Add symmetry, intervals, depth and clouds of one run; `scene`: the store's, on the model's device."""
+def _look_closer(found: Evaluation, one: Predicted, scenes: Scenes, split: Split, *, clouds: bool) -> None:
+    """Add symmetry, intervals, depth and clouds of one run; `scenes` are on the model's device."""
     run, title, predictions = one.run, one.name, one.predictions
     store, model = found.store, run.model
     name = f"{title}, fold {run.recipe.fold}"
@@ -293,10 +295,10 @@ def _look_closer(found: Evaluation, one: Predicted, scene: Scene, split: Split, 
     own = store.uuid == run.uuid
     validation = MemoryDataset(store, split.validation if own else split.test)
     few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
-    part = scene.only(few.geometry.numpy())
+    part = scenes.only(few.geometry.numpy())
     found.symmetry[name] = symmetry_error(model, part, few)
     found.symmetry_vertical[name] = symmetry_error(model, part, few, about_normal=True)
-    intervals = _own_intervals(found, run, name, predict_part(model, scene, validation) if own else None)
+    intervals = _own_intervals(found, run, name, predict_part(model, scenes, validation) if own else None)
     if intervals is not None:
         found.intervals.append((run, intervals))
         found.covered[name] = _covered(intervals, one)
@@ -337,11 +339,11 @@ def _clouds(found: Evaluation, run: Run, split: Split) -> None:
     rows = split.test[np.isin(store.frame_poke[split.test], pokes)]
     surfaces = SurfaceField(store, pokes.tolist())
 
-    def errors_on(points: Floats) -> Row:
-        return summarise(predict_on(run.model, store, rows, points, surfaces, device=found.device))
+    def errors_on(cloud: Cloud) -> Row:
+        return summarise(predict_on(run.model, store, rows, cloud, surfaces, device=found.device))
 
-    found.clouds["1024, the grid"] = errors_on(store.points)
+    found.clouds["1024, the grid"] = errors_on(lambda setup: setup.points)
     for size in CLOUD_SIZES:
-        each = [errors_on(scattered(store, size, seed=seed)) for seed in range(CLOUD_SEEDS)]
+        each = [errors_on(partial(scattered, count=size, seed=seed)) for seed in range(CLOUD_SEEDS)]
         found.clouds[f"{size}, scattered"] = over_folds(each)
     found.interpolation_mm = interpolation_error_mm(store, rows)

@@ -59,7 +59,8 @@ def draw_poke(store: Store, predictions: Predictions, poke: int, title: str) -> 
     """A poke's deepest frame: section along the push, true and predicted displacement, and the error."""
     mine = np.flatnonzero(predictions.poke == poke)
     frame = mine[predictions.depth[mine].argmax()]
-    side = round(len(store.points) ** 0.5)
+    points = store.setup_of(poke).points
+    side = round(len(points) ** 0.5)
     start, push = store.path_start[poke], store.direction[poke]
     figure = Figure(figsize=(15, 3.4), layout="constrained")
     axes = figure.subplots(1, 4)
@@ -69,10 +70,8 @@ def draw_poke(store: Store, predictions: Predictions, poke: int, title: str) -> 
         f"{title}: poke {poke}, {shape}, {predictions.softness[frame]}, {depth:.1f} mm deep; "
         f"error {error.mean():.3f} mm on average, {error.max():.2f} mm at most"
     )
-    _cut(axes[0], store.points, predictions.truth[frame], predictions.predicted[frame], start, push)
-    reach = [
-        v * 1e3 for v in (store.points[0, 0], store.points[-1, 0], store.points[0, 1], store.points[-1, 1])
-    ]
+    _cut(axes[0], points, predictions.truth[frame], predictions.predicted[frame], start, push)
+    reach = [v * 1e3 for v in (points[0, 0], points[-1, 0], points[0, 1], points[-1, 1])]
     size = {"simulated |u|": predictions.truth[frame], "predicted |u|": predictions.predicted[frame]}
     top = max(float(np.linalg.norm(v, axis=1).max()) for v in size.values()) * 1e3
     for axis, (name, field) in zip(axes[1:3], size.items(), strict=True):

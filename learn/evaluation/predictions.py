@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -11,13 +11,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from learn.data import Batch, MemoryDataset, Store, make_batch
+from learn.data import Batch, MemoryDataset, Setup, Store, make_batch
 from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
-from learn.models import Pokes, Response, Scene, pokes_of, scene_on
+from learn.models import Pokes, Response, Scene, Scenes, pokes_of
 from learn.validity import interior_at
 
 Floats = NDArray[np.float64]
+Cloud = Callable[[Setup], Floats]  # points (n, 3) on a setup's top face [m]
 
 
 class Predicts(Protocol):
@@ -30,24 +31,21 @@ class Predicts(Protocol):
     def decode(self, encoded: Any, pokes: Pokes) -> Response: ...
 
 
-def predict_part(model: Predicts, scene: Scene, data: MemoryDataset, *, batch: int = 64) -> Predictions:
-    """Predictions of all frames of a part; `scene` is that of the store's grid, on the model's device."""
-    return predict_batches(model, scene, data.store, data.batches(batch))
+def predict_part(model: Predicts, scenes: Scenes, data: MemoryDataset, *, batch: int = 64) -> Predictions:
+    """Predictions of all frames of a part; `scenes` are those of the store, on the model's device."""
+    return predict_batches(model, scenes, data.store, data.batches(batch))
 
 
 @torch.no_grad()
-def predict_batches(model: Predicts, scene: Scene, store: Store, batches: Iterable[Batch]) -> Predictions:
-    """Predictions of these batches; `scene` is on the model's device."""
+def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iterable[Batch]) -> Predictions:
+    """Predictions of these batches, of each in the order of its scenes, which are on the model's device."""
     parts: list[Predictions] = []
-    encoded: Any = None
-    device = scene.points.device
-    points = scene.points.cpu().numpy()
+    encode = functools.cache(lambda k: model.encode(scenes.scenes[k], model.prepare(scenes.scenes[k])))
+    points = functools.cache(lambda k: scenes.scenes[k].points.cpu().numpy())
     interior = functools.cache(lambda poke: interior_at(store, poke))
-    for batch in batches:
-        if encoded is None:
-            encoded = model.encode(scene, model.prepare(scene))
-        found = model.decode(encoded, pokes_of(batch.to(device)))
-        away = np.linalg.norm(points[None] - batch.start.numpy()[:, None], axis=2)
+    for k, batch in scenes.each(batches):
+        found = model.decode(encode(k), pokes_of(batch.to(scenes.device)))
+        away = np.linalg.norm(points(k)[None] - batch.start.numpy()[:, None], axis=2)
         poke = store.frame_poke[batch.frame.numpy()]
         parts.append(
             Predictions(
@@ -78,25 +76,28 @@ def predict_on(
     model: Predicts,
     store: Store,
     rows: NDArray[np.int64],
-    points: Floats,
+    cloud: Cloud,
     surfaces: SurfaceField | None = None,
     *,
     device: torch.device | str = "cpu",
 ) -> Predictions:
     """Predictions at other points of the top face, against interpolation of each poke's own surface mesh.
 
-    `device` is the model's.
+    `cloud` makes the points of a setup's top face; `device` is the model's.
     """
     field = surfaces or SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
-    scene = scene_on(store, points).to(device)
-    return predict_batches(model, scene, store, _batches(store, rows, points, field))
+    points = {id(setup): cloud(setup) for setup in store.setups}
+    scenes = Scenes.of(store, lambda setup: points[id(setup)]).to(device)
+    return predict_batches(
+        model, scenes, store, _batches(store, rows, lambda setup: points[id(setup)], field)
+    )
 
 
 def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
     """Mean distance [mm] between interpolated and stored displacement at the grid's points."""
     field = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     wrong = []
-    for batch in _batches(store, rows, store.points, field):
+    for batch in _batches(store, rows, lambda setup: setup.points, field):
         frames = batch.frame.numpy()
         first = int(frames[0])
         stored = torch.from_numpy(store.displacement(slice(first, int(frames[-1]) + 1))[frames - first])
@@ -104,13 +105,11 @@ def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:
     return float(np.mean(wrong)) * 1e3
 
 
-def _batches(
-    store: Store, rows: NDArray[np.int64], points: Floats, surfaces: SurfaceField
-) -> Iterator[Batch]:
+def _batches(store: Store, rows: NDArray[np.int64], cloud: Cloud, surfaces: SurfaceField) -> Iterator[Batch]:
     """Yield one batch per poke."""
     for poke in np.unique(store.frame_poke[rows]):
         mine = rows[store.frame_poke[rows] == poke]
-        yield make_batch(store, mine, surfaces.displacement(mine, points))
+        yield make_batch(store, mine, surfaces.displacement(mine, cloud(store.setup_of(poke))))
 
 
 @dataclass(frozen=True)
@@ -123,7 +122,7 @@ class SymmetryError:
 
 @torch.no_grad()
 def symmetry_error(
-    model: Predicts, scene: Scene, pokes: Pokes, *, about_normal: bool = False, rotations: int = 5
+    model: Predicts, scenes: Scenes, pokes: Pokes, *, about_normal: bool = False, rotations: int = 5
 ) -> SymmetryError:
     """Difference between the prediction for a rotated scene and the rotated prediction.
 
@@ -133,19 +132,36 @@ def symmetry_error(
         rotations about any axis and translations by up to 0.1 m.
     rotations : number of random rotations.
     """
+    worst = [
+        _symmetry_error(model, scenes.scenes[k], part, _motions(rotations, about_normal=about_normal))
+        for k, _, part in scenes.parts(pokes)
+    ]
+    return SymmetryError(max(e.displacement_mm for e in worst), max(e.force for e in worst))
+
+
+def _motions(rotations: int, *, about_normal: bool) -> list[tuple[Floats, Floats]]:
+    """Rotations (3, 3) and translations (3,) [m]."""
     from scipy.stats import special_ortho_group  # half a second to import
 
+    if about_normal:
+        quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        return [(np.linalg.matrix_power(quarter, k + 1), np.zeros(3)) for k in range(3)]
     random = np.random.default_rng(0)
-    pokes = replace(pokes, **{name: value.to(scene.points.device) for name, value in vars(pokes).items()})
+    return [
+        (special_ortho_group.rvs(3, random_state=random), random.uniform(-0.1, 0.1, 3))
+        for _ in range(rotations)
+    ]
+
+
+def _symmetry_error(
+    model: Predicts, scene: Scene, pokes: Pokes, motions: list[tuple[Floats, Floats]]
+) -> SymmetryError:
+    device = scene.points.device
+    pokes = replace(pokes, **{name: value.to(device) for name, value in vars(pokes).items()})
     still = model.decode(model.encode(scene, model.prepare(scene)), pokes)
     worst, worst_force = 0.0, 0.0
-    for k in range(3 if about_normal else rotations):
-        if about_normal:
-            turn = np.linalg.matrix_power(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]), k + 1)
-            shift = np.zeros(3)
-        else:
-            turn, shift = special_ortho_group.rvs(3, random_state=random), random.uniform(-0.1, 0.1, 3)
-        q, t = (torch.from_numpy(a).to(scene.points.device) for a in (turn, shift))
+    for turn, shift in motions:
+        q, t = (torch.from_numpy(a).to(device) for a in (turn, shift))
         turned = replace(scene, points=scene.points @ q.T + t, normals=scene.normals @ q.T)
         rod = replace(pokes, start=pokes.start @ q.T + t, direction=pokes.direction @ q.T)
         moved = model.decode(model.encode(turned, model.prepare(turned)), rod)

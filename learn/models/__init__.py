@@ -7,18 +7,12 @@ from learn.models.base import (
     OLD_NAMES,
     Ensemble,
     Model,
-    Pokes,
-    Response,
-    Scene,
     make_model,
-    make_scene,
-    pokes_of,
     register_model,
-    scene_of,
-    scene_on,
 )
 from learn.models.cegnn import Cegnn
 from learn.models.invariant_gnn import InvariantGnn
+from learn.models.scene import Pokes, Response, Scene, Scenes, make_scene, pokes_of, scene_on
 
 __all__ = [
     "MODELS",
@@ -30,10 +24,10 @@ __all__ = [
     "Pokes",
     "Response",
     "Scene",
+    "Scenes",
     "make_model",
     "make_scene",
     "pokes_of",
     "register_model",
-    "scene_of",
     "scene_on",
 ]

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import torch
 from torch import Tensor
 
-from learn.models.base import Pokes, Scene
+from learn.models.scene import Pokes, Scene
 
 RINGS = torch.linspace(0, 1, 10)  # centres of bumps in log(1 + distance / 2 mm), from 0 to 40 mm
 WIDTHS = (5e-3, 12e-3, 25e-3)  # m; neighbourhoods of the contact

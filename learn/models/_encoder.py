@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 from torch import Tensor, nn
 
-from learn.models.base import Scene
+from learn.models.scene import Scene
 
 RADII = (6.2e-3, 12.4e-3, 25e-3)  # [m], radii of the neighbourhoods
 BINS = 16  # bins of the profile's levels
@@ -178,10 +178,17 @@ def stencils_of(scene: Scene) -> tuple[Stencil, ...]:
 
 
 class GeometryEncoder(nn.Module):
-    """Two rounds of messages over three scales, then the slopes of the code as vectors."""
+    """Two rounds of messages over three scales, then the slopes of the code as vectors.
 
-    def __init__(self, *, profile: int = 8, code: int = 24, vectors: int = 8) -> None:
+    `height` [m] is the unit of depths below the surface, so that blocks of different heights are told apart;
+    None: the height of each block itself.
+    """
+
+    def __init__(
+        self, *, profile: int = 8, code: int = 24, vectors: int = 8, height: float | None = None
+    ) -> None:
         super().__init__()
+        self.height = height
         self.profile = nn.Sequential(nn.Linear(BINS + 2, 32), nn.SiLU(), nn.Linear(32, profile))
         wide = profile + 1
         self.first = _Round(wide, 16)
@@ -192,10 +199,12 @@ class GeometryEncoder(nn.Module):
     def forward(self, scene: Scene, stencils: tuple[Stencil, ...]) -> Encoded:
         """Codes and vectors of every inclusion of the scene."""
         levels = scene.rigid.shape[2]
-        binned = scene.rigid.reshape(*scene.rigid.shape[:2], BINS, levels // BINS).mean(dim=3)
-        # fractions of the column: above the inclusion, and rigid
-        clear = (scene.rigid.cumsum(dim=2) < 0.5).float().mean(dim=2, keepdim=True)
-        share = scene.rigid.mean(dim=2, keepdim=True)
+        units = scene.height / (self.height or scene.height)
+        rigid = scene.rigid if units == 1.0 else _to_height(scene.rigid, units)
+        binned = rigid.reshape(*rigid.shape[:2], BINS, levels // BINS).mean(dim=3)
+        # thickness of the column above the inclusion, and of the rigid part
+        clear = (scene.rigid.cumsum(dim=2) < 0.5).float().mean(dim=2, keepdim=True) * units
+        share = scene.rigid.mean(dim=2, keepdim=True) * units
         values = self.profile(torch.cat([binned, clear, share], dim=2)).permute(1, 0, 2)
         normals = scene.normals.float().T[:, :, None, None]
         # a constant channel, whose slope marks the edge of the cloud
@@ -204,6 +213,17 @@ class GeometryEncoder(nn.Module):
         thin = self.narrow(code)
         vectors = torch.cat([slopes(s, thin) for s in stencils[1:]], dim=3)
         return Encoded(scene, stencils, code, vectors, clear[..., 0].T)
+
+
+def _to_height(rigid: Tensor, units: float) -> Tensor:
+    """Masks (k, n, levels) of a column `units` high at the levels of one of unit height.
+
+    Below the block, on whose base the tissue is fixed, everything is rigid.
+    """
+    levels = rigid.shape[2]
+    level = ((torch.arange(levels, device=rigid.device) + 0.5) / units).long()
+    found = rigid.index_select(2, level.clamp(max=levels - 1))
+    return torch.where(level < levels, found, torch.ones_like(found))
 
 
 class _Round(nn.Module):

@@ -19,7 +19,8 @@ from torch import Tensor, nn
 from torch.nn.functional import linear, silu
 
 from learn.data.statistics import Statistics
-from learn.models.base import Model, Pokes, Response, Scene, register_model
+from learn.models.base import Model, register_model
+from learn.models.scene import Pokes, Response, Scene
 
 UNIT = 1e-2  # m
 NEIGHBOURS = 5  # the point itself is one

@@ -12,6 +12,7 @@ If the dataset has time, the time since contact and the rod's speeds are also in
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable
 
@@ -26,7 +27,8 @@ from learn.models import _contact
 from learn.models._contact import Contact
 from learn.models._encoder import Encoded, GeometryEncoder, Stencil, means, slopes, stencils_of
 from learn.models._prior import Prior
-from learn.models.base import Model, Pokes, Response, Scene, pokes_of, register_model
+from learn.models.base import Model, register_model
+from learn.models.scene import Pokes, Response, Scene, Scenes, pokes_of
 
 SEEN = 6  # channels of the code in the features of the contact
 N_CLOCK = 3  # invariants of a poke with time
@@ -64,7 +66,7 @@ class InvariantGnn(Model):
         self.force_unit = math.exp(statistics.log_force_mean)
         self.log_time, self.log_speed = statistics.log_time_mean, statistics.log_speed_mean
         self.takes_clock = self.log_time is not None and self.log_speed is not None
-        self.encoder = GeometryEncoder(vectors=vectors)
+        self.encoder = GeometryEncoder(vectors=vectors, height=statistics.block_height)
         self.prior = Prior()
         code, turning = self.encoder.n_code, self.encoder.n_vectors
         self.look = nn.Linear(code, SEEN, bias=False)
@@ -98,13 +100,13 @@ class InvariantGnn(Model):
         return encoded
 
     @torch.no_grad()
-    def warm_start(self, batches: Iterable[Batch], scene: Scene) -> None:
+    def warm_start(self, batches: Iterable[Batch], scenes: Scenes) -> None:
         """Fit the closed form that the network corrects."""
-        encoded = self.encode(scene)
+        encode = functools.cache(lambda k: self.encode(scenes.scenes[k]))
         samples = (
-            (contact, _soft(encoded, contact, scene.rigid_index[batch.geometry]), batch)
-            for batch in batches
-            for contact in [Contact(scene, pokes_of(batch))]
+            (contact, _soft(encode(k), contact, scenes.scenes[k].rigid_index[part.geometry]), part)
+            for k, part in scenes.each(batches)
+            for contact in [Contact(scenes.scenes[k], pokes_of(part))]
         )
         self.prior.fit(samples)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from learn.data import Store, split_of_run
 from learn.data._format import GRID, RIGID
 from learn.errors import InputError
-from learn.models import InvariantGnn, scene_of
+from learn.models import InvariantGnn, scene_on
 from learn.page import controls, simulated
 from learn.page.graph import INPUTS, Inputs, PagePart, interior_inputs
 from learn.predictor import Predictor
@@ -52,13 +52,14 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
     Parameters
     ----------
     predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
-    shapes : inclusions of the dataset to offer; None: all. A block without inclusion is always offered.
+    shapes : inclusions of the dataset to offer, in one block; None: all, if their blocks are alike. A block
+        without inclusion is always offered.
     pokes : largest number of simulated pokes of the test part.
 
     Raises
     ------
     InputError
-        If the run has another model, or the dataset lacks a shape.
+        If the run has another model, the dataset lacks a shape, or the shapes stand in different blocks.
     """
     run, store, domain = predictor.run, predictor.store, predictor.domain
     model = run.model
@@ -78,14 +79,15 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
     # shapes of the test part first: on them the surrogate is evaluated
     order = dict.fromkeys([*store.shape[tested].tolist(), *store.shape[store.done].tolist()])
     names = [store.shapes[k] for k in order if shapes is None or store.shapes[k] in shapes]
-    scene = scene_of(store)
+    setup = store.setups[store.setup_under(shapes)]
+    scene = scene_on(setup, store.profile[:1])
     stencils = model.prepare(scene)
-    graph = PagePart(model, scene, stencils, store, domain, predictor.intervals)
+    graph = PagePart(model, scene, stencils, setup, domain, predictor.intervals)
     content = Content(about={"interiors": []}, arrays={}, graph=graph)
     for name in [*names, NO_INCLUSION]:
         profile, kind, label = _interior(store, name, name in seen)
         trained = domain is None or domain.kinds is None or kind is None or kind in domain.kinds
-        inputs = interior_inputs(model, scene, stencils, profile, store, trained_kind=trained)
+        inputs = interior_inputs(model, scene, stencils, profile, setup, trained_kind=trained)
         number = len(content.inputs)
         content.arrays |= {f"{key}-{number}": array for key, array in inputs.items()}
         content.arrays[f"spans-{number}"] = _spans(profile)
@@ -98,15 +100,15 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
         shown.append(about)
     content.about |= {
         "grid": GRID,
-        "levels": len(store.level_depth),
+        "levels": len(setup.level_depth),
         "block": {
-            "size": [1e3 * v for v in store.block_size],
-            "middle": (store.middle * 1e3).tolist(),
-            "top": float(store.points[0, 2] * 1e3),
+            "size": [1e3 * v for v in setup.block_size],
+            "middle": (setup.middle * 1e3).tolist(),
+            "top": setup.top * 1e3,
         },
-        "rod": {"radius": store.rod_radius * 1e3, "edge": store.rod_edge * 1e3},
+        "rod": {"radius": setup.rod_radius * 1e3, "edge": setup.rod_edge * 1e3},
         "interior_inputs": INPUTS[1:],
-        "sliders": controls.sliders(store, domain),
+        "sliders": controls.sliders(store, setup, domain),
         "checks": controls.checks(domain),
         "softness": controls.levels(store),
         "simulated": shown,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from learn.data import Store
+from learn.data import Setup, Store
 from learn.scene_file import STEEPEST
 from learn.validity import QUANTITIES, Domain
 
@@ -15,10 +15,10 @@ _BEYOND = 1.5  # ratio of the depth slider's end to the trained depth, so that t
 DEGREES = "\N{DEGREE SIGN}"
 
 
-def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
+def sliders(store: Store, setup: Setup, domain: Domain | None) -> dict[str, dict[str, Any]]:
     """Sliders by key of the page's poke: limits, units, trained range ({range, text}; None: not known)."""
-    half = np.array(store.block_size[:2]) / 2 - store.rod_radius
-    low, high = ((store.middle - half) * 1e3).tolist(), ((store.middle + half) * 1e3).tolist()
+    half = np.array(setup.block_size[:2]) / 2 - setup.rod_radius
+    low, high = ((setup.middle - half) * 1e3).tolist(), ((setup.middle + half) * 1e3).tolist()
     moduli = store.modulus[store.done] * 1e-3
     least, most = float(moduli.min()), float(moduli.max())
     deepest, depth = float(store.depth.max()) * 1e3, _trained(domain, "depth_mm")
@@ -27,11 +27,11 @@ def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
         deepest = max(deepest, depth["range"][1])
     if modulus and modulus["range"]:
         least, most = min(least, modulus["range"][0]), max(most, modulus["range"][1])
-    lowest = min(deepest * _BEYOND, store.block_size[2] * 1e3 * 0.95)
+    lowest = min(deepest * _BEYOND, setup.block_size[2] * 1e3 * 0.95)
     return {
         "depth": {"low": 0.0, "high": lowest, "step": 0.05, "units": "mm", "trained": depth},
-        "x": _along(0, low, high, store, domain),
-        "y": _along(1, low, high, store, domain),
+        "x": _along(0, low, high, setup, domain),
+        "y": _along(1, low, high, setup, domain),
         "angle": {
             "low": 0.0,
             "high": STEEPEST,
@@ -45,13 +45,13 @@ def sliders(store: Store, domain: Domain | None) -> dict[str, dict[str, Any]]:
 
 
 def _along(
-    k: int, low: list[float], high: list[float], store: Store, domain: Domain | None
+    k: int, low: list[float], high: list[float], setup: Setup, domain: Domain | None
 ) -> dict[str, Any]:
     """The slider of x or y, its trained range from the trained distance to the block's sides."""
     trained = None
     if domain is not None and "site_to_side_mm" in domain.ranges:
-        reach = store.block_size[k] * 5e2 - domain.ranges["site_to_side_mm"][0]
-        middle = float(store.middle[k]) * 1e3
+        reach = setup.block_size[k] * 5e2 - domain.ranges["site_to_side_mm"][0]
+        middle = float(setup.middle[k]) * 1e3
         ends = [middle - reach, middle + reach]
         trained = {"range": ends, "text": f"{ends[0]:.3g} to {ends[1]:.3g} mm"}
     return {"low": low[k], "high": high[k], "step": 0.1, "units": "mm", "trained": trained}

@@ -150,7 +150,7 @@ def parts_of(predictor: Predictor, *, shapes: list[str] | None = None, pokes: in
     about, arrays = content.packed()
     return Parts(
         title="Poke the block",
-        lead=_lead(predictor),
+        lead=_lead(predictor, content),
         notes=tuple(_notes(predictor, content)),
         about=about,
         arrays=arrays,
@@ -200,9 +200,9 @@ def _packed(raw: bytes) -> str:
     return base64.b64encode(gzip.compress(raw, 6, mtime=0)).decode()
 
 
-def _lead(predictor: Predictor) -> str:
+def _lead(predictor: Predictor, content: Content) -> str:
     run, store = predictor.run, predictor.store
-    length, width, height = (1e3 * v for v in store.block_size)
+    length, width, height = content.about["block"]["size"]
     return (
         f"{length:.0f} x {width:.0f} x {height:.0f} mm of soft tissue (law {store.law}) with a rigid "
         f"inclusion, and an indenter of {2e3 * store.rod_radius:g} mm diameter. The surrogate "
@@ -218,7 +218,7 @@ def _notes(predictor: Predictor, content: Content) -> list[str]:
         f"Model {run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}, trained on "
         f"{run.statistics.frames} frames of dataset {store.uuid} ({store.law}, {int(store.done.sum())} "
         "simulated pokes).",
-        f"The network predicts {len(store.points)} points. Between them the drawn surface is interpolated; "
+        f"The network predicts {store.n_points} points. Between them the drawn surface is interpolated; "
         "points inside the indenter are drawn on its surface. Inclusions are drawn as the network "
         "represents them, in columns.",
     ]

@@ -26,7 +26,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from learn.data import Store
+from learn.data import Setup
 from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN, LENGTH
 from learn.metrics import RING_EDGES_MM
@@ -48,7 +48,7 @@ def interior_inputs(
     scene: Scene,
     stencils: tuple[Stencil, ...],
     profile: NDArray[np.uint8],
-    store: Store,
+    setup: Setup,
     *,
     trained_kind: bool,
 ) -> Inputs:
@@ -56,7 +56,7 @@ def interior_inputs(
 
     Parameters
     ----------
-    scene, stencils : scene of the store's points, and the result of `model.prepare`.
+    scene, stencils : scene of the setup's points, and the result of `model.prepare`.
     profile : stiffness under each point as stored, shape (n, levels).
     trained_kind : False if this kind of inclusion was not trained on.
 
@@ -70,7 +70,7 @@ def interior_inputs(
     with torch.no_grad():
         one = replace(scene, rigid=rigid[None], rigid_index=torch.zeros(1, dtype=torch.int64))
         codes = interior_codes(model, model.encode(one, stencils))
-    inside = interior_of(store, profile)
+    inside = interior_of(setup, profile)
     return {
         **{name: code.numpy() for name, code in codes.items()},
         "soft": inside.soft.astype(np.float64),
@@ -86,21 +86,21 @@ class PagePart(nn.Module):
         model: InvariantGnn,
         scene: Scene,
         stencils: tuple[Stencil, ...],
-        store: Store,
+        setup: Setup,
         domain: Domain | None,
         intervals: Intervals | None,
     ) -> None:
         super().__init__()
         self.network = RowNetwork(model, scene, stencils)
-        self.points = torch.from_numpy(store.points)
-        self.radius, self.edge = store.rod_radius, store.rod_edge
+        self.points = torch.from_numpy(setup.points)
+        self.radius, self.edge = setup.rod_radius, setup.rod_edge
         # a tensor, since the exporter fills arrays with single precision
-        self.top = torch.tensor(store.points[0, 2], dtype=torch.float64)
-        self.middle = torch.from_numpy(store.middle)
-        lengths = [1e3 * v for v in (self.radius, self.edge, *store.block_size)]
+        self.top = torch.tensor(setup.top, dtype=torch.float64)
+        self.middle = torch.from_numpy(setup.middle)
+        lengths = [1e3 * v for v in (self.radius, self.edge, *setup.block_size)]
         self.lengths = torch.tensor(lengths, dtype=torch.float64)
-        self.reach = torch.tensor(store.block_size[:2], dtype=torch.float64) / 2
-        self.level = store.block_size[2] / len(store.level_depth)
+        self.reach = torch.tensor(setup.block_size[:2], dtype=torch.float64) / 2
+        self.level = setup.block_size[2] / len(setup.level_depth)
         self.ranges = None if domain is None else _Ranges(domain)
         self.intervals = intervals
         if intervals is not None:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learn.data import Store
-from learn.validity import contact_site
 
 STEPS = 32767  # in the largest component of a frame: the rounding error is half a step at most
 
@@ -38,7 +37,7 @@ def described(store: Store, poke: int, interior: int) -> tuple[dict[str, Any], N
     moved, steps = quantised(store.displacement(rows)[keep])
     push = store.direction[poke]
     angle = math.degrees(math.acos(min(1.0, -float(push[2]))))
-    x, y = (contact_site(store, store.path_start[poke], push) * 1e3).tolist()
+    x, y = (store.setup_of(poke).contact_site(store.path_start[poke], push) * 1e3).tolist()
     shape, level = store.shapes[store.shape[poke]], store.softness_names[store.softness[poke]]
     about = {
         "label": f"{shape}, {level}, {angle:.0f}\N{DEGREE SIGN} (poke {poke})",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import functools
 import math
 import time
 from collections.abc import Iterator
@@ -13,13 +14,14 @@ from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
 from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns
 from learn.data.folds import contact_points, split_of
 from learn.errors import InputError
-from learn.models import MODELS, Scene, make_model, pokes_of, scene_of
+from learn.models import MODELS, Scene, Scenes, make_model, pokes_of
 from learn.progress import OnProgress, Progress, ignore
 from learn.training.optimisers import make_optimiser
 from learn.training.process_group import ProcessGroup
@@ -106,12 +108,12 @@ class Trainer:
         self.step, self.epoch, self.best, self.first = 0, 0, math.inf, math.inf
         if kept is not None:
             self._restore(kept)
-        scene = scene_of(store).to(group.device)
+        scenes = Scenes.of(store).to(group.device)
         self.domain = domain_of(store, self.split.train)
-        self.scene = scene.only(store.geometry[store.frame_poke[self.split.train]])
-        self.scene_validation = scene.only(store.geometry[store.frame_poke[self.split.validation]])
-        # neighbourhoods depend on the points alone, which are the same in all scenes
-        self.prepared = self.model.prepare(scene)
+        self.scenes = scenes.only(self._geometries(self.split.train))
+        self.scenes_validation = scenes.only(self._geometries(self.split.validation))
+        # neighbourhoods depend on the points alone, which are the same in both
+        self.prepared = [self.model.prepare(scene) for scene in scenes.scenes]
 
     def train(self) -> None:
         """Train to the recipe's last epoch.
@@ -154,9 +156,13 @@ class Trainer:
     def _warm_start(self) -> None:
         rows = self.split.train
         some = rows[np.linspace(0, len(rows) - 1, min(len(rows), _WARM_FRAMES)).astype(int)]
-        scene = scene_of(self.store).only(self.store.geometry[self.store.frame_poke[rows]])
-        self.model.cpu().warm_start(MemoryDataset(self.store, some).batches(8), scene)
+        scenes = Scenes.of(self.store).only(self._geometries(rows))
+        self.model.cpu().warm_start(MemoryDataset(self.store, some).batches(8), scenes)
         self.model.to(self.group.device)
+
+    def _geometries(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The interior of each of these frames."""
+        return self.store.geometry[self.store.frame_poke[rows]]
 
     def _dataset(self) -> MemoryDataset | StreamDataset:
         if self.recipe.data == "memory":
@@ -167,10 +173,10 @@ class Trainer:
                     " smaller key batch"
                 )
             return MemoryDataset(self.store, self.split.train)
-        blocks = len(np.unique(self.split.train // self.store.block))
-        if blocks < self.group.world:
+        shards = len(np.unique(self.split.train // self.store.shard))
+        if shards < self.group.world:
             raise InputError(
-                f"{self.store.location}: {blocks} shards to train on cannot be split among "
+                f"{self.store.location}: {shards} shards to train on cannot be split among "
                 f"{self.group.world} processes: expected data: memory, or fewer processes"
             )
         return StreamDataset(
@@ -234,11 +240,14 @@ class Trainer:
     def _update(self, batch: Batch, within: float) -> Loss:
         for group in self.optimiser.param_groups:
             group["lr"] = self._learning_rate(within)
-        scene, prepared, batch = self._augmented(batch)
         mixed = self.recipe.mixed_precision and self.group.device.type == "cuda"
-        with torch.autocast("cuda", torch.bfloat16) if mixed else contextlib.nullcontext():
-            prediction = self.model.decode(self.model.encode(scene, prepared), pokes_of(batch))
-        loss = loss_of(prediction, batch, scene, self.recipe, self.statistics)
+        parts = []
+        for k, _, part in self.scenes.parts(batch):
+            scene, prepared, part = self._augmented(k, part)
+            with torch.autocast("cuda", torch.bfloat16) if mixed else contextlib.nullcontext():
+                prediction = self.model.decode(self.model.encode(scene, prepared), pokes_of(part))
+            parts.append((prediction, part, scene))
+        loss = loss_of(parts, self.recipe, self.statistics)
         self.optimiser.zero_grad(set_to_none=True)
         loss.total.backward()
         self.group.average_gradients(self.model)
@@ -249,15 +258,16 @@ class Trainer:
         self._update_ema()
         return loss
 
-    def _augmented(self, batch: Batch) -> tuple[Scene, Any, Batch]:
-        """Jitter and drop points of a batch at random; a function of seed and step alone."""
-        scene, prepared, recipe = self.scene, self.prepared, self.recipe
+    def _augmented(self, k: int, batch: Batch) -> tuple[Scene, Any, Batch]:
+        """Jitter and drop points of the frames of scene k at random; a function of seed and step alone."""
+        scene, prepared, recipe = self.scenes.scenes[k], self.prepared[k], self.recipe
         device = batch.displacement.device
         jitter = self._random(2)
         if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
-            points = jittered(self.store, jitter)
+            setup = self.store.setups[k]
+            points = jittered(setup, jitter)
             scene = replace(
-                scene.at(nearest_columns(self.store, points)),
+                scene.at(nearest_columns(setup, points)),
                 points=torch.from_numpy(points).to(device),
                 area=torch.from_numpy(areas(points)).to(device),
             )
@@ -270,7 +280,7 @@ class Trainer:
             scene = scene.at(some)
             index = torch.from_numpy(some).to(device)
             batch, prepared = replace(batch, displacement=batch.displacement[:, index]), None
-        if scene is not self.scene:
+        if scene is not self.scenes.scenes[k]:
             prepared = self.model.prepare(scene)
         return scene, prepared, batch
 
@@ -300,17 +310,18 @@ class Trainer:
     def _validate(self) -> dict[str, float]:
         assert self.validation is not None
         self.ema.eval()
-        encoded = self.ema.encode(self.scene_validation, self.prepared)
+        scenes = self.scenes_validation.scenes
+        encode = functools.cache(lambda k: self.ema.encode(scenes[k], self.prepared[k]))
         sums, frames = torch.zeros(3, dtype=torch.float64), 0
         for batch in self.validation.batches(64):
-            batch = batch.to(self.group.device)
-            found = self.ema.decode(encoded, pokes_of(batch))
-            loss = loss_of(found, batch, self.scene_validation, self.recipe, self.statistics)
-            distance = (found.displacement - batch.displacement).norm(dim=2).mean() * 1e3
-            wrong = ((found.force - batch.force).abs() / batch.force).mean()
-            values: Tensor = torch.stack([loss.total, distance, wrong])
-            sums += values.double().cpu() * len(batch)
-            frames += len(batch)
+            for k, _, part in self.scenes_validation.parts(batch.to(self.group.device)):
+                found = self.ema.decode(encode(k), pokes_of(part))
+                loss = loss_of([(found, part, scenes[k])], self.recipe, self.statistics)
+                distance = (found.displacement - part.displacement).norm(dim=2).mean() * 1e3
+                wrong = ((found.force - part.force).abs() / part.force).mean()
+                values: Tensor = torch.stack([loss.total, distance, wrong])
+                sums += values.double().cpu() * len(part)
+                frames += len(part)
         names = ("validation_loss", "validation_mean_mm", "validation_force_relative")
         return dict(zip(names, (float(v) / frames for v in sums), strict=True))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -15,7 +16,8 @@ from learn._yaml import first_fault, read_yaml
 from learn.data.loaders import Batch
 from learn.data.statistics import Statistics
 from learn.errors import InputError
-from learn.models.base import MODELS, OLD_NAMES, Response, Scene
+from learn.models.base import MODELS, OLD_NAMES
+from learn.models.scene import Response, Scene
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, gt=0, lt=1e6)]
@@ -61,7 +63,7 @@ class Recipe(BaseModel):
     point_jitter : fraction of the batches in which each point is moved at random within its cell of the grid,
         with the displacement interpolated from the surface meshes. This trains positions that are far from
         the grid points of the few training sites, such as the middle of the contact. Needs data "memory".
-    data, shuffle_buffer : frames in memory, or streamed through a buffer of this many blocks.
+    data, shuffle_buffer : frames in memory, or streamed through a buffer of this many shards (files).
     mixed_precision : bfloat16 on a GPU.
     """
 
@@ -190,17 +192,22 @@ def _log_error(ratio: Tensor) -> Tensor:
     return torch.where(ratio > _LEAST_RATIO, torch.log(ratio.clamp_min(_LEAST_RATIO)), far).abs()
 
 
-def loss_of(response: Response, batch: Batch, scene: Scene, recipe: Recipe, statistics: Statistics) -> Loss:
-    """The recipe's loss for a batch."""
-    wrong = (response.displacement.float() - batch.displacement) * 1e3
-    distance = torch.sqrt(wrong.square().sum(dim=2) + _SMOOTH**2) - _SMOOTH
-    away = (scene.points[None] - batch.start[:, None]).square().sum(dim=2).float()
-    weight = 1 + recipe.near_weight * torch.exp(-0.5e6 * away / recipe.near_width_mm**2)
-    weight = weight * batch.depth[:, None].float() ** -recipe.depth_power
-    displacement = (weight * distance).sum() / weight.sum()
-    force = response.force.float()
-    if recipe.force_loss == "log":
-        wrong_force = _log_error(force / batch.force).mean()
-    else:
-        wrong_force = ((force - batch.force) / statistics.force_rms).square().mean()
+def loss_of(parts: Iterable[tuple[Response, Batch, Scene]], recipe: Recipe, statistics: Statistics) -> Loss:
+    """The recipe's loss for a batch, in parts of one scene each."""
+    distances, weights, forces = [], [], []
+    for response, batch, scene in parts:
+        wrong = (response.displacement.float() - batch.displacement) * 1e3
+        distance = torch.sqrt(wrong.square().sum(dim=2) + _SMOOTH**2) - _SMOOTH
+        away = (scene.points[None] - batch.start[:, None]).square().sum(dim=2).float()
+        weight = 1 + recipe.near_weight * torch.exp(-0.5e6 * away / recipe.near_width_mm**2)
+        weight = weight * batch.depth[:, None].float() ** -recipe.depth_power
+        distances.append((weight * distance).sum())
+        weights.append(weight.sum())
+        force = response.force.float()
+        if recipe.force_loss == "log":
+            forces.append(_log_error(force / batch.force))
+        else:
+            forces.append(((force - batch.force) / statistics.force_rms).square())
+    displacement = torch.stack(distances).sum() / torch.stack(weights).sum()
+    wrong_force = torch.cat(forces).mean()
     return Loss(displacement + recipe.force_weight * wrong_force, displacement, wrong_force)

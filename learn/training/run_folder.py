@@ -77,6 +77,7 @@ class _Statistics(BaseModel):
     log_force_sd: _Number
     force_rms: _Number
     log_modulus_mean: _Number | None = None
+    block_height: Annotated[_Number, Field(gt=0)] | None = None
     log_time_mean: _Number | None = None
     log_speed_mean: _Number | None = None
 

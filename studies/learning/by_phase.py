@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from learn.data import MemoryDataset, Store, open_store
 from learn.data.folds import split_of
 from learn.evaluation.predictions import predict_part
-from learn.models import scene_of
+from learn.models import Scenes
 from learn.training import load_run
 from studies.learning import without_time  # noqa: F401 - registers the model of the run without time
 
@@ -34,7 +34,7 @@ def forces(store: Store, run: Path) -> tuple[NDArray[np.int64], Floats, Floats]:
     if trained.uuid != store.uuid:
         raise SystemExit(f"{run}: trained on another dataset than {store.location}")
     rows = split_of(store, trained.recipe).test
-    found = predict_part(trained.model, scene_of(store), MemoryDataset(store, rows))
+    found = predict_part(trained.model, Scenes.of(store), MemoryDataset(store, rows))
     return rows, found.force, found.force_predicted
 
 

@@ -20,10 +20,10 @@ MODULI = {"S0": 30e3, "S0.5": 15e3, "S1": 9e3}
 CODES = {"S0": 204, "S0.5": 102, "S1": 0}
 
 
-def grid() -> np.ndarray[Any, np.dtype[np.float64]]:
-    x = ((np.arange(32) + 0.5) / 32 - 0.5) * SIDE
-    yy, xx = np.meshgrid(x, x, indexing="ij")
-    return np.stack([xx, yy, np.full_like(xx, HEIGHT)], axis=-1)
+def grid(size: tuple[float, float, float] = (SIDE, SIDE, HEIGHT)) -> np.ndarray[Any, np.dtype[np.float64]]:
+    cells = (np.arange(32) + 0.5) / 32 - 0.5
+    yy, xx = np.meshgrid(cells * size[1], cells * size[0], indexing="ij")
+    return np.stack([xx, yy, np.full_like(xx, size[2])], axis=-1)
 
 
 def field(
@@ -51,15 +51,19 @@ def write_store(
     shard: int = 8,
     blosc: bool = True,
     seed: int = 0,
+    blocks: tuple[tuple[float, float, float], ...] = (),
 ) -> Path:
-    """Write a complete store: `sites` pokes per shape and softness, at contact points shared by levels."""
+    """Write a complete store: `sites` pokes per shape and softness, at contact points shared by levels.
+
+    `blocks`: size of the block of each shape [m]; by default one of 100 x 100 x 32 mm for all.
+    """
     random = np.random.default_rng(seed)
-    xyz = grid()
-    depth_of_level = (np.arange(128) + 0.5) * HEIGHT / 128
+    sizes = blocks or ((SIDE, SIDE, HEIGHT),) * shapes
+    grids, levels = [grid(size) for size in sizes], [(np.arange(128) + 0.5) * h / 128 for _, _, h in sizes]
     profile, arrays = [], {name: [] for name in _FRAME + _POKE}
     surface: list[np.ndarray[Any, Any]] = []
     count = 0
-    for shape in range(shapes):
+    for shape, (xyz, depth_of_level) in enumerate(zip(grids, levels, strict=True)):
         centre = random.uniform(-0.02, 0.02, 2)
         reach = 0.008 + 0.002 * shape
         inside = ((xyz[..., :2] - centre) ** 2).sum(axis=-1) <= reach**2
@@ -68,7 +72,7 @@ def write_store(
         for level, name in enumerate(softness):
             profile.append(np.where(rigid, 255, CODES[name]).astype(np.uint8))
             for site, lean in places:
-                start = np.array([*site, HEIGHT])
+                start = np.array([*site, sizes[shape][2]])
                 direction = np.array([*lean, -1.0])
                 direction /= np.linalg.norm(direction)
                 soft = np.where(inside.reshape(-1), 0.5, 1.0)
@@ -88,8 +92,8 @@ def write_store(
         folder,
         data,
         np.array(profile),
-        xyz,
-        depth_of_level,
+        np.repeat(grids, len(softness), axis=0) if blocks else grids[0],
+        np.repeat(levels, len(softness), axis=0) if blocks else levels[0],
         np.concatenate(surface),
         chunk=chunk,
         shard=shard,

@@ -25,22 +25,22 @@ def test_points_move_within_their_cells_and_the_grid(store: Store) -> None:
     cell = 0.1 / 32
     nearest = []
     for _ in range(40):
-        points = jittered(store, random)
-        moved = points - store.points
+        points = jittered(store.setup, random)
+        moved = points - store.setup.points
         assert np.abs(moved[:, :2]).max() <= cell / 2 + 1e-12
         assert (moved[:, 2] == 0).all()
-        assert np.abs(points[:, :2]).max() <= np.abs(store.points[:, :2]).max() + 1e-12
-        np.testing.assert_array_equal(points[nearest_columns(store, points)].shape, points.shape)
+        assert np.abs(points[:, :2]).max() <= np.abs(store.setup.points[:, :2]).max() + 1e-12
+        np.testing.assert_array_equal(points[nearest_columns(store.setup, points)].shape, points.shape)
         nearest.append(np.linalg.norm(points - store.path_start[0], axis=1).min())
-    grid = np.linalg.norm(store.points - store.path_start[0], axis=1).min()
+    grid = np.linalg.norm(store.setup.points - store.path_start[0], axis=1).min()
     # some draws are nearer to the centre of contact than any grid point
     assert min(nearest) < 0.5e-3 < grid
 
 
 def test_nearest_columns_are_the_nearest(store: Store) -> None:
-    points = scattered(store, 200, seed=3)
-    distance = np.linalg.norm(points[:, None] - store.points[None], axis=2)
-    np.testing.assert_array_equal(nearest_columns(store, points), distance.argmin(axis=1))
+    points = scattered(store.setup, 200, seed=3)
+    distance = np.linalg.norm(points[:, None] - store.setup.points[None], axis=2)
+    np.testing.assert_array_equal(nearest_columns(store.setup, points), distance.argmin(axis=1))
 
 
 def test_the_surface_mesh_gives_the_field_between_its_nodes(store: Store) -> None:
@@ -48,8 +48,8 @@ def test_the_surface_mesh_gives_the_field_between_its_nodes(store: Store) -> Non
     rows = np.array([1, 6, 7])
     surfaces = SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
     exact = MemoryDataset(store, rows).__getitems__(np.arange(3)).displacement.numpy()
-    np.testing.assert_allclose(surfaces.displacement(rows, store.points), exact, atol=1e-9)
-    points = jittered(store, np.random.default_rng(0))
+    np.testing.assert_allclose(surfaces.displacement(rows, store.setup.points), exact, atol=1e-9)
+    points = jittered(store.setup, np.random.default_rng(0))
     found = surfaces.displacement(rows, points)
     for k, row in enumerate(rows):
         poke = store.frame_poke[row]
@@ -66,19 +66,19 @@ def test_a_jittered_batch_has_the_displacement_of_its_own_points(store: Store, t
     recipe = Recipe(name="tiny", batch=4, point_jitter=1.0, point_dropout=0.0)
     trainer = Trainer(store, recipe, tmp_path / "run")
     batch = next(iter(trainer._batches()))
-    scene, _, moved = trainer._augmented(batch)
+    scene, _, moved = trainer._augmented(0, batch)
     points = scene.points.numpy()
-    assert np.abs(points - store.points)[:, :2].max() > 1e-3
+    assert np.abs(points - store.setup.points)[:, :2].max() > 1e-3
     assert trainer.surfaces is not None
     expected = trainer.surfaces.displacement(batch.frame.numpy(), points)
     np.testing.assert_array_equal(moved.displacement.numpy(), expected)
-    columns = nearest_columns(store, points)
-    np.testing.assert_array_equal(scene.rigid.numpy(), trainer.scene.rigid[:, columns].numpy())
+    columns = nearest_columns(store.setup, points)
+    np.testing.assert_array_equal(scene.rigid.numpy(), trainer.scenes.scenes[0].rigid[:, columns].numpy())
     np.testing.assert_allclose(scene.area.numpy(), areas(points))
-    again, _, _ = trainer._augmented(batch)
+    again, _, _ = trainer._augmented(0, batch)
     np.testing.assert_array_equal(again.points.numpy(), points)  # depends on seed and step only
     plain = Trainer(store, recipe.model_copy(update={"point_jitter": 0.0}), tmp_path / "plain")
-    assert plain._augmented(batch)[0] is plain.scene
+    assert plain._augmented(0, batch)[0] is plain.scenes.scenes[0]
 
 
 def test_the_recipe_for_few_pokes_trains_between_the_grid_points() -> None:

@@ -16,7 +16,7 @@ from learn.benchmark import on_device
 from learn.data import Batch, MemoryDataset, Statistics, Store, open_store, statistics
 from learn.errors import InputError
 from learn.evaluation import evaluate
-from learn.models import Model, Scene, make_model, pokes_of, scene_of
+from learn.models import Model, Scene, make_model, pokes_of, scene_on
 from learn.models._encoder import gathered
 from learn.training import ProcessGroup, Run, Trainer, load_run, make_device, make_process_group, read_log
 from learn.training.recipe import Loss, Recipe, loss_of
@@ -50,7 +50,7 @@ def loss(model: Model, scene: Scene, prepared: Any, batch: Batch, store: Store) 
     found = model.decode(model.encode(scene, prepared), pokes_of(batch))
     assert found.displacement.shape == batch.displacement.shape
     assert found.displacement.device == found.force.device == batch.depth.device
-    return loss_of(found, batch, scene, Recipe(), sizes_of(store))
+    return loss_of([(found, batch, scene)], Recipe(), sizes_of(store))
 
 
 def one_of(batch: Batch) -> Batch:
@@ -65,7 +65,7 @@ def sizes_of(store: Store) -> Statistics:
 def test_a_step_of_training_on_the_meta_device(name: str, store: Store, batch: Batch) -> None:
     """Forward pass, loss, backward pass and optimiser step use one device and no values."""
     model = make_model(name, sizes_of(store))
-    scene = scene_of(store)
+    scene = scene_on(store.setup, store.profile)
     prepared = prepared_on(model, scene, "meta")
     there = model.to("meta")
     optimiser = torch.optim.AdamW(there.parameters())
@@ -81,7 +81,7 @@ def test_a_step_of_training_on_the_meta_device(name: str, store: Store, batch: B
 def test_bfloat16_is_as_near_as_its_digits(name: str, store: Store, batch: Batch) -> None:
     """The mixed-precision branch under the CPU's autocast: losses agree to 5 %, gradients are finite."""
     torch.manual_seed(3)
-    model, scene = make_model(name, sizes_of(store)), scene_of(store)
+    model, scene = make_model(name, sizes_of(store)), scene_on(store.setup, store.profile)
     prepared = model.prepare(scene)
     batch = batch if name != "cegnn" else one_of(batch)  # it takes ten times as long
     plain = loss(model, scene, prepared, batch, store).total
@@ -95,7 +95,7 @@ def test_bfloat16_is_as_near_as_its_digits(name: str, store: Store, batch: Batch
 
 def test_answers_on_a_device_are_those_of_the_model(store: Store, batch: Batch) -> None:
     """The function that `learn.bench` times on a GPU, here on the CPU."""
-    model, scene = make_model("invariant-gnn", sizes_of(store)), scene_of(store)
+    model, scene = make_model("invariant-gnn", sizes_of(store)), scene_on(store.setup, store.profile)
     waits: list[int] = []
     with torch.inference_mode():
         found = on_device(model, scene, pokes_of(batch), "cpu", lambda: waits.append(1))()

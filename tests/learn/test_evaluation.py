@@ -23,7 +23,7 @@ from learn.errors import InputError
 from learn.evaluation import evaluate, parts_of, summarise
 from learn.evaluation.predictions import interpolation_error_mm, predict_on
 from learn.metrics import METRICS
-from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_of
+from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_on
 from learn.scene_file import load_poke, scene_and_poke
 from learn.training import load_run
 from tests.learn.small_store import write_store
@@ -172,7 +172,7 @@ def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
 
 def test_an_ensemble_is_the_mean_of_its_members(store: Path) -> None:
     opened = open_store(store)
-    scene, data = scene_of(opened), MemoryDataset(opened, np.arange(4))
+    scene, data = scene_on(opened.setup, opened.profile), MemoryDataset(opened, np.arange(4))
     pokes = pokes_of(data.__getitems__([0, 1, 2, 3]))
     plain = _Truth()
     found = Ensemble([plain, _Truth(more=1.02), _Truth(more=1.04)])(scene, pokes)
@@ -245,7 +245,7 @@ def test_inclusions_of_ones_own(store: Path, tmp_path: Path) -> None:
     scene = tmp_path / "poke.yaml"
     body = "inclusion: {kind: sphere, radius_mm: 8, centre_mm: [0, 0, 8]}"
     scene.write_text(POKE.replace("shape: shape-1", body))
-    about, pokes = scene_and_poke(load_poke(scene), open_store(store))
+    _, _, about, pokes = scene_and_poke(load_poke(scene), open_store(store))
     column = about.rigid[0, 16 * 32 + 16].numpy()  # nearest to the centre
     height = 32 - (np.arange(128) + 0.5) / 4  # mm above the base
     assert np.abs(height[column > 0].max() - 16) < 0.5
@@ -276,14 +276,14 @@ def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
     """The exact field at scattered points differs from the target only by the mesh's interpolation error."""
     store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
     rows = np.arange(store.frames)
-    points = scattered(store, 300)
+    points = scattered(store.setup, 300)
     assert points.shape == (300, 3)
     gaps = np.sort(np.linalg.norm(points[:, None] - points[None], axis=2), axis=1)[:, 1]
     assert gaps.min() > 1e-3
-    soft = ~(scene_of(store).rigid.sum(dim=(0, 2)) > 0).numpy()
-    on_grid = summarise(predict_on(_Truth(), store, rows, store.points[soft]))
+    soft = ~(scene_on(store.setup, store.profile).rigid.sum(dim=(0, 2)) > 0).numpy()
+    on_grid = summarise(predict_on(_Truth(), store, rows, lambda setup: setup.points[soft]))
     assert on_grid["max"].mean < 1e-4
-    off_grid = summarise(predict_on(_Truth(), store, rows, points))
+    off_grid = summarise(predict_on(_Truth(), store, rows, lambda _: points))
     assert 0 < off_grid["rel L2"].mean < 0.5
     assert interpolation_error_mm(store, rows) < 1e-6
 

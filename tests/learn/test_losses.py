@@ -32,9 +32,7 @@ def _loss(**recipe: Any) -> tuple[float, float]:
     scene: Any = SimpleNamespace(points=points)
     statistics: Any = SimpleNamespace(force_rms=2.0)
     found = loss_of(
-        Response(displacement=displacement, force=torch.tensor([2.0, 2.0])),
-        batch,
-        scene,
+        [(Response(displacement=displacement, force=torch.tensor([2.0, 2.0])), batch, scene)],
         Recipe(**recipe),
         statistics,
     )

@@ -18,10 +18,10 @@ from learn.models import (
     Model,
     Pokes,
     Scene,
+    Scenes,
     make_model,
     make_scene,
     pokes_of,
-    scene_of,
     scene_on,
 )
 from learn.models._encoder import stencil
@@ -84,8 +84,8 @@ def test_ours_turns_mirrors_and_moves_with_the_scene(
     random = np.random.default_rng(seed)
     turn = torch.from_numpy(ortho_group.rvs(3, random_state=random))  # half of them reflections
     shift = torch.from_numpy(random.uniform(-3, 3, 3))
-    model, scene = _model(name, sizes), scene_of(store)
-    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
+    model, scene = _model(name, sizes), scene_on(store.setup, store.profile)
+    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), Scenes.of(store))
     with torch.no_grad():
         size = float(model(scene, pokes).displacement.norm(dim=2).max()) * 1e3
     assert size > 1  # mm, so that the bound below is meaningful
@@ -95,20 +95,22 @@ def test_ours_turns_mirrors_and_moves_with_the_scene(
 
 
 def test_the_closed_form_alone_has_skill_on_another_shape(store: Store, sizes: Statistics) -> None:
-    model, scene = make_model("invariant-gnn", sizes), scene_of(store)
+    model = make_model("invariant-gnn", sizes)
     seen, unseen = (np.flatnonzero((store.shape[store.frame_poke] == 2) == last) for last in (False, True))
-    model.warm_start(MemoryDataset(store, seen[::3]).batches(8), scene)
+    model.warm_start(MemoryDataset(store, seen[::3]).batches(8), Scenes.of(store))
     assert isinstance(model, InvariantGnn)
     with torch.no_grad():
         model.coefficients.weight.zero_()
         model.coefficients.bias.zero_()
-    found = summarise(predict_part(model, scene, MemoryDataset(store, unseen[::4])))
+    found = summarise(predict_part(model, Scenes.of(store), MemoryDataset(store, unseen[::4])))
     assert found["skill"].mean > 0.8
 
 
 def test_the_published_scheme_does_not(store: Store, sizes: Statistics, pokes: Pokes) -> None:
     turn = torch.tensor([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=torch.float64)
-    apart, force = _error_mm(_model("cegnn", sizes), scene_of(store), pokes, turn, torch.zeros(3))
+    apart, force = _error_mm(
+        _model("cegnn", sizes), scene_on(store.setup, store.profile), pokes, turn, torch.zeros(3)
+    )
     assert apart > 1e-3
     assert force > 1e-3
 
@@ -134,15 +136,15 @@ def test_of_equally_near_points_the_first_are_neighbours(digits: torch.dtype) ->
 def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     order = np.random.default_rng(0).permutation(1024)
     mixed = make_scene(
-        points=store.points[order],
-        normals=store.normals[order],
+        points=store.setup.points[order],
+        normals=store.setup.normals[order],
         profile=store.profile[:, order],
-        level_depth=store.level_depth,
+        level_depth=store.setup.level_depth,
         rod_radius=store.rod_radius,
-        rod_edge=store.rod_edge,
+        rod_edge=store.setup.rod_edge,
     )
     with torch.no_grad():
         plain, shuffled = model(scene, pokes), model(mixed, pokes)
@@ -155,9 +157,9 @@ def test_answers_do_not_depend_on_the_order_of_points_or_on_other_pokes(
 @pytest.mark.parametrize("name", ["invariant-gnn", "invariant-gnn-small"])
 def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, pokes: Pokes, name: str) -> None:
     """`SinglePoke` gives the displacement to rounding, near the indenter and far from it."""
-    model, scene = _model(name, sizes), scene_of(store)
+    model, scene = _model(name, sizes), scene_on(store.setup, store.profile)
     assert isinstance(model, InvariantGnn)
-    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), scene)
+    model.warm_start(MemoryDataset(store, np.arange(0, store.frames, 9)).batches(8), Scenes.of(store))
     with torch.no_grad():
         encoded = model.encode(scene, model.prepare(scene))
         found = model.decode(encoded, pokes)
@@ -173,27 +175,27 @@ def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, poke
 
 def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
     """A quarter of the points move nearly as among all points: messages are means, not sums."""
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     some = np.arange(1024).reshape(32, 32)[::2, ::2].reshape(-1)
     sparse = make_scene(
-        points=store.points[some],
-        normals=store.normals[some],
+        points=store.setup.points[some],
+        normals=store.setup.normals[some],
         profile=store.profile[:, some],
-        level_depth=store.level_depth,
+        level_depth=store.setup.level_depth,
         rod_radius=store.rod_radius,
-        rod_edge=store.rod_edge,
+        rod_edge=store.setup.rod_edge,
     )
     with torch.no_grad():
         whole, part = model(scene, pokes).displacement[:, some], model(sparse, pokes).displacement
     wrong = (part - whole).norm(dim=2).mean() / whole.norm(dim=2).mean()
     assert wrong < 0.25
     few = make_scene(
-        points=store.points[:3],
-        normals=store.normals[:3],
+        points=store.setup.points[:3],
+        normals=store.setup.normals[:3],
         profile=store.profile[:, :3],
-        level_depth=store.level_depth,
+        level_depth=store.setup.level_depth,
         rod_radius=store.rod_radius,
-        rod_edge=store.rod_edge,
+        rod_edge=store.setup.rod_edge,
     )
     assert bool(torch.isfinite(model(few, pokes).displacement).all())
 
@@ -201,7 +203,7 @@ def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, 
 def test_force_is_proportional_to_the_modulus_but_for_what_is_learned_of_it(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     with torch.no_grad():
         one = model(scene, pokes)
         two = model(scene, dataclasses.replace(pokes, modulus=pokes.modulus * 1.0001))
@@ -215,7 +217,7 @@ def test_where_levels_scale_with_the_modulus_the_displacement_does_not_depend_on
     """For a law without gravity the dependence is known and is not learned."""
     alike = dataclasses.replace(store, attributes={**store.attributes, "scales_with_modulus": True})
     sizes = statistics(MemoryDataset(alike, np.arange(alike.frames)).batches(64), alike)
-    model, scene = _model("invariant-gnn", sizes), scene_of(alike)
+    model, scene = _model("invariant-gnn", sizes), scene_on(alike.setup, alike.profile)
     with torch.no_grad():
         one = model(scene, pokes)
         two = model(scene, dataclasses.replace(pokes, modulus=pokes.modulus * 7))
@@ -227,7 +229,7 @@ def test_force_and_displacement_go_to_zero_in_proportion_at_first_contact(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
     """Force and displacement are linear in small depths, and 0 without contact."""
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     assert isinstance(model, InvariantGnn)
     with torch.no_grad():
         encoded = model.encode(scene, model.prepare(scene))
@@ -254,15 +256,17 @@ def test_more_points_near_the_rod_do_not_change_the_answer(
     store: Store, sizes: Statistics, pokes: Pokes
 ) -> None:
     """Points are weighted by their area, as a locally refined surface mesh requires."""
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     some = np.random.default_rng(0).uniform(-8e-3, 8e-3, (600, 2)) + pokes.start[0, :2].numpy()
-    points = np.concatenate([store.points, np.column_stack([some, np.full(600, store.points[0, 2])])])
+    points = np.concatenate(
+        [store.setup.points, np.column_stack([some, np.full(600, store.setup.points[0, 2])])]
+    )
     wrong = {}
     first = Pokes(**{k: v[:1] for k, v in vars(pokes).items()})
     with torch.no_grad():
         whole = model(scene, first)
         for weighted in (True, False):
-            cloud = scene_on(store, points)
+            cloud = scene_on(store.setup, store.profile, points)
             if not weighted:
                 cloud = dataclasses.replace(cloud, area=torch.ones_like(cloud.area))
             apart = model(cloud, first).displacement[:, :1024] - whole.displacement
@@ -303,7 +307,7 @@ def test_unknown_model() -> None:
 
 
 def test_scene_of_some_interiors_keeps_their_indices(store: Store, sizes: Statistics, pokes: Pokes) -> None:
-    model, scene = _model("invariant-gnn", sizes), scene_of(store)
+    model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)
     part = scene.only(pokes.geometry[3:].numpy())
     assert len(part.rigid) == 1 < len(scene.rigid)
     last = Pokes(**{k: v[3:] for k, v in vars(pokes).items()})

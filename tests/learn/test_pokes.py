@@ -9,7 +9,7 @@ import torch
 from learn.baselines import BASELINES
 from learn.data import MemoryDataset, open_store, split_of
 from learn.evaluation import predict_part, summarise
-from learn.models import scene_of
+from learn.models import Scenes
 from learn.training import RECIPES, Trainer, load_run, read_log
 from tests.learn.real_store import write_real_store
 
@@ -28,13 +28,13 @@ def test_twelve_epochs_on_ten_pokes(tmp_path: Path) -> None:
     Trainer(store, RECIPE, tmp_path / "run", resume=False).train()
     log = read_log(tmp_path / "run")
     assert log[-1]["train_loss"] < 0.7 * log[0]["train_loss"]  # measured: 0.52
-    run, split, scene = load_run(tmp_path / "run"), split_of(store, RECIPE), scene_of(store)
+    run, split, scenes = load_run(tmp_path / "run"), split_of(store, RECIPE), Scenes.of(store)
     test = MemoryDataset(store, split.test)
-    ours = summarise(predict_part(run.model, scene, test))
+    ours = summarise(predict_part(run.model, scenes, test))
     for name, factors in FACTORS.items():
         baseline = BASELINES[name]()
-        baseline.fit(MemoryDataset(store, split.train), scene)
-        other = summarise(predict_part(baseline, scene, test))
+        baseline.fit(MemoryDataset(store, split.train), scenes)
+        other = summarise(predict_part(baseline, scenes, test))
         print(name, {m: f"{ours[m].mean:.4g} {other[m].mean:.4g}" for m in ours})
         for metric, factor in factors.items():
             assert ours[metric].mean * factor < other[metric].mean, f"{name}, {metric}"

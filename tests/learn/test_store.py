@@ -34,8 +34,8 @@ def test_what_is_read_is_what_was_written(whole: Path) -> None:
     assert (store.pokes, store.frames) == (12, 48)
     assert store.modulus[[0, 2]] == pytest.approx([MODULI["S0"], MODULI["S1"]])
     assert store.rod_radius == pytest.approx(2.5e-3)
-    assert store.rod_edge == pytest.approx(1e-3)
-    np.testing.assert_allclose(store.normals, np.tile([0, 0, 1.0], (1024, 1)))
+    assert store.setup.rod_edge == pytest.approx(1e-3)
+    np.testing.assert_allclose(store.setup.normals, np.tile([0, 0, 1.0], (1024, 1)))
     group = zarr.open_group(whole, mode="r")
     array = np.asarray(group["grid_displacement"][...]).reshape(-1, 1024, 3)  # type: ignore[index, union-attr]
     np.testing.assert_array_equal(store.displacement(slice(3, 20)), array[3:20])

@@ -55,7 +55,7 @@ def test_order_depends_on_seed_and_epoch_alone(store: Store) -> None:
 def test_blocks_are_mixed(store: Store) -> None:
     """A batch contains frames of several blocks, not a sequence of one."""
     data = StreamDataset(store, np.arange(store.frames), batch=8, shuffle_buffer=4, seed=0)
-    batches = [batch.frame.numpy() // store.block for batch in data]
+    batches = [batch.frame.numpy() // store.shard for batch in data]
     assert np.mean([len(np.unique(blocks)) for blocks in batches]) > 2
 
 

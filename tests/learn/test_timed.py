@@ -18,7 +18,7 @@ from learn.data import MemoryDataset, StreamDataset, open_store, split_pokes, st
 from learn.errors import InputError
 from learn.evaluation import parts_of
 from learn.evaluation.predictions import interpolation_error_mm, predict_part
-from learn.models import Pokes, make_model, pokes_of, scene_of
+from learn.models import Pokes, Scenes, make_model, pokes_of, scene_on
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import CLOCK as CLOCK_NAMES
 from learn.onnx_bundle import TOLERANCE, OnnxBundle, write_bundle
@@ -158,7 +158,7 @@ def test_the_surrogate_takes_time_and_speed_as_inputs(folder: Path, run: Path) -
     store, trained = open_store(folder), load_run(run)
     assert trained.model.takes_clock
     assert trained.statistics.log_time_mean is not None
-    scene = scene_of(store)
+    scene = scene_on(store.setup, store.profile)
     pokes = pokes_of(MemoryDataset(store, np.array([1, 6])).__getitems__([0, 1]))
     with torch.no_grad():
         one = trained.model(scene, pokes)
@@ -210,7 +210,7 @@ def test_onnx_takes_the_clock(folder: Path, run: Path, tmp_path: Path) -> None:
     assert checked > 1
     assert wrong < TOLERANCE
     assert json.loads((tmp_path / "onnx" / "model.json").read_text())["clock"] == CLOCK_NAMES
-    bundle, scene = OnnxBundle(tmp_path / "onnx"), scene_of(store)
+    bundle, scene = OnnxBundle(tmp_path / "onnx"), scene_on(store.setup, store.profile)
     pokes = pokes_of(MemoryDataset(store, np.array([1])).__getitems__([0]))
     code = bundle.encode(scene.rigid[0])
     now, _ = bundle.poke(code, pokes, 0)
@@ -224,7 +224,7 @@ def test_time_counts_in_the_distance_of_an_evaluation(run: Path, tmp_path: Path)
     assert loaded.domain is not None
     rows = np.flatnonzero(store.presses)[:6]
     data = MemoryDataset(store, rows)
-    found = predict_part(loaded.model, scene_of(store), data)
+    found = predict_part(loaded.model, Scenes.of(store), data)
     np.testing.assert_allclose(found.clock, store.clocks(rows), rtol=1e-6)
     own = found.poke, found.depth
     inside = frame_distances(loaded.domain, store, *own, found.clock)
