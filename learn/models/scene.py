@@ -222,10 +222,14 @@ class Scenes:
         Yields
         ------
         The number of the scene, the positions of its pokes in the batch, and these pokes, with `geometry` the
-        row of the scene. A batch of one scene is yielded as it is, without copies.
+        row of the scene. Nothing is copied if all are of one scene.
         """
+        device = batch.geometry.device
+        if len(self) == 1:  # without a wait for a GPU
+            yield 0, torch.arange(len(batch.geometry), device=device), batch
+            return
         geometry = batch.geometry.cpu().numpy()
-        place, device = self.place[geometry], batch.geometry.device
+        place = self.place[geometry]
         found = np.unique(place)
         for k in found:
             mine = np.flatnonzero(place == k)
@@ -233,9 +237,8 @@ class Scenes:
             part = batch
             if len(found) > 1:
                 part = replace(part, **{f.name: getattr(part, f.name)[where] for f in fields(part)})
-            if len(self) > 1:
-                part = replace(part, geometry=torch.from_numpy(self.row[geometry[mine]]).to(device))
-            yield int(k), where, part
+            row = torch.from_numpy(self.row[geometry[mine]]).to(device)
+            yield int(k), where, replace(part, geometry=row)
 
     def each(self, batches: Iterable[T]) -> Iterator[tuple[int, T]]:
         """The parts of all batches, with the number of their scene."""
