@@ -31,6 +31,7 @@ from factory._report import Trace
 from factory._sampling import grid_points, level_depths, profiles
 from factory._schema import SPECS
 from factory._store import write_manifest
+from factory.build import app as build_app
 from factory.inspect import app as inspect_app
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe
@@ -137,6 +138,22 @@ def test_recipes_of_one_block_stay_what_they_were(name: str, recipe: str, scenes
     ]
     text = repr(np.round(np.array(drawn, dtype=float), 9).tolist())
     assert hashlib.sha256(text.encode()).hexdigest().startswith(scenes)
+
+
+def test_the_blocks_recipe() -> None:
+    plan = make_plan(load_recipe("blocks"), "ogden")  # refused if a path left its block
+    assert len(plan.recipe.shapes) == 36
+    assert len(plan.pokes) == 576
+    assert sum(not poke.derived for poke in plan.pokes) == 288
+    found = sides(plan.recipe)
+    assert found.min(axis=0) == pytest.approx([70, 70, 24], abs=1.5)
+    assert found.max(axis=0) == pytest.approx([130, 130, 40], abs=4)
+    covers = found[:, 2] - [shape.top_mm for shape in plan.recipe.shapes]
+    assert 6 <= covers.min() < 7
+    assert covers.max() > 25
+    done = run_app(build_app, "--model", "ogden", "--recipe", "blocks", "--dry-run")
+    assert done.exit_code == 0, done.output
+    assert "70.7 to 129.81 x 70.12 to 126.93 x 25.19 to 39.52 mm" in done.stdout
 
 
 def test_inclusions_and_contact_points_are_within_their_block(tmp_path: Path) -> None:
